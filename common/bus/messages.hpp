@@ -1,0 +1,116 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// The messages that cross the bus, as plain values. idl/palpate.idl holds the same fields for DDS; the two are
+/// kept in step by a test. Times are CLOCK_MONOTONIC nanoseconds of the host that wrote them.
+namespace palpate {
+
+/// One haptic step's input: the degrees of freedom of one tool, as the step consumed them.
+struct ToolState {
+  std::uint32_t tool = 0;        ///< key: position in the scene's tool list
+  std::uint64_t run = 0;         ///< identifies one start of the haptic loop
+  std::uint64_t seq = 0;         ///< counts samples of this topic and tool, without gaps
+  std::uint64_t step = 0;        ///< haptic step number
+  std::int64_t sense_ns = 0;     ///< when the device was read
+  std::uint64_t device_seq = 0;  ///< sequence number of the device sample consumed, 0 for a scripted tool
+  double yaw = 0, pitch = 0;     ///< [rad] about the trocar
+  double depth = 0;              ///< [m] tip beyond the trocar along the shaft
+  double roll = 0;               ///< [rad] about the shaft
+  double grip = 0;               ///< [rad] jaw opening
+};
+
+/// A driver elsewhere publishes this for a tool whose device is "bus".
+struct DeviceState {
+  std::uint32_t tool = 0;  ///< key
+  std::uint64_t seq = 0;
+  std::int64_t sense_ns = 0;
+  double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0;  ///< as in ToolState
+};
+
+/// Linear force on the tissue at one surface node.
+struct NodalForce {
+  std::uint32_t body = 0;  ///< position in the scene's body list
+  std::uint32_t node = 0;  ///< surface node index of that body's archive
+  std::array<double, 3> force{};  ///< [N] on the tissue, world frame, before the non-linear correction
+};
+
+/// One held contact; enough for a returning haptic node to take it up again.
+struct HeldContact {
+  std::uint32_t body = 0;
+  std::array<std::uint32_t, 3> nodes{};  ///< surface node indices of the touched triangle
+  std::array<double, 3> weights{};       ///< barycentric coordinates of the anchor
+  std::array<double, 3> offset{};        ///< [m] anchor in the tool's tip frame
+  std::array<double, 3> normal{};        ///< unit, world, from the tool into the tissue
+  std::array<double, 3> force{};         ///< [N] on the tissue, world, linear
+  std::uint32_t sample = 0;              ///< which sample sphere of the tool
+  std::uint32_t sticking = 0;            ///< 1 sticks, 0 slides
+};
+
+/// Contact information: everything that a deformation node needs of one tool.
+struct ContactState {
+  std::uint32_t tool = 0;  ///< key
+  std::uint64_t run = 0;
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;
+  std::int64_t sense_ns = 0;
+  std::array<double, 3> press{};      ///< unit, world: common direction of this tool's press on the tissue
+  std::vector<NodalForce> forces;     ///< f of u = C f, summed over the tool's contacts
+  std::vector<HeldContact> contacts;
+};
+
+/// Force and torque on the tool at its tip, world frame, after correction and safety chain.
+struct ForceState {
+  std::uint32_t tool = 0;  ///< key
+  std::uint64_t run = 0;
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;
+  std::int64_t sense_ns = 0;
+  std::array<double, 3> force{};   ///< [N]
+  std::array<double, 3> torque{};  ///< [N m]
+  std::uint32_t flags = 0;         ///< bits of ForceFlag
+};
+enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8 };
+
+/// Visible surface of one body.
+struct SurfaceState {
+  std::uint32_t body = 0;  ///< key
+  std::uint64_t run = 0;   ///< of the haptic loop whose contacts are shown; 0: rest shape
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;         ///< newest haptic step included
+  std::int64_t sense_ns = 0;      ///< sense time of that step
+  std::int64_t publish_ns = 0;
+  std::vector<float> position;    ///< [m] x,y,z per surface node, world
+  std::vector<float> normal;      ///< unit, x,y,z per surface node, outward
+};
+
+/// Who is there. Published on change and once a second.
+struct NodeStatus {
+  std::string node;          ///< key: role and process, "haptic 4711@host"
+  std::string role;          ///< haptic | deform | render | recorder | driver
+  std::uint64_t run = 0;
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0;
+  std::string scene_hash;
+  std::string archive_hash;  ///< of all bodies' archives
+  std::string version;       ///< software version and code path
+  double rate_hz = 0;        ///< measured
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;
+  double latency_p50_us = 0, latency_p99_us = 0;  ///< haptic: step time; deform, render: sense to here
+  std::string text;          ///< plain sentence for the operator, empty if all is well
+};
+
+/// State of the haptic loop, from which a replay can start.
+struct HapticKeyframe {
+  std::uint64_t run = 0;
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;          ///< state before this step
+  double dt = 0;                   ///< [s] nominal period
+  std::string code_path;           ///< vector width and software version
+  std::vector<std::uint8_t> state;
+};
+
+}  // namespace palpate

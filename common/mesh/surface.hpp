@@ -1,0 +1,15 @@
+#pragma once
+#include "common/mesh/tet_mesh.hpp"
+
+namespace palpate {
+
+/// The boundary of a tetrahedral mesh.
+struct Surface {
+  std::vector<int> nodes;                     ///< node numbers on the boundary, ascending
+  std::vector<std::array<int, 3>> triangles;  ///< node numbers of the mesh, outward by the right-hand rule
+};
+
+/// Faces that belong to one tetrahedron only, in order of (tetrahedron, face).
+Surface extract_surface(const TetMesh& mesh);
+
+}  // namespace palpate

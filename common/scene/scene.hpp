@@ -1,0 +1,138 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Axis-aligned box [m], world frame.
+struct Box {
+  Eigen::Vector3d min, max;
+};
+
+/// Selects nodes or elements of a mesh; exactly one member is set in a validated scene.
+struct Selector {
+  std::vector<int> indices;  ///< `nodes` or `elements`: 0-based
+  std::optional<Box> box;
+  std::string group;         ///< physical group: name or number
+};
+
+struct FixedRegion {
+  Selector where;
+  std::array<bool, 3> axes{true, true, true};  ///< which of x, y, z are held
+};
+
+struct Material {
+  double young = 0;    ///< [Pa]
+  double poisson = 0;  ///< [1], < 0.5
+  double density = 0;  ///< [kg/m^3]
+};
+
+struct MaterialRegion {
+  Selector where;
+  Material material;
+};
+
+/// Quasi non-linear correction (TVCG99 sec. 3-4, 4-3).
+struct Nonlinear {
+  std::filesystem::path force_curve;   ///< CSV `displacement_m,force_N`
+  std::filesystem::path radial_curve;  ///< CSV `displacement_m,radial_m`
+  double specimen_radius = 0;          ///< [m]
+  double specimen_height = 0;          ///< [m]
+  int degree = 6;                      ///< 4..10
+  std::filesystem::path specimen_mesh; ///< empty: ends slide, closed-form linear curves; else stuck ends, from this mesh
+  double specimen_scale = 1;           ///< [m per unit of specimen_mesh]
+};
+
+struct Body {
+  std::string name;
+  std::filesystem::path mesh;
+  double scale = 1;  ///< [m per mesh unit]
+  std::string model = "quasi_static";
+  Material material;
+  std::vector<FixedRegion> fixed;
+  std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
+  std::optional<Nonlinear> nonlinear;
+  std::optional<Selector> touchable;      ///< absent: every free surface node
+};
+
+struct Tool {
+  std::string name;
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m] trocar point, world frame
+  Eigen::Vector3d axis = -Eigen::Vector3d::UnitZ(); ///< unit, direction of the shaft (handle to tip) in the zero pose
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();    ///< unit, perpendicular part used: the tool's y axis in the zero pose
+  double radius = 0.004;        ///< [m] of the spherical tip
+  double shaft_radius = 0.0025; ///< [m]
+  double shaft_length = 0.3;    ///< [m] from the tip back along the shaft
+  std::string device = "scripted";         ///< scripted | log | bus
+  std::filesystem::path trajectory;        ///< for scripted: CSV; for log: an LCM event log
+  double max_force = 10;        ///< [N] limit of the safety chain
+  double max_force_rate = 5000; ///< [N/s] slew limit
+};
+
+struct Contact {
+  std::string rule = "barycentric";  ///< barycentric | alpha (TVCG99 sec. 5)
+  double friction = 0.3;             ///< [1] Coulomb coefficient; 0 slides freely
+  double bucket_size = 0;            ///< [m] 0: twice the mean edge length of the surface
+};
+
+struct Network {
+  int domain = 0;
+  std::string interface;            ///< empty: loopback
+  std::vector<std::string> peers;
+};
+
+struct Rates {
+  double haptic_hz = 1000;
+  double visual_hz = 60;
+};
+
+struct Record {
+  std::filesystem::path file;
+};
+
+struct Camera {
+  Eigen::Vector3d eye{0, -0.3, 0.2};
+  Eigen::Vector3d target{0, 0, 0};
+  Eigen::Vector3d up{0, 0, 1};
+  double field_of_view = 50;  ///< [deg] vertical
+};
+
+struct Render {
+  int width = 1024;
+  int height = 768;
+  Camera camera;
+  std::string colour = "tissue";    ///< tissue | displacement
+  std::array<double, 3> tissue_colour{0.55, 0.16, 0.13};  ///< linear RGB
+  std::filesystem::path backdrop;   ///< empty: none
+  double backdrop_scale = 1;        ///< [m per mesh unit]
+  bool overlay = true;
+};
+
+/// A validated scene with every default filled in. Paths are absolute. Optional sections that are absent
+/// stay empty, and nothing is built for them.
+struct Scene {
+  std::filesystem::path file;
+  std::string title;
+  std::vector<Body> bodies;
+  std::vector<Tool> tools;
+  Contact contact;
+  Network network;
+  Rates rates;
+  std::optional<Record> record;
+  std::optional<Render> render;
+};
+
+/// Reads and validates. Throws std::runtime_error("FILE:LINE:COLUMN: sentence").
+Scene load_scene(const std::filesystem::path& file);
+
+/// The resolved scene as TOML, every default written out; load_scene reads it back to the same scene.
+std::string to_toml(const Scene& scene);
+
+/// Hash of what two nodes must agree on (bodies, tools, contact law, rates); the text form goes into NodeStatus.
+std::string scene_hash(const Scene& scene);
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Geometry and numbering of the visible surface of a body. Surface nodes 0 .. touchable-1 are the touchable
+/// ones (on the surface, at least one free axis), the others follow; both groups ascend in mesh node number.
+struct SurfaceMap {
+  std::vector<Eigen::Vector3d> position;          ///< [m] rest position per surface node
+  std::vector<int> node_number;                   ///< mesh node number per surface node
+  std::vector<std::array<bool, 3>> fixed;         ///< per surface node and axis
+  std::vector<std::array<int, 3>> triangles;      ///< surface node indices, outward
+  int touchable = 0;
+
+  int size() const { return static_cast<int>(position.size()); }
+};
+
+/// A degree of freedom of the compliance: surface node index and axis.
+struct Dof {
+  int node;
+  int axis;
+};
+
+/// Tensors of one body as stored in the HDF5 archive. Compliance only: T^f_k = C_kk^-1 and
+/// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it.
+struct Archive {
+  std::string body;
+  std::string content_hash;  ///< over mesh, material, fixation, touchable set and format version
+  std::string software;      ///< version that computed it
+  SurfaceMap surface;
+  std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes, ascending
+  std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes
+  /// C_tt, packed lower triangle by rows: entry (i,j), j <= i, at i(i+1)/2 + j.  [m/N]
+  std::vector<double> touchable_compliance;
+  /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
+  std::vector<double> other_compliance;
+  /// Slopes of the linear model's specimen curves where the scene names a specimen mesh, else 0.
+  double specimen_force_slope = 0;   ///< [N/m]
+  double specimen_radial_slope = 0;  ///< [1]
+};
+
+/// Where the archive of a body lives: SCENE_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is set.
+std::filesystem::path archive_path(const std::filesystem::path& scene_file, const std::string& body,
+                                   const std::string& content_hash);
+
+/// Writes to a temporary name beside `file` and renames. Throws std::runtime_error on failure, leaving nothing.
+void write_archive(const Archive& archive, const std::filesystem::path& file);
+
+/// Which part of an archive to read: the haptic node asks for `touchable` alone.
+enum class ArchivePart { header, touchable, surface };
+
+/// Throws std::runtime_error("FILE: reason") if the file is truncated, foreign, of another format version, or its
+/// content hash is not `expected_hash` (checked unless empty).
+Archive read_archive(const std::filesystem::path& file, ArchivePart part, const std::string& expected_hash);
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+#include <Eigen/Geometry>
+
+namespace palpate {
+
+/// The five degrees of freedom of an instrument about its trocar.
+struct ToolDofs {
+  double yaw = 0;    ///< [rad] about the zero pose's y axis (up), positive by the right-hand rule
+  double pitch = 0;  ///< [rad] about the yawed x axis, positive by the right-hand rule
+  double depth = 0;  ///< [m] from the trocar to the tip's centre, along the shaft
+  double roll = 0;   ///< [rad] about the shaft, from handle to tip
+  double grip = 0;   ///< [rad] jaw opening
+};
+
+/// Fixed frame of the trocar: origin at the pivot, z along the zero pose's shaft (handle to tip), y up.
+struct Trocar {
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< columns x, y, z in world coordinates
+};
+
+/// `axis` and `up` as in the scene; up is made perpendicular to axis. Throws if they are parallel or zero.
+Trocar make_trocar(const Eigen::Vector3d& pivot, const Eigen::Vector3d& axis, const Eigen::Vector3d& up);
+
+/// Pose of the tip frame in the world: origin at the tip's centre, z along the shaft (handle to tip).
+Eigen::Isometry3d tip_pose(const Trocar& trocar, const ToolDofs& dofs);
+
+/// The dofs (grip excluded) that put the tip's centre at a world point, with the given roll; inverse of tip_pose.
+ToolDofs dofs_for_tip(const Trocar& trocar, const Eigen::Vector3d& tip, double roll);
+
+/// Force and torque [N, N m] at the tip turned into the reaction that the trocar and the hand feel (virtual work):
+/// generalised forces along yaw, pitch, depth, roll.
+Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, const Eigen::Vector3d& force,
+                                  const Eigen::Vector3d& torque);
+
+}  // namespace palpate
