@@ -1,9 +1,11 @@
 #pragma once
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
-#include "common/bus/messages.hpp"
+#include "common/bus/fields.hpp"
+#include "idl/topics.hpp"
 
 namespace palpate {
 
@@ -12,28 +14,52 @@ template <class Message>
 class Writer {
  public:
   virtual ~Writer() = default;
-  virtual void write(const Message& message) = 0;
-  virtual int readers() const = 0;  ///< matched readers at this moment
+  /// Never waits for a reader. False if the sample was not sent: it is invalid or the buffers are full.
+  virtual bool write(const Message& message) = 0;
+  virtual int readers() const = 0;  ///< matched readers; over DDS one that was killed counts for a minute
+  virtual std::uint64_t refused() const = 0;  ///< samples for which write() was false
 };
 
-/// Receives samples of one topic, oldest first.
+/// Receives samples of one topic, oldest first within a key. Samples that fail `valid` are dropped and
+/// counted.
 template <class Message>
 class Reader {
  public:
   virtual ~Reader() = default;
   virtual std::optional<Message> take() = 0;  ///< the next valid sample, empty if there is none
-  virtual int writers() const = 0;            ///< live writers at this moment (liveliness, not only matched)
+  virtual int writers() const = 0;            ///< live writers at this moment; death shows within about 0.2 s
+  virtual std::uint64_t invalid() const = 0;  ///< samples dropped because they were invalid
 };
 
-/// One interface over the network, the memory of this process and a log.
+/// What a reader keeps between two calls of take().
+enum class Keep {
+  latest,  ///< the newest sample of each key: a slow node never works through a queue of old ones
+  all      ///< every sample: recorders
+};
+
+/// One interface over the network and the memory of this process. A log is played to any bus
+/// (tools/log_player.hpp). Each writer and reader is used by one thread at a time, and none outlives its bus.
 class Bus {
  public:
   virtual ~Bus() = default;
-  // For every message M of messages.hpp:
-  //   virtual std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) = 0;
-  //   virtual std::unique_ptr<Reader<M>> reader(const Topic<M>& topic) = 0;
-  /// Sleeps until a reader of this bus has something to take, or the time is over. True if there is something.
+
+#define PALPATE_BUS_PORTS(M)                                            \
+  virtual std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) = 0; \
+  virtual std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep = Keep::latest) = 0;
+  PALPATE_MESSAGES(PALPATE_BUS_PORTS)
+#undef PALPATE_BUS_PORTS
+
+  /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be
+  /// something.
   virtual bool wait(std::chrono::nanoseconds timeout) = 0;
 };
+
+/// Takes everything that waits and returns the last sample. Meant for topics with one key.
+template <class M>
+std::optional<M> take_last(Reader<M>& reader) {
+  std::optional<M> last;
+  while (auto next = reader.take()) last = std::move(next);
+  return last;
+}
 
 }  // namespace palpate

@@ -113,4 +113,14 @@ struct HapticKeyframe {
   std::vector<std::uint8_t> state;
 };
 
+/// The resolved scene of a running haptic node, for recorders and observers that have no scene file.
+struct SceneText {
+  std::uint64_t run = 0;
+  std::uint64_t seq = 0;
+  std::string scene_hash;
+  std::string text;       ///< TOML, every default written out
+  std::string version;    ///< software version
+  std::string code_path;  ///< vector width and libraries of the haptic step
+};
+
 }  // namespace palpate

@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,18 +10,62 @@ namespace palpate {
 
 /// Regular grid of buckets over a surface (TVCG99 sec. 5). Every triangle is entered in each bucket that its
 /// swept bounding box (from the previous to the present node positions) meets, so that no crossing is missed.
-/// All memory is taken in the constructor; move() and query() allocate nothing.
+/// All memory is taken in the constructor; move() and query() allocate nothing. One thread at a time.
+///
+/// A triangle whose box meets more than `kMostBuckets` buckets, or for which no entries are left, goes on a
+/// list that every query reads as a whole: slower, but nothing is lost.
 class Buckets {
  public:
+  static constexpr int kMostBuckets = 64;
+
   /// `size` [m] is the edge of a bucket. The grid covers the surface's box grown by half its diagonal on all
   /// sides; what lies beyond is entered in the outermost buckets.
-  Buckets(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles, double size);
+  /// Throws std::runtime_error if the size is not positive or gives more than 2^24 buckets.
+  Buckets(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles,
+          double size);
 
   /// Enters the triangle's new swept box; does nothing if it meets the same buckets as before.
   void move(int triangle, const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max);
 
   /// Triangles whose buckets meet the box, ascending and without duplicates, into `found`; returns how many.
+  /// `found` needs room for every triangle of the surface.
   int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, std::span<int> found) const;
+
+  std::array<int, 3> cells() const { return cells_; }
+  std::size_t bytes() const;  ///< memory taken
+  /// Triangles on the list that every query reads.
+  int overflow() const { return overflow_count_; }
+
+ private:
+  struct Range {
+    std::array<int, 3> low{0, 0, 0}, high{-1, -1, -1};  ///< inclusive
+    bool operator==(const Range&) const = default;
+    int count() const { return (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1); }
+  };
+  /// A triangle in a bucket: a link of the bucket's list, which runs both ways, and of the triangle's own.
+  struct Entry {
+    int triangle, bucket, before, after, next_of_triangle;
+  };
+
+  template <class Visit>
+  void for_each_bucket(const Range& range, Visit&& visit) const;
+  Range range_of(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) const;
+  void enter(int triangle);
+  void leave(int triangle);
+  void link(int triangle, int bucket);
+
+  Eigen::Vector3d origin_;
+  double per_metre_;
+  std::array<int, 3> cells_;
+  std::vector<int> first_in_bucket_;    ///< entry, or -1
+  std::vector<Range> range_;            ///< per triangle
+  std::vector<int> first_of_triangle_;  ///< entry, or -1
+  std::vector<Entry> entries_;
+  int free_ = -1, free_count_ = 0;
+  int first_overflow_;  ///< the bucket behind the last: its list is that of the overflow
+  int overflow_count_ = 0;
+  mutable std::vector<std::uint32_t> stamp_;
+  mutable std::uint32_t clock_ = 0;
 };
 
 }  // namespace palpate

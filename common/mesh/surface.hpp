@@ -7,6 +7,7 @@ namespace palpate {
 struct Surface {
   std::vector<int> nodes;                     ///< node numbers on the boundary, ascending
   std::vector<std::array<int, 3>> triangles;  ///< node numbers of the mesh, outward by the right-hand rule
+  std::vector<int> tetrahedra;                ///< per triangle, the tetrahedron that it bounds
 };
 
 /// Faces that belong to one tetrahedron only, in order of (tetrahedron, face).

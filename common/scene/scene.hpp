@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -26,9 +27,9 @@ struct FixedRegion {
 };
 
 struct Material {
-  double young = 0;    ///< [Pa]
-  double poisson = 0;  ///< [1], < 0.5
-  double density = 0;  ///< [kg/m^3]
+  double young = 0;       ///< [Pa]
+  double poisson = 0;     ///< [1], > -1, < 0.5
+  double density = 1000;  ///< [kg/m^3]
 };
 
 struct MaterialRegion {
@@ -129,10 +130,16 @@ struct Scene {
 /// Reads and validates. Throws std::runtime_error("FILE:LINE:COLUMN: sentence").
 Scene load_scene(const std::filesystem::path& file);
 
+/// The same for text that stands for the contents of `file`: paths in it are relative to that file's folder.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+
 /// The resolved scene as TOML, every default written out; load_scene reads it back to the same scene.
 std::string to_toml(const Scene& scene);
 
-/// Hash of what two nodes must agree on (bodies, tools, contact law, rates); the text form goes into NodeStatus.
+/// Hash (XXH3, 128 bits, 32 hexadecimal digits) of what two nodes must agree on: bodies, tools, contact law,
+/// rates and the contents of the curve files. What each node may choose for itself is left out: title, paths,
+/// devices, network, record, render. Meshes are compared by the hash of the archive. Throws std::runtime_error if a
+/// curve file cannot be read.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace palpate

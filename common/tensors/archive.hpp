@@ -11,10 +11,10 @@ namespace palpate {
 /// Geometry and numbering of the visible surface of a body. Surface nodes 0 .. touchable-1 are the touchable
 /// ones (on the surface, at least one free axis), the others follow; both groups ascend in mesh node number.
 struct SurfaceMap {
-  std::vector<Eigen::Vector3d> position;          ///< [m] rest position per surface node
-  std::vector<int> node_number;                   ///< mesh node number per surface node
-  std::vector<std::array<bool, 3>> fixed;         ///< per surface node and axis
-  std::vector<std::array<int, 3>> triangles;      ///< surface node indices, outward
+  std::vector<Eigen::Vector3d> position;      ///< [m] rest position per surface node
+  std::vector<int> node_number;               ///< mesh node number per surface node
+  std::vector<std::array<bool, 3>> fixed;     ///< per surface node and axis
+  std::vector<std::array<int, 3>> triangles;  ///< surface node indices, outward
   int touchable = 0;
 
   int size() const { return static_cast<int>(position.size()); }
@@ -30,8 +30,12 @@ struct Dof {
 /// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it.
 struct Archive {
   std::string body;
-  std::string content_hash;  ///< over mesh, material, fixation, touchable set and format version
-  std::string software;      ///< version that computed it
+  std::string content_hash;            ///< over mesh, material, fixation, touchable set and format version
+  std::string software;                ///< version that computed it
+  int mesh_nodes = 0;                  ///< nodes in the mesh file
+  std::vector<double> young, poisson;  ///< [Pa], [1]: the body's material, then one per material region
+  std::vector<std::uint16_t>
+      material_of_element;  ///< index into those per tetrahedron; empty: all have the first
   SurfaceMap surface;
   std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes, ascending
   std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes
@@ -44,18 +48,25 @@ struct Archive {
   double specimen_radial_slope = 0;  ///< [1]
 };
 
-/// Where the archive of a body lives: SCENE_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is set.
+/// Changes with every change of the layout or of the meaning of a stored number.
+constexpr int kArchiveFormat = 1;
+
+/// Where the archive of a body lives: SCENE_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
+/// set.
 std::filesystem::path archive_path(const std::filesystem::path& scene_file, const std::string& body,
                                    const std::string& content_hash);
 
-/// Writes to a temporary name beside `file` and renames. Throws std::runtime_error on failure, leaving nothing.
+/// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either
+/// whole or as it was. Removes temporary files that killed writers of the same body left. Throws
+/// std::runtime_error on failure (a full disk, say), leaving nothing.
 void write_archive(const Archive& archive, const std::filesystem::path& file);
 
-/// Which part of an archive to read: the haptic node asks for `touchable` alone.
+/// Which part of an archive to read: the header with maps and material, C_tt as well (all that the haptic
+/// node needs), or everything. What is not asked for is not read.
 enum class ArchivePart { header, touchable, surface };
 
-/// Throws std::runtime_error("FILE: reason") if the file is truncated, foreign, of another format version, or its
-/// content hash is not `expected_hash` (checked unless empty).
+/// Throws std::runtime_error("FILE: reason") if the file is truncated, foreign, of another format version, or
+/// its content hash is not `expected_hash` (checked unless empty), or a dataset fails its checksum.
 Archive read_archive(const std::filesystem::path& file, ArchivePart part, const std::string& expected_hash);
 
 }  // namespace palpate

@@ -7,8 +7,9 @@
 namespace palpate {
 
 /// Dense compliance for the run time, column-major and 64-byte aligned: column 3k+b holds the displacement of
-/// every row node, three entries a node, per unit force [N] at touchable node k along axis b. Rows and columns
-/// of fixed axes are zero, so that node i is always rows 3i..3i+2. The leading dimension is a multiple of 16.
+/// every row node, three entries a node, per unit force [N] at touchable node k along axis b. Rows and
+/// columns of fixed axes are zero, so that node i is always rows 3i..3i+2. The leading dimension is a
+/// multiple of 16.
 template <class Scalar>
 class Compliance {
  public:
@@ -21,6 +22,12 @@ class Compliance {
   std::ptrdiff_t stride() const { return stride_; }
   const Scalar* column(int node, int axis) const { return data_.get() + stride_ * (3 * node + axis); }
   std::size_t bytes() const { return sizeof(Scalar) * stride_ * 3 * column_nodes_; }
+
+  /// What a compliance of that size will take.
+  static std::ptrdiff_t stride_of(int row_nodes) { return (3 * row_nodes + 15) / 16 * 16; }
+  static std::size_t bytes_of(int row_nodes, int column_nodes) {
+    return sizeof(Scalar) * stride_of(row_nodes) * 3 * column_nodes;
+  }
 
  private:
   struct Free {

@@ -24,11 +24,12 @@ Trocar make_trocar(const Eigen::Vector3d& pivot, const Eigen::Vector3d& axis, co
 /// Pose of the tip frame in the world: origin at the tip's centre, z along the shaft (handle to tip).
 Eigen::Isometry3d tip_pose(const Trocar& trocar, const ToolDofs& dofs);
 
-/// The dofs (grip excluded) that put the tip's centre at a world point, with the given roll; inverse of tip_pose.
+/// The dofs (grip excluded) that put the tip's centre at a world point, with the given roll; inverse of
+/// tip_pose.
 ToolDofs dofs_for_tip(const Trocar& trocar, const Eigen::Vector3d& tip, double roll);
 
-/// Force and torque [N, N m] at the tip turned into the reaction that the trocar and the hand feel (virtual work):
-/// generalised forces along yaw, pitch, depth, roll.
+/// Force and torque [N, N m] at the tip turned into the reaction that the trocar and the hand feel (virtual
+/// work): generalised forces along yaw, pitch, depth, roll.
 Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, const Eigen::Vector3d& force,
                                   const Eigen::Vector3d& torque);
 

@@ -1,0 +1,234 @@
+#include "common/bus/dds_bus.hpp"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+
+#include "common/bus/dds_convert.hpp"
+#include "common/bus/validate.hpp"
+
+namespace palpate {
+namespace {
+
+/// The middleware's last words, for the sentence of an exception. It prints nothing of its own.
+class LastWords {
+ public:
+  static LastWords& instance() {
+    static auto* words = new LastWords;  // outlives the middleware's threads
+    return *words;
+  }
+  std::string text() {
+    const std::lock_guard lock(mutex_);
+    return text_;
+  }
+
+ private:
+  LastWords() { dds_set_log_sink(&LastWords::sink, this); }
+  static void sink(void* self, const dds_log_data_t* data) {
+    auto& words = *static_cast<LastWords*>(self);
+    const std::lock_guard lock(words.mutex_);
+    words.text_.assign(data->message, data->size);
+    while (!words.text_.empty() && words.text_.back() == '\n') words.text_.pop_back();
+  }
+  std::mutex mutex_;
+  std::string text_;
+};
+
+/// Owns an entity of the C API and, through it, the entity's children.
+class Entity {
+ public:
+  Entity(dds_entity_t id, const std::string& what) : id_(id) {
+    if (id_ >= 0) return;
+    const std::string words = LastWords::instance().text();
+    throw std::runtime_error(fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_),
+                                         words.empty() ? "" : ", ", words));
+  }
+  ~Entity() { dds_delete(id_); }
+  Entity(const Entity&) = delete;
+  Entity& operator=(const Entity&) = delete;
+  operator dds_entity_t() const { return id_; }
+
+ private:
+  dds_entity_t id_;
+};
+
+/// One per domain id and process; the buses of a process share it.
+struct Domain {
+  std::string configuration;
+  Entity entity;
+};
+
+std::shared_ptr<Domain> join_domain(const BusSettings& settings) {
+  static std::mutex mutex;
+  static std::map<int, std::weak_ptr<Domain>> domains;
+  LastWords::instance();
+  const std::string configuration = dds_configuration(settings);
+  const std::lock_guard lock(mutex);
+  if (auto domain = domains[settings.domain].lock()) {
+    if (domain->configuration == configuration) return domain;
+    throw std::runtime_error(
+        fmt::format("network: this process is already in domain {} with other settings", settings.domain));
+  }
+  const auto id = static_cast<dds_domainid_t>(settings.domain);
+  auto domain = std::shared_ptr<Domain>(new Domain{
+      configuration,
+      {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
+  domains[settings.domain] = domain;
+  return domain;
+}
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosPtr = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+/// What writer and reader of a topic agree on. Blocking time 0: a full history refuses the sample instead of
+/// waiting.
+QosPtr common_qos(const Qos& qos) {
+  QosPtr q(dds_create_qos());
+  dds_qset_reliability(q.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_durability(q.get(),
+                      qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  return q;
+}
+
+QosPtr writer_qos(const Qos& qos, int lease_ms) {
+  QosPtr q = common_qos(qos);
+  dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
+  dds_qset_durability_service(q.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_liveliness(q.get(), DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(lease_ms));
+  dds_qset_writer_data_lifecycle(q.get(), false);
+  return q;
+}
+
+/// A reader that keeps all stops accepting after a while; the writer then drops its oldest samples, not its
+/// pace.
+QosPtr reader_qos(const Qos& qos, Keep keep) {
+  constexpr int most_kept = 16384;
+  QosPtr q = common_qos(qos);
+  if (keep == Keep::latest) {
+    dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, 1);
+  } else {
+    dds_qset_history(q.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+    dds_qset_resource_limits(q.get(), most_kept, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  return q;
+}
+
+template <class M>
+class DdsWriter final : public Writer<M> {
+ public:
+  DdsWriter(dds_entity_t participant, const Topic<M>& topic, int lease_ms)
+      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
+               fmt::format("creating topic {}", topic.name)),
+        writer_(dds_create_writer(participant, topic_, writer_qos(topic.qos, lease_ms).get(), nullptr),
+                fmt::format("creating the writer of {}", topic.name)) {}
+
+  bool write(const M& message) override {
+    typename dds::Generated<M>::Type sample{};
+    if (valid(message)) {
+      fields(dds::Lend{}, message, sample);
+      if (dds_write(writer_, &sample) == DDS_RETCODE_OK) return true;
+    }
+    ++refused_;
+    return false;
+  }
+
+  int readers() const override {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer_, &status);
+    return static_cast<int>(status.current_count);
+  }
+
+  std::uint64_t refused() const override { return refused_; }
+
+ private:
+  Entity topic_, writer_;
+  std::uint64_t refused_ = 0;
+};
+
+template <class M>
+class DdsReader final : public Reader<M> {
+ public:
+  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep)
+      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
+               fmt::format("creating topic {}", topic.name)),
+        reader_(dds_create_reader(participant, topic_, reader_qos(topic.qos, keep).get(), nullptr),
+                fmt::format("creating the reader of {}", topic.name)),
+        condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
+    dds_waitset_attach(waitset, condition_, 0);
+  }
+
+  std::optional<M> take() override {
+    for (;;) {
+      void* sample = nullptr;
+      dds_sample_info_t info;
+      if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return std::nullopt;
+      std::optional<M> message;
+      if (info.valid_data) message = accept(*static_cast<const typename dds::Generated<M>::Type*>(sample));
+      dds_return_loan(reader_, &sample, 1);
+      if (message) return message;
+    }
+  }
+
+  int writers() const override {
+    dds_liveliness_changed_status_t status{};
+    dds_get_liveliness_changed_status(reader_, &status);
+    return static_cast<int>(status.alive_count);
+  }
+
+  std::uint64_t invalid() const override { return invalid_; }
+
+ private:
+  std::optional<M> accept(const typename dds::Generated<M>::Type& sample) {
+    std::optional<M> message(std::in_place);
+    fields(dds::CopyOut{}, *message, sample);
+    if (valid(*message)) return message;
+    ++invalid_;
+    return std::nullopt;
+  }
+
+  Entity topic_, reader_, condition_;
+  std::uint64_t invalid_ = 0;
+};
+
+class DdsBus final : public Bus {
+ public:
+  explicit DdsBus(const BusSettings& settings)
+      : lease_ms_(settings.lease_ms),
+        domain_(join_domain(settings)),
+        participant_(dds_create_participant(static_cast<dds_domainid_t>(settings.domain), nullptr, nullptr),
+                     fmt::format("joining domain {}", settings.domain)),
+        waitset_(dds_create_waitset(participant_), "creating a wait set") {}
+
+#define PALPATE_DDS_PORTS(M)                                                     \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {            \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);       \
+  }                                                                              \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override { \
+    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep);  \
+  }
+  PALPATE_MESSAGES(PALPATE_DDS_PORTS)
+#undef PALPATE_DDS_PORTS
+
+  bool wait(std::chrono::nanoseconds timeout) override {
+    return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;
+  }
+
+ private:
+  int lease_ms_;
+  std::shared_ptr<Domain> domain_;
+  Entity participant_, waitset_;
+};
+
+}  // namespace
+
+std::unique_ptr<Bus> make_dds_bus(const BusSettings& settings) {
+  return std::make_unique<DdsBus>(settings);
+}
+
+}  // namespace palpate

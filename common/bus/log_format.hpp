@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/bus/codec.hpp"
+
+/// What stands in a topic log, inside the events of an LCM event log. docs/logs.md describes it for other
+/// readers.
+namespace palpate {
+
+/// First event of a log.
+struct LogHeader {
+  std::string scene_hash;
+  std::string scene;      ///< resolved scene as TOML; empty if no haptic node was there
+  std::string schema;     ///< schema_text() of the program that wrote the log
+  std::string version;    ///< software version of the recorder
+  std::string code_path;  ///< of the haptic step: vector width and libraries; empty as above
+  std::string host;
+  std::int64_t start_wall_ns = 0;       ///< since 1970
+  std::int64_t start_monotonic_ns = 0;  ///< the same moment on CLOCK_MONOTONIC of the recorder's host
+};
+
+/// Last event of a log whose recorder ended in order.
+struct LogFooter {
+  std::int64_t stop_monotonic_ns = 0;
+  std::uint64_t written = 0;  ///< events before this one
+  std::uint64_t lost = 0;     ///< messages that were received but not written
+  std::string error;          ///< last reason for that, empty if none
+};
+
+PALPATE_FIELDS(LogHeader, scene_hash, scene, schema, version, code_path, host, start_wall_ns,
+               start_monotonic_ns)
+PALPATE_FIELDS(LogFooter, stop_monotonic_ns, written, lost, error)
+
+inline constexpr const char* header_channel = "palpate/log_header";
+inline constexpr const char* footer_channel = "palpate/log_footer";
+
+/// The encoding of every message, one line each, then "topic NAME MESSAGE" lines.
+std::string schema_text();
+
+/// Envelope of each event's data: "PLPT", u16 version, u16 0, u32 CRC-32 of channel name, receive time and
+/// payload, i64 receive time, payload.
+namespace envelope {
+inline constexpr std::size_t size = 20;
+inline constexpr std::uint16_t version = 1;
+
+/// Receive time [ns] is CLOCK_MONOTONIC of the recorder's host.
+Bytes wrap(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload);
+
+/// The payload inside `data`, and its time. False if it is not such an envelope or is damaged.
+bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std::int64_t& receive_ns,
+            std::span<const std::uint8_t>& payload);
+}  // namespace envelope
+
+}  // namespace palpate

@@ -1,0 +1,203 @@
+#include "common/bus/log_writer.hpp"
+
+#include <fmt/format.h>
+#include <lcm/eventlog.h>
+#include <stdio_ext.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "common/realtime/clock.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::chrono::milliseconds flush_period{100};
+constexpr std::int64_t retry_period_ns = ns_per_s;
+constexpr std::size_t flush_bytes = 1u << 20;
+
+std::string reason_for(int error) {
+  if (error == ENOSPC || error == EDQUOT) return "no space left";
+  if (error == EFBIG) return "file size limit reached";
+  return error != 0 ? std::strerror(error) : "write failed";
+}
+
+struct Event {
+  std::string channel;
+  std::int64_t receive_ns;
+  Bytes data;
+};
+
+}  // namespace
+
+class LogWriter::Impl {
+ public:
+  Impl(const std::filesystem::path& file, std::size_t queue_bytes)
+      : log_(lcm_eventlog_create(file.c_str(), "w")),
+        queue_limit_(queue_bytes),
+        wall_offset_(wall_ns() - now_ns()) {
+    if (!log_)
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+    thread_ = std::thread([this] { run(); });
+  }
+
+  ~Impl() { close(); }
+
+  void push(Event event) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t size = event.data.size() + event.channel.size();
+    if (queued_bytes_ + size > queue_limit_) {
+      lose(1, "the disk is too slow");
+      return;
+    }
+    queued_bytes_ += size;
+    queue_.push_back(std::move(event));
+    if (queued_bytes_ > flush_bytes) work_.notify_one();
+  }
+
+  void want_footer() {
+    const std::lock_guard lock(mutex_);
+    footer_ = true;
+  }
+
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    work_.notify_one();
+    if (thread_.joinable()) thread_.join();
+    if (log_) lcm_eventlog_destroy(log_);
+    log_ = nullptr;
+  }
+
+  LogStatus status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+
+ private:
+  void run() {
+    std::setvbuf(log_->f, nullptr, _IOFBF, flush_bytes);
+    for (bool more = true; more;) {
+      std::deque<Event> batch;
+      {
+        std::unique_lock lock(mutex_);
+        work_.wait_for(lock, flush_period, [&] { return stop_ || queued_bytes_ > flush_bytes; });
+        batch.swap(queue_);
+        queued_bytes_ = 0;
+        more = !stop_;
+      }
+      for (const Event& event : batch) append(event);
+      flush();
+    }
+    if (footer_) append_footer();
+  }
+
+  void append_footer() {
+    retry_at_ = 0;
+    const LogStatus now = status();
+    const LogFooter footer{now_ns(), now.written, now.lost, now.error};
+    Bytes payload;
+    encode(footer, payload);
+    append({footer_channel, footer.stop_monotonic_ns,
+            envelope::wrap(footer_channel, footer.stop_monotonic_ns, payload)});
+    flush();
+  }
+
+  void append(const Event& event) {
+    if (now_ns() < retry_at_) {
+      const std::lock_guard lock(mutex_);
+      lose(1, status_.error);
+      return;
+    }
+    lcm_eventlog_event_t out{};
+    out.timestamp = (event.receive_ns + wall_offset_) / 1000;
+    out.channel = const_cast<char*>(event.channel.data());
+    out.channellen = static_cast<std::int32_t>(event.channel.size());
+    out.data = const_cast<std::uint8_t*>(event.data.data());
+    out.datalen = static_cast<std::int32_t>(event.data.size());
+    errno = 0;
+    if (lcm_eventlog_write_event(log_, &out) != 0) {
+      give_up(errno, 1);
+      return;
+    }
+    ++unflushed_;
+    const std::lock_guard lock(mutex_);
+    ++status_.written;
+  }
+
+  void flush() {
+    errno = 0;
+    if (std::fflush(log_->f) != 0) {
+      give_up(errno, 0);
+      return;
+    }
+    unflushed_ = 0;
+    safe_end_ = std::ftell(log_->f);
+    const std::lock_guard lock(mutex_);
+    status_.bytes = safe_end_ > 0 ? static_cast<std::uint64_t>(safe_end_) : 0;
+  }
+
+  /// Cuts the file back to the end of the last event that is known to be complete. `failed`: events besides
+  /// the unflushed ones that are lost now.
+  void give_up(int error, std::uint64_t failed) {
+    __fpurge(log_->f);
+    std::clearerr(log_->f);
+    if (ftruncate(fileno(log_->f), safe_end_) == 0) std::fseek(log_->f, safe_end_, SEEK_SET);
+    const std::lock_guard lock(mutex_);
+    status_.written -= unflushed_;
+    lose(unflushed_ + failed, reason_for(error));
+    unflushed_ = 0;
+    retry_at_ = now_ns() + retry_period_ns;
+  }
+
+  void lose(std::uint64_t events, const std::string& why) {
+    status_.lost += events;
+    status_.error = why;
+  }
+
+  lcm_eventlog_t* log_;
+  std::size_t queue_limit_;
+  std::int64_t wall_offset_;
+
+  mutable std::mutex mutex_;  // guards the following, up to status_
+  std::condition_variable work_;
+  std::deque<Event> queue_;
+  std::size_t queued_bytes_ = 0;
+  bool stop_ = false, footer_ = false;
+  LogStatus status_;
+
+  // Of the writing thread alone:
+  std::uint64_t unflushed_ = 0;
+  long safe_end_ = 0;
+  std::int64_t retry_at_ = 0;
+  std::thread thread_;
+};
+
+LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
+    : impl_(std::make_unique<Impl>(file, queue_bytes)) {}
+LogWriter::~LogWriter() = default;
+
+void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {
+  impl_->push({channel, receive_ns, envelope::wrap(channel, receive_ns, payload)});
+}
+
+LogStatus LogWriter::finish() {
+  impl_->want_footer();
+  impl_->close();
+  return status();
+}
+
+LogStatus LogWriter::status() const {
+  return impl_->status();
+}
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/bus/log_format.hpp"
+
+namespace palpate {
+
+/// How a log writer fares.
+struct LogStatus {
+  std::uint64_t written = 0;  ///< events on their way to the disk and not known to be lost
+  std::uint64_t lost = 0;     ///< events that could not be written or queued
+  std::uint64_t bytes = 0;    ///< size of the file
+  std::string error;          ///< last reason for a loss: "no space left", …; empty if none
+};
+
+/// Writes an LCM event log from a thread of its own: write() never waits for the disk. When the disk is full
+/// or slow, events are counted as lost and writing is tried again each second; what was written stays
+/// readable.
+class LogWriter {
+ public:
+  /// Creates the file. Throws std::runtime_error if that fails.
+  explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = 64u << 20);
+  ~LogWriter();  ///< finish() without a footer if it was not called
+
+  /// Appends an event; receive_ns is CLOCK_MONOTONIC. Call from one thread.
+  void write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload);
+
+  template <class M>
+  void write(const std::string& channel, std::int64_t receive_ns, const M& message) {
+    Bytes payload;
+    encode(message, payload);
+    write_payload(channel, receive_ns, payload);
+  }
+
+  /// Writes the footer and what is queued, and closes the file.
+  LogStatus finish();
+  LogStatus status() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+
+namespace palpate {
+
+/// Announces this node and watches the others: who is there, and whether they run the same scene and archives.
+class Presence {
+ public:
+  /// `role`: haptic, deform, render, recorder; `run`: of a haptic node, else 0.
+  Presence(Bus& bus, std::string role, std::uint64_t run, std::string scene_hash, std::string archive_hash);
+
+  const std::string& node() const { return status_.node; }
+
+  /// Publishes what has been measured; call about once a second and when `text` changes.
+  void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us, const std::string& text = "");
+
+  /// Takes what has come and returns a sentence for the operator for each node that is new, gone over to another
+  /// run, or refused because its scene or archive differs.
+  std::vector<std::string> watch();
+
+  /// True if the haptic loop with this run is known and has the same scene and archives.
+  bool accepts(std::uint64_t run) const;
+  /// Runs of haptic nodes that match.
+  bool matched(const std::string& role) const;
+  const std::map<std::string, NodeStatus>& peers() const { return peers_; }
+
+ private:
+  bool same_scene(const NodeStatus& peer) const;
+
+  std::unique_ptr<Writer<NodeStatus>> writer_;
+  std::unique_ptr<Reader<NodeStatus>> reader_;
+  NodeStatus status_;
+  std::map<std::string, NodeStatus> peers_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/log_writer.hpp"
+
+namespace palpate {
+
+struct RecorderSettings {
+  std::filesystem::path file;
+  std::string version;  ///< software version, for the header
+  /// How long the first samples are held back for the scene to arrive, since it stands in the log's header.
+  std::chrono::milliseconds scene_patience{1500};
+};
+
+struct RecordedTopic {
+  std::uint64_t samples = 0;
+  std::uint64_t missing = 0;  ///< by sequence numbers: sent, but not received
+  std::uint64_t invalid = 0;
+};
+
+struct RecorderReport {
+  std::map<std::string, RecordedTopic> topics;  ///< by name, those with samples
+  LogStatus log;
+  bool has_scene = false;
+  std::uint64_t missing() const;
+};
+
+/// Writes every sample of every topic of a bus into a log, and tells the others how it fares (NodeStatus).
+class Recorder {
+ public:
+  /// Throws std::runtime_error if the file cannot be created.
+  Recorder(Bus& bus, const RecorderSettings& settings);
+  ~Recorder();
+
+  /// Waits for samples, at most `timeout`, and records what has come.
+  void step(std::chrono::nanoseconds timeout);
+  RecorderReport report() const;
+  LogStatus log_status() const;
+  /// Records what is left and closes the log.
+  RecorderReport finish();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "log: no space left, lost 12 messages"; empty if nothing was lost.
+std::string loss_text(const LogStatus& status);
+
+}  // namespace palpate

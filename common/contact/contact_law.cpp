@@ -1,0 +1,245 @@
+#include "common/contact/contact_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double gap_tolerance = 1e-9;        // [m] deeper than this an open contact closes
+constexpr double force_tolerance = 1e-9;      // share of the largest contact force that counts as tension
+constexpr double friction_lag = 1e-3;         // share of the normal force by which lagged friction may be stale
+
+using ConstVec = Eigen::Map<const Eigen::Vector3d>;
+
+}  // namespace
+
+ContactLaw::ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule, double friction,
+                       int capacity)
+    : rest_(rest), rule_(rule), friction_(friction), held_(compliance, rule == Rule::alpha ? 3 * capacity : capacity) {
+  contacts_.reserve(capacity);
+  expansions_.reserve(capacity);
+  const int points = held_.capacity();
+  restuck_.assign(capacity, false);
+  hold_.assign(points, Hold::none);
+  normal_.assign(points, Eigen::Vector3d::Zero());
+  displacement_target_.assign(points, Eigen::Vector3d::Zero());
+  forces_.assign(3 * points, 0.0);
+  displacements_.assign(3 * points, 0.0);
+}
+
+bool ContactLaw::full() const { return contacts_.size() == contacts_.capacity(); }
+
+int ContactLaw::first_point(int contact) const {
+  int first = 0;
+  for (int c = 0; c < contact; ++c) first += expansions_[c].points;
+  return first;
+}
+
+// A vertex that an older contact prescribes already is left to it: the newer contact falls back to its anchor.
+bool ContactLaw::shares_vertex(const TouchContact& contact) const {
+  for (int p = 0; p < held_.size(); ++p)
+    for (int node : contact.anchor.nodes)
+      if (held_.anchor(p).weights[0] == 1 && held_.anchor(p).nodes[0] == node) return true;
+  return false;
+}
+
+ContactLaw::Expansion ContactLaw::expand(const TouchContact& contact, int points, std::array<Anchor, 3>& anchors) {
+  anchors[0] = contact.anchor;
+  if (points == 1) return {};
+  const Eigen::Vector3d alpha = alpha_weights(contact.anchor.weights);
+  Expansion e{.points = 3};
+  for (int v = 0; v < 3; ++v) {
+    const int node = contact.anchor.nodes[v];
+    anchors[v] = Anchor{{node, node, node}, Eigen::Vector3d::UnitX()};
+    e.gain[v] = alpha[v];
+    e.share[v] = contact.anchor.weights[v];
+  }
+  return e;
+}
+
+void ContactLaw::add_points(const TouchContact& contact, int points) {
+  std::array<Anchor, 3> anchors;
+  const Expansion e = expand(contact, points, anchors);
+  const int first = held_.size();
+  for (int k = 0; k < e.points; ++k) held_.add(anchors[k]);
+  std::fill_n(forces_.begin() + 3 * first, 3 * e.points, 0.0);
+  contacts_.push_back(contact);
+  expansions_.push_back(e);
+}
+
+void ContactLaw::add(const TouchContact& contact) {
+  const bool spread = rule_ == Rule::alpha && contact.face && !shares_vertex(contact);
+  add_points(contact, spread ? 3 : 1);
+}
+
+void ContactLaw::add(const TouchContact& contact, std::span<const double> point_forces) {
+  add_points(contact, point_forces.size() == 9 ? 3 : 1);
+  const int last = static_cast<int>(contacts_.size()) - 1;
+  std::copy(point_forces.begin(), point_forces.end(), forces_.begin() + 3 * first_point(last));
+}
+
+std::span<const double> ContactLaw::point_forces(int contact) const {
+  return std::span(forces_).subspan(3 * first_point(contact), 3 * expansions_[contact].points);
+}
+
+void ContactLaw::remove(int contact) {
+  const int first = first_point(contact), points = expansions_[contact].points, n = held_.size();
+  for (int k = points - 1; k >= 0; --k) held_.remove(first + k);
+  std::copy(forces_.begin() + 3 * (first + points), forces_.begin() + 3 * n, forces_.begin() + 3 * first);
+  contacts_.erase(contacts_.begin() + contact);
+  expansions_.erase(expansions_.begin() + contact);
+}
+
+void ContactLaw::clear() {
+  held_.clear();
+  contacts_.clear();
+  expansions_.clear();
+}
+
+void ContactLaw::move_anchor(int contact, const Anchor& anchor) {
+  TouchContact moved = contacts_[contact];
+  moved.anchor = anchor;
+  remove(contact);
+  add(moved);
+}
+
+Eigen::Vector3d ContactLaw::displacement(int contact) const {
+  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  const int first = first_point(contact);
+  for (int k = 0; k < expansions_[contact].points; ++k)
+    u += expansions_[contact].share[k] * ConstVec(displacements_.data() + 3 * (first + k));
+  return u;
+}
+
+// One linear solve for the present states. Friction of sliding contacts is taken from the last known normal force.
+int ContactLaw::solve_held() {
+  int p = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const TouchContact& contact = contacts_[c];
+    const Expansion& e = expansions_[c];
+    const Eigen::Vector3d rest = anchor_position(contact.anchor, rest_);
+    const bool sliding = contact.touch == Touch::sliding;
+    const Eigen::Vector3d wanted =
+        sliding ? Eigen::Vector3d(contact.normal * (contact.plane - contact.normal.dot(rest))) : Eigen::Vector3d(contact.target - rest);
+    const Eigen::Vector3d friction =
+        sliding ? Eigen::Vector3d(friction_ * std::max(0.0, contact.force.dot(contact.normal)) * contact.slip) : Eigen::Vector3d::Zero();
+    double gains = 0;
+    for (int k = 0; k < e.points; ++k) gains += e.gain[k] * e.gain[k];
+    for (int k = 0; k < e.points; ++k, ++p) {
+      hold_[p] = contact.touch == Touch::open ? Hold::none : sliding ? Hold::normal : Hold::all;
+      normal_[p] = contact.normal;
+      displacement_target_[p] = e.gain[k] * wanted;
+      Eigen::Map<Eigen::Vector3d>(forces_.data() + 3 * p) = e.gain[k] / gains * friction;
+    }
+  }
+  const int raised = held_.solve(std::span(hold_).first(p), std::span(normal_).first(p), std::span(displacement_target_).first(p), forces_.data());
+  held_.displacements(forces_.data(), displacements_.data());
+
+  worst_lag_ = 0;
+  p = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    TouchContact& contact = contacts_[c];
+    const double before = contact.force.dot(contact.normal);
+    contact.force.setZero();
+    for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
+    if (contact.touch != Touch::sliding || contact.slip.isZero(0)) continue;
+    const double now = contact.force.dot(contact.normal);
+    worst_lag_ = std::max(worst_lag_, std::abs(now - before) - friction_lag * std::abs(now));
+  }
+  return raised;
+}
+
+bool ContactLaw::change_state(int c, double smallest_force) {
+  TouchContact& contact = contacts_[c];
+  contact.position = anchor_position(contact.anchor, rest_) + displacement(c);
+  if (contact.touch == Touch::open) {
+    if (contact.normal.dot(contact.position) - contact.plane >= -gap_tolerance) return false;
+    contact.touch = friction_ > 0 ? Touch::sticking : Touch::sliding;
+    contact.slip.setZero();
+    return true;
+  }
+  const double pressing = contact.force.dot(contact.normal);
+  if (pressing < -smallest_force) {
+    contact.touch = Touch::open;
+    contact.force.setZero();
+    return true;
+  }
+  if (friction_ == 0) return false;
+  if (contact.touch == Touch::sticking) {
+    const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;
+    const double size = tangential.norm();
+    if (size <= friction_ * pressing + smallest_force) return false;
+    contact.touch = Touch::sliding;
+    contact.slip = tangential / size;
+    return true;
+  }
+  // Sliding: friction acts along the slip, that is from the tissue's point towards the tool's. If the slip has turned
+  // round the contact sticks again, once in a step.
+  Eigen::Vector3d slip = contact.target - contact.position;
+  slip -= slip.dot(contact.normal) * contact.normal;
+  if (restuck_[c] || slip.dot(contact.slip) >= -gap_tolerance) return false;
+  restuck_[c] = true;
+  contact.touch = Touch::sticking;
+  return true;
+}
+
+bool ContactLaw::change_states(bool one_only, double smallest_force) {
+  bool changed = false;
+  for (int c = 0; c < static_cast<int>(contacts_.size()); ++c) {
+    changed |= change_state(c, smallest_force);
+    if (changed && one_only) return true;
+  }
+  return changed;
+}
+
+// What the bound on passes left violated: no tension, no friction beyond the cone.
+void ContactLaw::clamp() {
+  int p = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    TouchContact& contact = contacts_[c];
+    const double pressing = contact.force.dot(contact.normal);
+    const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;
+    const double allowed = friction_ * std::max(0.0, pressing);
+    const double size = tangential.norm();
+    Eigen::Vector3d kept = std::max(0.0, pressing) * contact.normal;
+    if (size > 0) kept += tangential * std::min(1.0, allowed / size);
+    const bool good = pressing >= 0 && size <= allowed * (1 + 1e-6);
+    double gains = 0;
+    for (double g : expansions_[c].gain) gains += g * g;
+    for (int k = 0; k < expansions_[c].points; ++k, ++p)
+      if (!good) Eigen::Map<Eigen::Vector3d>(forces_.data() + 3 * p) = expansions_[c].gain[k] / gains * kept;
+    if (!good) contact.force = kept;
+  }
+}
+
+LawOutcome ContactLaw::solve() {
+  LawOutcome outcome;
+  if (contacts_.empty()) return outcome;
+  std::fill(restuck_.begin(), restuck_.end(), false);
+  bool changed = true;
+  while (changed && outcome.passes < max_passes) {
+    outcome.raised = solve_held();
+    ++outcome.passes;
+    double largest = 0;
+    for (const TouchContact& c : contacts_) largest = std::max(largest, c.force.norm());
+    if (!std::isfinite(largest)) {
+      outcome.finite = false;
+      std::fill(forces_.begin(), forces_.end(), 0.0);
+      clear();
+      return outcome;
+    }
+    // All at once while that makes quick progress, then one at a time in the order of the list, which cannot cycle
+    // for a fixed set of normals (least-index pivoting of a positive definite complementarity problem).
+    changed = change_states(outcome.passes > max_passes / 2, force_tolerance * largest);
+    changed |= worst_lag_ > 0;
+  }
+  outcome.converged = !changed;
+  if (changed) {
+    outcome.raised = solve_held();
+    clamp();
+  }
+  return outcome;
+}
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "common/contact/anchor.hpp"
+#include "common/tensors/compliance.hpp"
+
+namespace palpate {
+
+/// What is prescribed at a held point.
+enum class Hold : unsigned char {
+  none,       ///< nothing: its force is zero
+  normal,     ///< the displacement along the normal; the rest of the force is given
+  all,        ///< all three displacements
+};
+
+/// The compliance among a few surface points, and the Cholesky factor of what is held of it.
+///
+/// Displacements of the points are u = A f, A = J C J^T (3n x 3n), with J the barycentric rows. Fully held points
+/// come first in the factor and stay there while they are held, so that a new contact costs one append and a lost
+/// one a rank-three update; rows held along a normal are appended anew each time since normals turn.
+/// Nothing is allocated after construction.
+class HeldPoints {
+ public:
+  /// Pivots below this share of the point's own compliance (or of a typical node's) are raised to it: coincident
+  /// or nearly dependent points become soft by 2 % of a node's compliance in place of singular, and the force
+  /// between contradictory ones stays bounded by 50 times a single point's.
+  static constexpr double pivot_share = 0.02;
+
+  HeldPoints(const Compliance<double>& compliance, int capacity);
+
+  int size() const { return static_cast<int>(anchors_.size()); }
+  int capacity() const { return capacity_; }
+  const Anchor& anchor(int point) const { return anchors_[point]; }
+
+  void add(const Anchor& anchor);  ///< becomes the last point
+  void remove(int point);          ///< the points after it move down by one
+  void clear();
+  /// Forgets the factor, so that the next solve() depends on nothing but the points and the arguments.
+  void forget_factor();
+
+  /// Displacements [m] of all points (3n) under forces [N] at all points (3n).
+  void displacements(const double* forces, double* displacement) const;
+
+  /// Forces f (3n) such that held displacements are met: on entry f holds the given part of the forces (friction of
+  /// points held along their normal, zero elsewhere); on return the whole. `hold`, `normal`, `target`
+  /// (displacement [m]) have one entry per point. Returns how many pivots were raised.
+  int solve(std::span<const Hold> hold, std::span<const Eigen::Vector3d> normal,
+            std::span<const Eigen::Vector3d> target, double* forces);
+
+ private:
+  double* column(int dof) { return a_.data() + stride_ * dof; }
+  const double* column(int dof) const { return a_.data() + stride_ * dof; }
+  Eigen::Matrix3d block(int i, int j) const;
+  void keep_full(std::span<const Hold> hold);
+  int append_full(int point);
+  int append_normal(int point, std::span<const Eigen::Vector3d> normal);
+  double floor_of(double own) const;
+
+  const Compliance<double>& compliance_;
+  int capacity_;
+  std::ptrdiff_t stride_;
+  double typical_;                ///< [m/N] mean diagonal compliance of a touchable node
+  std::vector<Anchor> anchors_;
+  std::vector<double> a_;         ///< A, column-major, both triangles
+  std::vector<double> factor_;
+  std::vector<int> full_;         ///< fully held points in the order of the factor
+  std::vector<int> raised_;       ///< pivots raised when full_[i] was appended
+  std::vector<int> normals_;      ///< points held along their normal, in the order of the factor
+  std::vector<double> rows_, rhs_, given_, scratch_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,116 @@
+#include "common/fem/assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "common/fem/selection.hpp"
+
+namespace palpate {
+namespace {
+
+TetGradients gradients_of(const TetMesh& mesh, const std::array<int, 4>& tet) {
+  return tet_gradients({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]});
+}
+
+/// The stiffness as one 3 x 3 block (rows the greater node) per entry of the node graph.
+std::vector<Eigen::Matrix3d> assemble_blocks(const TetMesh& mesh, const MaterialField& materials,
+                                             const NodeGraph& graph) {
+  std::vector<Eigen::Matrix3d> blocks(graph.neighbour.size(), Eigen::Matrix3d::Zero());
+  const int* first = graph.neighbour.data();
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const auto& tet = mesh.tetrahedra[e];
+    const auto gradients = gradients_of(mesh, tet);
+    const auto constants = lame(materials.at(static_cast<int>(e)));
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 4; ++k) {
+        if (tet[j] < tet[k]) continue;
+        const int* end = first + graph.begin[tet[k] + 1];
+        const int* place = std::lower_bound(first + graph.begin[tet[k]], end, tet[j]);
+        blocks[place - first] += stiffness_block(gradients, constants, j, k);
+      }
+  }
+  return blocks;
+}
+
+}  // namespace
+
+MaterialField material_field(const Body& body, const TetMesh& mesh) {
+  MaterialField field{{body.material}, {}};
+  if (body.materials.empty()) return field;
+  field.of_element.assign(mesh.tetrahedra.size(), 0);
+  for (std::size_t i = 0; i < body.materials.size(); ++i) {
+    const std::string place = fmt::format("body '{}': [[body.material]] number {}", body.name, i + 1);
+    const auto elements = select_elements(mesh, body.materials[i].where, place);
+    if (elements.empty()) throw std::runtime_error(place + " selects no element of the mesh");
+    field.materials.push_back(body.materials[i].material);
+    for (int e : elements) field.of_element[e] = static_cast<std::uint16_t>(i + 1);
+  }
+  return field;
+}
+
+NodeGraph node_graph(const TetMesh& mesh) {
+  const std::size_t n = mesh.nodes.size();
+  std::vector<std::int64_t> begin(n + 1, 0);
+  for (const auto& tet : mesh.tetrahedra)
+    for (int j : tet)
+      for (int k : tet) begin[j + 1] += k >= j;
+  for (std::size_t i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  std::vector<int> pairs(begin[n]);
+  auto next = begin;
+  for (const auto& tet : mesh.tetrahedra)
+    for (int j : tet)
+      for (int k : tet)
+        if (k >= j) pairs[next[j]++] = k;
+
+  NodeGraph graph;
+  graph.begin.assign(n + 1, 0);
+  graph.neighbour.reserve(pairs.size() / 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto first = pairs.begin() + begin[i], last = pairs.begin() + begin[i + 1];
+    std::sort(first, last);
+    graph.neighbour.insert(graph.neighbour.end(), first, std::unique(first, last));
+    graph.begin[i + 1] = static_cast<std::int64_t>(graph.neighbour.size());
+  }
+  return graph;
+}
+
+SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
+                                const NodeGraph& graph) {
+  const auto blocks = assemble_blocks(mesh, materials, graph);
+  SparseMatrix stiffness(dofs.size(), dofs.size());
+  stiffness.reserve(static_cast<std::int64_t>(9 * blocks.size()));
+  for (int column = 0; column < dofs.size(); ++column) {
+    const int node = dofs.dof(column) / 3, axis = dofs.dof(column) % 3;
+    stiffness.startVec(column);
+    for (auto at = graph.begin[node]; at < graph.begin[node + 1]; ++at)
+      for (int b = 0; b < 3; ++b) {
+        const int row = dofs.index(graph.neighbour[at], b);
+        if (row >= column) stiffness.insertBack(row, column) = blocks[at](b, axis);
+      }
+  }
+  stiffness.finalize();
+  return stiffness;
+}
+
+SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs) {
+  return assemble_stiffness(mesh, materials, dofs, node_graph(mesh));
+}
+
+std::vector<Eigen::Vector3d> internal_force(const TetMesh& mesh, const MaterialField& materials,
+                                            const std::vector<Eigen::Vector3d>& displacement) {
+  std::vector<Eigen::Vector3d> force(mesh.nodes.size(), Eigen::Vector3d::Zero());
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const auto& tet = mesh.tetrahedra[e];
+    const auto gradients = gradients_of(mesh, tet);
+    Eigen::Matrix<double, 4, 3> u;
+    for (int j = 0; j < 4; ++j) u.row(j) = displacement[tet[j]];
+    const auto stress = element_stress(gradients, lame(materials.at(static_cast<int>(e))), u);
+    for (int j = 0; j < 4; ++j)
+      force[tet[j]] += gradients.volume * stress * gradients.gradient.row(j).transpose();
+  }
+  return force;
+}
+
+}  // namespace palpate

@@ -1,0 +1,82 @@
+#include "common/fem/fixation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+#include "common/fem/selection.hpp"
+
+namespace palpate {
+
+DofMap::DofMap(const TetMesh& mesh) : index_(3 * mesh.nodes.size(), kUnused) {
+  for (const auto& tet : mesh.tetrahedra)
+    for (int node : tet)
+      for (int axis = 0; axis < 3; ++axis) index_[3 * node + axis] = 0;
+  number();
+}
+
+void DofMap::number() {
+  dof_.clear();
+  for (int i = 0; i < static_cast<int>(index_.size()); ++i) {
+    if (index_[i] < 0) continue;
+    index_[i] = static_cast<int>(dof_.size());
+    dof_.push_back(i);
+  }
+}
+
+int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  int used = 0;
+  for (int node = 0; node < dofs.nodes(); ++node) {
+    if (dofs.index(node, 0) == DofMap::kUnused) continue;
+    centre += mesh.nodes[node];
+    ++used;
+  }
+  centre /= used;
+  double size = 0;
+  for (int node = 0; node < dofs.nodes(); ++node)
+    if (dofs.index(node, 0) != DofMap::kUnused) size = std::max(size, (mesh.nodes[node] - centre).norm());
+
+  // Gram matrix of the rows [e_axis, (x - centre)/size x e_axis] that the six motions have at the fixed dofs.
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int node = 0; node < dofs.nodes(); ++node)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (dofs.index(node, axis) != DofMap::kFixed) continue;
+      Eigen::Matrix<double, 6, 1> row;
+      row << Eigen::Vector3d::Unit(axis),
+          ((mesh.nodes[node] - centre) / size).cross(Eigen::Vector3d::Unit(axis));
+      gram += row * row.transpose();
+    }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram, Eigen::EigenvaluesOnly);
+  const double largest = eigen.eigenvalues().maxCoeff();
+  // Eigenvalues are squares: 1e-10 stands for points within 1e-5 of the body's size of a line.
+  return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
+}
+
+DofMap apply_fixation(const TetMesh& mesh, const std::vector<FixedRegion>& regions,
+                      const std::string& where) {
+  if (regions.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
+  DofMap dofs(mesh);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const std::string place = fmt::format("{}: [[body.fixed]] number {}", where, i + 1);
+    const auto nodes = select_nodes(mesh, regions[i].where, place);
+    const auto& axes = regions[i].axes;
+    if (nodes.empty())
+      throw std::runtime_error(place + ": an empty fixed set: it selects no node of the mesh");
+    if (!axes[0] && !axes[1] && !axes[2])
+      throw std::runtime_error(place + ": an empty fixed set: it names no axis");
+    for (int node : nodes)
+      for (int axis = 0; axis < 3; ++axis)
+        if (axes[axis]) dofs.fix(node, axis);
+  }
+  dofs.number();
+  if (dofs.size() == 0) throw std::runtime_error(where + ": every node is fixed, nothing is left to deform");
+  if (const int motions = remaining_rigid_motions(mesh, dofs))
+    throw std::runtime_error(fmt::format(
+        "{}: unfixed body: the fixed nodes leave {} rigid-body motion{} free, fix more nodes or axes", where,
+        motions, motions == 1 ? "" : "s"));
+  return dofs;
+}
+
+}  // namespace palpate

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstddef>
+
+/// Declares the kernels of one code path. The files that define them are compiled once per path with that
+/// path's instruction set, and must share nothing else: an inline function of the standard library or of
+/// Eigen, emitted in one of them, could be the copy that the linker keeps for the whole program, and would
+/// stop an older processor. So they use raw pointers and functions without external linkage only.
+#define PALPATE_DECLARE_KERNELS(level)                                                                       \
+  namespace palpate::kernels::level {                                                                        \
+  void combine_f(const float* const* columns, const float* coefficient, int count, std::ptrdiff_t rows,      \
+                 float* out);                                                                                \
+  void combine_d(const double* const* columns, const double* coefficient, int count, std::ptrdiff_t rows,    \
+                 double* out);                                                                               \
+  void combine_nodes_d(const double* const* columns, const double* coefficient, int count, const int* nodes, \
+                       int node_count, double* out);                                                         \
+  int cholesky(double* a, int n, std::ptrdiff_t ld, const double* floor);                                    \
+  void cholesky_solve(const double* l, int n, std::ptrdiff_t ld, double* x);                                 \
+  int cholesky_append(double* l, int n, std::ptrdiff_t ld, const double* rows, std::ptrdiff_t row_stride,    \
+                      int k, const double* floor);                                                           \
+  void cholesky_remove(double* l, int n, std::ptrdiff_t ld, int first, int k, double* scratch);              \
+  }
+
+PALPATE_DECLARE_KERNELS(base)
+PALPATE_DECLARE_KERNELS(v3)
+PALPATE_DECLARE_KERNELS(v4)

@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <vector>
+
+namespace palpate {
+
+/// A measured curve y(s) through the origin as the polynomial y = s R(s), fitted by least squares. R is a
+/// Chebyshev series in the scaled variable 2 s/end - 1, so that y(s)/s needs no division. Beyond the last
+/// data point the curve goes on as a straight line with its end slope; to the left of the origin it is odd.
+class FittedCurve {
+ public:
+  static constexpr int kMaxDegree = 10;
+
+  /// Fits y of the given degree (1 .. 10). `s` is positive and increases strictly; at least `degree` points.
+  /// Throws std::invalid_argument.
+  FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree);
+
+  double end() const { return end_; }  ///< the last data point's s
+  double ratio(double s) const;        ///< y(s)/s, and y'(0) at s = 0; a few nanoseconds
+  double value(double s) const { return s * ratio(s); }
+  double slope(double s) const;  ///< y'(s)
+
+  /// Where the slope is not positive, the first such s of a fine scan of (0, end); -1 if it is positive
+  /// throughout. The scan is fine enough to be a proof: Markov's inequality bounds what a polynomial of this
+  /// degree can do between two of its points.
+  double first_fall() const;
+
+ private:
+  int count_;                                     ///< coefficients of R: the degree of y
+  std::array<double, kMaxDegree> coefficient_{};  ///< of R
+  double end_, end_value_ = 0, end_slope_ = 0;
+};
+
+}  // namespace palpate

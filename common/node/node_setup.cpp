@@ -1,0 +1,61 @@
+#include "common/node/node_setup.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+
+#include "common/tensors/find_archive.hpp"
+
+namespace palpate {
+
+void add_node_options(CLI::App& app, NodeOptions& o) {
+  app.set_version_flag("--version", PALPATE_VERSION);
+  app.add_option("scene", o.scene, "Scene file")->required();
+  app.add_option("--seconds", o.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
+  app.add_option("--domain", o.domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
+  app.add_option("--interface", o.interface, "Network interface in place of the scene's");
+  app.add_option("--peer", o.peers, "Host to look for peers on, in place of the scene's; may be repeated");
+  app.add_flag("--supervised", o.supervised, "For `palpate run`: print 'ready' and a JSON summary on standard output");
+}
+
+BusSettings bus_settings(const Scene& scene, const NodeOptions& o) {
+  BusSettings settings;
+  settings.domain = o.domain >= 0 ? o.domain : scene.network.domain;
+  settings.interface = o.interface.empty() ? scene.network.interface : o.interface;
+  settings.peers = o.peers.empty() ? scene.network.peers : o.peers;
+  return settings;
+}
+
+LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) {
+  LoadedScene loaded{.scene = load_scene(options.scene)};
+  loaded.scene_hash = scene_hash(loaded.scene);
+  for (const Body& body : loaded.scene.bodies) {
+    loaded.archives.push_back(find_archive(loaded.scene, body, part));
+    loaded.archive_hash += loaded.archives.back().content_hash;
+  }
+  return loaded;
+}
+
+void say_ready(const NodeOptions& options) {
+  if (!options.supervised) return;
+  std::puts("ready");
+  std::fflush(stdout);
+}
+
+int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&), const NodeOptions& options) {
+  CLI11_PARSE(app, argc, argv);
+  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
+  spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+  try {
+    body(options);
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 1;
+  }
+  std::fflush(stdout);
+  return 0;
+}
+
+}  // namespace palpate

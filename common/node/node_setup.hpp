@@ -1,0 +1,40 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "common/bus/dds_bus.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tensors/archive.hpp"
+
+/// What every node does before its loop: arguments, scene, archives, logging.
+namespace palpate {
+
+struct NodeOptions {
+  std::string scene, interface;
+  std::vector<std::string> peers;
+  double seconds = 0;       ///< 0: no limit
+  int domain = -1;          ///< -1: the scene's
+  bool supervised = false;  ///< started by `palpate run`: says "ready" and prints one JSON line at the end
+};
+
+void add_node_options(CLI::App& app, NodeOptions& options);
+
+/// The scene's network section with what the command line replaces.
+BusSettings bus_settings(const Scene& scene, const NodeOptions& options);
+
+/// A scene with the archives of its bodies, and the hashes by which nodes know each other.
+struct LoadedScene {
+  Scene scene;
+  std::vector<Archive> archives;  ///< one per body
+  std::string scene_hash, archive_hash;
+};
+LoadedScene load_for_node(const NodeOptions& options, ArchivePart part);
+
+/// Tells `palpate run` that this node listens.
+void say_ready(const NodeOptions& options);
+
+/// Runs `body` with logging under the node's name; prints the sentence of an exception and returns the exit status.
+int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&), const NodeOptions& options);
+
+}  // namespace palpate

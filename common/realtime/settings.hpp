@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What a loop asks of the operating system.
+struct RealtimeSettings {
+  int priority = 80;        ///< SCHED_FIFO priority 1..99 of the calling thread; 0: leave the scheduler alone
+  bool lock_memory = true;  ///< keep all pages of the process in memory
+  int core = -1;            ///< pin the calling thread to this core; -1: any
+};
+
+struct RealtimeGrant {
+  bool scheduler = false, memory = false, core = false;
+  std::vector<std::string>
+      sentences;  ///< one per request: what was granted, or not and why; for the operator
+};
+
+/// Applies the settings to the calling thread (memory: to the process). Never throws: a loop runs without,
+/// only worse.
+RealtimeGrant request_realtime(const RealtimeSettings& settings);
+
+/// Back to the normal scheduler: for threads that a realtime thread starts, which would inherit its priority.
+void leave_realtime();
+
+/// Touches 256 KiB of the calling thread's stack, so that the first steps meet no page fault. Call before the
+/// loop.
+void prefault_stack();
+
+}  // namespace palpate

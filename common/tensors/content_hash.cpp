@@ -1,0 +1,103 @@
+#include "common/tensors/content_hash.hpp"
+
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <bit>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "common/tensors/archive.hpp"
+
+namespace palpate {
+namespace {
+
+std::string hexadecimal(XXH128_hash_t hash) {
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+/// A running hash. Every value is preceded by its kind or length, so that no two inputs run together.
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
+
+  void add(double value) {
+    if (value == 0) value = 0;  // one zero
+    add_raw(&value, sizeof value);
+  }
+  void add(std::int64_t value) { add_raw(&value, sizeof value); }
+  void add(const std::string& text) {
+    add(static_cast<std::int64_t>(text.size()));
+    add_raw(text.data(), text.size());
+  }
+  void add(const Material& material) {
+    add(material.young);
+    add(material.poisson);
+  }
+  void add(const Selector& selector) {
+    add(static_cast<std::int64_t>(selector.indices.size()));
+    for (int index : selector.indices) add(std::int64_t{index});
+    add(std::int64_t{selector.box.has_value()});
+    if (selector.box)
+      for (int axis = 0; axis < 3; ++axis) {
+        add(selector.box->min[axis]);
+        add(selector.box->max[axis]);
+      }
+    add(selector.group);
+  }
+  void add_file(const std::filesystem::path& file) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
+    if (!stream) throw std::runtime_error(file.string() + ": the mesh file cannot be opened");
+    std::vector<char> buffer(1 << 20);
+    std::int64_t total = 0;
+    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), stream.get())) {
+      add_raw(buffer.data(), count);
+      total += static_cast<std::int64_t>(count);
+    }
+    if (std::ferror(stream.get())) throw std::runtime_error(file.string() + ": the mesh file cannot be read");
+    add(total);
+  }
+  std::string text() const { return hexadecimal(XXH3_128bits_digest(state_.get())); }
+
+ private:
+  void add_raw(const void* data, std::size_t bytes) { XXH3_128bits_update(state_.get(), data, bytes); }
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+};
+
+}  // namespace
+
+std::string content_hash(const Body& body) {
+  Hasher hash;
+  hash.add(std::int64_t{kArchiveFormat});
+  hash.add_file(body.mesh);
+  hash.add(body.scale);
+  hash.add(body.material);
+  hash.add(static_cast<std::int64_t>(body.materials.size()));
+  for (const auto& region : body.materials) {
+    hash.add(region.where);
+    hash.add(region.material);
+  }
+  hash.add(static_cast<std::int64_t>(body.fixed.size()));
+  for (const auto& region : body.fixed) {
+    hash.add(region.where);
+    for (bool axis : region.axes) hash.add(std::int64_t{axis});
+  }
+  hash.add(std::int64_t{body.touchable.has_value()});
+  if (body.touchable) hash.add(*body.touchable);
+  const bool specimen = body.nonlinear && !body.nonlinear->specimen_mesh.empty();
+  hash.add(std::int64_t{specimen});
+  if (specimen) {
+    hash.add_file(body.nonlinear->specimen_mesh);
+    hash.add(body.nonlinear->specimen_scale);
+  }
+  return hash.text();
+}
+
+std::string checksum(const void* data, std::size_t bytes) {
+  return hexadecimal(XXH3_128bits(data, bytes));
+}
+
+}  // namespace palpate

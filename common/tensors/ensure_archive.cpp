@@ -1,0 +1,61 @@
+#include "common/tensors/ensure_archive.hpp"
+
+#include <chrono>
+#include <optional>
+
+#include "common/fem/stopwatch.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/tensors/content_hash.hpp"
+#include "common/tensors/find_archive.hpp"
+#include "common/tensors/precompute.hpp"
+
+namespace palpate {
+namespace {
+
+/// Empty if the file is whole and made for this content, else the reason against it.
+std::string refusal(const std::filesystem::path& file, const std::string& hash) {
+  try {
+    read_archive(file, ArchivePart::surface, hash);
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+std::optional<TetMesh> load_specimen(const Body& body) {
+  if (!body.nonlinear || body.nonlinear->specimen_mesh.empty()) return {};
+  return load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
+}
+
+}  // namespace
+
+ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress) {
+  const std::string hash = content_hash(body);
+  ArchiveState state{archive_path(scene.file, body.name, hash), false, {}, 0};
+  if (std::filesystem::exists(state.file)) {
+    state.refused = refusal(state.file, hash);
+    state.up_to_date = state.refused.empty();
+    if (state.up_to_date) return state;
+  }
+  const auto mesh = load_tet_mesh(body.mesh, body.scale);
+  const auto specimen = load_specimen(body);
+  const auto begin = std::chrono::steady_clock::now();
+  auto archive = precompute(body, mesh, specimen ? &*specimen : nullptr, progress);
+  archive.content_hash = hash;
+  Stopwatch watch(progress);
+  write_archive(archive, state.file);
+  watch.lap("writing");
+  state.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return state;
+}
+
+std::vector<Archive> load_or_precompute(const Scene& scene, ArchivePart part, const Progress& progress) {
+  std::vector<Archive> archives;
+  for (const auto& body : scene.bodies) {
+    ensure_archive(scene, body, progress);
+    archives.push_back(find_archive(scene, body, part));
+  }
+  return archives;
+}
+
+}  // namespace palpate

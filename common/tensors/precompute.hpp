@@ -1,0 +1,26 @@
+#pragma once
+#include "common/fem/condensation.hpp"
+#include "common/mesh/tet_mesh.hpp"
+#include "common/tensors/archive.hpp"
+
+namespace palpate {
+
+/// Geometry and numbering of a body's visible surface. Throws std::runtime_error if no node is touchable.
+SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs);
+
+/// What precompute() did.
+struct PrecomputeCost {
+  double flops = 0;
+  bool condensed = false;  ///< see SurfaceCompliance
+};
+
+/// The compliance of a body's surface: assembly, elimination of fixed dofs, one sparse factorisation, dense
+/// inverse or block solves (TVCG99 sec. 4-1, by elimination where the paper iterates). `specimen`: the mesh
+/// of Nonlinear::specimen_mesh, null without one. The content hash is left empty: it belongs to the files the
+/// body names, see ensure_archive(). Throws std::runtime_error on an unfixed body, empty selections, or too
+/// little memory.
+Archive precompute(const Body& body, const TetMesh& mesh, const TetMesh* specimen = nullptr,
+                   const Progress& progress = {}, Route route = Route::fastest,
+                   PrecomputeCost* cost = nullptr);
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+#include "common/tool/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include "common/scene/csv.hpp"
+
+namespace palpate {
+
+namespace {
+
+/// Slope at a row from the slopes of the two intervals beside it, h0 and h1 long: a weighted harmonic mean,
+/// zero at an extremum, so that neither interval overshoots.
+double row_speed(double h0, double slope0, double h1, double slope1) {
+  if (slope0 * slope1 <= 0) return 0;
+  const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+  return (w0 + w1) / (w0 / slope0 + w1 / slope1);
+}
+
+}  // namespace
+
+Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& dofs) : time_(std::move(time)) {
+  const std::size_t n = time_.size();
+  if (n == 0 || n != dofs.size())
+    throw std::invalid_argument("a trajectory needs one time for each row, and a row");
+  if (std::ranges::adjacent_find(time_, std::greater_equal<>{}) != time_.end())
+    throw std::invalid_argument("a trajectory's times must increase");
+  for (const ToolDofs& d : dofs) value_.push_back({d.yaw, d.pitch, d.depth, d.roll, d.grip});
+  speed_.assign(n, Row{});
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double h0 = time_[i] - time_[i - 1], h1 = time_[i + 1] - time_[i];
+    for (int d = 0; d < kDofs; ++d)
+      speed_[i][d] =
+          row_speed(h0, (value_[i][d] - value_[i - 1][d]) / h0, h1, (value_[i + 1][d] - value_[i][d]) / h1);
+  }
+}
+
+ToolDofs Trajectory::at(double time) const {
+  Row now;
+  if (!(time > time_.front())) {
+    now = value_.front();
+  } else if (time >= time_.back()) {
+    now = value_.back();
+  } else {
+    const std::size_t i = std::upper_bound(time_.begin(), time_.end(), time) - time_.begin() - 1;
+    const double h = time_[i + 1] - time_[i], s = (time - time_[i]) / h;
+    const double b = s * s * (3 - 2 * s), c = s * (1 - s) * (1 - s) * h, d = s * s * (s - 1) * h;  // Hermite
+    for (int k = 0; k < kDofs; ++k)
+      now[k] = value_[i][k] + b * (value_[i + 1][k] - value_[i][k]) + c * speed_[i][k] + d * speed_[i + 1][k];
+  }
+  return {.yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4]};
+}
+
+Trajectory load_trajectory(const std::filesystem::path& file) {
+  const CsvTable table = read_csv(file, {"time", "yaw", "pitch", "depth", "roll", "grip"});
+  std::vector<double> time;
+  std::vector<ToolDofs> dofs;
+  for (const CsvRow& row : table.rows) {
+    const std::vector<double>& v = row.values;
+    if (!time.empty() && !(v[0] > time.back()))
+      table.fail(row.line, fmt::format("time {} does not come after {}", v[0], time.back()));
+    time.push_back(v[0]);
+    dofs.push_back({.yaw = v[1], .pitch = v[2], .depth = v[3], .roll = v[4], .grip = v[5]});
+  }
+  return {std::move(time), dofs};
+}
+
+}  // namespace palpate

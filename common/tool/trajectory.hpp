@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "common/tool/kinematics.hpp"
+
+namespace palpate {
+
+/// A tool's motion over time. Between the given rows the dofs follow monotone cubics (Fritsch and Carlson
+/// 1980): continuous speed, no overshoot, so that a tool which rests between two equal rows stays at rest.
+class Trajectory {
+ public:
+  /// `time` [s] increases strictly and is as long as `dofs`; at least one row. Throws std::invalid_argument.
+  Trajectory(std::vector<double> time, const std::vector<ToolDofs>& dofs);
+
+  double duration() const { return time_.back(); }  ///< [s] from time 0 to the last row
+
+  /// Before the first row that row's dofs, after the last one that one's. Allocates nothing.
+  ToolDofs at(double time) const;
+
+ private:
+  static constexpr int kDofs = 5;
+  using Row = std::array<double, kDofs>;
+
+  std::vector<double> time_;
+  std::vector<Row> value_;
+  std::vector<Row> speed_;  ///< per second, at the rows
+};
+
+/// Reads a CSV file with the header `time,yaw,pitch,depth,roll,grip` [s, rad, rad, m, rad, rad] and strictly
+/// increasing times; lines that begin with '#' and empty lines are skipped.
+/// Throws std::runtime_error("FILE:LINE: sentence").
+Trajectory load_trajectory(const std::filesystem::path& file);
+
+}  // namespace palpate

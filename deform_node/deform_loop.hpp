@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/models/deformer.hpp"
+#include "common/realtime/histogram.hpp"
+
+namespace palpate {
+
+/// What a run of the loop measured.
+struct DeformReport {
+  double seconds = 0;
+  std::uint64_t frames = 0, refused = 0;
+  Histogram latency;  ///< [ns] sense time of the step to the surface being published
+  Histogram deform;   ///< [ns] superposition, correction and normals
+};
+
+/// Takes contacts, superposes, publishes: at once when a contact message comes, and at least at the visual rate.
+class DeformLoop {
+ public:
+  DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz);
+
+  /// Until `seconds` are over (0: no limit) or a stop is requested.
+  const DeformReport& run(double seconds);
+
+ private:
+  bool take_contacts();
+  void publish(std::int64_t now);
+  void keep_house(std::int64_t now);
+
+  Deformer& deformer_;
+  Bus& bus_;
+  Presence& presence_;
+  std::int64_t frame_ns_;
+  std::unique_ptr<Reader<ContactState>> contacts_;
+  std::unique_ptr<Writer<SurfaceState>> surfaces_;
+  std::unique_ptr<Writer<ContactState>> held_;
+  std::vector<SurfaceState> messages_;
+  bool haptic_alive_ = false;
+  std::int64_t last_status_ns_ = 0;
+  std::uint64_t last_frames_ = 0;
+  DeformReport report_;
+};
+
+}  // namespace palpate

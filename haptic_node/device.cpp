@@ -1,0 +1,104 @@
+#include "haptic_node/device.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "common/bus/log_reader.hpp"
+#include "common/realtime/latest.hpp"
+#include "common/tool/trajectory.hpp"
+
+namespace palpate {
+namespace {
+
+class ScriptedDevice : public Device {
+ public:
+  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) {}
+  DeviceSample read(double seconds) override { return {trajectory_.at(seconds), 0}; }
+  bool finished(double seconds) const override { return seconds > trajectory_.duration(); }
+
+ private:
+  Trajectory trajectory_;
+};
+
+/// Plays the tool states of a log, one per step as they were consumed.
+class LogDevice : public Device {
+ public:
+  LogDevice(const Tool& tool, std::uint32_t index, double rate_hz) : rate_hz_(rate_hz) {
+    LogReader log(tool.trajectory);
+    std::uint64_t first = 0;
+    LogEvent event;
+    ToolState state;
+    while (log.next(event)) {
+      if (!event.read(topics::tool_state, state) || state.tool != index) continue;
+      if (samples_.empty()) first = state.step;
+      if (state.step < first) continue;
+      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip};
+      // A step whose sample was lost repeats the one before it.
+      while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < max_samples) samples_.push_back(samples_.back());
+      if (samples_.size() < max_samples) samples_.push_back({dofs, state.seq});
+    }
+    if (samples_.empty())
+      throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})", tool.trajectory.string(), tool.name, index));
+  }
+  DeviceSample read(double seconds) override { return samples_[std::min(at(seconds), samples_.size() - 1)]; }
+  bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }
+
+ private:
+  static constexpr std::size_t max_samples = 50'000'000;
+  std::size_t at(double seconds) const { return static_cast<std::size_t>(std::llround(seconds * rate_hz_)); }
+  double rate_hz_;
+  std::vector<DeviceSample> samples_;
+};
+
+class BusDevice : public Device {
+ public:
+  DeviceSample read(double) override { return newest_.get(); }
+  bool finished(double) const override { return false; }
+  bool ready() const override { return ready_.load(std::memory_order_acquire); }
+  void put(const DeviceSample& sample) {
+    newest_.put(sample);
+    ready_.store(true, std::memory_order_release);
+  }
+
+ private:
+  Latest<DeviceSample> newest_;
+  std::atomic<bool> ready_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Device> make_device(const Scene& scene, int tool) {
+  const Tool& t = scene.tools[tool];
+  if (t.device == "scripted") return std::make_unique<ScriptedDevice>(t);
+  if (t.device == "log") return std::make_unique<LogDevice>(t, static_cast<std::uint32_t>(tool), scene.rates.haptic_hz);
+  return std::make_unique<BusDevice>();
+}
+
+struct BusDevices::Target {
+  std::uint32_t tool;
+  BusDevice* device;
+};
+
+BusDevices::BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices) {
+  for (std::size_t t = 0; t < devices.size(); ++t)
+    if (auto* device = dynamic_cast<BusDevice*>(devices[t].get())) targets_.push_back({static_cast<std::uint32_t>(t), device});
+  if (needed()) reader_ = bus.reader(topics::device_state);
+}
+
+BusDevices::~BusDevices() = default;
+
+bool BusDevices::needed() const { return !targets_.empty(); }
+
+void BusDevices::pump() {
+  std::this_thread::sleep_for(std::chrono::microseconds(250));
+  while (const auto sample = reader_->take())
+    for (const Target& target : targets_)
+      if (target.tool == sample->tool)
+        target.device->put({{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip}, sample->seq});
+}
+
+}  // namespace palpate

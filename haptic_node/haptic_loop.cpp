@@ -1,0 +1,151 @@
+#include "haptic_node/haptic_loop.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/settings.hpp"
+#include "common/realtime/shutdown.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t ring_slots = 128;
+
+}  // namespace
+
+HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
+                       std::string code_path)
+    : haptic_(haptic),
+      devices_(devices),
+      presence_(presence),
+      publisher_(bus, haptic.tools(), run),
+      bus_devices_(bus, devices),
+      keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
+      samples_(haptic.tools()),
+      dofs_(haptic.tools()),
+      ring_(ring_slots) {
+  keyframe_.dt = haptic.dt();
+  keyframe_.code_path = std::move(code_path);
+  keyframe_.state.resize(haptic.state_size());
+}
+
+HapticLoop::~HapticLoop() = default;
+
+bool HapticLoop::all_finished(double seconds) const {
+  for (const auto& device : devices_)
+    if (!device->finished(seconds)) return false;
+  return true;
+}
+
+const LoopReport& HapticLoop::run(double seconds) {
+  std::jthread publisher([this] { publish_loop(); });
+  std::jthread pump;
+  if (bus_devices_.needed())
+    pump = std::jthread([this](const std::stop_token& stop) {
+      while (!stop.stop_requested()) bus_devices_.pump();
+    });
+  prefault_stack();
+  for (const std::string& said : request_realtime({}).sentences) spdlog::info("{}", said);
+
+  const std::int64_t begin = now_ns();
+  PeriodicTimer timer(1 / haptic_.dt());
+  while (!shutdown_requested()) {
+    const std::uint64_t tick_number = timer.wait();
+    const double time = static_cast<double>(tick_number) * haptic_.dt();
+    if ((seconds > 0 && time >= seconds) || all_finished(time)) break;
+    tick(time);
+    wake_.release();
+    shown_missed_.store(timer.statistics().skipped, std::memory_order_relaxed);
+  }
+  report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  report_.ticks = step_;
+  report_.period = timer.statistics();
+  over_.store(true);
+  wake_.release();
+  return report_;
+}
+
+void HapticLoop::tick(double time) {
+  const std::int64_t sense = now_ns();
+  for (std::size_t t = 0; t < devices_.size(); ++t) {
+    samples_[t] = devices_[t]->read(time);
+    dofs_[t] = samples_[t].dofs;
+  }
+  if (step_ % keyframe_interval_ == 0) checkpoint();
+  haptic_.step(dofs_);
+
+  const std::int64_t push_begin = now_ns();
+  if (StepRecord* record = ring_.begin_push()) {
+    fill_record(haptic_, samples_, step_, sense, *record);
+    ring_.commit_push();
+  } else {
+    ++report_.dropped;
+  }
+  ++step_;
+  const std::int64_t end = now_ns();
+  report_.push.record(end - push_begin);
+  report_.step.record(end - sense);
+  std::uint32_t flags = 0;
+  for (int t = 0; t < haptic_.tools(); ++t) {
+    report_.largest_force = std::max(report_.largest_force, haptic_.force(t).norm());
+    flags |= haptic_.flags(t);
+  }
+  report_.limited += (flags & (force_limited | slew_limited)) != 0;
+  report_.regularised += (flags & regularised) != 0;
+  report_.faults += (flags & fault) != 0;
+  shown_ticks_.store(step_, std::memory_order_relaxed);
+}
+
+// Once a second the state is saved for replay. The factor is forgotten in that step whether or not the publisher has
+// room for it, since a replay does the same by the step's number alone.
+void HapticLoop::checkpoint() {
+  if (keyframe_full_.load(std::memory_order_acquire)) {
+    haptic_.forget_factors();
+    return;
+  }
+  keyframe_.step = step_;
+  haptic_.save(keyframe_.state);
+  keyframe_full_.store(true, std::memory_order_release);
+}
+
+void HapticLoop::publish_loop() {
+  while (!over_.load()) {
+    (void)wake_.try_acquire_for(20ms);
+    drain();
+    report_status(now_ns());
+  }
+  drain();
+}
+
+void HapticLoop::drain() {
+  while (const StepRecord* record = ring_.begin_pop()) {
+    if (keyframe_full_.load(std::memory_order_acquire) && keyframe_.step <= record->step) {
+      publisher_.publish(keyframe_);
+      keyframe_full_.store(false, std::memory_order_release);
+    }
+    publisher_.publish(*record);
+    ring_.commit_pop();
+  }
+}
+
+void HapticLoop::report_status(std::int64_t now) {
+  check_peers();
+  if (now - last_status_ns_ < 1'000'000'000) return;
+  const std::uint64_t ticks = shown_ticks_.load(std::memory_order_relaxed);
+  const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(ticks - last_status_ticks_) / static_cast<double>(now - last_status_ns_);
+  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0);
+  last_status_ns_ = now;
+  last_status_ticks_ = ticks;
+}
+
+void HapticLoop::check_peers() {
+  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+}
+
+}  // namespace palpate

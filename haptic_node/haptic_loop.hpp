@@ -1,0 +1,69 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <semaphore>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/realtime/histogram.hpp"
+#include "common/realtime/periodic.hpp"
+#include "common/realtime/spsc_ring.hpp"
+#include "haptic_node/device.hpp"
+#include "haptic_node/haptic_step.hpp"
+#include "haptic_node/publisher.hpp"
+
+namespace palpate {
+
+/// What a run of the loop measured.
+struct LoopReport {
+  double seconds = 0;
+  std::uint64_t ticks = 0;
+  std::uint64_t dropped = 0;         ///< step records that found the ring full
+  Histogram step, push;              ///< [ns] whole tick; hand-over to the publisher
+  PeriodStatistics period;
+  double largest_force = 0;          ///< [N]
+  std::uint64_t limited = 0, regularised = 0, faults = 0;  ///< steps
+};
+
+/// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and
+/// a pump for devices elsewhere. The tick itself reads devices, steps, and pushes into a ring: no more.
+class HapticLoop {
+ public:
+  HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
+             std::string code_path);
+  ~HapticLoop();
+
+  /// Until `seconds` are over (0: no limit), every device has finished, or a stop is requested.
+  const LoopReport& run(double seconds);
+
+ private:
+  void tick(double seconds);
+  void checkpoint();
+  void publish_loop();
+  void drain();
+  void report_status(std::int64_t now);
+  void check_peers();
+  bool all_finished(double seconds) const;
+
+  HapticStep& haptic_;
+  std::vector<std::unique_ptr<Device>>& devices_;
+  Presence& presence_;
+  Publisher publisher_;
+  BusDevices bus_devices_;
+  std::uint64_t step_ = 0, keyframe_interval_;
+  std::vector<DeviceSample> samples_;
+  std::vector<ToolDofs> dofs_;
+  SpscRing<StepRecord> ring_;
+  HapticKeyframe keyframe_;
+  std::atomic<bool> keyframe_full_{false};
+  std::counting_semaphore<> wake_{0};
+  std::atomic<bool> over_{false};
+  std::atomic<std::uint64_t> shown_ticks_{0}, shown_missed_{0};
+  std::int64_t last_status_ns_ = 0;
+  std::uint64_t last_status_ticks_ = 0;
+  LoopReport report_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "common/realtime/shutdown.hpp"
+#include "common/node/node_setup.hpp"
+#include "haptic_node/code_path.hpp"
+#include "haptic_node/haptic_loop.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::uint64_t new_run() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32 | random()) | 1;
+}
+
+/// Waits until every driver elsewhere has spoken, saying once that it waits.
+void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
+  BusDevices drivers(bus, devices);
+  const auto all_ready = [&] {
+    return std::all_of(devices.begin(), devices.end(), [](const auto& d) { return d->ready(); });
+  };
+  if (!all_ready()) spdlog::info("waiting for a driver on topic {}", topics::device_state.name);
+  while (!all_ready() && !shutdown_requested()) drivers.pump();
+}
+
+/// The last contacts of a haptic node that died, if a peer with the same scene keeps them.
+std::vector<ContactState> contacts_kept_by_peers(Bus& bus, Presence& presence) {
+  const auto reader = bus.reader(topics::held_contacts);
+  std::vector<ContactState> kept;
+  const auto limit = std::chrono::steady_clock::now() + 1s;
+  while (kept.empty() && std::chrono::steady_clock::now() < limit) {
+    for (const std::string& said : presence.watch()) spdlog::info("{}", said);
+    while (auto contacts = reader->take())
+      if (presence.matched("deform") || presence.matched("render")) kept.push_back(std::move(*contacts));
+    bus.wait(20ms);
+  }
+  return kept;
+}
+
+void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence) {
+  std::vector<ToolDofs> dofs;
+  for (auto& device : devices) dofs.push_back(device->read(0).dofs);
+  try {
+    haptic.start(dofs);
+  } catch (const std::runtime_error&) {
+    const std::vector<ContactState> kept = contacts_kept_by_peers(bus, presence);
+    if (kept.empty()) throw;
+    haptic.start(dofs, true);
+    for (const ContactState& c : kept)
+      for (const HeldContact& held : c.contacts) haptic.adopt(c.tool, held);
+    spdlog::info("took up the contacts that a peer kept");
+  }
+}
+
+nlohmann::json summary_of(const LoopReport& r) {
+  const auto us = [](const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); };
+  return {{"node", "haptic"},
+          {"seconds", r.seconds},
+          {"rate_hz", r.seconds > 0 ? static_cast<double>(r.ticks) / r.seconds : 0.0},
+          {"ticks", r.ticks},
+          {"missed", r.period.skipped},
+          {"dropped", r.dropped},
+          {"step_us_p50", us(r.step, 0.5)},
+          {"step_us_p99", us(r.step, 0.99)},
+          {"step_us_p999", us(r.step, 0.999)},
+          {"step_us_max", us(r.step, 1)},
+          {"push_us_p50", us(r.push, 0.5)},
+          {"late_us_p50", us(r.period.wake, 0.5)},
+          {"late_us_p99", us(r.period.wake, 0.99)},
+          {"slack_us_p50", us(r.period.slack, 0.5)},
+          {"slack_us_p1", us(r.period.slack, 0.01)},
+          {"force_max_n", r.largest_force},
+          {"limited_steps", r.limited},
+          {"regularised_steps", r.regularised},
+          {"fault_steps", r.faults}};
+}
+
+void run(const NodeOptions& o) {
+  LoadedScene loaded = load_for_node(o, ArchivePart::touchable);
+  const Scene& scene = loaded.scene;
+  if (scene.tools.size() > StepRecord::max_tools)
+    throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(), StepRecord::max_tools));
+  HapticStep haptic(scene, loaded.archives);
+  loaded.archives.clear();
+  std::vector<std::unique_ptr<Device>> devices;
+  for (std::size_t t = 0; t < scene.tools.size(); ++t) devices.push_back(make_device(scene, static_cast<int>(t)));
+
+  const std::uint64_t run_id = new_run();
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o));
+  Presence presence(*bus, "haptic", run_id, loaded.scene_hash, loaded.archive_hash);
+  const auto scene_writer = bus->writer(topics::scene);
+  scene_writer->write({.run = run_id, .seq = 1, .scene_hash = loaded.scene_hash, .text = to_toml(scene), .version = PALPATE_VERSION, .code_path = code_path()});
+  catch_shutdown_signals();
+  say_ready(o);
+  wait_for_devices(devices, *bus);
+  if (shutdown_requested()) return;
+  start(haptic, devices, *bus, presence);
+  // Peers need a moment to match; what is sent before is lost to them.
+  const auto matched = std::chrono::steady_clock::now() + 500ms;
+  while (std::chrono::steady_clock::now() < matched && !shutdown_requested()) {
+    for (const std::string& said : presence.watch()) spdlog::info("{}", said);
+    bus->wait(20ms);
+  }
+  spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
+  HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
+  const LoopReport& report = loop.run(o.seconds);
+  const nlohmann::json summary = summary_of(report);
+  if (o.supervised) fmt::print("{}\n", summary.dump());
+  spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
+               summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(), summary["step_us_p999"].get<double>(),
+               report.period.skipped, report.largest_force);
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  palpate::NodeOptions options;
+  CLI::App app{"haptic_node: collision and force at the device's rate, from precomputed tensors"};
+  palpate::add_node_options(app, options);
+  return palpate::node_main("haptic_node", argc, argv, app, palpate::run, options);
+}

@@ -1,0 +1,53 @@
+#include "haptic_node/safety.hpp"
+
+#include <algorithm>
+
+#include "common/bus/messages.hpp"
+
+namespace palpate {
+
+SafetyChain::SafetyChain(double max_force, double max_force_rate, double dt)
+    : max_force_(max_force), max_change_(max_force_rate * dt), dt_(dt) {}
+
+std::uint32_t SafetyChain::apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy) {
+  Eigen::Map<Eigen::Vector3d> last(state_.force), last_torque(state_.torque);
+  std::uint32_t flags = 0;
+  if (!healthy || !force.allFinite() || !torque.allFinite()) state_.faulted = 1;
+  if (state_.faulted) {
+    if (state_.ramp_force == 0 && state_.ramp_torque == 0) {
+      state_.ramp_force = last.norm();
+      state_.ramp_torque = last_torque.norm();
+    }
+    const double share = dt_ / ramp_seconds;
+    const auto shrink = [](Eigen::Map<Eigen::Vector3d>& v, double by) {
+      const double size = v.norm();
+      if (size <= by)
+        v.setZero();
+      else
+        v *= (size - by) / size;
+    };
+    shrink(last, state_.ramp_force * share);
+    shrink(last_torque, state_.ramp_torque * share);
+    force = last;
+    torque = last_torque;
+    return fault;
+  }
+  const double size = force.norm();
+  if (size > max_force_) {
+    force *= max_force_ / size;
+    torque *= max_force_ / size;
+    flags |= force_limited;
+  }
+  const double change = (force - last).norm();
+  if (change > max_change_) {
+    const double share = max_change_ / change;
+    force = last + share * (force - last);
+    torque = last_torque + share * (torque - last_torque);
+    flags |= slew_limited;
+  }
+  last = force;
+  last_torque = torque;
+  return flags;
+}
+
+}  // namespace palpate

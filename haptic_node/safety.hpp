@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace palpate {
+
+/// The last thing before the hand: finite check, force limit, slew limit. After a fault the force ramps to zero
+/// within ramp_seconds and stays there.
+class SafetyChain {
+ public:
+  static constexpr double ramp_seconds = 0.005;
+
+  /// Limits: force [N], rate of change of the force [N/s]; dt [s] is the step.
+  SafetyChain(double max_force, double max_force_rate, double dt);
+
+  /// Turns what the tissue asks for into what the hand gets; torque is scaled as the force is.
+  /// `healthy` false reports a fault of this step. Returns ForceFlag bits.
+  std::uint32_t apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy);
+
+  bool faulted() const { return state_.faulted; }
+  void trip() { state_.faulted = 1; }
+
+  /// Plain state, for replay.
+  struct State {
+    double force[3] = {0, 0, 0}, torque[3] = {0, 0, 0};
+    double ramp_force = 0, ramp_torque = 0;  ///< size at the time of the fault
+    std::uint8_t faulted = 0;
+  };
+  const State& state() const { return state_; }
+  void set_state(const State& state) { state_ = state; }
+
+ private:
+  double max_force_, max_change_, dt_;
+  State state_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,45 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "common/bus/messages.hpp"
+#include "common/tool/kinematics.hpp"
+#include "haptic_node/haptic_step.hpp"
+
+namespace palpate {
+
+/// What one haptic step hands to the publisher: plain memory, filled in place in the ring.
+struct StepRecord {
+  static constexpr int max_tools = 8;
+  static constexpr int max_contacts = TouchBody::max_contacts;
+  static constexpr int max_forces = 3 * max_contacts;
+
+  struct OfTool {
+    ToolDofs dofs;
+    std::uint64_t device_seq;
+    std::array<double, 3> force, torque, press;
+    std::uint32_t flags;
+  };
+
+  std::uint64_t step;
+  std::int64_t sense_ns;
+  int tools, contacts, forces;
+  std::array<OfTool, max_tools> of_tool;
+  std::array<HeldContact, max_contacts> contact;
+  std::array<std::uint8_t, max_contacts> contact_tool;
+  std::array<NodalForce, max_forces> nodal;
+  std::array<std::uint8_t, max_forces> nodal_tool;
+};
+
+/// One tool's input of a step.
+struct DeviceSample {
+  ToolDofs dofs;
+  std::uint64_t seq = 0;  ///< of the device's sample; 0 for a scripted tool
+};
+
+/// Copies a finished step into `record`. No allocation.
+void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step, std::int64_t sense_ns,
+                 StepRecord& record);
+
+}  // namespace palpate

@@ -1,0 +1,150 @@
+#include "haptic_node/touch_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <cstring>
+
+namespace palpate {
+
+TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
+    : rest_(map.position),
+      position_(map.position),
+      previous_(map.position),
+      triangles_(map.triangles),
+      first_of_node_(map.size() + 1, 0),
+      movable_(map.touchable),
+      buckets_(map.position, map.triangles, bucket_size) {
+  for (const auto& t : triangles_)
+    for (int node : t) ++first_of_node_[node + 1];
+  for (int n = 0; n < map.size(); ++n) first_of_node_[n + 1] += first_of_node_[n];
+  of_node_.resize(3 * triangles_.size());
+  std::vector<int> next(first_of_node_.begin(), first_of_node_.end() - 1);
+  for (int t = 0; t < triangle_count(); ++t)
+    for (int node : triangles_[t]) of_node_[next[node]++] = t;
+  found_.resize(triangles_.size());
+  marked_.reserve(map.size());
+  last_marked_.reserve(map.size());
+  stamp_.assign(map.size(), 0);
+  triangle_stamp_.assign(triangles_.size(), 0);
+}
+
+Triangle TouchSurface::corners(int t) const {
+  const auto& n = triangles_[t];
+  return {position_[n[0]], position_[n[1]], position_[n[2]]};
+}
+
+Triangle TouchSurface::previous_corners(int t) const {
+  const auto& n = triangles_[t];
+  return {previous_[n[0]], previous_[n[1]], previous_[n[2]]};
+}
+
+Eigen::Vector3d TouchSurface::triangle_normal(int t) const {
+  const Triangle c = corners(t);
+  return (c[1] - c[0]).cross(c[2] - c[0]);
+}
+
+Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  for (int i = first_of_node_[node]; i < first_of_node_[node + 1]; ++i) n += triangle_normal(of_node_[i]);
+  return n.normalized();
+}
+
+std::span<const int> TouchSurface::find(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) {
+  const int candidates = buckets_.query(box_min, box_max, found_);
+  // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.
+  int kept = 0;
+  for (int i = 0; i < candidates; ++i) {
+    const auto& n = triangles_[found_[i]];
+    Eigen::Vector3d low = position_[n[0]].cwiseMin(previous_[n[0]]), high = position_[n[0]].cwiseMax(previous_[n[0]]);
+    for (int v = 1; v < 3; ++v) {
+      low = low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
+      high = high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
+    }
+    const bool meets = (low.array() <= box_max.array()).all() && (high.array() >= box_min.array()).all();
+    if (meets) found_[kept++] = found_[i];
+  }
+  return std::span(found_).first(kept);
+}
+
+void TouchSurface::begin_update() {
+  ++clock_;
+  last_marked_.swap(marked_);
+  marked_.clear();
+  for (int i = 0; i < refreshed_in_turn && i < movable_; ++i) {
+    mark_node(turn_);
+    turn_ = (turn_ + 1) % movable_;
+  }
+}
+
+void TouchSurface::mark_node(int node) {
+  if (node >= movable_ || stamp_[node] == clock_) return;
+  stamp_[node] = clock_;
+  marked_.push_back(node);
+}
+
+void TouchSurface::mark_triangles(std::span<const int> triangles) {
+  for (int t : triangles)
+    for (int node : triangles_[t]) mark_node(node);
+}
+
+void TouchSurface::enter(int triangle) {
+  if (triangle_stamp_[triangle] == triangle_clock_) return;
+  triangle_stamp_[triangle] = triangle_clock_;
+  const Triangle a = corners(triangle), b = previous_corners(triangle);
+  const Eigen::Vector3d low = a[0].cwiseMin(a[1]).cwiseMin(a[2]).cwiseMin(b[0]).cwiseMin(b[1]).cwiseMin(b[2]);
+  const Eigen::Vector3d high = a[0].cwiseMax(a[1]).cwiseMax(a[2]).cwiseMax(b[0]).cwiseMax(b[1]).cwiseMax(b[2]);
+  buckets_.move(triangle, low, high);
+}
+
+void TouchSurface::move_marked(std::span<const double> displacement) {
+  for (int node : last_marked_)
+    if (stamp_[node] != clock_) previous_[node] = position_[node];
+  for (std::size_t i = 0; i < marked_.size(); ++i) {
+    const int node = marked_[i];
+    previous_[node] = position_[node];
+    position_[node] = rest_[node] + Eigen::Map<const Eigen::Vector3d>(displacement.data() + 3 * i);
+  }
+  ++triangle_clock_;
+  for (int node : marked_) {
+    if (position_[node] == previous_[node]) continue;
+    for (int i = first_of_node_[node]; i < first_of_node_[node + 1]; ++i) enter(of_node_[i]);
+  }
+}
+
+bool TouchSurface::encloses(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d along = Eigen::Vector3d(0.5377, 0.3189, 0.7804).normalized();  // meets no edge of a tidy mesh
+  int crossings = 0;
+  for (int t = 0; t < triangle_count(); ++t) {
+    const Triangle c = corners(t);
+    const Eigen::Vector3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = along.cross(e2);
+    const double det = e1.dot(h);
+    if (det == 0) continue;
+    const Eigen::Vector3d s = p - c[0];
+    const double u = s.dot(h) / det;
+    const Eigen::Vector3d q = s.cross(e1);
+    const double v = along.dot(q) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && e2.dot(q) / det > 0) ++crossings;
+  }
+  return crossings % 2 == 1;
+}
+
+void TouchSurface::save(unsigned char* to) const {
+  const std::size_t bytes = 3 * sizeof(double) * position_.size();
+  std::memcpy(to, previous_.data(), bytes);
+  std::memcpy(to + bytes, position_.data(), bytes);
+  std::memcpy(to + 2 * bytes, &turn_, sizeof turn_);
+}
+
+void TouchSurface::restore(const unsigned char* from) {
+  const std::size_t bytes = 3 * sizeof(double) * position_.size();
+  std::memcpy(static_cast<void*>(previous_.data()), from, bytes);
+  std::memcpy(static_cast<void*>(position_.data()), from + bytes, bytes);
+  std::memcpy(&turn_, from + 2 * bytes, sizeof turn_);
+  turn_ = movable_ > 0 ? static_cast<int>(static_cast<unsigned>(turn_) % static_cast<unsigned>(movable_)) : 0;
+  // All nodes count as moved in the step before, so that previous positions settle as they did when this was saved.
+  marked_.clear();
+  for (int n = 0; n < movable_; ++n) marked_.push_back(n);
+  ++triangle_clock_;
+  for (int t = 0; t < triangle_count(); ++t) enter(t);
+}
+
+}  // namespace palpate

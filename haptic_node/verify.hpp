@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What a log proves about its haptic steps.
+struct VerifyReport {
+  std::uint64_t steps = 0;            ///< steps computed again
+  std::uint64_t forces = 0;           ///< recorded forces that were compared, and equal bit for bit
+  std::vector<std::string> gaps;      ///< places that cannot be verified, and why
+  std::string mismatch;               ///< the first force that differs; empty if none does
+  std::string code_path;
+
+  bool verified() const { return mismatch.empty() && gaps.empty() && forces > 0; }
+};
+
+/// Feeds the recorded inputs of every haptic step to the haptic step, from the first keyframe of each run, on the code
+/// path that made the log, and compares the forces bit for bit. Throws std::runtime_error in one sentence if the log
+/// cannot be verified at all: no scene, no keyframe, a code path or archive that is not here.
+VerifyReport verify_log(const std::filesystem::path& file);
+
+}  // namespace palpate

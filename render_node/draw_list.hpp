@@ -1,0 +1,69 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/scene/scene.hpp"
+
+/// What one picture shows, as plain values without any OpenGL. Lengths in metres, world frame.
+namespace palpate {
+
+/// How a mesh reflects light.
+enum class Finish { tissue, bone };
+
+/// A triangle mesh to draw. The spans belong to the caller and must live until Renderer::draw returns.
+struct MeshView {
+  int id = 0;               ///< the renderer keeps its buffers under this number
+  std::uint64_t shape = 0;  ///< counts changes of triangles or rest; a new value rebuilds the buffers
+  Finish finish = Finish::tissue;
+  std::array<double, 3> colour{0.55, 0.16, 0.13};  ///< linear RGB
+  std::span<const Eigen::Vector3f> rest;           ///< [m] per vertex: what the texture sticks to
+  std::span<const Eigen::Vector3f> position;       ///< [m] per vertex
+  std::span<const Eigen::Vector3f> normal;         ///< unit, outward, per vertex
+  std::span<const float> scalar;  ///< [m] per vertex, coloured by Frame::legend; empty: own colour
+  std::span<const std::array<int, 3>> triangles;  ///< vertex indices, outward by the right-hand rule
+  bool moving = true;                             ///< false: uploaded once per shape
+};
+
+/// A rigid instrument: a spherical tip on a shaft, which opens into two jaws.
+struct InstrumentView {
+  Eigen::Isometry3d tip =
+      Eigen::Isometry3d::Identity();  ///< origin at the tip's centre, z from handle to tip
+  double tip_radius = 0.004;
+  double shaft_radius = 0.0025;
+  double shaft_length = 0.3;  ///< from the tip's centre back along the shaft
+  double jaw_opening = 0;     ///< [rad] between the jaws; 0: closed, a round tip
+};
+
+/// Colour scale of MeshView::scalar; drawn at the right edge.
+struct Legend {
+  std::string title = "displacement";
+  double max = 0.01;  ///< [m] value of the last colour; the first one is 0
+};
+
+/// A horizontal bar below the overlay's lines.
+struct Gauge {
+  double value = 0;  ///< in the unit of `full`
+  double full = 1;   ///< value at the bar's right end
+};
+
+/// Text in the upper left corner, one line each; UTF-8, Latin-1 range.
+struct Overlay {
+  std::vector<std::string> lines;
+  std::optional<Gauge> gauge;
+};
+
+struct Frame {
+  Camera camera;
+  double brightness = 1;  ///< [1] of the light that sits beside the camera
+  std::vector<MeshView> meshes;
+  std::vector<InstrumentView> instruments;  ///< at most 8
+  std::optional<Legend> legend;
+  std::optional<Overlay> overlay;
+};
+
+}  // namespace palpate

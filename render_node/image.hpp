@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace palpate {
+
+/// Upper row first, four bytes a pixel: red, green, blue, 255.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+
+  const std::uint8_t* pixel(int x, int y) const {
+    return &rgba[4 * (static_cast<std::size_t>(y) * width + x)];
+  }
+};
+
+/// Writes beside `file` under a temporary name, then renames: a reader never sees half a picture.
+/// Throws std::runtime_error("FILE: reason"), leaving nothing.
+void write_png(const Image& image, const std::filesystem::path& file);
+
+/// Throws std::runtime_error("FILE: reason") if the file is missing or not a PNG.
+Image read_png(const std::filesystem::path& file);
+
+}  // namespace palpate

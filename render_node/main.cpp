@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "common/mesh/mesh_file.hpp"
+#include "common/node/node_setup.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "render_node/render_loop.hpp"
+
+namespace palpate {
+namespace {
+
+struct RenderOptions {
+  bool deform = false;
+  std::string film, still;
+  double film_rate = 30;
+  int samples = 1;
+  int threads = 0;
+};
+RenderOptions options;
+
+std::unique_ptr<SurfaceSource> make_source(Bus& bus, const Presence& presence, const LoadedScene& loaded) {
+  if (options.deform) return deform_surfaces(bus, presence, Deformer(loaded.scene, loaded.archives));
+  std::vector<std::size_t> nodes;
+  for (const Archive& archive : loaded.archives) nodes.push_back(archive.surface.position.size());
+  return receive_surfaces(bus, presence, std::move(nodes));
+}
+
+Stage make_stage(const LoadedScene& loaded) {
+  std::vector<SurfaceMap> surfaces;
+  for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
+  TriangleMesh backdrop;
+  const auto& render = loaded.scene.render;
+  if (render && !render->backdrop.empty())
+    backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
+  return Stage(loaded.scene, surfaces, backdrop);
+}
+
+/// A still has time for smooth edges.
+void write_still(const Stage& stage, int width, int height) {
+  Renderer renderer(width, height, 4);
+  Image image;
+  renderer.draw(stage.frame(), image);
+  write_png(image, options.still);
+}
+
+void summarise(const RenderReport& r, const Film* film, bool supervised) {
+  const auto us = [](const Histogram& h, double share) {
+    return 1e-3 * static_cast<double>(h.percentile(share));
+  };
+  const nlohmann::json summary{{"node", "render"},
+                               {"seconds", r.seconds},
+                               {"frames", r.frames},
+                               {"missed", r.missed},
+                               {"refused", r.refused},
+                               {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
+                               {"latency_us_p50", us(r.latency, 0.5)},
+                               {"latency_us_p99", us(r.latency, 0.99)},
+                               {"draw_us_p50", us(r.draw, 0.5)},
+                               {"draw_us_p99", us(r.draw, 0.99)},
+                               {"force_max_n", r.greatest_force},
+                               {"film_frames", film ? film->frames() : 0}};
+  if (supervised) fmt::print("{}\n", summary.dump());
+  spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms",
+               r.frames, summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
+               1e-3 * us(r.latency, 0.99));
+}
+
+void run(const NodeOptions& o) {
+  if (options.threads > 0) ::setenv("LP_NUM_THREADS", fmt::format("{}", options.threads).c_str(), 1);
+  LoadedScene loaded = load_for_node(o, options.deform ? ArchivePart::surface : ArchivePart::header);
+  Stage stage = make_stage(loaded);
+  const Render picture = loaded.scene.render.value_or(Render{});
+  Renderer renderer(picture.width, picture.height, options.samples);
+  std::optional<Film> film;
+  if (!options.film.empty()) film.emplace(options.film, picture.width, picture.height, options.film_rate);
+
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
+  Presence presence(*bus, "render", 0, loaded.scene_hash, loaded.archive_hash);
+  const std::unique_ptr<SurfaceSource> source = make_source(*bus, presence, loaded);
+  loaded.archives.clear();
+  catch_shutdown_signals();
+  RenderLoop loop(loaded.scene, std::move(stage), *source, *bus, presence, renderer);
+  if (film) loop.set_film(&*film);
+  say_ready(o);
+  const RenderReport& report = loop.run(o.seconds);
+  if (film) film->finish();
+  if (!options.still.empty()) write_still(loop.best_moment(), picture.width, picture.height);
+  summarise(report, film ? &*film : nullptr, o.supervised);
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  palpate::NodeOptions node;
+  palpate::RenderOptions& o = palpate::options;
+  CLI::App app{"render_node: draws the organs and the instruments, off screen"};
+  palpate::add_node_options(app, node);
+  app.add_flag("--deform", o.deform, "Superpose the contacts in this process; no deform node is needed");
+  app.add_option("--film", o.film, "Write a film (MP4) in real time");
+  app.add_option("--film-rate", o.film_rate, "Frames per second of the film")
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
+  app.add_option("--still", o.still, "Write a picture (PNG) of the moment of the greatest force, at the end");
+  app.add_option("--samples", o.samples,
+                 "Samples per pixel of the film: 4 smooths edges and takes twice the time")
+      ->check(CLI::IsMember({1, 4}))
+      ->capture_default_str();
+  app.add_option("--threads", o.threads, "Threads that draw; default: one per core")
+      ->check(CLI::Range(1, 64));
+  return palpate::node_main("render_node", argc, argv, app, palpate::run, node);
+}

@@ -1,0 +1,136 @@
+#include "render_node/render_loop.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/periodic.hpp"
+#include "common/realtime/shutdown.hpp"
+
+namespace palpate {
+namespace {
+
+double magnitude(const ForceState& f) {
+  return std::hypot(f.force[0], f.force[1], f.force[2]);
+}
+
+std::string describe(const std::string& tool, const ForceState& f) {
+  std::string words = fmt::format("{}  {:.2f} N", tool, magnitude(f));
+  if (f.flags & fault) return words + "  fault: force off";
+  if (f.flags & (force_limited | slew_limited)) words += "  limited";
+  return words;
+}
+
+}  // namespace
+
+RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence,
+                       Renderer& renderer)
+    : scene_(scene),
+      stage_(std::move(stage)),
+      source_(source),
+      presence_(presence),
+      renderer_(renderer),
+      tools_(bus.reader(topics::tool_state)),
+      forces_(bus.reader(topics::force_state)),
+      latest_force_(scene.tools.size()) {}
+
+void RenderLoop::take() {
+  news_ = source_.update();
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    const SurfaceSource::Shape shape = source_.shape(static_cast<int>(b));
+    stage_.set_surface(static_cast<int>(b), shape.position, shape.normal);
+  }
+  while (const auto tool = tools_->take())
+    report_.refused += !(presence_.accepts(tool->run) && stage_.set_tool(*tool));
+  while (const auto force = forces_->take()) {
+    const bool good = force->tool < latest_force_.size() && presence_.accepts(force->run);
+    if (good) latest_force_[force->tool] = *force;
+    report_.refused += !good;
+  }
+}
+
+void RenderLoop::write_overlay() {
+  std::vector<std::string> lines{scene_.title.empty() ? scene_.file.stem().string() : scene_.title};
+  double haptic_hz = 0;
+  for (const auto& [name, peer] : presence_.peers())
+    if (peer.role == "haptic" && presence_.accepts(peer.run)) haptic_hz = std::max(haptic_hz, peer.rate_hz);
+  if (!presence_.matched("haptic")) lines.push_back("waiting for a haptic node");
+  lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
+  lines.push_back(fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
+                              1e-3 * shown_latency_.p99));
+  double strongest = 0, full = 1;
+  for (std::size_t i = 0; i < latest_force_.size(); ++i) {
+    lines.push_back(describe(scene_.tools[i].name, latest_force_[i]));
+    strongest = std::max(strongest, magnitude(latest_force_[i]));
+    full = i == 0 ? scene_.tools[i].max_force : std::max(full, scene_.tools[i].max_force);
+  }
+  std::optional<Gauge> gauge;
+  if (!latest_force_.empty()) gauge = Gauge{strongest, full};
+  stage_.set_overlay(std::move(lines), gauge);
+  if (strongest > 1.01 * report_.greatest_force) {
+    report_.greatest_force = strongest;
+    best_ = stage_;
+  }
+}
+
+void RenderLoop::add_to_film(std::int64_t since_begin) {
+  const long due =
+      static_cast<long>(1e-9 * static_cast<double>(since_begin) * film_->rate()) + 1 - film_->frames();
+  if (due > 0 && !film_->full()) film_->add(image_, static_cast<int>(due));
+}
+
+void RenderLoop::keep_house(std::int64_t now) {
+  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  if (now - last_status_ns_ < ns_per_s) return;
+  rate_hz_ =
+      1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
+  shown_latency_ = percentiles_us(recent_latency_);
+  presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99);
+  recent_latency_.clear();
+  last_status_ns_ = now;
+  last_frames_ = report_.frames;
+}
+
+void RenderLoop::step(std::int64_t begin) {
+  take();
+  write_overlay();
+  const std::int64_t drawing = now_ns();
+  renderer_.draw(stage_.frame(), image_);
+  const std::int64_t done = now_ns();
+  report_.draw.record(done - drawing);
+  ++report_.frames;
+  if (news_) {
+    report_.latency.record(done - source_.sense_ns());
+    recent_latency_.record(done - source_.sense_ns());
+  }
+  if (film_) add_to_film(done - begin);
+}
+
+const RenderReport& RenderLoop::run(double seconds) {
+  PeriodicTimer timer(scene_.rates.visual_hz, 0);
+  renderer_.draw(stage_.frame(), image_);  // compiles the shaders, before the clock runs
+  const std::int64_t begin = now_ns();
+  last_status_ns_ = begin;
+  timer.start();
+  std::int64_t next_house = begin;
+  presence_.announce(0, 0, 0, 0, 0);
+  while (!shutdown_requested()) {
+    const std::int64_t now = now_ns();
+    if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
+    if (now >= next_house) {
+      keep_house(now);
+      next_house = now + 50'000'000;
+    }
+    step(begin);
+    timer.wait();
+    report_.missed = timer.statistics().skipped;
+  }
+  report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  report_.refused += source_.refused();
+  return report_;
+}
+
+}  // namespace palpate

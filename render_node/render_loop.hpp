@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/realtime/histogram.hpp"
+#include "render_node/film.hpp"
+#include "render_node/renderer.hpp"
+#include "render_node/stage.hpp"
+#include "render_node/surface_source.hpp"
+
+namespace palpate {
+
+/// What a run of the loop measured.
+struct RenderReport {
+  double seconds = 0;
+  std::uint64_t frames = 0, missed = 0, refused = 0;
+  double greatest_force = 0;  ///< [N]
+  Histogram latency;          ///< [ns] sense time of a step to the picture that first shows it
+  Histogram draw;             ///< [ns] drawing and reading back
+};
+
+/// Takes the latest of everything at the visual rate and draws it.
+class RenderLoop {
+ public:
+  RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence,
+             Renderer& renderer);
+
+  /// The film takes its frames from now on, in real time: a picture that comes late stands for those it
+  /// missed.
+  void set_film(Film* film) { film_ = film; }
+
+  /// Until `seconds` are over (0: no limit) or a stop is requested.
+  const RenderReport& run(double seconds);
+
+  /// What was to be seen at the greatest force, or now if there was none.
+  const Stage& best_moment() const { return best_ ? *best_ : stage_; }
+
+ private:
+  void step(std::int64_t begin);
+  void take();
+  void write_overlay();
+  void add_to_film(std::int64_t since_begin);
+  void keep_house(std::int64_t now);
+
+  const Scene& scene_;
+  Stage stage_;
+  std::optional<Stage> best_;
+  SurfaceSource& source_;
+  Presence& presence_;
+  Renderer& renderer_;
+  Film* film_ = nullptr;
+  std::unique_ptr<Reader<ToolState>> tools_;
+  std::unique_ptr<Reader<ForceState>> forces_;
+  std::vector<ForceState> latest_force_;  ///< by tool
+  bool news_ = false;
+  Image image_;
+  Histogram recent_latency_;  ///< since the last status
+  double rate_hz_ = 0;
+  Percentiles shown_latency_;  ///< of the last second, for the overlay
+  std::uint64_t last_frames_ = 0;
+  std::int64_t last_status_ns_ = 0;
+  RenderReport report_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,22 @@
+#pragma once
+#include "render_node/draw_list.hpp"
+
+namespace palpate {
+
+inline constexpr int max_tools = 8;
+
+/// The uniform block of shaders/scene.glsl, where its fields are explained.
+struct SceneBlock {
+  struct Tool {
+    Eigen::Vector4f tip, shaft, across, along, near;
+  };
+  Eigen::Matrix4f view_projection;
+  Eigen::Vector4f eye, right, up, forward, light, viewport;
+  Tool tools[max_tools];
+};
+static_assert(sizeof(SceneBlock) == 64 + 6 * 16 + max_tools * 5 * 16);
+
+/// Throws std::runtime_error if the camera looks nowhere.
+SceneBlock scene_block(const Frame& frame, int width, int height);
+
+}  // namespace palpate

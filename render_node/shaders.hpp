@@ -1,0 +1,20 @@
+#pragma once
+
+/// The files of shaders/, built in.
+namespace palpate::shaders {
+
+extern const char* const scene;
+extern const char* const noise;
+extern const char* const light;
+extern const char* const colours;
+extern const char* const rigid_vert;
+extern const char* const tissue_vert;
+extern const char* const tissue_frag;
+extern const char* const bone_frag;
+extern const char* const metal_frag;
+extern const char* const cavity_vert;
+extern const char* const cavity_frag;
+extern const char* const flat_vert;
+extern const char* const flat_frag;
+
+}  // namespace palpate::shaders

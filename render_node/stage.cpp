@@ -1,0 +1,133 @@
+#include "render_node/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/mesh/normals.hpp"
+#include "render_node/overlay.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t most_triangles = 16000;  // of one body after refinement: what 60 frames a second allow
+constexpr int backdrop_id = -1;
+
+std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<Eigen::Vector3f> out;
+  out.reserve(points.size());
+  for (const auto& p : points) out.push_back(p.cast<float>());
+  return out;
+}
+
+/// The next "round" number that is at least `value`.
+double round_up(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (factor * decade >= value) return factor * decade;
+  return 10 * decade;
+}
+
+}  // namespace
+
+Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop)
+    : render_(scene.render.value_or(Render{})) {
+  if (!scene.render) render_.camera = fit_camera(surfaces);
+  for (const SurfaceMap& map : surfaces) {
+    Soft body;
+    const int levels = refinement_levels(map.triangles.size(), most_triangles);
+    body.refinement = Refinement(map.triangles, map.size(), levels);
+    body.coarse = map.position.size();
+    body.position = to_float(map.position);
+    body.normal.resize(body.coarse);
+    vertex_normals(body.position, map.triangles, body.normal);
+    body.position.resize(body.refinement.vertices());
+    body.normal.resize(body.refinement.vertices());
+    body.refinement.apply(body.position, body.normal);
+    body.rest = body.position;
+    if (render_.colour == "displacement") body.displacement.assign(body.rest.size(), 0.0f);
+    bodies_.push_back(std::move(body));
+  }
+  backdrop_.position = to_float(backdrop.nodes);
+  backdrop_.triangles = backdrop.triangles;
+  backdrop_.normal.resize(backdrop_.position.size());
+  vertex_normals(backdrop_.position, backdrop_.triangles, backdrop_.normal);
+  for (const Tool& tool : scene.tools) {
+    Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
+    instrument.view.tip_radius = tool.radius;
+    instrument.view.shaft_radius = tool.shaft_radius;
+    instrument.view.shaft_length = tool.shaft_length;
+    tools_.push_back(instrument);
+  }
+}
+
+void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position,
+                        std::span<const Eigen::Vector3f> normal) {
+  Soft& body = bodies_.at(index);
+  if (position.size() != body.coarse || normal.size() != body.coarse) return;
+  std::copy(position.begin(), position.end(), body.position.begin());
+  std::copy(normal.begin(), normal.end(), body.normal.begin());
+  body.refinement.apply(body.position, body.normal);
+  if (body.displacement.empty()) return;
+  float most = 0;
+  for (std::size_t i = 0; i < body.rest.size(); ++i) {
+    body.displacement[i] = (body.position[i] - body.rest[i]).norm();
+    most = std::max(most, body.displacement[i]);
+  }
+  if (most > legend_max_) legend_max_ = round_up(most);
+}
+
+bool Stage::set_tool(const ToolState& s) {
+  if (s.tool >= tools_.size()) return false;
+  Instrument& tool = tools_[s.tool];
+  tool.view.tip = tip_pose(tool.trocar, {s.yaw, s.pitch, s.depth, s.roll, s.grip});
+  tool.view.jaw_opening = std::clamp(s.grip, 0.0, 1.2);
+  tool.seen = true;
+  return true;
+}
+
+void Stage::set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge) {
+  overlay_ = {std::move(lines), gauge};
+}
+
+Frame Stage::frame() const {
+  Frame frame;
+  frame.camera = render_.camera;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Soft& body = bodies_[b];
+    frame.meshes.push_back({.id = static_cast<int>(b),
+                            .colour = render_.tissue_colour,
+                            .rest = body.rest,
+                            .position = body.position,
+                            .normal = body.normal,
+                            .scalar = body.displacement,
+                            .triangles = body.refinement.triangles()});
+  }
+  if (!backdrop_.triangles.empty())
+    frame.meshes.push_back({.id = backdrop_id,
+                            .finish = Finish::bone,
+                            .colour = {0.80, 0.68, 0.54},
+                            .rest = backdrop_.position,
+                            .position = backdrop_.position,
+                            .normal = backdrop_.normal,
+                            .scalar = {},
+                            .triangles = backdrop_.triangles,
+                            .moving = false});
+  for (const Instrument& tool : tools_)
+    if (tool.seen) frame.instruments.push_back(tool.view);
+  if (render_.colour == "displacement") frame.legend = Legend{"displacement", legend_max_};
+  if (render_.overlay) frame.overlay = overlay_;
+  return frame;
+}
+
+Camera fit_camera(std::span<const SurfaceMap> surfaces) {
+  Eigen::AlignedBox3d box;
+  for (const SurfaceMap& map : surfaces)
+    for (const auto& p : map.position) box.extend(p);
+  Camera camera;
+  if (box.isEmpty()) return camera;
+  camera.target = box.center();
+  camera.eye = box.center() + box.diagonal().norm() * Eigen::Vector3d(0.15, -0.85, 0.75);
+  return camera;
+}
+
+}  // namespace palpate

@@ -1,0 +1,59 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/bus/messages.hpp"
+#include "common/mesh/tet_mesh.hpp"
+#include "common/tensors/archive.hpp"
+#include "common/tool/kinematics.hpp"
+#include "render_node/draw_list.hpp"
+#include "render_node/refine.hpp"
+
+namespace palpate {
+
+/// What is to be seen, as last heard: bodies, tools, backdrop and the overlay's words. Copies are snapshots.
+class Stage {
+ public:
+  /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty.
+  Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop);
+
+  /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is.
+  void set_surface(int body, std::span<const Eigen::Vector3f> position,
+                   std::span<const Eigen::Vector3f> normal);
+  /// False (and nothing set) if the scene has no such tool.
+  bool set_tool(const ToolState& state);
+  void set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge);
+
+  /// The picture's contents; the frame refers to this stage and is good until it changes.
+  Frame frame() const;
+
+ private:
+  struct Soft {
+    Refinement refinement;
+    std::size_t coarse;
+    std::vector<Eigen::Vector3f> rest, position, normal;
+    std::vector<float> displacement;  ///< [m], empty unless coloured by it
+  };
+  struct Rigid {
+    std::vector<Eigen::Vector3f> position, normal;
+    std::vector<std::array<int, 3>> triangles;
+  };
+  struct Instrument {
+    Trocar trocar;
+    InstrumentView view;
+    bool seen = false;
+  };
+
+  Render render_;
+  std::vector<Soft> bodies_;
+  Rigid backdrop_;
+  std::vector<Instrument> tools_;
+  double legend_max_ = 1e-3;  ///< [m] grows with what is seen
+  Overlay overlay_;
+};
+
+/// A camera that sees all the bodies, from in front (-y) and above.
+Camera fit_camera(std::span<const SurfaceMap> surfaces);
+
+}  // namespace palpate

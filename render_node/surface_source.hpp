@@ -1,0 +1,33 @@
+#pragma once
+#include <memory>
+#include <span>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/models/deformer.hpp"
+
+namespace palpate {
+
+/// Where the shape of the bodies comes from.
+class SurfaceSource {
+ public:
+  struct Shape {
+    std::span<const Eigen::Vector3f> position;  ///< [m] per surface node of the archive
+    std::span<const Eigen::Vector3f> normal;    ///< unit, outward
+  };
+  virtual ~SurfaceSource() = default;
+  virtual bool update() = 0;                  ///< takes what has come; true if a newer haptic step is shown
+  virtual Shape shape(int body) const = 0;    ///< empty spans: not known yet, so at rest
+  virtual std::int64_t sense_ns() const = 0;  ///< sense time of the haptic step shown
+  virtual std::uint64_t refused() const = 0;  ///< samples of foreign runs, or that do not fit the archives
+};
+
+/// Surfaces published by a deform node. `nodes`: surface nodes per body.
+std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence,
+                                                std::vector<std::size_t> nodes);
+
+/// Superposes the received contacts in this process, and keeps them for a haptic node that dies and comes
+/// back.
+std::unique_ptr<SurfaceSource> deform_surfaces(Bus& bus, const Presence& presence, Deformer deformer);
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Runs everything in bench/ and the liver scene, and writes out/bench.csv:
+# bench,case,metric,value,unit,machine,commit. --quick takes fewer samples. Leave the machine alone meanwhile.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+quick=()
+seconds=10
+for argument in "$@"; do
+  case "$argument" in
+    --quick) quick=(--quick); seconds=4 ;;
+    -h|--help) sed -n '2,3p' "$0"; exit 0 ;;
+    *) echo "bench.sh: unknown argument $argument" >&2; exit 2 ;;
+  esac
+done
+./scripts/build.sh release
+bin=build/release/bin
+mkdir -p out
+machine=$(awk -F': ' '/model name/ {print $2; exit}' /proc/cpuinfo | tr ',' ' ')
+commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
+[ -z "$(git status --porcelain 2>/dev/null)" ] || commit="$commit+"
+echo "bench,case,metric,value,unit,machine,commit" > out/bench.csv
+keep() { awk -F, -v m="$machine ($(nproc) cores)" -v c="$commit" 'NF == 5 {print $0 "," m "," c; fflush()}' | tee -a out/bench.csv; }
+
+for program in "$bin"/bench_*; do
+  echo "# $(basename "$program")" >&2
+  "$program" "${quick[@]}" | keep
+done
+
+# The running system: two processes for the rates, three for the way from the tool to the surface.
+echo "# palpate run" >&2
+"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 97 --summary out/bench_run2.json >&2
+"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 98 --processes 3 --summary out/bench_run3.json >&2
+python3 scripts/run_rows.py out/bench_run2.json out/bench_run3.json | keep
+rm -f out/bench_run2.json out/bench_run3.json
+echo "out/bench.csv: $(($(wc -l < out/bench.csv) - 1)) rows" >&2

@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs all tests. Fails if one fails. Further arguments go to ctest (e.g. -R pattern).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+./scripts/build.sh release
+ctest --preset release --timeout 300 "$@"

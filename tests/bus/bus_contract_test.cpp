@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "common/bus/dds_bus.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "tests/bus/domain.hpp"
+#include "tests/bus/messages_for_tests.hpp"
+
+/// What every bus promises, over memory and over DDS within one process.
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace palpate::testing;
+
+class BusContract : public ::testing::TestWithParam<const char*> {
+ protected:
+  BusContract() {
+    if (std::string(GetParam()) == "memory") {
+      auto network = make_memory_network();
+      a = make_memory_bus(network);
+      b = make_memory_bus(network);
+    } else {
+      a = make_dds_bus({.domain = test_domain()});
+      b = make_dds_bus({.domain = test_domain()});
+    }
+  }
+
+  template <class M>
+  std::optional<M> take_within(Bus& bus, Reader<M>& reader, std::chrono::milliseconds limit = 5s) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < end) {
+      if (auto message = reader.take()) return message;
+      bus.wait(20ms);
+    }
+    return std::nullopt;
+  }
+
+  static bool eventually(const std::function<bool()>& condition) {
+    for (int i = 0; i < 500 && !condition(); ++i) std::this_thread::sleep_for(10ms);
+    return condition();
+  }
+
+  template <class M>
+  void expect_round_trip(const Topic<M>& topic, const M& message) {
+    auto reader = b->reader(topic);
+    auto writer = a->writer(topic);
+    ASSERT_TRUE(eventually([&] { return writer->readers() == 1 && reader->writers() == 1; })) << topic.name;
+    ASSERT_TRUE(writer->write(message)) << topic.name;
+    const auto received = take_within(*b, *reader);
+    ASSERT_TRUE(received) << topic.name;
+    EXPECT_TRUE(same(*received, message)) << topic.name;
+  }
+
+  std::unique_ptr<Bus> a, b;
+};
+
+TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
+  expect_round_trip(topics::tool_state, tool_sample());
+  expect_round_trip(topics::device_state, device_sample());
+  expect_round_trip(topics::contact_state, contact_sample());
+  expect_round_trip(topics::held_contacts, contact_sample(0));
+  expect_round_trip(topics::force_state, force_sample());
+  expect_round_trip(topics::surface_state, surface_sample(7000));
+  expect_round_trip(topics::node_status, status_sample());
+  expect_round_trip(topics::haptic_keyframe, keyframe_sample());
+  expect_round_trip(topics::scene, scene_sample());
+}
+
+TEST_P(BusContract, AReaderOfTheLatestSkipsOlderSamplesOfTheSameKeyOnly) {
+  auto reader = b->reader(topics::tool_state);
+  auto writer = a->writer(topics::tool_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1; }));
+  for (std::uint64_t seq = 1; seq <= 50; ++seq)
+    for (std::uint32_t tool : {0u, 1u}) ASSERT_TRUE(writer->write(tool_sample(seq, tool)));
+  std::array<std::uint64_t, 2> last{};
+  int taken = 0;
+  ASSERT_TRUE(eventually([&] {
+    while (auto message = reader->take()) last[message->tool] = message->seq, ++taken;
+    return last[0] == 50 && last[1] == 50;
+  }));
+  EXPECT_LE(taken, 100);
+}
+
+TEST_P(BusContract, AReaderOfAllGetsEverySampleInOrder) {
+  auto reader = b->reader(topics::force_state, Keep::all);
+  auto writer = a->writer(topics::force_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1; }));
+  for (std::uint64_t seq = 0; seq < 1500; ++seq) {
+    ForceState message = force_sample();
+    message.seq = seq;
+    ASSERT_TRUE(writer->write(message));
+  }
+  for (std::uint64_t seq = 0; seq < 1500; ++seq) {
+    const auto message = take_within(*b, *reader);
+    ASSERT_TRUE(message);
+    ASSERT_EQ(message->seq, seq);
+  }
+}
+
+TEST_P(BusContract, ALateReaderGetsWhatATransientLocalTopicKeepsAndNothingElse) {
+  auto held = a->writer(topics::held_contacts);
+  auto tool = a->writer(topics::tool_state);
+  ContactState message = contact_sample();
+  for (std::uint32_t key : {4u, 5u})
+    for (std::uint64_t seq : {1u, 2u}) {
+      message.tool = key, message.seq = seq;
+      ASSERT_TRUE(held->write(message));
+    }
+  ASSERT_TRUE(tool->write(tool_sample()));
+
+  auto late = b->reader(topics::held_contacts, Keep::all);
+  auto late_tool = b->reader(topics::tool_state, Keep::all);
+  int taken = 0;
+  while (auto sample = take_within(*b, *late, taken < 2 ? 5000ms : 100ms)) {
+    EXPECT_EQ(sample->seq, 2u);
+    ++taken;
+  }
+  EXPECT_EQ(taken, 2);
+  EXPECT_FALSE(late_tool->take());
+}
+
+TEST_P(BusContract, InvalidSamplesAreRefused) {
+  auto reader = b->reader(topics::tool_state);
+  auto surface_reader = b->reader(topics::surface_state);
+  auto writer = a->writer(topics::tool_state);
+  auto surface = a->writer(topics::surface_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1; }));
+  ToolState bad = tool_sample();
+  bad.depth = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(writer->write(bad));
+  SurfaceState unequal = surface_sample(4);
+  unequal.normal.pop_back();
+  EXPECT_FALSE(surface->write(unequal));
+  EXPECT_EQ(writer->refused(), 1u);
+  EXPECT_EQ(surface->refused(), 1u);
+  ASSERT_TRUE(writer->write(tool_sample(99)));
+  EXPECT_EQ(take_within(*b, *reader)->seq, 99u);
+  EXPECT_FALSE(surface_reader->take());
+}
+
+TEST_P(BusContract, AWriterThatGoesIsNoticed) {
+  auto reader = b->reader(topics::contact_state);
+  auto writer = a->writer(topics::contact_state);
+  ASSERT_TRUE(eventually([&] { return reader->writers() == 1; }));
+  writer.reset();
+  EXPECT_TRUE(eventually([&] { return reader->writers() == 0; }));
+}
+
+TEST_P(BusContract, WaitLastsAsLongAsNothingComes) {
+  auto reader = b->reader(topics::tool_state);
+  auto writer = a->writer(topics::tool_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1 && reader->writers() == 1; }));
+  while (b->wait(0ns) && reader->take()) {
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(b->wait(50ms));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 45ms);
+
+  std::thread later([&] {
+    std::this_thread::sleep_for(50ms);
+    writer->write(tool_sample());
+  });
+  EXPECT_TRUE(b->wait(10s));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
+  later.join();
+}
+
+INSTANTIATE_TEST_SUITE_P(Buses, BusContract, ::testing::Values("memory", "dds"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace palpate

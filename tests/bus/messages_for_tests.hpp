@@ -1,0 +1,58 @@
+#pragma once
+#include "common/bus/messages.hpp"
+
+/// Messages in which every field differs from its default and from its neighbours.
+namespace palpate::testing {
+
+inline ToolState tool_sample(std::uint64_t seq = 7, std::uint32_t tool = 3) {
+  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5};
+}
+
+inline ContactState contact_sample(int contacts = 2) {
+  ContactState m;
+  m.tool = 1, m.run = 2, m.seq = 3, m.step = 4, m.sense_ns = 5;
+  m.press = {0, 0.6, -0.8};
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(contacts); ++i) {
+    m.forces.push_back({i, 10 + i, {1.5 * i, -2.5, 3.25}});
+    m.contacts.push_back(
+        {i, {i, i + 1, i + 2}, {0.2, 0.3, 0.5}, {1e-3, 2e-3, 3e-3 * i}, {0, 0, 1}, {4, 5, 6}, i, i % 2});
+  }
+  return m;
+}
+
+inline SurfaceState surface_sample(std::size_t nodes, std::uint64_t seq = 1) {
+  SurfaceState m;
+  m.body = 0, m.run = 21, m.seq = seq, m.step = 22, m.sense_ns = 23, m.publish_ns = 24;
+  for (std::size_t i = 0; i < 3 * nodes; ++i) {
+    m.position.push_back(0.001f * static_cast<float>(i % 977));
+    m.normal.push_back(i % 3 == 2 ? 1.f : 0.f);
+  }
+  return m;
+}
+
+inline NodeStatus status_sample(const std::string& node = "haptic 4711@host") {
+  NodeStatus m;
+  m.node = node, m.role = "haptic", m.run = 1, m.seq = 2, m.stamp_ns = 3;
+  m.scene_hash = "abc", m.archive_hash = "def", m.version = "0.1.0 avx2";
+  m.rate_hz = 999.5, m.ticks = 1000, m.missed = 2, m.latency_p50_us = 12.5, m.latency_p99_us = 40;
+  m.text = "Größe, \"quoted\"\nand a second line";
+  return m;
+}
+
+inline HapticKeyframe keyframe_sample() {
+  return {1, 2, 3, 0.001, "avx2 0.1.0", {0, 1, 2, 254, 255}};
+}
+
+inline SceneText scene_sample() {
+  return {9, 1, "hash", "title = \"liver\"\n", "0.1.0", "avx2"};
+}
+
+inline ForceState force_sample() {
+  return {2, 3, 4, 5, 6, {0.5, -1, 2}, {0.01, 0.02, -0.03}, 5};
+}
+
+inline DeviceState device_sample() {
+  return {1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5};
+}
+
+}  // namespace palpate::testing

@@ -1,0 +1,147 @@
+#include "common/contact/buckets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "tests/contact/moving_surface.hpp"
+
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Box = std::array<Vector3d, 2>;
+
+std::vector<int> ask(const Buckets& buckets, const MovingSurface& surface, const Box& box) {
+  std::vector<int> found(surface.size());
+  found.resize(buckets.query(box[0], box[1], found));
+  return found;
+}
+
+Box random_box(MovingSurface& surface) {
+  const Vector3d centre = surface.uniform(0, 0.12) * surface.direction();
+  const Vector3d half = Vector3d::Constant(std::pow(10.0, surface.uniform(-5, -1)));
+  return {centre - half, centre + half};
+}
+
+void enter_all(Buckets& buckets, const MovingSurface& surface) {
+  for (int t = 0; t < surface.size(); ++t) {
+    const Box box = swept_box(surface.before(t), surface.after(t));
+    buckets.move(t, box[0], box[1]);
+  }
+}
+
+TEST(Buckets, GiveEveryTriangleWhoseBoxMeetsTheQuestionAscendingAndOnce) {
+  MovingSurface surface(1);
+  Buckets buckets(surface.rest, surface.triangles, 0.008);
+  int far_fewer = 0;
+  for (int round = 0; round < 20; ++round) {
+    surface.step(0.002);
+    enter_all(buckets, surface);
+    for (int trial = 0; trial < 100; ++trial) {
+      const Box box = random_box(surface);
+      const std::vector<int> found = ask(buckets, surface, box);
+      EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+      EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+      for (int t = 0; t < surface.size(); ++t) {
+        if (!meet(swept_box(surface.before(t), surface.after(t)), box)) continue;
+        ASSERT_TRUE(std::binary_search(found.begin(), found.end(), t)) << "lost triangle " << t;
+      }
+      far_fewer += 4 * found.size() < surface.triangles.size();
+    }
+  }
+  EXPECT_GT(far_fewer, 1000) << "buckets that always give everything are of no use";
+  EXPECT_EQ(buckets.overflow(), 0);
+}
+
+TEST(Buckets, AnswerTheSameWhateverTheHistoryOfMoves) {
+  MovingSurface surface(2);
+  Buckets used(surface.rest, surface.triangles, 0.006), fresh(surface.rest, surface.triangles, 0.006);
+  for (int round = 0; round < 100; ++round) {
+    surface.step(0.004);
+    enter_all(used, surface);
+  }
+  enter_all(fresh, surface);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Box box = random_box(surface);
+    EXPECT_EQ(ask(used, surface, box), ask(fresh, surface, box));
+  }
+}
+
+TEST(Buckets, LoseNothingWhenTrianglesOutgrowThem) {
+  MovingSurface surface(3);
+  Buckets buckets(surface.rest, surface.triangles, 0.004);
+  for (int t = 0; t < surface.size(); ++t) buckets.move(t, Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
+  EXPECT_EQ(buckets.overflow(), surface.size());
+  EXPECT_EQ(ask(buckets, surface, random_box(surface)).size(), surface.triangles.size());
+  enter_all(buckets, surface);
+  EXPECT_EQ(buckets.overflow(), 0);
+}
+
+TEST(Buckets, LoseNothingWhenEntriesRunOut) {
+  MovingSurface surface(3);
+  Buckets buckets(surface.rest, surface.triangles, 0.01);
+  for (int t = 0; t < surface.size(); ++t)
+    buckets.move(t, Vector3d::Constant(-0.01475), Vector3d::Constant(0.01475));
+  EXPECT_GT(buckets.overflow(), 0);
+  EXPECT_LT(buckets.overflow(), surface.size());
+  EXPECT_EQ(ask(buckets, surface, {Vector3d::Constant(-0.001), Vector3d::Constant(0.001)}).size(),
+            surface.triangles.size());
+  enter_all(buckets, surface);
+  EXPECT_EQ(buckets.overflow(), 0);
+}
+
+TEST(Buckets, EnterWhatLiesBeyondTheGridInItsOutermostBuckets) {
+  MovingSurface surface(4);
+  Buckets buckets(surface.rest, surface.triangles, 0.01);
+  buckets.move(7, Vector3d(5, 5, 5), Vector3d(5.01, 5.01, 5.01));
+  const auto found = ask(buckets, surface, {Vector3d(7, 7, 7), Vector3d(8, 8, 8)});
+  EXPECT_EQ(found, std::vector<int>{7});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  buckets.move(8, Vector3d(nan, nan, nan), Vector3d(nan, nan, nan));
+  const auto near = ask(buckets, surface, {Vector3d(-1, -1, -1), Vector3d(-0.9, -0.9, -0.9)});
+  EXPECT_EQ(near, std::vector<int>{8});
+}
+
+TEST(Buckets, TakeNoMemoryAfterConstruction) {
+  MovingSurface surface(5);
+  Buckets buckets(surface.rest, surface.triangles, 0.005);
+  std::vector<int> found(surface.size());
+  surface.step(0.01);
+  const long before = allocations;
+  enter_all(buckets, surface);
+  buckets.move(3, Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
+  const int count = buckets.query(Vector3d(-1, -1, -1), Vector3d(1, 1, 1), found);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(count, surface.size());
+}
+
+TEST(Buckets, RefuseASizeThatDoesNotSuit) {
+  const MovingSurface surface(6);
+  for (const double size : {0.0, -0.01, 1e-6, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(Buckets(surface.rest, surface.triangles, size), std::runtime_error) << size;
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,40 @@
+#pragma once
+#include "common/mesh/generators.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tensors/precompute.hpp"
+#include "haptic_node/haptic_step.hpp"
+
+namespace palpate::testing {
+
+/// A block 0.1 x 0.1 x 0.05 m, top in the plane z = 0, base fixed, under tools that come down along -z from 0.2 m
+/// above: a tool's depth is 0.2 m minus the height of its tip.
+struct BlockScene {
+  Scene scene;
+  std::vector<Archive> archives;
+
+  explicit BlockScene(int tools = 1, int cells = 8) {
+    const TetMesh mesh = make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
+    Body body;
+    body.name = "block";
+    body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
+    body.fixed.push_back({.where = {.box = Box{{-1, -1, -0.0501}, {1, 1, -0.0499}}}});
+    scene.bodies.push_back(body);
+    for (int t = 0; t < tools; ++t) {
+      Tool tool;
+      tool.name = "probe" + std::to_string(t);
+      tool.pivot = {0.02 * t, 0, 0.2};
+      tool.radius = 0.008;
+      tool.max_force = 100;
+      tool.max_force_rate = 1e6;
+      scene.tools.push_back(tool);
+    }
+    archives.push_back(precompute(body, mesh));
+  }
+};
+
+/// Degrees of freedom that put the tip's centre at p.
+inline ToolDofs tip_at(const Tool& tool, const Eigen::Vector3d& p, double roll = 0) {
+  return dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), p, roll);
+}
+
+}  // namespace palpate::testing

@@ -1,0 +1,140 @@
+#include "common/contact/contact_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/haptic/synthetic_body.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+Anchor vertex(int node) { return {{node, node, node}, Vector3d::UnitX()}; }
+
+class ContactLawTest : public ::testing::Test {
+ protected:
+  TouchContact press(const Anchor& anchor, double depth, const Vector3d& sideways = Vector3d::Zero()) const {
+    TouchContact c;
+    c.anchor = anchor;
+    c.face = anchor.nodes[0] != anchor.nodes[1];
+    c.normal = -Vector3d::UnitZ();
+    c.target = anchor_position(anchor, archive_.surface.position) + depth * c.normal + sideways;
+    c.plane = c.normal.dot(c.target);
+    return c;
+  }
+  ContactLaw law(double friction, ContactLaw::Rule rule = ContactLaw::Rule::barycentric) const {
+    return {compliance_, archive_.surface.position, rule, friction, 64};
+  }
+  Archive archive_ = testing::flat_patch(12, 0.01, 1e-2);
+  Compliance<double> compliance_{archive_, Compliance<double>::Rows::touchable};
+};
+
+TEST_F(ContactLawTest, FrictionlessContactsNeverPullAndNeverPenetrate) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> depth(-2e-3, 2e-3);
+  for (int round = 0; round < 200; ++round) {
+    ContactLaw frictionless = law(0);
+    for (int node = round % 3; node < 144; node += 4) frictionless.add(press(vertex(node), depth(random)));
+    const LawOutcome outcome = frictionless.solve();
+    ASSERT_TRUE(outcome.converged) << "round " << round;
+    for (const TouchContact& c : frictionless.contacts()) {
+      const double force = c.force.dot(c.normal), gap = c.normal.dot(c.position) - c.plane;
+      ASSERT_GE(force, 0);
+      ASSERT_GE(gap, -2e-9);
+      ASSERT_LT(force * gap, 1e-12);
+    }
+  }
+}
+
+TEST_F(ContactLawTest, FrictionStaysWithinItsCone) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> depth(-1e-3, 2e-3), side(-3e-3, 3e-3);
+  for (int round = 0; round < 200; ++round) {
+    ContactLaw rough = law(0.3);
+    for (int node = round % 5; node < 144; node += 9) rough.add(press(vertex(node), depth(random), {side(random), side(random), 0}));
+    const LawOutcome outcome = rough.solve();
+    for (const TouchContact& c : rough.contacts()) {
+      const double pressing = c.force.dot(c.normal);
+      const double tangential = (c.force - pressing * c.normal).norm();
+      ASSERT_GE(pressing, -1e-12);
+      ASSERT_LE(tangential, 0.3 * pressing * 1.005 + 1e-9) << "round " << round << " converged " << outcome.converged;
+    }
+  }
+}
+
+TEST_F(ContactLawTest, ASmallSidewaysPullSticksAndALargeOneSlidesAgainstTheCone) {
+  ContactLaw rough = law(0.5);
+  rough.add(press(vertex(66), 1e-3, {1e-4, 0, 0}));
+  rough.solve();
+  EXPECT_EQ(rough.contacts()[0].touch, Touch::sticking);
+  rough.contacts()[0].target += Vector3d(5e-3, 0, 0);
+  rough.solve();
+  const TouchContact& c = rough.contacts()[0];
+  EXPECT_EQ(c.touch, Touch::sliding);
+  EXPECT_NEAR(c.force.x(), 0.5 * -c.force.z(), 2e-3 * -c.force.z());
+}
+
+TEST_F(ContactLawTest, ASlidingContactSticksAgainWhenTheSlipTurnsRound) {
+  ContactLaw rough = law(0.5);
+  rough.add(press(vertex(66), 1e-3, {5e-3, 0, 0}));
+  rough.solve();
+  ASSERT_EQ(rough.contacts()[0].touch, Touch::sliding);
+  TouchContact& c = rough.contacts()[0];
+  c.target = c.position - Vector3d(1e-5, 0, 0);
+  rough.solve();
+  EXPECT_EQ(rough.contacts()[0].touch, Touch::sticking);
+}
+
+TEST_F(ContactLawTest, ReleasedContactsLeaveNoForce) {
+  ContactLaw rough = law(0.3);
+  rough.add(press(vertex(66), 1e-3));
+  rough.solve();
+  EXPECT_LT(rough.contacts()[0].force.z(), 0);
+  TouchContact& c = rough.contacts()[0];
+  c.target.z() = 1e-3;
+  c.plane = c.normal.dot(c.target);
+  rough.solve();
+  EXPECT_EQ(rough.contacts()[0].touch, Touch::open);
+  EXPECT_EQ(rough.contacts()[0].force.norm(), 0);
+  int forces = 0;
+  rough.for_each_nodal_force([&](int, int, const Vector3d&) { ++forces; });
+  EXPECT_EQ(forces, 0);
+}
+
+TEST_F(ContactLawTest, BothRulesMoveTheTouchedPointExactlyAndTheAlphaRuleIsStiffer) {
+  const Anchor inside{{70, 71, 83}, Vector3d(0.5, 0.2, 0.3)};
+  ContactLaw exact = law(1.0), alpha = law(1.0, ContactLaw::Rule::alpha);
+  exact.add(press(inside, 1e-3));
+  alpha.add(press(inside, 1e-3));
+  exact.solve();
+  alpha.solve();
+  EXPECT_NEAR(exact.contacts()[0].position.z(), -1e-3, 1e-12);
+  EXPECT_NEAR(alpha.contacts()[0].position.z(), -1e-3, 1e-12);
+  EXPECT_GT(-alpha.contacts()[0].force.z(), 1.02 * -exact.contacts()[0].force.z());
+}
+
+TEST_F(ContactLawTest, UnderTheAlphaRuleASharedVertexBelongsToTheOlderContact) {
+  ContactLaw alpha = law(1.0, ContactLaw::Rule::alpha);
+  alpha.add(press({{70, 71, 83}, Vector3d(0.4, 0.3, 0.3)}, 1e-3));
+  alpha.add(press({{71, 84, 83}, Vector3d(0.3, 0.4, 0.3)}, 1e-3));
+  EXPECT_EQ(alpha.point_forces(0).size(), 9u);
+  EXPECT_EQ(alpha.point_forces(1).size(), 3u);
+  EXPECT_TRUE(alpha.solve().finite);
+}
+
+TEST_F(ContactLawTest, ManyContactsAtOnePlaceStayFiniteAndBounded) {
+  ContactLaw rough = law(0.3);
+  for (int i = 0; i < 20; ++i) rough.add(press({{70, 71, 83}, Vector3d(0.3, 0.3, 0.4)}, 1e-3 * (i % 3)));
+  const LawOutcome outcome = rough.solve();
+  EXPECT_TRUE(outcome.finite);
+  EXPECT_GT(outcome.raised, 0);
+  Vector3d total = Vector3d::Zero();
+  for (const TouchContact& c : rough.contacts()) total += c.force;
+  EXPECT_TRUE(total.allFinite());
+  EXPECT_LT(total.norm(), 5.0);  // one contact 2 mm deep takes about 0.25 N
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/spsc_ring.hpp"
+#include "haptic_node/step_record.hpp"
+#include "tests/haptic/block_scene.hpp"
+
+// Every allocation of this process goes through these.
+namespace {
+std::atomic<bool> counting{false};
+std::atomic<long> allocations{0};
+}  // namespace
+
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  if (counting.load(std::memory_order_relaxed)) ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  if (counting.load(std::memory_order_relaxed)) ++allocations;
+  return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size) {
+  if (counting.load(std::memory_order_relaxed)) ++allocations;
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  if (counting.load(std::memory_order_relaxed)) ++allocations;
+  return __libc_memalign(alignment, size);
+}
+}
+
+namespace palpate {
+namespace {
+
+using testing::BlockScene;
+using testing::tip_at;
+
+/// A tick as the haptic loop runs it: step, record into the ring, checkpoint now and then.
+class Ticks {
+ public:
+  Ticks() : scene_(2), haptic_(scene_.scene, scene_.archives), ring_(64), state_(haptic_.state_size()) {
+    haptic_.start(input(0));
+  }
+  void run(int from, int to) {
+    for (int i = from; i < to; ++i) {
+      const auto dofs = input(i);
+      if (i % 100 == 0) haptic_.save(state_);
+      haptic_.step(dofs);
+      if (StepRecord* record = ring_.begin_push()) {
+        const std::array<DeviceSample, 2> samples{DeviceSample{dofs[0], 0}, DeviceSample{dofs[1], 0}};
+        fill_record(haptic_, samples, i, now_ns(), *record);
+        ring_.commit_push();
+      }
+      if (ring_.begin_pop()) ring_.commit_pop();
+      contacts_ += haptic_.body(0).law().contacts().size();
+    }
+  }
+  long contacts() const { return contacts_; }
+
+ private:
+  std::array<ToolDofs, 2> input(int i) const {
+    const double t = 1e-3 * i, z = 0.012 - 0.009 * std::sin(4 * t);
+    return {tip_at(scene_.scene.tools[0], {-0.02 + 0.01 * t, 0.004 * std::sin(5 * t), z}, t),
+            tip_at(scene_.scene.tools[1], {0.02, -0.01 + 0.01 * t, z - 0.001}, -t)};
+  }
+  BlockScene scene_;
+  HapticStep haptic_;
+  SpscRing<StepRecord> ring_;
+  std::vector<std::uint8_t> state_;
+  long contacts_ = 0;
+};
+
+TEST(NoSyscall, TheCountersCount) {
+  counting = true;
+  void* volatile first = std::malloc(10);
+  int* volatile second = new int(3);
+  counting = false;
+  std::free(first);
+  delete second;
+  EXPECT_GE(allocations.exchange(0), 2);
+}
+
+TEST(NoSyscall, TheHapticStepAllocatesNothing) {
+  Ticks ticks;
+  ticks.run(1, 10);
+  counting = true;
+  ticks.run(10, 2000);
+  counting = false;
+  EXPECT_EQ(allocations.exchange(0), 0);
+  EXPECT_GT(ticks.contacts(), 100) << "the tools must touch for this to mean anything";
+}
+
+/// From here on any system call but exit kills the process: no I/O, no sleeping lock, no memory from the system.
+void forbid_system_calls() {
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_exit, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
+  };
+  const sock_fprog program{4, filter};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) _exit(77);
+}
+
+template <class Work>
+int status_without_system_calls(Work&& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    forbid_system_calls();
+    work();
+    syscall(SYS_exit, 0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(NoSyscall, TheHapticStepMakesNoSystemCall) {
+  Ticks ticks;
+  ticks.run(1, 10);
+  const int forbidden = status_without_system_calls([] { (void)!write(2, "", 0); });
+  if (WIFEXITED(forbidden) && WEXITSTATUS(forbidden) == 77) GTEST_SKIP() << "this kernel does not grant seccomp filters";
+  ASSERT_TRUE(WIFSIGNALED(forbidden)) << "a system call must kill the child, or the test below proves nothing";
+  const int status = status_without_system_calls([&] { ticks.run(10, 2000); });
+  EXPECT_TRUE(WIFEXITED(status)) << "killed by signal " << (WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,56 @@
+#include "haptic_node/safety.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/bus/messages.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(Safety, TheForceNeverExceedsItsLimitAndTorqueShrinksWithIt) {
+  SafetyChain chain(5.0, 1e9, 1e-3);
+  Vector3d force(30, 0, 40), torque(1, 2, 3);
+  const auto flags = chain.apply(force, torque, true);
+  EXPECT_EQ(flags, force_limited);
+  EXPECT_NEAR(force.norm(), 5.0, 1e-12);
+  EXPECT_NEAR((torque - 0.1 * Vector3d(1, 2, 3)).norm(), 0, 1e-12);
+}
+
+TEST(Safety, TheForceChangesNoFasterThanItsSlewLimit) {
+  SafetyChain chain(10.0, 1000, 1e-3);
+  Vector3d last = Vector3d::Zero();
+  for (int i = 0; i < 20; ++i) {
+    Vector3d force(0, 0, i < 10 ? 8 : -8), torque = Vector3d::Zero();
+    chain.apply(force, torque, true);
+    EXPECT_LE((force - last).norm(), 1.0 + 1e-12);
+    last = force;
+  }
+}
+
+TEST(Safety, AFaultRampsToZeroWithinFiveMillisecondsAndStays) {
+  for (const Vector3d& asked : {Vector3d(3, 0, 0), Vector3d(std::nan(""), 0, 0), Vector3d(0, INFINITY, 0)}) {
+    SafetyChain chain(10, 1e6, 1e-3);
+    Vector3d force(0, 4, 0), torque(0.1, 0, 0);
+    chain.apply(force, torque, true);
+    double last = force.norm();
+    for (int i = 0; i < 5; ++i) {
+      force = asked;
+      torque = Vector3d::Zero();
+      EXPECT_TRUE(chain.apply(force, torque, i > 0) & fault);
+      EXPECT_TRUE(force.allFinite());
+      EXPECT_LT(force.norm(), last);
+      last = force.norm();
+    }
+    EXPECT_LT(last, 1e-12);
+    force = Vector3d(1, 0, 0);
+    chain.apply(force, torque, true);
+    EXPECT_LT(force.norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

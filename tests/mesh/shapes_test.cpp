@@ -1,0 +1,134 @@
+#include <cmath>
+#include <numbers>
+
+#include "common/mesh/fill.hpp"
+#include "common/mesh/generators.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "tests/mesh/mesh_test_helpers.hpp"
+#include "tools/generate/liver.hpp"
+#include "tools/generate/plate.hpp"
+#include "tools/generate/ribs.hpp"
+#include "tools/generate/wrap.hpp"
+
+namespace palpate {
+namespace {
+
+const std::filesystem::path kMeshes = PALPATE_SOURCE "/scenes/meshes";
+
+void expect_same(const TetMesh& made, const TetMesh& stored) {
+  ASSERT_EQ(made.nodes.size(), stored.nodes.size());
+  for (std::size_t n = 0; n < made.nodes.size(); ++n)
+    EXPECT_LT((made.nodes[n] - stored.nodes[n]).norm(), 1e-9);
+  EXPECT_EQ(made.tetrahedra, stored.tetrahedra);
+  for (const auto& [name, group] : made.groups) {
+    EXPECT_EQ(group.nodes, stored.groups.at(name).nodes) << name;
+    EXPECT_EQ(group.tetrahedra, stored.groups.at(name).tetrahedra) << name;
+  }
+}
+
+TEST(Liver, IsWhatItsGeneratorMakes) {
+  expect_same(make_liver({}), load_tet_mesh(kMeshes / "liver.msh", 1));
+}
+
+TEST(Liver, HasThePapersSizeAHumansExtentAndGoodElements) {
+  const TetMesh liver = load_tet_mesh(kMeshes / "liver.msh", 1);
+  EXPECT_NEAR(liver.nodes.size(), 1400, 0.03 * 1400);
+  EXPECT_NEAR(liver.tetrahedra.size(), 6500, 0.03 * 6500);
+  Eigen::Vector3d low = liver.nodes[0], high = low;
+  for (const auto& x : liver.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  EXPECT_LT((high - low - Eigen::Vector3d(0.26, 0.165, 0.125)).cwiseAbs().maxCoeff(), 0.006);
+  EXPECT_LT((0.5 * (high + low)).cwiseAbs().maxCoeff(), 0.006);
+  EXPECT_NEAR(volume_of(liver), 1.9e-3, 0.1e-3);
+  for (const auto& t : liver.tetrahedra)
+    EXPECT_GT(smallest_dihedral_angle(liver, t), 18 * std::numbers::pi / 180);
+}
+
+TEST(Liver, SurfaceNodesLieOnTheShapeAndTrianglesAreEven) {
+  const TetMesh liver = load_tet_mesh(kMeshes / "liver.msh", 1);
+  const Surface surface = extract_surface(liver);
+  const ImplicitShape shape = liver_shape();
+  EXPECT_EQ(surface.nodes.size(), 642u);
+  for (int n : surface.nodes) EXPECT_LT(std::abs(shape(liver.nodes[n])), 2e-6);
+  for (const auto& t : surface.triangles) {
+    for (int c = 0; c < 3; ++c) {
+      const double edge = (liver.nodes[t[c]] - liver.nodes[t[(c + 1) % 3]]).norm();
+      EXPECT_GT(edge, 0.006);
+      EXPECT_LT(edge, 0.024);
+    }
+  }
+}
+
+TEST(Liver, AttachmentIsAPatchOfTheUpperBackOfTheRightLobe) {
+  const TetMesh liver = load_tet_mesh(kMeshes / "liver.msh", 1);
+  const Surface surface = extract_surface(liver);
+  const auto& nodes = liver.groups.at("attachment").nodes;
+  EXPECT_GT(nodes.size(), 30u);
+  EXPECT_LT(nodes.size(), 100u);
+  for (int n : nodes) {
+    EXPECT_TRUE(std::binary_search(surface.nodes.begin(), surface.nodes.end(), n));
+    EXPECT_GT(liver.nodes[n].y(), 0.02);
+    EXPECT_LT(liver.nodes[n].x(), 0.03);
+  }
+}
+
+TEST(Plate, IsWhatItsGeneratorMakesWithFourCorners) {
+  const TetMesh plate = load_tet_mesh(kMeshes / "plate.msh", 1);
+  expect_same(make_plate(), plate);
+  const auto& corners = plate.groups.at("corners").nodes;
+  EXPECT_EQ(corners.size(), 4u * 9 * 3);
+  for (int n : corners) EXPECT_GT(plate.nodes[n].head<2>().cwiseAbs().minCoeff(), 0.038);
+}
+
+TEST(Cylinder, FileHasTheSizeOfTheBrainSpecimen) {
+  const TetMesh cylinder = load_tet_mesh(kMeshes / "cylinder.msh", 1);
+  expect_same(make_cylinder(0.015, 0.013, 6, 6), cylinder);
+}
+
+TEST(Ribs, FileIsSmallAndStaysClearOfTheLiver) {
+  const TriangleMesh ribs = load_triangle_mesh(kMeshes / "ribs.stl", 1);
+  EXPECT_LT(ribs.triangles.size(), 8000u);
+  EXPECT_LT(std::filesystem::file_size(kMeshes / "ribs.stl"), 300000u);
+  EXPECT_EQ(ribs.triangles.size(), make_ribs().triangles.size());
+  const ImplicitShape liver = liver_shape();
+  for (const auto& x : ribs.nodes) EXPECT_GT(liver(x), 0.005);
+}
+
+TEST(Ribs, BonesFaceOutwardAndTheWallInward) {
+  const TriangleMesh ribs = make_ribs();
+  constexpr std::size_t kWall = 2 * 10 * 30;
+  const std::size_t bones = ribs.triangles.size() - kWall;
+  const std::vector<std::array<int, 3>> tubes(ribs.triangles.begin(), ribs.triangles.begin() + bones);
+  EXPECT_GT(enclosed_volume(ribs.nodes, tubes), 0);
+  for (std::size_t i = bones; i < ribs.triangles.size(); ++i) {
+    const auto& [a, b, c] = ribs.triangles[i];
+    const Eigen::Vector3d normal = (ribs.nodes[b] - ribs.nodes[a]).cross(ribs.nodes[c] - ribs.nodes[a]);
+    EXPECT_LT(normal.x() * (ribs.nodes[a].x() - 0.02) + normal.y() * ribs.nodes[a].y(), 0);
+  }
+}
+
+TEST(GeodesicSphere, HasTheCountsAndIsClosedOutward) {
+  for (int f : {1, 2, 5}) {
+    const TriangleMesh sphere = geodesic_sphere(f);
+    EXPECT_EQ(sphere.nodes.size(), 10u * f * f + 2);
+    EXPECT_EQ(sphere.triangles.size(), 20u * f * f);
+    EXPECT_GT(enclosed_volume(sphere.nodes, sphere.triangles), 2);
+  }
+}
+
+TEST(Fill, KeepsTheSurfaceAndItsNumbers) {
+  const TriangleMesh sphere = geodesic_sphere(4);
+  const TetMesh ball = fill_surface(sphere, 0.4);
+  for (std::size_t n = 0; n < sphere.nodes.size(); ++n) EXPECT_EQ(ball.nodes[n], sphere.nodes[n]);
+  EXPECT_NO_THROW(check_tet_mesh(ball, "ball"));
+  EXPECT_NEAR(volume_of(ball), enclosed_volume(sphere.nodes, sphere.triangles), 1e-12);
+  EXPECT_GT(ball.nodes.size(), sphere.nodes.size());
+}
+
+TEST(Fill, RefusesAnOpenSurface) {
+  TriangleMesh sphere = geodesic_sphere(3);
+  sphere.triangles.resize(sphere.triangles.size() / 2);
+  EXPECT_NE(sentence_of([&] { fill_surface(sphere, 0.4); }), "");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include "common/bus/memory_bus.hpp"
+#include "common/realtime/clock.hpp"
+#include "render_node/render_loop.hpp"
+#include "tests/render/scenery.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace testing;
+
+/// A ball as body, one tool, and a haptic node with run 5 on the same bus.
+struct World {
+  std::shared_ptr<MemoryNetwork> network = make_memory_network();
+  std::unique_ptr<Bus> haptic_bus = make_memory_bus(network), bus = make_memory_bus(network);
+  Presence haptic{*haptic_bus, "haptic", 5, "scene", "archive"};
+  Presence presence{*bus, "render", 0, "scene", "archive"};
+  Scene scene;
+  Archive archive;
+
+  World() {
+    const testing::Ball ball = make_ball(0.05f, 6);
+    scene.title = "a ball";
+    scene.bodies.resize(1);
+    scene.tools.resize(1);
+    scene.tools[0].name = "probe";
+    scene.tools[0].pivot = {0, 0, 0.2};
+    scene.rates.visual_hz = 50;
+    scene.render = Render{.width = 160, .height = 120, .camera = empty_frame().camera};
+    for (const auto& p : ball.position) archive.surface.position.push_back(p.cast<double>());
+    archive.surface.triangles = ball.triangles;
+    const int n = archive.surface.size();
+    archive.surface.touchable = n;
+    archive.surface.fixed.resize(n);
+    for (int i = 0; i < n; ++i) archive.surface.node_number.push_back(i);
+    for (int dof = 0; dof < 3 * n; ++dof) {
+      archive.touchable_dofs.push_back({dof / 3, dof % 3});
+      for (int j = 0; j <= dof; ++j)
+        archive.touchable_compliance.push_back(dof == j ? 1e-3 : 0);  // springs of 1 N/mm
+    }
+    presence.watch();
+  }
+
+  Stage stage() const { return Stage(scene, std::span(&archive.surface, 1), {}); }
+  std::vector<std::size_t> nodes() const { return {archive.surface.position.size()}; }
+
+  ContactState press(int node, double newton, std::uint64_t run = 5) const {
+    ContactState contacts;
+    contacts.run = run;
+    contacts.sense_ns = now_ns();
+    contacts.step = 1;
+    contacts.press = {0, 1, 0};
+    contacts.forces.push_back({0, static_cast<std::uint32_t>(node), {0, newton, 0}});
+    return contacts;
+  }
+};
+
+TEST(SurfaceSource, DeformsReceivedContacts) {
+  World world;
+  const auto writer = world.haptic_bus->writer(topics::contact_state);
+  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  EXPECT_FALSE(source->update());
+  writer->write(world.press(20, 4));
+  EXPECT_TRUE(source->update());
+  const auto rest = world.archive.surface.position[20].cast<float>();
+  EXPECT_NEAR(source->shape(0).position[20].y() - rest.y(), 0.004, 1e-6);
+  EXPECT_EQ(source->refused(), 0u);
+}
+
+TEST(SurfaceSource, KeepsTheContactsOfADeadHapticNode) {
+  World world;
+  auto writer = world.haptic_bus->writer(topics::contact_state);
+  const auto held = world.haptic_bus->reader(topics::held_contacts);
+  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  ContactState contacts = world.press(20, 4);
+  contacts.contacts.resize(1);
+  contacts.contacts[0].normal = {0, 1, 0};
+  writer->write(contacts);
+  source->update();
+  EXPECT_FALSE(held->take());
+  writer.reset();
+  source->update();
+  const auto kept = held->take();
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->run, 5u);
+  EXPECT_EQ(kept->contacts.size(), 1u);
+}
+
+TEST(SurfaceSource, RefusesForeignRunsAndSurfacesThatDoNotFit) {
+  World world;
+  const auto writer = world.haptic_bus->writer(topics::surface_state);
+  const auto source = receive_surfaces(*world.bus, world.presence, world.nodes());
+  SurfaceState surface;
+  surface.sense_ns = now_ns();
+  surface.run = 6;
+  surface.position.assign(3 * world.nodes()[0], 0.01f);
+  surface.normal.assign(3 * world.nodes()[0], 0.5f);
+  writer->write(surface);
+  EXPECT_FALSE(source->update());
+  surface.run = 5;
+  surface.position.resize(6);
+  surface.normal.resize(6);
+  writer->write(surface);
+  EXPECT_FALSE(source->update());
+  EXPECT_EQ(source->refused(), 2u);
+  EXPECT_TRUE(source->shape(0).position.empty());
+  surface.position.assign(3 * world.nodes()[0], 0.01f);
+  surface.normal.assign(3 * world.nodes()[0], 0.5f);
+  writer->write(surface);
+  EXPECT_TRUE(source->update());
+  EXPECT_EQ(source->shape(0).position.size(), world.nodes()[0]);
+}
+
+TEST(Stage, ShowsToolsOnceHeardOf) {
+  World world;
+  Stage stage = world.stage();
+  EXPECT_TRUE(stage.frame().instruments.empty());
+  ToolState tool;
+  tool.depth = 0.15;
+  tool.grip = 0.3;
+  EXPECT_TRUE(stage.set_tool(tool));
+  const Frame frame = stage.frame();
+  ASSERT_EQ(frame.instruments.size(), 1u);
+  EXPECT_TRUE(frame.instruments[0].tip.translation().isApprox(Eigen::Vector3d(0, 0, 0.05)));
+  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_opening, 0.3);
+  tool.tool = 1;
+  EXPECT_FALSE(stage.set_tool(tool));
+}
+
+TEST(Stage, LegendCoversTheLargestDisplacement) {
+  World world;
+  world.scene.render->colour = "displacement";
+  Stage stage = world.stage();
+  EXPECT_DOUBLE_EQ(stage.frame().legend->max, 1e-3);
+  std::vector<Eigen::Vector3f> position, normal(world.nodes()[0], Eigen::Vector3f::UnitX());
+  for (const auto& p : world.archive.surface.position) position.push_back(p.cast<float>());
+  position[10].x() += 0.0073f;
+  stage.set_surface(0, position, normal);
+  EXPECT_NEAR(stage.frame().legend->max, 0.008, 1e-12);
+  EXPECT_NEAR(stage.frame().meshes[0].scalar[10], 0.0073, 1e-6);
+}
+
+TEST(Stage, SceneWithoutCameraSeesAllBodies) {
+  World world;
+  world.scene.render.reset();
+  const Stage stage = world.stage();
+  Frame nothing;
+  nothing.camera = stage.frame().camera;
+  EXPECT_GT(difference(picture(stage.frame()), picture(nothing)), 0.05);
+}
+
+TEST(RenderLoop, DrawsAtTheVisualRateAndFilmsInRealTime) {
+  World world;
+  const Folder folder;
+  const auto tools = world.haptic_bus->writer(topics::tool_state);
+  const auto forces = world.haptic_bus->writer(topics::force_state);
+  const auto contacts = world.haptic_bus->writer(topics::contact_state);
+  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  Renderer renderer(160, 120);
+  Film film(folder.path / "a.mp4", 160, 120, 25);
+  RenderLoop loop(world.scene, world.stage(), *source, *world.bus, world.presence, renderer);
+  loop.set_film(&film);
+  ToolState tool;
+  tool.run = 5;
+  tool.depth = 0.15;
+  tools->write(tool);
+  ForceState force;
+  force.run = 5;
+  force.force = {0, -3, 4};
+  forces->write(force);
+  contacts->write(world.press(20, 4));
+  const RenderReport report = loop.run(1.0);
+  film.finish();
+  EXPECT_NEAR(report.seconds, 1, 0.1);
+  EXPECT_GE(report.frames + report.missed, 45u);
+  EXPECT_LE(report.frames, 52u);
+  EXPECT_NEAR(static_cast<double>(film.frames()), 25, 2);
+  EXPECT_EQ(report.latency.count(), 1u);
+  EXPECT_DOUBLE_EQ(report.greatest_force, 5);
+  EXPECT_EQ(report.refused, 0u);
+  const Frame best = loop.best_moment().frame();
+  EXPECT_EQ(best.instruments.size(), 1u);
+  ASSERT_TRUE(best.overlay);
+  EXPECT_EQ(best.overlay->lines.front(), "a ball");
+  EXPECT_EQ(best.overlay->lines.back(), "probe  5.00 N");
+}
+
+}  // namespace
+}  // namespace palpate

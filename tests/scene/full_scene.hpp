@@ -1,0 +1,162 @@
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace palpate {
+
+/// A folder with the files that the scene below names, gone with the object.
+class SceneFolder {
+ public:
+  SceneFolder() {
+    char name[] = "/tmp/palpate_scene_XXXXXX";
+    path_ = mkdtemp(name);
+    for (const char* file :
+         {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "move.csv", "session.lcmlog", "ribs.stl"})
+      write(file, "some bytes\n");
+  }
+  ~SceneFolder() { std::filesystem::remove_all(path_); }
+  SceneFolder(const SceneFolder&) = delete;
+  SceneFolder& operator=(const SceneFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Holds every key of every table.
+inline const std::string kFullScene = R"(title = "All \"keys\" at once"
+
+[[body]]
+name = "liver"
+mesh = "liver.msh"
+scale = 0.001
+model = "quasi_static"
+young = 6000
+poisson = 0.45
+density = 1060.0
+
+[[body.fixed]]
+nodes = [3, 1, 2]
+axes = "xz"
+
+[[body.fixed]]
+box = [[-0.1, -0.1, -0.1], [0.1, 0.2, 0.3]]
+
+[[body.fixed]]
+group = "attachment"
+
+[[body.material]]
+elements = [7, 8]
+young = 1e5
+
+[[body.material]]
+box = [[0, 0, 0], [1, 1, 1]]
+poisson = 0.3333333333333333
+
+[[body.material]]
+group = 7
+density = 900
+
+[body.nonlinear]
+force_curve = "force.csv"
+radial_curve = "radial.csv"
+radius = 0.015
+height = 0.013
+degree = 5
+specimen_mesh = "specimen.msh"
+specimen_scale = 0.1
+
+[body.touchable]
+nodes = [10, 11]
+
+[[body]]
+name = "plate"
+mesh = "liver.msh"
+young = 1e6
+poisson = 0.3
+fixed = [{ group = "edge" }]
+touchable = { box = [[0, 0, 0], [1, 1, 0]] }
+
+[[body]]
+name = "third"
+mesh = "liver.msh"
+young = 1
+poisson = 0
+fixed = [{ group = "edge" }]
+touchable = { group = "top" }
+
+[[tool]]
+name = "probe"
+pivot = [0.1, 0.2, 0.3]
+axis = [1, 2, -3]
+up = [0, 1, 0]
+radius = 0.006
+shaft_radius = 0.002
+shaft_length = 0.25
+device = "scripted"
+trajectory = "move.csv"
+max_force = 8
+max_force_rate = 4000
+
+[[tool]]
+name = "hook"
+pivot = [0, 0, 0.3]
+device = "bus"
+
+[[tool]]
+name = "ghost"
+pivot = [0, 0, 0.3]
+device = "log"
+trajectory = "session.lcmlog"
+
+[contact]
+rule = "alpha"
+friction = 0.1
+bucket_size = 0.01
+
+[network]
+domain = 7
+interface = "eth0"
+peers = ["10.0.0.1", "10.0.0.2"]
+
+[rates]
+haptic_hz = 2000
+visual_hz = 90.5
+
+[record]
+file = "out/session.lcmlog"
+
+[render]
+width = 640
+height = 480
+colour = "displacement"
+tissue_colour = [0.5, 0.2, 0.1]
+backdrop = "ribs.stl"
+backdrop_scale = 0.01
+overlay = false
+
+[render.camera]
+eye = [0, -0.3, 0.2]
+target = [0.01, 0.02, 0.03]
+up = [0, 0, 1]
+field_of_view = 60
+)";
+
+/// The least that is a scene.
+inline const std::string kLeastScene = R"([[body]]
+name = "liver"
+mesh = "liver.msh"
+young = 6000
+poisson = 0.45
+
+[[body.fixed]]
+group = "attachment"
+)";
+
+}  // namespace palpate

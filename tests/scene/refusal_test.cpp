@@ -1,0 +1,235 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "common/scene/scene.hpp"
+#include "common/scene/schema.hpp"
+#include "tests/scene/full_scene.hpp"
+
+namespace palpate {
+namespace {
+
+/// One change of the full scene and the sentence that it must cause. `LINE` and `COLUMN` are those of the
+/// text `at` within the changed scene.
+struct Refusal {
+  const char* find;
+  const char* replace;
+  const char* at;
+  const char* sentence;
+};
+
+std::string replaced(std::string text, const std::string& find, const std::string& replace) {
+  const auto place = text.find(find);
+  EXPECT_NE(place, text.npos) << find;
+  return text.replace(place, find.size(), replace);
+}
+
+std::string position(const std::string& text, const std::string& at) {
+  const auto place = text.find(at);
+  EXPECT_NE(place, text.npos) << at;
+  const auto line_start = text.rfind('\n', place) + 1;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(place), '\n');
+  return ":" + std::to_string(line) + ":" + std::to_string(place - line_start + 1) + ": ";
+}
+
+std::string refusal(const std::string& text, const std::filesystem::path& file) {
+  try {
+    parse_scene(text, file);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+const Refusal kRefusals[] = {
+    {"young = 6000", "yuong = 6000", "yuong", "unknown key 'yuong' in [[body]]; did you mean 'young'?"},
+    {"title =", "titel =", "titel", "unknown key 'titel' in scene; did you mean 'title'?"},
+    {"[contact]", "[contakt]", "contakt", "unknown key 'contakt' in scene; did you mean 'contact'?"},
+    {"young = 6000", "colour_of_the_moon = 1\nyoung = 6000", "colour_of",
+     "unknown key 'colour_of_the_moon' in [[body]]"},
+    {"young = 6000", "", "[[body]]", "[[body]] needs the key 'young'"},
+    {"young = 6000", "young = \"6 kPa\"", "\"6 kPa", "young must be a number, not a string"},
+    {"young = 6000", "young = -6000", "-6000", "young must be greater than 0, and is -6000"},
+    {"young = 6000", "young = 0", "0\npoisson", "young must be greater than 0, and is 0"},
+    {"young = 6000", "young = nan", "nan", "young must be finite"},
+    {"young = 6000", "young = +inf", "+inf", "young must be finite"},
+    {"poisson = 0.45", "poisson = 0.5", "0.5\n",
+     "poisson must be greater than -1 and less than 0.5, and is 0.5"},
+    {"poisson = 0.45", "poisson = -1", "-1\n",
+     "poisson must be greater than -1 and less than 0.5, and is -1"},
+    {"density = 1060.0", "density = 0", "0\n\n[[body.fixed", "density must be greater than 0, and is 0"},
+    {"scale = 0.001", "scale = -1", "-1\nmodel", "scale must be greater than 0, and is -1"},
+    {"\"quasi_static\"", "\"jelly\"", "\"jelly\"", "model 'jelly' is unknown; known: quasi_static"},
+    {"name = \"liver\"", "name = \"\"", "\"\"", "name must not be empty"},
+    {"name = \"liver\"", "name = \"a/b\"", "\"a/b", "name 'a/b' must be 1 to 31 letters, digits, '_' or '-'"},
+    {"name = \"plate\"", "name = \"liver\"", "\"liver\"\nmesh = \"liver.msh\"\nyoung",
+     "a second body is named 'liver'"},
+    {"name = \"hook\"", "name = \"probe\"", "\"probe\"\npivot = [0, 0", "a second tool is named 'probe'"},
+    {"nodes = [3, 1, 2]", "nodes = []", "[]", "nodes must not be empty"},
+    {"nodes = [3, 1, 2]", "nodes = [3, -1]", "-1]", "nodes counts from 0, and -1 is out of range"},
+    {"nodes = [3, 1, 2]", "nodes = [3, 1.5]", "1.5", "nodes must hold integers, not a number"},
+    {"nodes = [3, 1, 2]", "nodes = [3, 1, 3]", "3]", "nodes holds 3 twice"},
+    {"nodes = [3, 1, 2]", "nodes = 3", "3\naxes", "nodes must be a list of integers, not an integer"},
+    {"nodes = [3, 1, 2]", "", "[[body.fixed]]",
+     "exactly one of 'nodes', 'box' and 'group' is needed, and there are 0"},
+    {"nodes = [3, 1, 2]", "nodes = [3]\ngroup = \"a\"", "[[body.fixed]]",
+     "exactly one of 'nodes', 'box' and 'group' is needed, and there are 2"},
+    {"axes = \"xz\"", "axes = \"xq\"", "\"xq\"", "axes 'xq' must name each of x, y and z once at most"},
+    {"axes = \"xz\"", "axes = \"xx\"", "\"xx\"", "axes 'xx' must name each of x, y and z once at most"},
+    {"axes = \"xz\"", "axes = \"\"", "\"\"", "axes must not be empty"},
+    {"[[-0.1, -0.1, -0.1], [0.1, 0.2, 0.3]]", "[[0, 0, 0], [0.1, -0.2, 0.3]]", "[[0, 0, 0], [0.1, -",
+     "box must be [[least x, y, z], [greatest x, y, z]]"},
+    {"[[-0.1, -0.1, -0.1], [0.1, 0.2, 0.3]]", "[[0, 0, 0], [0.1, 0.3]]", "[0.1, 0.3]",
+     "box must be a list of three numbers"},
+    {"[[-0.1, -0.1, -0.1], [0.1, 0.2, 0.3]]", "[0, 1]", "0, 1]", "box must be a list of three numbers"},
+    {"[[-0.1, -0.1, -0.1], [0.1, 0.2, 0.3]]", "[0, 1, 2]", "[0, 1, 2]", "box must be [[x, y, z], [x, y, z]]"},
+    {"elements = [7, 8]\nyoung = 1e5", "elements = [7, 8]", "[[body.material]]",
+     "[[body.material]] needs at least one of 'young', 'poisson' and 'density'"},
+    {"elements = [7, 8]", "nodes = [7, 8]", "nodes = [7", "unknown key 'nodes' in [[body.material]]"},
+    {"degree = 5", "degree = 11", "11\nspecimen", "degree must be at least 4 and at most 10, and is 11"},
+    {"degree = 5", "degree = 5.0", "5.0", "degree must be an integer, not a number"},
+    {"specimen_mesh = \"specimen.msh\"", "", "0.1\n\n[body.touch",
+     "specimen_scale means nothing without 'specimen_mesh'"},
+    {"fixed = [{ group = \"edge\" }]", "", "[[body]]\nname = \"plate\"",
+     "body 'plate' is not fixed anywhere and would float: give it a [[body.fixed]]"},
+    {"fixed = [{ group = \"edge\" }]", "fixed = { group = \"edge\" }", "{ group = \"edge\" }",
+     "fixed must be a list of tables, not a table: write [[body.fixed]]"},
+    {"pivot = [0.1, 0.2, 0.3]", "", "[[tool]]", "[[tool]] needs the key 'pivot'"},
+    {"pivot = [0.1, 0.2, 0.3]", "pivot = [0.1, 0.2]", "[0.1, 0.2]\naxis",
+     "pivot must be a list of three numbers"},
+    {"pivot = [0.1, 0.2, 0.3]", "pivot = [0.1, true, 0]", "true", "pivot must be a number, not a boolean"},
+    {"axis = [1, 2, -3]", "axis = [0, 0, 0]", "[0, 0, 0]\nup", "axis must not be zero"},
+    {"axis = [1, 2, -3]", "axis = [0, -2, 0]", "[0, 1, 0]\nradius",
+     "up must not be parallel to the tool's axis"},
+    {"radius = 0.006", "radius = 0", "0\nshaft_radius", "radius must be greater than 0, and is 0"},
+    {"device = \"bus\"", "device = \"telepathy\"", "\"telepathy",
+     "device 'telepathy' is unknown; known: scripted, log, bus"},
+    {"trajectory = \"move.csv\"", "", "[[tool]]", "[[tool]] needs the key 'trajectory'"},
+    {"device = \"bus\"", "device = \"bus\"\ntrajectory = \"move.csv\"",
+     "\"move.csv\"\n\n[[tool]]\nname = \"ghost\"",
+     "a tool with the device 'bus' is moved by a driver and takes no trajectory"},
+    {"rule = \"alpha\"", "rule = \"beta\"", "\"beta\"", "rule 'beta' is unknown; known: barycentric, alpha"},
+    {"friction = 0.1", "friction = -0.1", "-0.1\nbucket", "friction must be at least 0, and is -0.1"},
+    {"domain = 7", "domain = 300", "300", "domain must be at least 0 and at most 230, and is 300"},
+    {"domain = 7", "domain = 99999999999999", "99999",
+     "domain must be at least 0 and at most 230, and is 99999999999999"},
+    {"peers = [\"10.0.0.1\", \"10.0.0.2\"]", "peers = [1]", "1]\n\n[rates",
+     "peers must be a string, not an integer"},
+    {"haptic_hz = 2000", "haptic_hz = 0", "0\nvisual",
+     "haptic_hz must be at least 1 and at most 20000, and is 0"},
+    {"overlay = false", "overlay = 0", "0\n\n[render.camera",
+     "overlay must be true or false, not an integer"},
+    {"[0.5, 0.2, 0.1]", "[0.5, 2, 0.1]", "[0.5, 2, 0.1]",
+     "tissue_colour must be red, green and blue between 0 and 1"},
+    {"target = [0.01, 0.02, 0.03]", "target = [0, -0.3, 0.2]", "[render.camera]",
+     "the camera's eye and target must not coincide"},
+    {"up = [0, 0, 1]", "up = [0, 0, 0]", "[0, 0, 0]\nfield",
+     "up must be a direction across the camera's line of sight"},
+    {"field_of_view = 60", "field_of_view = 180", "180",
+     "field_of_view must be at least 1 and at most 170, and is 180"},
+};
+
+TEST(SceneRefusal, NamesTheExactPlaceAndTheReason) {
+  const SceneFolder folder;
+  const auto file = folder / "scene.toml";
+  for (const Refusal& r : kRefusals) {
+    const std::string text = replaced(kFullScene, r.find, r.replace);
+    EXPECT_EQ(refusal(text, file), file.string() + position(text, r.at) + r.sentence)
+        << r.find << " -> " << r.replace;
+  }
+}
+
+TEST(SceneRefusal, MissingFilesAreNamed) {
+  const SceneFolder folder;
+  const auto file = folder / "scene.toml";
+  for (const char* name :
+       {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "move.csv", "session.lcmlog", "ribs.stl"}) {
+    const std::string absent = std::string("no_") + name;
+    const std::string text = replaced(kFullScene, std::string("\"") + name, std::string("\"") + absent);
+    const std::string said = refusal(text, file);
+    EXPECT_TRUE(said.starts_with(file.string() + position(text, "\"no_"))) << said;
+    EXPECT_NE(said.find((folder / absent).string()), said.npos) << said;
+    EXPECT_TRUE(said.ends_with("is not a file that can be read")) << said;
+  }
+}
+
+TEST(SceneRefusal, SyntaxErrorsHaveAPlaceToo) {
+  const SceneFolder folder;
+  const auto file = folder / "scene.toml";
+  EXPECT_TRUE(refusal("title = \"a\"\n[[body]\n", file).starts_with(file.string() + ":2:"));
+  EXPECT_TRUE(refusal("a = 1\na = 2\n", file).starts_with(file.string() + ":2:"));
+  EXPECT_TRUE(refusal("title = \"\xff\"\n", file).starts_with(file.string() + ":1:"));
+  EXPECT_TRUE(refusal("x = " + std::string(100000, '['), file).starts_with(file.string() + ":1:"));
+}
+
+TEST(SceneRefusal, AnEmptySceneHasNoBody) {
+  const SceneFolder folder;
+  EXPECT_EQ(refusal("", folder / "s.toml"), (folder / "s.toml").string() + ":1:1: the scene has no [[body]]");
+  EXPECT_EQ(refusal("body = []", folder / "s.toml"),
+            (folder / "s.toml").string() + ":1:1: the scene has no [[body]]");
+}
+
+TEST(SceneRefusal, AMissingSceneFileIsNamed) {
+  EXPECT_THROW(
+      {
+        try {
+          load_scene("/nowhere/scene.toml");
+        } catch (const std::runtime_error& error) {
+          EXPECT_STREQ(error.what(), "/nowhere/scene.toml:1:1: the scene is not a file that can be read");
+          throw;
+        }
+      },
+      std::runtime_error);
+  EXPECT_THROW(load_scene("/tmp"), std::runtime_error);
+}
+
+/// Every key is read: a date, which no key takes, is refused at each, and the sentence names the key.
+TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
+  const SceneFolder folder;
+  const std::string body = kLeastScene,
+                    tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
+  int tried = 0;
+  for (const TableSchema& table : scene_schema()) {
+    for (std::string_view key : table.keys) {
+      const std::string line = std::string(key) + " = 1979-05-27\n";
+      std::string text = kFullScene;
+      if (table.name == "scene") {
+        text = line;
+        if (key == "tool" || key == "contact" || key == "network" || key == "rates" || key == "record" ||
+            key == "render")
+          text += body;
+        if (key == "title") text += body;
+      } else {
+        // Put the key into the first table of that name, in the place of the line that has it or of nothing.
+        const std::string header = std::string(table.name) + "\n";
+        auto place = text.find(header);
+        ASSERT_NE(place, text.npos) << header;
+        if (key == "camera" || key == "fixed" || key == "material" || key == "nonlinear" ||
+            key == "touchable") {
+          text = key == "camera"
+                     ? body + "[render]\n" + line
+                     : "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n" +
+                           std::string(key == "fixed" ? "" : "fixed = [{ group = \"a\" }]\n") + line;
+        } else {
+          place += header.size();
+          auto end = text.find("\n[", place);
+          if (end == text.npos) end = text.size();
+          std::string section = "\n" + text.substr(place, end - place);
+          const auto old = section.find("\n" + std::string(key) + " = ");
+          const bool selector = key == "nodes" || key == "box" || key == "group" || key == "elements";
+          if (old != section.npos) section.erase(old + 1, section.find('\n', old + 1) - old);
+          if (selector) section = "\n" + std::string(table.name == "[[body.material]]" ? "young = 1\n" : "");
+          text.replace(place, end - place, section.substr(1) + line);
+        }
+      }
+      const std::string said = refusal(text, folder / "scene.toml");
+      EXPECT_NE(said.find(": " + std::string(key) + " must "), said.npos)
+          << table.name << " " << key << ": " << said;
+      ++tried;
+    }
+  }
+  EXPECT_GT(tried, 70);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,143 @@
+#include "common/scene/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/scene/full_scene.hpp"
+
+namespace palpate {
+namespace {
+
+class SceneFile : public testing::Test {
+ protected:
+  Scene parse(const std::string& text) const { return parse_scene(text, folder / "scene.toml"); }
+  SceneFolder folder;
+};
+
+TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
+  const Scene scene = load_scene(folder.write("scene.toml", kFullScene));
+  EXPECT_EQ(scene.file, folder / "scene.toml");
+  EXPECT_EQ(scene.title, "All \"keys\" at once");
+  ASSERT_EQ(scene.bodies.size(), 3u);
+  const Body& body = scene.bodies[0];
+  EXPECT_EQ(body.name, "liver");
+  EXPECT_EQ(body.mesh, folder / "liver.msh");
+  EXPECT_EQ(body.scale, 0.001);
+  EXPECT_EQ(body.material.young, 6000);
+  EXPECT_EQ(body.material.poisson, 0.45);
+  EXPECT_EQ(body.material.density, 1060);
+  ASSERT_EQ(body.fixed.size(), 3u);
+  EXPECT_EQ(body.fixed[0].where.indices, (std::vector<int>{3, 1, 2}));
+  EXPECT_EQ(body.fixed[0].axes, (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(body.fixed[1].where.box->max, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(body.fixed[1].axes, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(body.fixed[2].where.group, "attachment");
+  ASSERT_EQ(body.materials.size(), 3u);
+  EXPECT_EQ(body.materials[0].where.indices, (std::vector<int>{7, 8}));
+  EXPECT_EQ(body.materials[0].material.young, 1e5);
+  EXPECT_EQ(body.materials[0].material.poisson, 0.45);  // the body's
+  EXPECT_EQ(body.materials[2].where.group, "7");
+  EXPECT_EQ(body.materials[2].material.density, 900);
+  EXPECT_EQ(body.nonlinear->radial_curve, folder / "radial.csv");
+  EXPECT_EQ(body.nonlinear->degree, 5);
+  EXPECT_EQ(body.nonlinear->specimen_scale, 0.1);
+  EXPECT_EQ(body.touchable->indices, (std::vector<int>{10, 11}));
+  EXPECT_EQ(scene.bodies[1].touchable->box->max, Eigen::Vector3d(1, 1, 0));
+  EXPECT_EQ(scene.bodies[2].touchable->group, "top");
+  ASSERT_EQ(scene.tools.size(), 3u);
+  const Tool& tool = scene.tools[0];
+  EXPECT_NEAR((tool.axis - Eigen::Vector3d(1, 2, -3) / std::sqrt(14.0)).norm(), 0, 1e-15);
+  EXPECT_EQ(tool.radius, 0.006);
+  EXPECT_EQ(tool.trajectory, folder / "move.csv");
+  EXPECT_EQ(tool.max_force_rate, 4000);
+  EXPECT_EQ(scene.tools[1].device, "bus");
+  EXPECT_EQ(scene.tools[2].trajectory, folder / "session.lcmlog");
+  EXPECT_EQ(scene.contact.rule, "alpha");
+  EXPECT_EQ(scene.contact.bucket_size, 0.01);
+  EXPECT_EQ(scene.network.domain, 7);
+  EXPECT_EQ(scene.network.peers.size(), 2u);
+  EXPECT_EQ(scene.rates.visual_hz, 90.5);
+  EXPECT_EQ(scene.record->file, folder / "out/session.lcmlog");
+  EXPECT_EQ(scene.render->camera.field_of_view, 60);
+  EXPECT_EQ(scene.render->tissue_colour[2], 0.1);
+  EXPECT_FALSE(scene.render->overlay);
+}
+
+TEST_F(SceneFile, AbsentSectionsStayEmpty) {
+  const Scene scene = parse(kLeastScene);
+  EXPECT_TRUE(scene.title.empty());
+  EXPECT_TRUE(scene.tools.empty());
+  EXPECT_FALSE(scene.record || scene.render);
+  EXPECT_FALSE(scene.bodies[0].nonlinear || scene.bodies[0].touchable);
+  EXPECT_TRUE(scene.bodies[0].materials.empty());
+  EXPECT_EQ(scene.contact.friction, Contact{}.friction);
+}
+
+TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
+  for (const std::string& text : {kFullScene, kLeastScene}) {
+    const std::string resolved = to_toml(parse(text));
+    EXPECT_EQ(to_toml(parse(resolved)), resolved);
+    EXPECT_EQ(scene_hash(parse(resolved)), scene_hash(parse(text)));
+  }
+}
+
+TEST_F(SceneFile, DoublesRoundTripBitForBit) {
+  Scene scene = parse(kLeastScene);
+  for (double young :
+       {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 6000.0, 1e22, 123456789.123456789, 1e16}) {
+    scene.bodies[0].material.young = young;
+    EXPECT_EQ(parse(to_toml(scene)).bodies[0].material.young, young);
+  }
+  scene.tools.emplace_back().name = "t";
+  scene.tools[0].device = "bus";
+  scene.tools[0].pivot = {-0.0, 1.0 / 7, -1e-300};
+  const Eigen::Vector3d back = parse(to_toml(scene)).tools[0].pivot;
+  EXPECT_TRUE(std::signbit(back.x()));
+  EXPECT_EQ(back, scene.tools[0].pivot);
+  for (int k = 1; k < 200; ++k) {
+    scene.tools[0].axis = Eigen::Vector3d(k, 1 - 3.7 * k, 0.1 * k * k).normalized();
+    const Eigen::Vector3d axis = parse(to_toml(scene)).tools[0].axis;
+    ASSERT_EQ(axis, scene.tools[0].axis);
+  }
+}
+
+TEST_F(SceneFile, TextWithEscapesRoundTrips) {
+  Scene scene = parse(kLeastScene);
+  scene.title = "tab\t quote\" backslash\\ newline\n bell\x07 delete\x7f umlaut \xc3\xa4";
+  EXPECT_EQ(parse(to_toml(scene)).title, scene.title);
+}
+
+TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
+  const Scene scene = parse(kFullScene);
+  const std::string hash = scene_hash(scene);
+  EXPECT_EQ(hash.size(), 32u);
+  const auto changed = [&](auto&& change) {
+    Scene other = scene;
+    change(other);
+    return scene_hash(other) != hash;
+  };
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].material.young *= 1 + 1e-15; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].fixed[0].axes[1] = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].nonlinear->degree = 6; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].nonlinear.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].radius = 0.007; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.contact.friction = 0.2; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));
+  EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
+  EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));
+  EXPECT_FALSE(changed([](Scene& s) { s.record.reset(); }));
+  EXPECT_FALSE(changed([](Scene& s) { s.render.reset(); }));
+  EXPECT_FALSE(changed([](Scene& s) { s.tools[0].device = "log"; }));
+}
+
+TEST_F(SceneFile, HashSeesTheCurvesContentsAndNotTheirPlace) {
+  const SceneFolder elsewhere;
+  const auto hash_in = [](const SceneFolder& f) {
+    return scene_hash(parse_scene(kFullScene, f / "other.toml"));
+  };
+  EXPECT_EQ(hash_in(folder), hash_in(elsewhere));
+  elsewhere.write("force.csv", "other bytes\n");
+  EXPECT_NE(hash_in(folder), hash_in(elsewhere));
+}
+
+}  // namespace
+}  // namespace palpate

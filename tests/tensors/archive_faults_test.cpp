@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <functional>
+
+#include "common/tensors/hdf5_file.hpp"
+#include "tests/tensors/files_for_tests.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::make_archive;
+using testing::refusal;
+using testing::TemporaryFolder;
+
+bool says(const std::string& sentence, const std::string& part) {
+  return sentence.find(part) != std::string::npos;
+}
+
+TEST(ArchiveFaults, TruncatedAtAnyLengthIsRefused) {
+  const TemporaryFolder folder;
+  write_archive(make_archive(20, 8), folder / "a.h5");
+  const auto bytes = testing::read_bytes(folder / "a.h5");
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 7) {
+    testing::write_bytes(folder / "b.h5", bytes, length);
+    const auto sentence = refusal(folder / "b.h5", ArchivePart::header);
+    EXPECT_TRUE(says(sentence, "truncated") || says(sentence, "not a palpate archive") ||
+                says(sentence, "damaged"))
+        << length << ": " << sentence;
+  }
+  testing::write_bytes(folder / "b.h5", bytes, bytes.size() - 1);
+  EXPECT_EQ(refusal(folder / "b.h5"), (folder / "b.h5").string() + ": truncated");
+}
+
+TEST(ArchiveFaults, FlippedByteIsRefusedOrChangesNothing) {
+  const TemporaryFolder folder;
+  const auto archive = make_archive(6, 3);
+  write_archive(archive, folder / "a.h5");
+  const auto bytes = testing::read_bytes(folder / "a.h5");
+  std::fstream file(folder / "a.h5", std::ios::in | std::ios::out | std::ios::binary);
+  const auto put = [&](std::size_t at, char byte) { file.seekp(static_cast<long>(at)).put(byte).flush(); };
+  int refused = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    put(i, static_cast<char>(bytes[i] ^ (1 << (i % 8))));
+    try {
+      const auto read = read_archive(folder / "a.h5", ArchivePart::surface, archive.content_hash);
+      ASSERT_TRUE(testing::same(read, archive)) << "byte " << i;
+    } catch (const std::runtime_error&) {
+      ++refused;
+    }
+    put(i, bytes[i]);
+  }
+  EXPECT_GT(refused, static_cast<int>(bytes.size() / 3) / 2);
+}
+
+TEST(ArchiveFaults, FlippedPayloadIsNamed) {
+  const TemporaryFolder folder;
+  const auto archive = make_archive(20, 8);
+  write_archive(archive, folder / "a.h5");
+  auto bytes = testing::read_bytes(folder / "a.h5");
+  const auto* values = reinterpret_cast<const char*>(archive.touchable_compliance.data());
+  const auto place = std::search(bytes.begin(), bytes.end(), values, values + 64);
+  ASSERT_NE(place, bytes.end());
+  place[17] ^= 4;
+  testing::write_bytes(folder / "a.h5", bytes, bytes.size());
+  EXPECT_TRUE(says(refusal(folder / "a.h5"), "damaged: 'touchable/compliance' fails its checksum"));
+}
+
+TEST(ArchiveFaults, ForeignFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string text = "node,x,y,z\n";
+  testing::write_bytes(folder / "text.h5", {text.begin(), text.end()}, text.size());
+  EXPECT_EQ(refusal(folder / "text.h5"), (folder / "text.h5").string() + ": not a palpate archive");
+  Hdf5Writer other(folder / "other.h5");
+  other.dataset({"x", "m", "something else"}, std::vector<double>{1, 2, 3});
+  other.close();
+  EXPECT_EQ(refusal(folder / "other.h5"), (folder / "other.h5").string() + ": not a palpate archive");
+  EXPECT_EQ(refusal(folder / "none.h5"), (folder / "none.h5").string() + ": no such file");
+  EXPECT_TRUE(says(refusal(folder.path()), "not a palpate archive"));
+}
+
+TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
+  const TemporaryFolder folder;
+  Hdf5Writer later(folder / "a.h5");
+  later.attribute("format", "palpate compliance archive");
+  later.attribute("format_version", std::int64_t{3});
+  later.close();
+  EXPECT_EQ(refusal(folder / "a.h5"),
+            (folder / "a.h5").string() + ": format version 3, this program reads 1");
+}
+
+TEST(ArchiveFaults, StaleArchiveIsRefused) {
+  const TemporaryFolder folder;
+  write_archive(make_archive(5, 2), folder / "a.h5");
+  EXPECT_EQ(refusal(folder / "a.h5", ArchivePart::header, "another hash"),
+            (folder / "a.h5").string() + ": made for another mesh, material or fixation");
+}
+
+TEST(ArchiveFaults, FolderThatCannotBeMadeIsNamed) {
+  EXPECT_THROW(write_archive(make_archive(5, 2), "/proc/none/a.h5"), std::runtime_error);
+}
+
+/// Runs `work` in a process of its own and returns its wait status.
+int in_child(const std::function<int()>& work, const std::function<void(pid_t)>& meanwhile = {}) {
+  const pid_t child = fork();
+  if (child == 0) _exit(work());
+  if (meanwhile) meanwhile(child);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(ArchiveFaults, KilledWriterLeavesNoHalfFile) {
+  const TemporaryFolder folder;
+  const auto archive = make_archive(400, 0), small = make_archive(5, 2);
+  std::mt19937 random(5);
+  int abandoned = 0;
+  for (int round = 0; round < 40; ++round) {
+    in_child(
+        [&] {
+          for (;;) write_archive(archive, folder / "a.h5");
+          return 0;
+        },
+        [&](pid_t child) {
+          usleep(200 + random() % 20000);
+          kill(child, SIGKILL);
+        });
+    for (const auto& name : folder.files()) abandoned += says(name, ".tmp-");
+    if (std::filesystem::exists(folder / "a.h5")) {
+      ASSERT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
+    }
+    write_archive(small, folder / "b.h5");  // the next writer cleans up
+    for (const auto& name : folder.files()) ASSERT_FALSE(says(name, ".tmp-")) << name;
+  }
+  EXPECT_GT(abandoned, 0) << "no kill came while a file was being written: the test shows nothing";
+}
+
+TEST(ArchiveFaults, TemporaryFileOfALivingWriterIsKept) {
+  const TemporaryFolder folder;
+  const auto mine = "c.h5.tmp-" + std::to_string(getppid()) + "-0";
+  testing::write_bytes(folder / mine, {}, 0);
+  write_archive(make_archive(5, 2), folder / "a.h5");
+  EXPECT_TRUE(std::filesystem::exists(folder / mine));
+}
+
+TEST(ArchiveFaults, FileSizeLimitIsSaidAndNothingIsLeft) {
+  const TemporaryFolder folder;
+  const int status = in_child([&] {
+    const rlimit limit{200 * 1024, 200 * 1024};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_archive(make_archive(100, 0), folder / "a.h5");
+    } catch (const std::exception& error) {
+      return says(error.what(), "a.h5: cannot be written: File too large") ? 0 : 2;
+    }
+    return 1;
+  });
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(folder.files().empty());
+}
+
+/// A file system of 256 kB.
+class SmallDisk {
+ public:
+  SmallDisk() : mounted_(mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=256k") == 0) {}
+  ~SmallDisk() {
+    if (mounted_) umount(folder_.path().c_str());
+  }
+  bool mounted() const { return mounted_; }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+  bool mounted_;
+};
+
+TEST(ArchiveFaults, FullDiskIsSaidAndNothingIsLeft) {
+  const SmallDisk disk;
+  if (!disk.mounted()) GTEST_SKIP() << "mounting a small file system is not permitted here";
+  try {
+    write_archive(make_archive(100, 0), disk.folder() / "a.h5");
+    FAIL() << "an archive of 350 kB fitted on 256 kB";
+  } catch (const std::exception& error) {
+    EXPECT_TRUE(says(error.what(), "a.h5: cannot be written: No space left on device")) << error.what();
+  }
+  EXPECT_TRUE(disk.folder().files().empty());
+  write_archive(make_archive(5, 2), disk.folder() / "b.h5");  // what fits still goes
+  EXPECT_EQ(refusal(disk.folder() / "b.h5"), "");
+}
+
+TEST(ArchiveFaults, DiskThatFillsDuringTheWriteIsSaid) {
+  const SmallDisk disk;
+  if (!disk.mounted()) GTEST_SKIP() << "mounting a small file system is not permitted here";
+  try {
+    Hdf5Writer writer(disk.folder() / "a.h5");
+    writer.dataset({"x", "m", "too much"}, std::vector<double>(100000, 1.0));
+    writer.close();
+    FAIL() << "800 kB fitted on 256 kB";
+  } catch (const std::exception& error) {
+    EXPECT_TRUE(says(error.what(), "No space left on device")) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace palpate

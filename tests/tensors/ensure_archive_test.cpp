@@ -1,0 +1,117 @@
+#include "common/tensors/ensure_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/mesh/mesh_file.hpp"
+#include "common/tensors/find_archive.hpp"
+#include "common/tensors/precompute.hpp"
+#include "tests/fem/meshes_for_tests.hpp"
+#include "tests/tensors/files_for_tests.hpp"
+
+namespace palpate {
+namespace {
+
+/// Gmsh 2.2 ASCII, the least there is to write.
+void write_mesh(const TetMesh& mesh, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << mesh.nodes.size() << "\n";
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    out << i + 1 << " " << mesh.nodes[i].transpose() << "\n";
+  out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << "\n";
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    out << e + 1 << " 4 2 1 1";
+    for (int node : mesh.tetrahedra[e]) out << " " << node + 1;
+    out << "\n";
+  }
+  out << "$EndElements\n";
+}
+
+class EnsureArchive : public ::testing::Test {
+ protected:
+  EnsureArchive() {
+    unsetenv("PALPATE_CACHE");
+    write_mesh(mesh, folder / "organ.msh");
+    scene.file = folder / "scene.toml";
+    auto body = testing::make_body();
+    FixedRegion base;
+    base.where.indices = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    body.fixed = {base};
+    body.mesh = folder / "organ.msh";
+    scene.bodies = {body};
+  }
+  Body& body() { return scene.bodies[0]; }
+
+  testing::TemporaryFolder folder;
+  TetMesh mesh = testing::make_organ({3, 3, 2});
+  Scene scene;
+};
+
+TEST_F(EnsureArchive, ComputesOnceAndIsUpToDateAfterwards) {
+  const auto first = ensure_archive(scene, body());
+  EXPECT_FALSE(first.up_to_date);
+  EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
+  const auto archive = find_archive(scene, body(), ArchivePart::surface);
+  const auto expected = precompute(body(), mesh);
+  EXPECT_EQ(archive.surface.node_number, expected.surface.node_number);
+  ASSERT_EQ(archive.touchable_compliance.size(), expected.touchable_compliance.size());
+  for (std::size_t i = 0; i < archive.touchable_compliance.size(); ++i)
+    ASSERT_NEAR(archive.touchable_compliance[i], expected.touchable_compliance[i],
+                1e-12 * std::abs(expected.touchable_compliance[0]));
+}
+
+TEST_F(EnsureArchive, SeveralBehavioursOfOneGeometryLiveSideBySide) {
+  const auto soft = ensure_archive(scene, body()).file;
+  body().material.young *= 2;
+  const auto stiff = ensure_archive(scene, body()).file;
+  EXPECT_NE(soft, stiff);
+  EXPECT_TRUE(std::filesystem::exists(soft));
+  const auto a = read_archive(soft, ArchivePart::touchable, {}),
+             b = read_archive(stiff, ArchivePart::touchable, {});
+  EXPECT_NEAR(a.touchable_compliance[0], 2 * b.touchable_compliance[0], 1e-12 * a.touchable_compliance[0]);
+}
+
+TEST_F(EnsureArchive, RebuildsWhatIsRefusedAndSaysWhy) {
+  const auto file = ensure_archive(scene, body()).file;
+  const auto good = testing::read_bytes(file);
+  testing::write_bytes(file, good, good.size() / 2);
+  auto state = ensure_archive(scene, body());
+  EXPECT_NE(state.refused.find("truncated"), std::string::npos);
+  EXPECT_EQ(testing::refusal(file), "");
+
+  auto stale = read_archive(file, ArchivePart::surface, {});
+  stale.content_hash = "of another body";
+  write_archive(stale, file);
+  state = ensure_archive(scene, body());
+  EXPECT_NE(state.refused.find("made for another mesh"), std::string::npos);
+  EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
+}
+
+TEST_F(EnsureArchive, RunTimeAsksForAPrecomputationInWords) {
+  try {
+    find_archive(scene, body(), ArchivePart::touchable);
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("palpate precompute"), std::string::npos);
+  }
+}
+
+TEST_F(EnsureArchive, StoresMaterialRegionsAndSpecimen) {
+  MaterialRegion half;
+  half.where.indices = {0, 1, 2};
+  half.material = {5e4, 0.3, 1000};
+  body().materials = {half};
+  write_mesh(make_cylinder(0.015, 0.013, 3, 2), folder / "specimen.msh");
+  body().nonlinear.emplace();
+  body().nonlinear->specimen_mesh = folder / "specimen.msh";
+  const auto archives = load_or_precompute(scene, ArchivePart::header);
+  ASSERT_EQ(archives.size(), 1u);
+  EXPECT_EQ(archives[0].young, (std::vector<double>{10e3, 5e4}));
+  EXPECT_EQ(archives[0].material_of_element.size(), mesh.tetrahedra.size());
+  EXPECT_EQ(archives[0].material_of_element[2], 1);
+  EXPECT_EQ(archives[0].material_of_element[3], 0);
+  EXPECT_GT(archives[0].specimen_force_slope, 0);
+}
+
+}  // namespace
+}  // namespace palpate

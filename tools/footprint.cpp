@@ -1,0 +1,95 @@
+#include "tools/footprint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/contact/buckets.hpp"
+#include "common/tensors/compliance.hpp"
+
+namespace palpate {
+
+DofCounts count_dofs(const SurfaceMap& surface) {
+  DofCounts counts;
+  for (int n = 0; n < surface.size(); ++n)
+    (n < surface.touchable ? counts.touchable : counts.other) += std::ranges::count(surface.fixed[n], false);
+  return counts;
+}
+
+double mean_edge(const SurfaceMap& surface) {
+  double sum = 0;
+  for (const auto& t : surface.triangles)
+    for (int v = 0; v < 3; ++v) sum += (surface.position[t[v]] - surface.position[t[(v + 1) % 3]]).norm();
+  return sum / (3.0 * static_cast<double>(surface.triangles.size()));
+}
+
+std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const SurfaceMap& surface,
+                                    std::size_t elements) {
+  const DofCounts dofs = count_dofs(surface);
+  const std::size_t nodes = surface.position.size(), triangles = surface.triangles.size();
+  const std::size_t triangle_entries = dofs.touchable * (dofs.touchable + 1) / 2;
+  const std::size_t numbering = nodes * (3 * sizeof(double) + 4 * sizeof(int)) + triangles * 3 * sizeof(int) +
+                                2 * sizeof(int) * (dofs.touchable + dofs.other) + elements * sizeof(int);
+  const double size = scene.contact.bucket_size > 0 ? scene.contact.bucket_size : 2 * mean_edge(surface);
+  const Buckets buckets(surface.position, surface.triangles, size);
+  const auto cells = buckets.cells();
+
+  std::vector<MemoryPart> parts;
+  const auto add = [&](const char* owner, std::string what, std::size_t bytes) {
+    parts.push_back({owner, std::move(what), bytes});
+  };
+  add("disk", "archive: compliance among touchable dofs", sizeof(double) * triangle_entries);
+  if (dofs.other > 0)
+    add("disk", "archive: compliance of the rest of the surface",
+        sizeof(double) * dofs.other * dofs.touchable);
+  add("disk", "archive: surface and numbering", numbering);
+  if (!scene.tools.empty()) {
+    add("haptic_node", "compliance, double precision",
+        Compliance<double>::bytes_of(surface.touchable, surface.touchable));
+    add("haptic_node", fmt::format("buckets of {:.3g} m, {} x {} x {}", size, cells[0], cells[1], cells[2]),
+        buckets.bytes());
+    add("haptic_node", "surface at rest, now and one step ago",
+        3 * nodes * sizeof(Eigen::Vector3d) + triangles * (6 * sizeof(int) + sizeof(double)));
+  }
+  add("render_node --deform", "compliance, single precision",
+      Compliance<float>::bytes_of(surface.size(), surface.touchable));
+  const int fields =
+      body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
+  add("render_node --deform", "visible surface",
+      nodes * (fields * sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector3d)) + triangles * 3 * sizeof(int));
+  return parts;
+}
+
+std::vector<std::string> body_warnings(const Scene& scene, const Body& body, const SurfaceMap& surface) {
+  std::vector<std::string> warnings;
+  const double h = mean_edge(surface);
+  for (const Tool& tool : scene.tools) {
+    if (tool.radius < h)
+      warnings.push_back(
+          fmt::format("tool '{}' has a radius of {:.3g} m, less than the mean edge {:.3g} m of body "
+                      "'{}': the force is the mesh's, not the tissue's",
+                      tool.name, tool.radius, h, body.name));
+    else if (tool.radius < 2 * h)
+      warnings.push_back(
+          fmt::format("tool '{}' has a radius of {:.3g} m, less than twice the mean edge {:.3g} m of "
+                      "body '{}': the force still depends on the mesh",
+                      tool.name, tool.radius, h, body.name));
+  }
+  std::vector<Material> materials{body.material};
+  for (const MaterialRegion& region : body.materials) materials.push_back(region.material);
+  for (const Material& material : materials) {
+    if (material.poisson > 0.45)
+      warnings.push_back(
+          fmt::format("body '{}' has a Poisson's ratio of {}: linear tetrahedra lock there and answer "
+                      "too stiffly",
+                      body.name, material.poisson));
+  }
+  Eigen::Vector3d low = surface.position[0], high = low;
+  for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double across = (high - low).norm();
+  if (across > 3 || across < 1e-3)
+    warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body.name, across));
+  return warnings;
+}
+
+}  // namespace palpate

@@ -1,0 +1,109 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+
+#include "common/mesh/generators.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/quality.hpp"
+#include "tools/generate/liver.hpp"
+#include "tools/generate/plate.hpp"
+#include "tools/generate/ribs.hpp"
+
+namespace {
+
+using namespace palpate;
+
+struct BlockOptions {
+  std::array<double, 3> min{-0.05, -0.05, -0.1}, max{0.05, 0.05, 0};
+  std::array<int, 3> cells{10, 10, 10};
+  double growth = 1;
+};
+
+struct CylinderOptions {
+  double radius = 0.015, height = 0.013;
+  double size = 0.0025;
+};
+
+/// Finest at the middle of the top face: steps grow by `growth` outwards and downwards.
+TetMesh make_top_centred_block(const BlockOptions& o) {
+  if (o.growth == 1) {
+    return make_block(Eigen::Vector3d(o.min.data()), Eigen::Vector3d(o.max.data()), o.cells);
+  }
+  return make_graded_block(centred_axis(o.min[0], o.max[0], o.cells[0], o.growth),
+                           centred_axis(o.min[1], o.max[1], o.cells[1], o.growth),
+                           graded_axis(o.min[2], o.max[2], o.cells[2], 1 / o.growth));
+}
+
+/// Rings and layers for elements of about `size`; the layers are even, so that mid-height carries nodes.
+TetMesh make_sized_cylinder(const CylinderOptions& o) {
+  const int rings = std::max(1, static_cast<int>(std::lround(o.radius / o.size)));
+  const int layers = std::max(2, 2 * static_cast<int>(std::lround(o.height / o.size / 2)));
+  return make_cylinder(o.radius, o.height, rings, layers);
+}
+
+void save(const TetMesh& mesh, const std::filesystem::path& file) {
+  check_tet_mesh(mesh, file.string());
+  write_tet_mesh(mesh, file);
+  double angle = std::numbers::pi;
+  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, smallest_dihedral_angle(mesh, t));
+  std::printf("%s: %zu nodes, %zu tetrahedra, smallest dihedral angle %.1f degrees\n", file.c_str(),
+              mesh.nodes.size(), mesh.tetrahedra.size(), angle * 180 / std::numbers::pi);
+}
+
+void save(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  write_stl(mesh, file);
+  std::printf("%s: %zu nodes, %zu triangles\n", file.c_str(), mesh.nodes.size(), mesh.triangles.size());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Makes the meshes of the example scenes"};
+  app.require_subcommand(1);
+  std::filesystem::path file;
+  const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
+    CLI::App* shape = app.add_subcommand(name, what);
+    shape->add_option("-o,--output", file, "file to write")->required();
+    shape->callback(make);
+    return shape;
+  };
+
+  LiverOptions liver;
+  CLI::App* shape = add_shape("liver", "the default organ (.msh)", [&] { save(make_liver(liver), file); });
+  shape->add_option("--frequency", liver.frequency, "fineness f of the surface: 10 f^2 + 2 nodes")
+      ->check(CLI::Range(2, 64));
+  shape->add_option("--size", liver.inner_size, "edge length inside [m]")->check(CLI::PositiveNumber);
+
+  int plate_cells = 18;
+  shape = add_shape("plate", "a thin square plate (.msh)", [&] { save(make_plate(plate_cells), file); });
+  shape->add_option("--cells", plate_cells, "cells along each side")->check(CLI::Range(4, 1000));
+
+  add_shape("ribs", "the backdrop of the liver scene (.stl)", [&] { save(make_ribs(), file); });
+
+  BlockOptions block;
+  shape = add_shape("block", "a block (.msh)", [&] { save(make_top_centred_block(block), file); });
+  shape->add_option("--min", block.min, "lowest corner [m]");
+  shape->add_option("--max", block.max, "highest corner [m]");
+  shape->add_option("--cells", block.cells, "cells along x, y, z");
+  shape->add_option("--growth", block.growth,
+                    "growth of the cells away from the middle of the top; 1: uniform");
+
+  CylinderOptions cylinder;
+  shape = add_shape("cylinder", "a cylinder about the z axis (.msh)",
+                    [&] { save(make_sized_cylinder(cylinder), file); });
+  shape->add_option("--radius", cylinder.radius, "[m]")->check(CLI::PositiveNumber);
+  shape->add_option("--height", cylinder.height, "[m]")->check(CLI::PositiveNumber);
+  shape->add_option("--size", cylinder.size, "edge length aimed at [m]")->check(CLI::PositiveNumber);
+
+  try {
+    CLI11_PARSE(app, argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "palpate_generate: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

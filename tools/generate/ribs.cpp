@@ -1,0 +1,99 @@
+#include "tools/generate/ribs.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMidline = 0.020;                    // [m] x of the spine; the liver lies mostly right of it
+constexpr double kHalfWidth = 0.170, kDepth = 0.118;  // [m] half axes of the chest at the ribs
+constexpr double kReach = 140;                        // [deg] from the spine to the front end of a rib
+
+/// A point of the chest: `angle` [rad] from the spine (0) towards the patient's left (positive) or right.
+Vector3d chest(double angle, double height, double scale) {
+  const double drop = 0.075 * std::pow(std::sin(angle / 2), 2);  // ribs run down towards the front
+  return {kMidline + scale * kHalfWidth * std::sin(angle), scale * kDepth * std::cos(angle), height - drop};
+}
+
+void add_triangle(TriangleMesh& mesh, int a, int b, int c) {
+  const Vector3d &x = mesh.nodes[a], &y = mesh.nodes[b], &z = mesh.nodes[c];
+  if ((y - x).cross(z - x).norm() > 1e-12) mesh.triangles.push_back({a, b, c});
+}
+
+void add_grid(TriangleMesh& mesh, int rows, int columns, bool closed,
+              const std::function<Vector3d(int, int)>& point) {
+  const int first = static_cast<int>(mesh.nodes.size()), nodes_per_row = closed ? columns : columns + 1;
+  for (int r = 0; r <= rows; ++r) {
+    for (int c = 0; c < nodes_per_row; ++c) mesh.nodes.push_back(point(r, c));
+  }
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const int a = first + r * nodes_per_row + c, b = first + r * nodes_per_row + (c + 1) % nodes_per_row;
+      const int d = a + nodes_per_row, e = b + nodes_per_row;
+      add_triangle(mesh, a, b, e);
+      add_triangle(mesh, a, e, d);
+    }
+  }
+}
+
+/// A tube along `centre(t)`, t in [0, 1], with half axes radii(t) across (x) and along `up` (y), closed at
+/// both ends by shrinking there.
+void add_tube(TriangleMesh& mesh, int segments, int sides, const Vector3d& up,
+              const std::function<Vector3d(double)>& centre,
+              const std::function<Eigen::Vector2d(double)>& radii) {
+  add_grid(mesh, segments, sides, true, [&](int r, int c) {
+    const double t = static_cast<double>(r) / segments, angle = 2 * std::numbers::pi * c / sides;
+    const Vector3d along = (centre(t + 1e-4) - centre(t - 1e-4)).normalized();
+    const Vector3d across = along.cross(up).normalized(), upright = along.cross(across);
+    const double end = std::sqrt(std::max(0.0, 1 - std::pow(std::abs(2 * t - 1), 24)));
+    const Eigen::Vector2d radius = end * radii(t);
+    return Vector3d(centre(t) + radius.x() * std::cos(angle) * across +
+                    radius.y() * std::sin(angle) * upright);
+  });
+}
+
+void add_rib(TriangleMesh& mesh, double height, double scale, double side) {
+  const double begin = 7 * std::numbers::pi / 180, end = kReach * std::numbers::pi / 180;
+  add_tube(
+      mesh, 30, 7, Vector3d::UnitZ(),
+      [&](double t) { return chest(side * (begin + t * (end - begin)), height, scale); },
+      [](double t) { return Eigen::Vector2d(0.0038, 0.0060 + 0.0012 * std::sin(std::numbers::pi * t)); });
+}
+
+void add_spine(TriangleMesh& mesh) {
+  add_tube(
+      mesh, 36, 8, Vector3d::UnitX(),
+      [](double t) { return Vector3d(kMidline, kDepth + 0.008, -0.13 + 0.28 * t); },
+      [](double t) {
+        const double bulge = 0.0016 * std::cos(2 * std::numbers::pi * 9 * t);  // vertebrae and discs
+        return Eigen::Vector2d(0.015 + bulge, 0.019 + bulge);
+      });
+}
+
+void add_wall(TriangleMesh& mesh) {
+  constexpr int kRows = 10, kColumns = 30;
+  const double reach = (kReach + 6) * std::numbers::pi / 180;
+  add_grid(mesh, kRows, kColumns, false, [&](int r, int c) {
+    return chest(reach * (2.0 * c / kColumns - 1), -0.11 + 0.28 * r / kRows, 1.10 - 0.05 * r / kRows);
+  });
+}
+
+}  // namespace
+
+TriangleMesh make_ribs() {
+  TriangleMesh mesh;
+  for (int rib = 0; rib < 5; ++rib) {
+    const double height = 0.125 - 0.036 * rib, scale = 0.96 + 0.015 * rib;
+    for (double side : {-1.0, 1.0}) add_rib(mesh, height, scale, side);
+  }
+  add_spine(mesh);
+  add_wall(mesh);
+  return mesh;
+}
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/fem/constraint.hpp"
+
+namespace palpate {
+
+/// A point of the surface and where it is taken: `--touch "x,y,z:dx,dy,dz"`; an empty component is not held.
+struct TouchArgument {
+  Eigen::Vector3d point;                              ///< [m]
+  std::array<std::optional<double>, 3> displacement;  ///< [m]
+};
+
+/// Parses `--hold "NODE:ux,uy,uz"`, one constraint per component given. Throws std::runtime_error on anything
+/// that is not a number, and if no component is given.
+std::vector<Constraint> parse_hold(const std::string& text);
+
+TouchArgument parse_touch(const std::string& text);
+
+/// All holds together. Throws std::runtime_error if an axis of a node is held twice or a node is not in the
+/// mesh.
+std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes);
+
+/// The bilateral barycentric rule: the surface point nearest to the touch moves by its displacement.
+/// Triangles index `position`; `node_number` gives mesh node numbers.
+std::vector<Constraint> touch_constraints(const TouchArgument& touch,
+                                          const std::vector<Eigen::Vector3d>& position,
+                                          const std::vector<int>& node_number,
+                                          const std::vector<std::array<int, 3>>& triangles);
+
+}  // namespace palpate

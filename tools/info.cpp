@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/log_summary.hpp"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Histogram& h) {
+  if (h.count() == 0) return nullptr;
+  const Percentiles p = percentiles_us(h);
+  return {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
+}
+
+Json json_of(const TopicSummary& t) {
+  return {{"samples", t.samples},
+          {"rate_hz", t.rate_hz()},
+          {"streams", t.streams},
+          {"gaps", t.gaps},
+          {"missing", t.missing},
+          {"repeated", t.repeated},
+          {"invalid", t.invalid},
+          {"sense_to_publish_us", json_of(t.to_publish)},
+          {"sense_to_receive_us", json_of(t.to_receive)}};
+}
+
+Json json_of(const LogSummary& s, const std::string& file) {
+  Json json{{"file", file},
+            {"title", s.title},
+            {"version", s.header.version},
+            {"code_path", s.code_path},
+            {"scene_hash", s.header.scene_hash},
+            {"host", s.header.host},
+            {"start_wall_ns", s.header.start_wall_ns},
+            {"seconds", s.seconds},
+            {"bytes", s.bytes},
+            {"complete", s.footer.has_value() && s.damage.empty()},
+            {"lost", s.footer ? Json(s.footer->lost) : Json(nullptr)},
+            {"loss_reason", s.footer ? s.footer->error : ""},
+            {"unknown_events", s.unknown}};
+  json["damage"] = Json::array();
+  for (const LogDamage& d : s.damage)
+    json["damage"].push_back({{"offset", d.offset}, {"bytes", d.bytes}, {"tail", d.tail}});
+  json["topics"] = Json::object();
+  for (const auto& [name, topic] : s.topics) json["topics"][name] = json_of(topic);
+  return json;
+}
+
+std::string local_time(std::int64_t wall_ns) {
+  const std::time_t seconds = wall_ns / 1'000'000'000;
+  char text[64];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", std::localtime(&seconds));
+  return text;
+}
+
+void print_table(const LogSummary& s) {
+  fmt::print("\n{:24} {:>9} {:>9} {:>6} {:>8} {:>8}  {:>28}\n", "topic", "samples", "Hz", "gaps", "missing",
+             "invalid", "sense to log [us] p50/p99/max");
+  for (const auto& [name, t] : s.topics) {
+    fmt::print("{:24} {:9} {:9.1f} {:6} {:8} {:8}", name, t.samples, t.rate_hz(), t.gaps, t.missing,
+               t.invalid);
+    if (t.to_receive.count() > 0) {
+      const Percentiles p = percentiles_us(t.to_receive);
+      fmt::print("  {:>28}", fmt::format("{:.0f} / {:.0f} / {:.0f}", p.p50, p.p99, p.max));
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_text(const LogSummary& s, const std::string& file) {
+  fmt::print("{}: {:.2f} s, {:.1f} MB\n", file, s.seconds, 1e-6 * static_cast<double>(s.bytes));
+  if (s.has_header)
+    fmt::print("recorded {} on {} by version {}\n", local_time(s.header.start_wall_ns), s.header.host,
+               s.header.version);
+  else
+    fmt::print("the header is damaged: scene, version and start are unknown\n");
+  fmt::print("scene     {}\n", s.title.empty() ? "none in the log" : s.title);
+  fmt::print("code path {}\n", s.code_path.empty() ? "unknown" : s.code_path);
+  if (!s.footer) fmt::print("the recorder did not end in order\n");
+  if (s.footer && s.footer->lost > 0)
+    fmt::print("the recorder lost {} messages: {}\n", s.footer->lost, s.footer->error);
+  if (!s.damage_text.empty()) fmt::print("{}\n", s.damage_text);
+  if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
+  print_table(s);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("info", "Rates, gaps and latencies of a topic log");
+  command->add_option("log", o->file, "LCM event log")->required();
+  command->add_flag("--json", o->json, "Print JSON");
+  command->callback([o] {
+    const LogSummary summary = summarise_log(o->file);
+    if (o->json) {
+      fmt::print("{}\n", json_of(summary, o->file).dump(2));
+    } else {
+      print_text(summary, o->file);
+    }
+  });
+}
+
+}  // namespace palpate

@@ -1,0 +1,111 @@
+#include "tools/log_summary.hpp"
+
+#include <algorithm>
+
+#include "common/bus/sequence.hpp"
+#include "idl/topics.hpp"
+
+namespace palpate {
+namespace {
+
+/// The first `title = "…"` of a TOML text, as the resolved scene writes it.
+std::string title_of(const std::string& scene) {
+  const std::size_t key = scene.find("title");
+  if (key == std::string::npos || (key > 0 && scene[key - 1] != '\n')) return {};
+  const std::size_t open = scene.find_first_of("'\"", key);
+  if (open == std::string::npos) return {};
+  const std::size_t close = scene.find(scene[open], open + 1);
+  return close == std::string::npos ? std::string() : scene.substr(open + 1, close - open - 1);
+}
+
+class Summariser {
+ public:
+  explicit Summariser(LogSummary& summary) : summary_(summary) {}
+
+  void add(const LogEvent& event) {
+    bool known = false;
+    topics::for_each([&](const auto& topic) {
+      if (event.channel != topic.name) return;
+      known = true;
+      add(topic, event);
+    });
+    summary_.unknown += !known;
+  }
+
+  void finish() {
+    for (auto& [name, topic] : summary_.topics) {
+      const SequenceCheck& check = sequences_[name];
+      topic.streams = check.streams();
+      topic.gaps = check.gaps();
+      topic.missing = check.missing();
+      topic.repeated = check.repeated();
+    }
+  }
+
+ private:
+  template <class M>
+  void add(const Topic<M>& topic, const LogEvent& event) {
+    TopicSummary& t = summary_.topics[topic.name];
+    M message;
+    if (!event.read(topic, message)) {
+      ++t.invalid;
+      return;
+    }
+    if (t.samples++ == 0) t.first_ns = event.receive_ns;
+    t.last_ns = event.receive_ns;
+    sequences_[topic.name].add(message);
+    // What a topic keeps for late joiners is old when it comes; that is no latency.
+    if (const std::int64_t sense = sense_of(message); sense > 0 && !topic.qos.transient_local) {
+      t.to_receive.record(event.receive_ns - sense);
+      if constexpr (requires { message.publish_ns; }) t.to_publish.record(message.publish_ns - sense);
+    }
+    learn(message);
+  }
+
+  template <class M>
+  void learn(const M& message) {
+    if constexpr (std::same_as<M, SceneText>) {
+      if (summary_.title.empty()) summary_.title = title_of(message.text);
+    }
+    if constexpr (requires { message.code_path; }) {
+      if (summary_.code_path.empty()) summary_.code_path = message.code_path;
+    }
+  }
+
+  LogSummary& summary_;
+  std::map<std::string, SequenceCheck> sequences_;
+};
+
+}  // namespace
+
+double TopicSummary::rate_hz() const {
+  if (samples < 2 || last_ns <= first_ns) return 0;
+  return static_cast<double>(samples - 1) * 1e9 / static_cast<double>(last_ns - first_ns);
+}
+
+LogSummary summarise_log(const std::filesystem::path& file) {
+  LogReader reader(file);
+  LogSummary summary;
+  summary.header = reader.header();
+  summary.has_header = reader.has_header();
+  summary.title = title_of(summary.header.scene);
+  summary.code_path = summary.header.code_path;
+  summary.bytes = reader.size();
+
+  Summariser summariser(summary);
+  LogEvent event;
+  std::int64_t first = INT64_MAX, last = INT64_MIN;
+  while (reader.next(event)) {
+    summariser.add(event);
+    first = std::min(first, event.receive_ns);
+    last = std::max(last, event.receive_ns);
+  }
+  summariser.finish();
+  if (last > first) summary.seconds = 1e-9 * static_cast<double>(last - first);
+  summary.damage = reader.damage();
+  summary.damage_text = reader.damage_text();
+  summary.footer = reader.footer();
+  return summary;
+}
+
+}  // namespace palpate

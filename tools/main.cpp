@@ -1,0 +1,26 @@
+#include <cstdio>
+#include <exception>
+
+#include "tools/commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"palpate: a distributed haptic simulator of soft tissue"};
+  app.set_version_flag("--version", PALPATE_VERSION);
+  app.require_subcommand(1);
+  palpate::add_check_command(app);
+  palpate::add_precompute_command(app);
+  palpate::add_run_command(app);
+  palpate::add_record_command(app);
+  palpate::add_info_command(app);
+  palpate::add_replay_command(app);
+  palpate::add_solve_command(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "palpate: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,19 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "common/bus/dds_bus.hpp"
+
+namespace palpate {
+
+/// Adds --domain, --interface and --peer for commands that join a running system without a scene file.
+inline void add_network_options(CLI::App& command, BusSettings& settings) {
+  command.add_option("--domain", settings.domain, "DDS domain of the running system")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  command.add_option("--interface", settings.interface,
+                     "Network interface, name or address (default: loopback)");
+  command.add_option("--peer", settings.peers, "Host to ask for other nodes; may be repeated");
+}
+
+}  // namespace palpate

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "common/scene/scene.hpp"
+#include "common/tensors/ensure_archive.hpp"
+#include "tools/commands.hpp"
+
+namespace palpate {
+namespace {
+
+void show_stage(std::string_view stage, double seconds) {
+  constexpr double kWorthSaying = 0.1;
+  if (seconds >= kWorthSaying) fmt::print(stderr, "  {:<40} {:8.2f} s\n", stage, seconds);
+}
+
+void describe(const Archive& archive, const ArchiveState& state) {
+  const double megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(state.file));
+  fmt::print("  {} surface nodes, {} of them touchable; {} touchable dofs, {} others; {:.1f} MB\n",
+             archive.surface.size(), archive.surface.touchable, archive.touchable_dofs.size(),
+             archive.other_dofs.size(), megabytes);
+}
+
+void precompute_body(const Scene& scene, const Body& body) {
+  const auto state = ensure_archive(scene, body, show_stage);
+  if (!state.refused.empty()) fmt::print(stderr, "rebuilt, because {}\n", state.refused);
+  if (state.up_to_date)
+    fmt::print("body '{}': up to date: {}\n", body.name, state.file.string());
+  else
+    fmt::print("body '{}': computed and written in {:.3f} s: {}\n", body.name, state.seconds,
+               state.file.string());
+  describe(read_archive(state.file, ArchivePart::header, {}), state);
+}
+
+}  // namespace
+
+void add_precompute_command(CLI::App& app) {
+  auto* command = app.add_subcommand("precompute", "Compute the tensors of every body of a scene, once");
+  auto file = std::make_shared<std::string>();
+  command->add_option("SCENE", *file, "scene file")->required();
+  command->callback([file] {
+    const Scene scene = load_scene(*file);
+    for (const auto& body : scene.bodies) precompute_body(scene, body);
+  });
+}
+
+}  // namespace palpate

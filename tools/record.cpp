@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "common/bus/recorder.hpp"
+#include "common/realtime/clock.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "tools/commands.hpp"
+#include "tools/network_options.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Options {
+  BusSettings network;
+  std::string file;
+  double seconds = 0;
+  bool supervised = false;
+};
+
+std::string default_file() {
+  const std::time_t now = std::time(nullptr);
+  char name[64];
+  std::strftime(name, sizeof name, "palpate-%Y%m%d-%H%M%S.lcmlog", std::localtime(&now));
+  return name;
+}
+
+std::uint64_t samples_of(const RecorderReport& report) {
+  std::uint64_t sum = 0;
+  for (const auto& [name, topic] : report.topics) sum += topic.samples;
+  return sum;
+}
+
+nlohmann::ordered_json summary(const Options& o, const RecorderReport& report, double seconds) {
+  return {{"node", "recorder"},          {"file", o.file},
+          {"seconds", seconds},          {"messages", samples_of(report)},
+          {"missing", report.missing()}, {"lost", report.log.lost},
+          {"bytes", report.log.bytes},   {"error", report.log.error}};
+}
+
+void print_report(const Options& o, const RecorderReport& report, double seconds) {
+  fmt::print("{}: {:.1f} s, {} messages, {:.1f} MB\n", o.file, seconds, samples_of(report),
+             1e-6 * static_cast<double>(report.log.bytes));
+  for (const auto& [name, topic] : report.topics) {
+    fmt::print("  {:24} {:9}", name, topic.samples);
+    if (topic.missing > 0) fmt::print("  {} never arrived", topic.missing);
+    if (topic.invalid > 0) fmt::print("  {} invalid", topic.invalid);
+    fmt::print("\n");
+  }
+  if (!report.has_scene) fmt::print("  no haptic node announced its scene: the log holds none\n");
+}
+
+/// Says on stderr when messages begin to be lost, and again when more are, at most once a second.
+class LossNotice {
+ public:
+  void look(const LogStatus& status) {
+    const std::int64_t now = now_ns();
+    if (status.lost == said_ || now < next_) return;
+    said_ = status.lost;
+    next_ = now + ns_per_s;
+    fmt::print(stderr, "palpate: {}\n", loss_text(status));
+  }
+
+ private:
+  std::uint64_t said_ = 0;
+  std::int64_t next_ = 0;
+};
+
+void record(Options& o) {
+  if (o.file.empty()) o.file = default_file();
+  catch_shutdown_signals();
+  const auto bus = make_dds_bus(o.network);
+  Recorder recorder(*bus, {.file = o.file, .version = PALPATE_VERSION});
+  fmt::print("{}\n",
+             o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
+  std::fflush(stdout);
+
+  const std::int64_t start = now_ns();
+  const auto elapsed = [&] { return 1e-9 * static_cast<double>(now_ns() - start); };
+  LossNotice notice;
+  while (!shutdown_requested() && (o.seconds <= 0 || elapsed() < o.seconds)) {
+    recorder.step(50ms);
+    notice.look(recorder.log_status());
+  }
+  const RecorderReport report = recorder.finish();
+  if (o.supervised) {
+    fmt::print("{}\n", summary(o, report, elapsed()).dump());
+  } else {
+    print_report(o, report, elapsed());
+  }
+  if (report.log.lost > 0) throw std::runtime_error(fmt::format("{}: {}", o.file, loss_text(report.log)));
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("record", "Write every topic of a running system into an LCM event log");
+  add_network_options(*command, o->network);
+  command->add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
+  command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--supervised", o->supervised)->group("");
+  command->callback([o] { record(*o); });
+}
+
+}  // namespace palpate

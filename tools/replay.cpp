@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "common/realtime/shutdown.hpp"
+#include "haptic_node/verify.hpp"
+#include "tools/commands.hpp"
+#include "tools/log_player.hpp"
+#include "tools/network_options.hpp"
+
+namespace palpate {
+namespace {
+
+struct Options {
+  BusSettings network;
+  PlaySettings play;
+  std::string file;
+  bool verify = false;
+};
+
+void verify(const std::string& file) {
+  const VerifyReport report = verify_log(file);
+  for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
+  if (!report.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
+  if (!report.verified())
+    throw std::runtime_error(fmt::format("{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified",
+                                         file, report.forces, report.steps, report.gaps.size()));
+  fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces, report.steps, report.code_path);
+}
+
+void play(const Options& o) {
+  catch_shutdown_signals();
+  const auto bus = make_dds_bus(o.network);
+  const bool terminal = isatty(STDERR_FILENO);
+  const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
+    if (terminal) fmt::print(stderr, "\r{:9.2f} s", seconds);
+    return !shutdown_requested();
+  });
+  if (terminal) fmt::print(stderr, "\r");
+  if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
+  fmt::print("{}: {} of {:.2f} s: {} messages to domain {}, {} left out; late by {:.0f} us (median), {:.0f} us (p99)\n",
+             o.file, report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain,
+             report.skipped, 1e-3 * static_cast<double>(report.late.percentile(0.5)),
+             1e-3 * static_cast<double>(report.late.percentile(0.99)));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("replay", "Play a topic log back to DDS, or verify it");
+  command->add_option("log", o->file, "LCM event log")->required();
+  command->add_option("--speed", o->play.speed, "2 plays twice as fast")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
+  add_network_options(*command, o->network);
+  command->add_flag("--verify", o->verify, "Compute every recorded haptic step again and require its forces bit for bit")
+      ->excludes("--speed", "--topic");
+  command->callback([o] { o->verify ? verify(o->file) : play(*o); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "common/realtime/shutdown.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tensors/ensure_archive.hpp"
+#include "tools/child_process.hpp"
+#include "tools/commands.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string scene, record, film, still, summary;
+  double seconds = 0;
+  int domain = -1, processes = 2;
+};
+
+struct Node {
+  ChildProcess process;
+  bool ready = false;
+  nlohmann::json summary = nullptr;  ///< its last line, once it has ended
+};
+
+/// The nodes of one scene on this machine, in the order in which they start; the haptic node comes last.
+class Nodes {
+ public:
+  void start(const std::string& role, const std::vector<std::string>& arguments) { nodes_.push_back({ChildProcess(role, arguments)}); }
+
+  /// Reads what the nodes print: "ready", and at the end one JSON line each. Throws if a node has failed.
+  void read() {
+    for (Node& n : nodes_) {
+      const bool over = !n.process.running();
+      for (const std::string& line : n.process.take_lines()) {
+        if (line == "ready")
+          n.ready = true;
+        else if (line.starts_with('{'))
+          n.summary = nlohmann::json::parse(line, nullptr, false);
+        else
+          fmt::print("{}\n", line);
+      }
+      if (over && n.process.status() != 0)
+        throw std::runtime_error(fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
+    }
+  }
+
+  void wait_ready() {
+    const auto limit = Clock::now() + 60s;
+    for (bool all = false; !all && !shutdown_requested();) {
+      read();
+      all = true;
+      for (const Node& n : nodes_) all &= n.ready;
+      if (Clock::now() > limit) throw std::runtime_error("a node did not become ready within a minute");
+      std::this_thread::sleep_for(10ms);
+    }
+  }
+
+  bool last_runs() { return nodes_.back().process.running(); }
+
+  /// Stops the nodes, the haptic node first, and gives each time to finish its files.
+  void stop() {
+    for (auto n = nodes_.rbegin(); n != nodes_.rend(); ++n) {
+      n->process.interrupt();
+      if (!n->process.wait(30s)) throw std::runtime_error(fmt::format("{} did not stop within 30 s", n->process.name()));
+    }
+    read();
+  }
+
+  nlohmann::json summary() const {
+    nlohmann::json all;
+    for (const Node& n : nodes_) all[n.process.name()] = n.summary;
+    return all;
+  }
+
+ private:
+  std::vector<Node> nodes_;
+};
+
+void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
+  const std::string domain = std::to_string(o.domain >= 0 ? o.domain : scene.network.domain);
+  const auto with = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
+    return arguments;
+  };
+  const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
+  if (!log.empty()) nodes.start("recorder", with({sibling_program("palpate"), "record", "-o", log}));
+  const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
+  if (drawn && o.processes == 3) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  if (drawn) {
+    std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
+    if (o.processes == 2) render.push_back("--deform");
+    if (!o.film.empty()) render.insert(render.end(), {"--film", o.film});
+    if (!o.still.empty()) render.insert(render.end(), {"--still", o.still});
+    nodes.start("render_node", render);
+  }
+  nodes.wait_ready();
+  if (shutdown_requested()) return;
+  std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
+  if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
+  nodes.start("haptic_node", haptic);
+}
+
+void print_summary(const nlohmann::json& s) {
+  const auto number = [](const nlohmann::json& j, const char* key) { return j.is_object() && j.contains(key) ? j[key].get<double>() : 0.0; };
+  const auto& haptic = s["haptic_node"];
+  if (haptic.is_object())
+    fmt::print("haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest force {:.2f} N\n",
+               number(haptic, "rate_hz"), number(haptic, "step_us_p50"), number(haptic, "step_us_p99"), number(haptic, "step_us_p999"),
+               haptic.value("missed", 0), haptic.value("ticks", 0), number(haptic, "force_max_n"));
+  if (s.contains("render_node") && s["render_node"].is_object())
+    fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n", number(s["render_node"], "rate_hz"),
+               1e-3 * number(s["render_node"], "latency_us_p50"), 1e-3 * number(s["render_node"], "latency_us_p99"),
+               s["render_node"].value("frames", 0));
+  if (s.contains("deform_node") && s["deform_node"].is_object())
+    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(s["deform_node"], "rate_hz"),
+               number(s["deform_node"], "latency_us_p50"), number(s["deform_node"], "latency_us_p99"));
+  if (s.contains("recorder") && s["recorder"].is_object())
+    fmt::print("recorder {} messages, {} lost\n", s["recorder"].value("messages", 0), s["recorder"].value("lost", 0));
+}
+
+void run(const Options& o) {
+  const Scene scene = load_scene(o.scene);
+  for (const Body& body : scene.bodies) ensure_archive(scene, body);
+  catch_shutdown_signals();
+  const auto begin = Clock::now();
+  Nodes nodes;
+  start_nodes(nodes, scene, o);
+  while (!shutdown_requested() && nodes.last_runs()) {
+    nodes.read();
+    std::this_thread::sleep_for(20ms);
+  }
+  nodes.stop();
+
+  nlohmann::json summary = nodes.summary();
+  summary["scene"] = o.scene;
+  summary["title"] = scene.title;
+  summary["seconds"] = std::chrono::duration<double>(Clock::now() - begin).count();
+  summary["version"] = PALPATE_VERSION;
+  print_summary(summary);
+  if (o.summary.empty()) return;
+  std::ofstream file(o.summary);
+  file << summary.dump(2) << "\n";
+  if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot write the summary", o.summary));
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* run_command = app.add_subcommand("run", "Start the nodes that a scene needs on this machine");
+  run_command->add_option("scene", o->scene, "Scene file")->required();
+  run_command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")->check(CLI::PositiveNumber);
+  run_command->add_option("--record", o->record, "Write all topics to this LCM event log");
+  run_command->add_option("--film", o->film, "Write a film (MP4)");
+  run_command->add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
+  run_command->add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
+  run_command->add_option("--domain", o->domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
+  run_command->add_option("--processes", o->processes, "2: the render node deforms too; 3: a deformation node of its own")->check(CLI::IsMember({2, 3}));
+  run_command->callback([o] { run(*o); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "common/fem/direct.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/surface.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tensors/ensure_archive.hpp"
+#include "common/tensors/find_archive.hpp"
+#include "common/tensors/static_solve.hpp"
+#include "tools/commands.hpp"
+#include "tools/hold_argument.hpp"
+#include "tools/solution_file.hpp"
+
+namespace palpate {
+namespace {
+
+struct SolveArguments {
+  std::string scene, body, method = "tensors", csv, vtu;
+  std::vector<std::string> holds, touches;
+};
+
+const Body& choose_body(const Scene& scene, const std::string& name) {
+  if (name.empty() && scene.bodies.size() == 1) return scene.bodies[0];
+  for (const auto& body : scene.bodies)
+    if (body.name == name) return body;
+  std::string names;
+  for (const auto& body : scene.bodies) names += (names.empty() ? "" : ", ") + body.name;
+  throw std::runtime_error(name.empty() ? "the scene has several bodies: choose one with --body: " + names
+                                        : fmt::format("the scene has no body '{}': it has {}", name, names));
+}
+
+/// Every hold and touch of the command line; positions, numbers and triangles are those of the surface.
+std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh_nodes,
+                                       const std::vector<Eigen::Vector3d>& position,
+                                       const std::vector<int>& node_number,
+                                       const std::vector<std::array<int, 3>>& triangles) {
+  auto constraints = parse_holds(arguments.holds, mesh_nodes);
+  for (const auto& text : arguments.touches) {
+    const auto touch = touch_constraints(parse_touch(text), position, node_number, triangles);
+    constraints.insert(constraints.end(), touch.begin(), touch.end());
+  }
+  return constraints;
+}
+
+SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments) {
+  const auto problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
+  const auto& mesh = problem.mesh;
+  SolutionTable table;
+  table.node.resize(mesh.nodes.size());
+  std::iota(table.node.begin(), table.node.end(), 0);
+  table.position = mesh.nodes;
+  table.tetrahedra = mesh.tetrahedra;
+  const auto triangles = extract_surface(mesh).triangles;
+  const auto solution = solve_direct(problem, constraints_of(arguments, static_cast<int>(mesh.nodes.size()),
+                                                             mesh.nodes, table.node, triangles));
+  table.displacement = solution.displacement;
+  table.force = solution.force;
+  return table;
+}
+
+/// The surface in ascending mesh node number. An archive knows no reactions, so that a CSV leaves out the
+/// nodes that are fixed along all axes.
+SolutionTable sorted_table(const SurfaceMap& surface, const SurfaceSolution& solution) {
+  std::vector<int> order(surface.size()), place(surface.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return surface.node_number[a] < surface.node_number[b]; });
+  SolutionTable table;
+  for (int i = 0; i < surface.size(); ++i) {
+    place[order[i]] = i;
+    table.node.push_back(surface.node_number[order[i]]);
+    table.position.push_back(surface.position[order[i]]);
+    table.displacement.push_back(solution.displacement[order[i]]);
+    table.force.push_back(solution.force[order[i]]);
+    const auto& fixed = surface.fixed[order[i]];
+    table.listed.push_back(!fixed[0] || !fixed[1] || !fixed[2]);
+  }
+  for (const auto& triangle : surface.triangles)
+    table.triangles.push_back({place[triangle[0]], place[triangle[1]], place[triangle[2]]});
+  return table;
+}
+
+SolutionTable solve_by_tensors(const Scene& scene, const Body& body, const SolveArguments& arguments) {
+  ensure_archive(scene, body);
+  const auto archive = find_archive(scene, body, ArchivePart::surface);
+  const auto& surface = archive.surface;
+  return sorted_table(surface,
+                      solve_tensors(archive, constraints_of(arguments, archive.mesh_nodes, surface.position,
+                                                            surface.node_number, surface.triangles)));
+}
+
+void summarise(const SolutionTable& table, const SolveArguments& arguments) {
+  std::size_t furthest = 0;
+  double largest_force = 0;
+  for (std::size_t i = 0; i < table.node.size(); ++i) {
+    if (table.displacement[i].norm() > table.displacement[furthest].norm()) furthest = i;
+    largest_force = std::max(largest_force, table.force[i].norm());
+  }
+  fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n",
+             arguments.method, table.node.size(), table.displacement[furthest].norm(), table.node[furthest],
+             largest_force);
+}
+
+void solve(const SolveArguments& arguments) {
+  if (arguments.holds.empty() && arguments.touches.empty())
+    throw std::runtime_error("nothing is held: give --hold or --touch");
+  const Scene scene = load_scene(arguments.scene);
+  const Body& body = choose_body(scene, arguments.body);
+  const auto table = arguments.method == "direct" ? solve_by_direct(body, arguments)
+                                                  : solve_by_tensors(scene, body, arguments);
+  if (!arguments.csv.empty()) write_csv(table, arguments.csv);
+  if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
+  summarise(table, arguments);
+}
+
+}  // namespace
+
+void add_solve_command(CLI::App& app) {
+  auto* command = app.add_subcommand("solve", "Compute one static state of a body, offline");
+  auto arguments = std::make_shared<SolveArguments>();
+  command->add_option("SCENE", arguments->scene, "scene file")->required();
+  command->add_option("--body", arguments->body, "name of the body; needed where the scene has several");
+  command
+      ->add_option(
+          "--hold", arguments->holds,
+          "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
+          "component leaves that axis free")
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--touch", arguments->touches,
+          "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--method", arguments->method,
+                   "tensors: through the archive; direct: the full system afresh")
+      ->check(CLI::IsMember({"tensors", "direct"}))
+      ->capture_default_str();
+  command->add_option(
+      "--csv", arguments->csv,
+      "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
+      "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
+  command->add_option("--vtu", arguments->vtu, "write a file for ParaView");
+  command->callback([arguments] { solve(*arguments); });
+}
+
+}  // namespace palpate
