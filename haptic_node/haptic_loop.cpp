@@ -15,7 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t ring_slots = 128;
+constexpr std::size_t ring_slots = 256;  // a quarter of a second in which the publisher may be kept from running
+constexpr int loop_priority = 80, publisher_priority = 40;
 
 }  // namespace
 
@@ -51,7 +52,7 @@ const LoopReport& HapticLoop::run(double seconds) {
       while (!stop.stop_requested()) bus_devices_.pump();
     });
   prefault_stack();
-  for (const std::string& said : request_realtime({}).sentences) spdlog::info("{}", said);
+  for (const std::string& said : request_realtime({.priority = loop_priority}).sentences) spdlog::info("{}", said);
 
   const std::int64_t begin = now_ns();
   PeriodicTimer timer(1 / haptic_.dt());
@@ -115,6 +116,7 @@ void HapticLoop::checkpoint() {
 }
 
 void HapticLoop::publish_loop() {
+  request_realtime({.priority = publisher_priority, .lock_memory = false});
   while (!over_.load()) {
     (void)wake_.try_acquire_for(20ms);
     drain();

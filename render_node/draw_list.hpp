@@ -12,7 +12,7 @@
 /// What one picture shows, as plain values without any OpenGL. Lengths in metres, world frame.
 namespace palpate {
 
-/// How a mesh reflects light.
+/// How a mesh reflects light; of both only the outer side is drawn. Bone: bones and the lining of a cavity.
 enum class Finish { tissue, bone };
 
 /// A triangle mesh to draw. The spans belong to the caller and must live until Renderer::draw returns.

@@ -132,7 +132,7 @@ void Renderer::Impl::draw_tissue(const Frame& frame) {
 
 /// What stands still while the camera does is drawn once and copied into every frame.
 void Renderer::Impl::draw_backdrop(const Frame& frame) {
-  gl.Disable(GL_CULL_FACE);
+  gl.Enable(GL_CULL_FACE);
   gl.UseProgram(bone);
   const Eigen::Matrix4f identity = Eigen::Matrix4f::Identity();
   gl.ProgramUniformMatrix4fv(bone, 0, 1, GL_FALSE, identity.data());
@@ -142,6 +142,7 @@ void Renderer::Impl::draw_backdrop(const Frame& frame) {
     gl.ProgramUniform4f(bone, 4, float(c[0]), float(c[1]), float(c[2]), 1);
     upload(mesh).draw();
   }
+  gl.Disable(GL_CULL_FACE);
   gl.UseProgram(cavity);
   gl.BindVertexArray(empty_array);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);

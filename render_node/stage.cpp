@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "common/mesh/normals.hpp"
-#include "render_node/overlay.hpp"
+#include "render_node/backdrop.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t most_triangles = 16000;  // of one body after refinement: what 60 frames a second allow
-constexpr int backdrop_id = -1;
+constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54},
+    lining_colour{0.36, 0.12, 0.085};  // linear RGB
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3f> out;
@@ -47,10 +48,9 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     if (render_.colour == "displacement") body.displacement.assign(body.rest.size(), 0.0f);
     bodies_.push_back(std::move(body));
   }
-  backdrop_.position = to_float(backdrop.nodes);
-  backdrop_.triangles = backdrop.triangles;
-  backdrop_.normal.resize(backdrop_.position.size());
-  vertex_normals(backdrop_.position, backdrop_.triangles, backdrop_.normal);
+  const Backdrop sorted = sort_backdrop(backdrop);
+  add_backdrop(sorted.bones, bone_colour);
+  add_backdrop(sorted.lining, lining_colour);
   for (const Tool& tool : scene.tools) {
     Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
     instrument.view.tip_radius = tool.radius;
@@ -58,6 +58,14 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     instrument.view.shaft_length = tool.shaft_length;
     tools_.push_back(instrument);
   }
+}
+
+void Stage::add_backdrop(const TriangleMesh& mesh, const std::array<double, 3>& colour) {
+  if (mesh.triangles.empty()) return;
+  Rigid part{to_float(mesh.nodes), {}, mesh.triangles, colour};
+  part.normal.resize(part.position.size());
+  vertex_normals(part.position, part.triangles, part.normal);
+  backdrop_.push_back(std::move(part));
 }
 
 void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position,
@@ -102,16 +110,18 @@ Frame Stage::frame() const {
                             .scalar = body.displacement,
                             .triangles = body.refinement.triangles()});
   }
-  if (!backdrop_.triangles.empty())
-    frame.meshes.push_back({.id = backdrop_id,
+  for (std::size_t i = 0; i < backdrop_.size(); ++i) {
+    const Rigid& part = backdrop_[i];
+    frame.meshes.push_back({.id = -1 - static_cast<int>(i),
                             .finish = Finish::bone,
-                            .colour = {0.80, 0.68, 0.54},
-                            .rest = backdrop_.position,
-                            .position = backdrop_.position,
-                            .normal = backdrop_.normal,
+                            .colour = part.colour,
+                            .rest = part.position,
+                            .position = part.position,
+                            .normal = part.normal,
                             .scalar = {},
-                            .triangles = backdrop_.triangles,
+                            .triangles = part.triangles,
                             .moving = false});
+  }
   for (const Instrument& tool : tools_)
     if (tool.seen) frame.instruments.push_back(tool.view);
   if (render_.colour == "displacement") frame.legend = Legend{"displacement", legend_max_};

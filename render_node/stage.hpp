@@ -29,6 +29,8 @@ class Stage {
   Frame frame() const;
 
  private:
+  void add_backdrop(const TriangleMesh& mesh, const std::array<double, 3>& colour);
+
   struct Soft {
     Refinement refinement;
     std::size_t coarse;
@@ -38,6 +40,7 @@ class Stage {
   struct Rigid {
     std::vector<Eigen::Vector3f> position, normal;
     std::vector<std::array<int, 3>> triangles;
+    std::array<double, 3> colour;
   };
   struct Instrument {
     Trocar trocar;
@@ -47,7 +50,7 @@ class Stage {
 
   Render render_;
   std::vector<Soft> bodies_;
-  Rigid backdrop_;
+  std::vector<Rigid> backdrop_;
   std::vector<Instrument> tools_;
   double legend_max_ = 1e-3;  ///< [m] grows with what is seen
   Overlay overlay_;

@@ -70,6 +70,20 @@ void print_nonlinear(const Body& body) {
       law.radial_curve().end());
 }
 
+void print_archive(const Scene& scene, const Body& body) {
+  const auto file = archive_path(scene, body);
+  if (!std::filesystem::exists(file)) {
+    fmt::print("  archive: not computed yet, `palpate precompute` does it\n");
+    return;
+  }
+  try {
+    find_archive(scene, body, ArchivePart::header);
+    fmt::print("  archive: {} ({})\n", file.string(), human(std::filesystem::file_size(file)));
+  } catch (const std::exception& error) {
+    fmt::print("  archive: refused and to be rebuilt, because {}\n", error.what());
+  }
+}
+
 /// Loads and validates a body's mesh and everything that refers to it.
 SurfaceMap check_body(const Scene& scene, const Body& body) {
   const TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
@@ -84,13 +98,7 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   print_material(body);
   print_nonlinear(body);
 
-  const auto archive = archive_path(scene, body);
-  if (!std::filesystem::exists(archive)) {
-    fmt::print("  archive: not computed yet, `palpate precompute` does it\n");
-  } else {
-    find_archive(scene, body, ArchivePart::header);
-    fmt::print("  archive: {} ({})\n", archive.string(), human(std::filesystem::file_size(archive)));
-  }
+  print_archive(scene, body);
   for (const MemoryPart& part : body_memory(scene, body, surface, materials.of_element.size()))
     fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
   return surface;

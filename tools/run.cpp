@@ -36,10 +36,10 @@ class Nodes {
  public:
   void start(const std::string& role, const std::vector<std::string>& arguments) { nodes_.push_back({ChildProcess(role, arguments)}); }
 
-  /// Reads what the nodes print: "ready", and at the end one JSON line each. Throws if a node has failed.
+  /// Reads what the nodes print: "ready", and at the end one JSON line each.
   void read() {
     for (Node& n : nodes_) {
-      const bool over = !n.process.running();
+      n.process.running();
       for (const std::string& line : n.process.take_lines()) {
         if (line == "ready")
           n.ready = true;
@@ -48,15 +48,21 @@ class Nodes {
         else
           fmt::print("{}\n", line);
       }
-      if (over && n.process.status() != 0)
-        throw std::runtime_error(fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
     }
+  }
+
+  /// Throws if a node has failed.
+  void check() {
+    for (Node& n : nodes_)
+      if (!n.process.running() && n.process.status() != 0)
+        throw std::runtime_error(fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
   }
 
   void wait_ready() {
     const auto limit = Clock::now() + 60s;
     for (bool all = false; !all && !shutdown_requested();) {
       read();
+      check();
       all = true;
       for (const Node& n : nodes_) all &= n.ready;
       if (Clock::now() > limit) throw std::runtime_error("a node did not become ready within a minute");
@@ -85,6 +91,14 @@ class Nodes {
   std::vector<Node> nodes_;
 };
 
+/// The recorder knows no scene, so the scene's network is passed on.
+std::vector<std::string> recorder_command(const Scene& scene, const std::string& log) {
+  std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log};
+  if (!scene.network.interface.empty()) command.insert(command.end(), {"--interface", scene.network.interface});
+  for (const std::string& peer : scene.network.peers) command.insert(command.end(), {"--peer", peer});
+  return command;
+}
+
 void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
   const std::string domain = std::to_string(o.domain >= 0 ? o.domain : scene.network.domain);
   const auto with = [&](std::vector<std::string> arguments) {
@@ -92,7 +106,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
     return arguments;
   };
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
-  if (!log.empty()) nodes.start("recorder", with({sibling_program("palpate"), "record", "-o", log}));
+  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log)));
   const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
   if (drawn && o.processes == 3) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (drawn) {
@@ -136,6 +150,7 @@ void run(const Options& o) {
   start_nodes(nodes, scene, o);
   while (!shutdown_requested() && nodes.last_runs()) {
     nodes.read();
+    nodes.check();
     std::this_thread::sleep_for(20ms);
   }
   nodes.stop();
@@ -146,10 +161,12 @@ void run(const Options& o) {
   summary["seconds"] = std::chrono::duration<double>(Clock::now() - begin).count();
   summary["version"] = PALPATE_VERSION;
   print_summary(summary);
-  if (o.summary.empty()) return;
-  std::ofstream file(o.summary);
-  file << summary.dump(2) << "\n";
-  if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot write the summary", o.summary));
+  if (!o.summary.empty()) {
+    std::ofstream file(o.summary);
+    file << summary.dump(2) << "\n";
+    if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot write the summary", o.summary));
+  }
+  nodes.check();
 }
 
 }  // namespace

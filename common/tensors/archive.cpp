@@ -138,11 +138,11 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
 
 }  // namespace
 
-std::filesystem::path archive_path(const std::filesystem::path& scene_file, const std::string& body,
+std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
                                    const std::string& content_hash) {
   const char* cache = std::getenv("PALPATE_CACHE");
   const auto folder = cache && *cache ? std::filesystem::path(cache)
-                                      : std::filesystem::absolute(scene_file).parent_path() / ".palpate";
+                                      : std::filesystem::absolute(mesh_file).parent_path() / ".palpate";
   return folder / (body + "-" + content_hash + ".h5");
 }
 

@@ -51,9 +51,9 @@ struct Archive {
 /// Changes with every change of the layout or of the meaning of a stored number.
 constexpr int kArchiveFormat = 1;
 
-/// Where the archive of a body lives: SCENE_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
+/// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.
-std::filesystem::path archive_path(const std::filesystem::path& scene_file, const std::string& body,
+std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
                                    const std::string& content_hash);
 
 /// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either

@@ -31,7 +31,7 @@ std::optional<TetMesh> load_specimen(const Body& body) {
 
 ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress) {
   const std::string hash = content_hash(body);
-  ArchiveState state{archive_path(scene.file, body.name, hash), false, {}, 0};
+  ArchiveState state{archive_path(body.mesh, body.name, hash), false, {}, 0};
   if (std::filesystem::exists(state.file)) {
     state.refused = refusal(state.file, hash);
     state.up_to_date = state.refused.empty();

@@ -1,4 +1,4 @@
-// Bone under a thin moist film, or any other rigid backdrop.
+// Bone under a thin moist film, and the lining of the cavity.
 in vec3 world;
 in vec3 facing;
 in vec3 sticky;
@@ -7,7 +7,6 @@ out vec4 pixel;
 void main() {
   Lit lit = light_at(world);
   vec3 n0 = normalize(facing);
-  n0 *= sign(dot(n0, lit.to_eye));
   float stain = noise(sticky / 0.023);
   float vein = noise(sticky / 0.009 + 3.0 * stain);
   float fibre = noise(sticky / vec3(0.0045, 0.003, 0.003) + stain) - 0.5;

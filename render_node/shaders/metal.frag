@@ -26,7 +26,7 @@ void main() {
   vec3 room = vec3(0.13, 0.050, 0.040) * ahead * (0.4 + 0.9 * noise(mirror * 3.1)) + vec3(0.012, 0.008, 0.008);
   room += vec3(0.50, 0.50, 0.50) * glow * glow;
   float edge = fifth(1.0 - nv);
-  vec3 steel = (room + vec3(0.07, 0.07, 0.075) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
+  vec3 steel = (room + vec3(0.15, 0.15, 0.155) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
   vec3 sleeve = vec3(0.010) * nl + vec3(0.10) * pow(nh, 24.0) + room * (0.02 + 0.3 * edge);
   pixel = vec4(display(mix(sleeve, steel, bare) * min(lit.strength, 1.15)), 1.0);
 }

@@ -2,6 +2,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
+#include "render_node/backdrop.hpp"
 #include "render_node/render_loop.hpp"
 #include "tests/render/scenery.hpp"
 
@@ -148,6 +149,20 @@ TEST(Stage, SceneWithoutCameraSeesAllBodies) {
   Frame nothing;
   nothing.camera = stage.frame().camera;
   EXPECT_GT(difference(picture(stage.frame()), picture(nothing)), 0.05);
+}
+
+TEST(Backdrop, OpenSheetsAreLiningAndClosedPartsAreBone) {
+  TriangleMesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const std::size_t closed = mesh.triangles.size();
+  const int first = static_cast<int>(mesh.nodes.size());
+  for (const double x : {0.0, 1.0}) mesh.nodes.insert(mesh.nodes.end(), {{x, 0, 0}, {x, 1, 0}});
+  mesh.triangles.insert(mesh.triangles.end(), {{first, first + 2, first + 3}, {first, first + 3, first + 1}});
+  const Backdrop sorted = sort_backdrop(mesh);
+  EXPECT_EQ(sorted.bones.triangles.size(), closed);
+  ASSERT_EQ(sorted.lining.triangles.size(), 2u);
+  EXPECT_EQ(sorted.lining.triangles[0][0], first);
 }
 
 TEST(RenderLoop, DrawsAtTheVisualRateAndFilmsInRealTime) {

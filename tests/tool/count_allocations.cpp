@@ -7,12 +7,18 @@ namespace {
 thread_local long count = 0;
 }
 
-long palpate::allocations() { return count; }
+long palpate::allocations() {
+  return count;
+}
 
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size ? size : 1)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
