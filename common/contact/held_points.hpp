@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/contact/anchor.hpp"
+#include "common/kernels/kernels.hpp"
 #include "common/tensors/compliance.hpp"
 
 namespace palpate {
@@ -65,11 +66,11 @@ class HeldPoints {
   double typical_;                ///< [m/N] mean diagonal compliance of a touchable node
   std::vector<Anchor> anchors_;
   std::vector<double> a_;         ///< A, column-major, both triangles
-  std::vector<double> factor_;
+  kernels::Buffer factor_;
   std::vector<int> full_;         ///< fully held points in the order of the factor
   std::vector<int> raised_;       ///< pivots raised when full_[i] was appended
   std::vector<int> normals_;      ///< points held along their normal, in the order of the factor
-  std::vector<double> rows_, rhs_, given_, scratch_;
+  kernels::Buffer rows_, rhs_, given_, scratch_;
 };
 
 }  // namespace palpate
