@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+constexpr double least_facing = 0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
 constexpr double margin_share = 0.1;  // of a sphere's radius: what is this near is watched before it is touched
 
 double mean_edge(const SurfaceMap& map) {
@@ -227,7 +228,7 @@ void TouchBody::add_face(const Eigen::Vector3d& centre, double radius, double wi
   int nearest = -1;
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();
   for (int t : near) {
-    if (mean_edge_[t] <= radius) continue;
+    if (mean_edge_[t] <= radius || taken_by_other(tool, sample, surface_.triangle(t))) continue;
     const Triangle corners = surface_.corners(t);
     const ClosestPoint p = closest_point(centre, corners);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
@@ -243,6 +244,13 @@ void TouchBody::add_face(const Eigen::Vector3d& centre, double radius, double wi
   law_.add(c);
 }
 
+// A triangle cannot follow several spheres of a shaft at once: the first to touch it has it.
+bool TouchBody::taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const {
+  for (const TouchContact& c : law_.contacts())
+    if (c.tool == tool && c.sample != sample && c.face && c.anchor.nodes == nodes) return true;
+  return false;
+}
+
 // A sliding contact keeps to the nearest point of its triangle and goes over to a neighbour only across the border
 // that it has reached: in the dent that it makes, other triangles may be nearer.
 void TouchBody::follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near) {
@@ -255,7 +263,7 @@ void TouchBody::follow(int contact, const Eigen::Vector3d& centre, std::span<con
     const auto& nodes = surface_.triangle(t);
     bool across = own.weights.minCoeff() <= 0 && nodes != now.nodes;
     for (int v = 0; v < 3; ++v) across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
-    if (!across) continue;
+    if (!across || taken_by_other(law_.contacts()[contact].tool, law_.contacts()[contact].sample, nodes)) continue;
     const ClosestPoint p = closest_point(centre, surface_.corners(t));
     if (p.squared_distance >= least) continue;
     least = p.squared_distance;
@@ -266,14 +274,24 @@ void TouchBody::follow(int contact, const Eigen::Vector3d& centre, std::span<con
 
 // ---- hold ------------------------------------------------------------------------------------------------------
 
+// Into the tissue, by the deformed surface's own normal at the anchor: the side from which a tool may touch it.
+Eigen::Vector3d TouchBody::inward(const TouchContact& c) const {
+  if (!c.face) return -surface_.vertex_normal(c.anchor.nodes[0]);
+  const auto& x = surface_.positions();
+  const auto& n = c.anchor.nodes;
+  return -(x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]).normalized();
+}
+
 void TouchBody::aim(TouchContact& c, const MovingTool& moving) const {
-  const Eigen::Vector3d centre = moving.centre(moving.now, c.sample);
+  const Eigen::Vector3d centre = moving.centre(moving.now, c.sample), into = inward(c);
   const double radius = moving.samples[c.sample].radius;
   c.target = moving.now * c.offset;
-  if (c.touch == Touch::sticking) {
-    c.normal = (c.target - centre).normalized();
+  const Eigen::Vector3d outward_of_tool = (c.target - centre).normalized();
+  if (c.touch == Touch::sticking && outward_of_tool.dot(into) > least_facing) {
+    c.normal = outward_of_tool;
   } else {
-    c.normal = direction_to(anchor_position(c.anchor, surface_.positions()), centre, radius, c.normal);
+    if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
+    c.normal = direction_to(anchor_position(c.anchor, surface_.positions()), centre, radius, into);
     if (c.touch == Touch::open) c.target = centre + radius * c.normal;
   }
   c.plane = c.normal.dot(centre) + radius;

@@ -65,7 +65,9 @@ class TouchBody {
   bool add_crossing(const MovingTool& moving, int tool, int sample, std::span<const int> near);
   void add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
   void add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
+  bool taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const;
   void follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near);
+  Eigen::Vector3d inward(const TouchContact& contact) const;
   void aim(TouchContact& contact, const MovingTool& moving) const;
   void settle(std::span<const MovingTool> tools);
   double reach(const MovingTool& moving, int sample) const;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double gap_tolerance = 1e-9;        // [m] deeper than this an open contact closes
 constexpr double force_tolerance = 1e-9;      // share of the largest contact force that counts as tension
+constexpr int max_sweeps = 40;                // of relaxation
+constexpr double sweep_tolerance = 1e-4;      // change of a force in a sweep, as a share of the largest, that ends it
 constexpr double friction_lag = 1e-3;         // share of the normal force by which lagged friction may be stale
 
 using ConstVec = Eigen::Map<const Eigen::Vector3d>;
@@ -193,24 +195,58 @@ bool ContactLaw::change_states(bool one_only, double smallest_force) {
   return changed;
 }
 
-// What the bound on passes left violated: no tension, no friction beyond the cone.
-void ContactLaw::clamp() {
+// Block Gauss-Seidel over the contacts' points with projection onto the friction cone, from the forces at hand: for
+// what the active set leaves open, such as many rubbing contacts that wedge one another. It ends within its bound, and
+// every force it leaves lies in its cone.
+void ContactLaw::relax() {
+  double change = 1, largest = 0;
+  for (int sweep = 0; sweep < max_sweeps && change > sweep_tolerance * largest; ++sweep) {
+    change = largest = 0;
+    int p = 0;
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      for (int k = 0; k < expansions_[c].points; ++k, ++p) {
+        const double before_change = relax_point(contacts_[c], expansions_[c].gain[k], p);
+        change = std::max(change, before_change);
+        largest = std::max(largest, ConstVec(forces_.data() + 3 * p).norm());
+      }
+  }
+  held_.displacements(forces_.data(), displacements_.data());
   int p = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     TouchContact& contact = contacts_[c];
+    contact.force.setZero();
+    for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
+    contact.position = anchor_position(contact.anchor, rest_) + displacement(static_cast<int>(c));
     const double pressing = contact.force.dot(contact.normal);
     const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;
-    const double allowed = friction_ * std::max(0.0, pressing);
-    const double size = tangential.norm();
-    Eigen::Vector3d kept = std::max(0.0, pressing) * contact.normal;
-    if (size > 0) kept += tangential * std::min(1.0, allowed / size);
-    const bool good = pressing >= 0 && size <= allowed * (1 + 1e-6);
-    double gains = 0;
-    for (double g : expansions_[c].gain) gains += g * g;
-    for (int k = 0; k < expansions_[c].points; ++k, ++p)
-      if (!good) Eigen::Map<Eigen::Vector3d>(forces_.data() + 3 * p) = expansions_[c].gain[k] / gains * kept;
-    if (!good) contact.force = kept;
+    const bool slides = tangential.norm() >= friction_ * pressing * (1 - 1e-6);
+    contact.touch = pressing <= 0 ? Touch::open : slides ? Touch::sliding : Touch::sticking;
+    contact.slip = slides && !tangential.isZero(0) ? tangential.normalized() : Eigen::Vector3d::Zero();
   }
+}
+
+// First the normal force against the gap, then friction against the slip. Returns the size of the change [N].
+double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) {
+  const Eigen::Vector3d& n = contact.normal;
+  const Eigen::Matrix3d own = held_.block(p, p);
+  const Eigen::Vector3d rest = anchor_position(contact.anchor, rest_);
+  Eigen::Map<Eigen::Vector3d> force(forces_.data() + 3 * p);
+  const Eigen::Vector3d before = force;
+  const double softest = held_.floor_of(own.trace() / 3);
+
+  const Eigen::Vector3d u = held_.displacement(p, forces_.data());
+  const double gap_left = gain * (contact.plane - n.dot(rest)) - n.dot(u);
+  const double pressing = std::max(0.0, force.dot(n) + gap_left / std::max(n.dot(own * n), softest));
+  const Eigen::Vector3d normal_change = (pressing - force.dot(n)) * n;
+  force += normal_change;
+
+  Eigen::Vector3d slip = gain * (contact.target - rest) - u - own * normal_change;
+  slip -= slip.dot(n) * n;
+  Eigen::Vector3d tangential = force - pressing * n + slip / std::max(own.trace(), softest);
+  const double allowed = friction_ * pressing, size = tangential.norm();
+  if (size > allowed) tangential *= allowed / size;
+  force = pressing * n + tangential;
+  return (force - before).norm();
 }
 
 LawOutcome ContactLaw::solve() {
@@ -218,7 +254,8 @@ LawOutcome ContactLaw::solve() {
   if (contacts_.empty()) return outcome;
   std::fill(restuck_.begin(), restuck_.end(), false);
   bool changed = true;
-  while (changed && outcome.passes < max_passes) {
+  const int most_passes = friction_ > 0 ? max_passes / 2 : max_passes;
+  while (changed && outcome.passes < most_passes) {
     outcome.raised = solve_held();
     ++outcome.passes;
     double largest = 0;
@@ -231,14 +268,11 @@ LawOutcome ContactLaw::solve() {
     }
     // All at once while that makes quick progress, then one at a time in the order of the list, which cannot cycle
     // for a fixed set of normals (least-index pivoting of a positive definite complementarity problem).
-    changed = change_states(outcome.passes > max_passes / 2, force_tolerance * largest);
+    changed = change_states(outcome.passes > most_passes / 2, force_tolerance * largest);
     changed |= worst_lag_ > 0;
   }
   outcome.converged = !changed;
-  if (changed) {
-    outcome.raised = solve_held();
-    clamp();
-  }
+  if (changed) relax();
   return outcome;
 }
 

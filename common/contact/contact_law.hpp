@@ -36,13 +36,14 @@ struct TouchContact {
 struct LawOutcome {
   int passes = 0;
   int raised = 0;         ///< pivots raised: contacts that nearly depend on one another were softened
-  bool converged = true;  ///< false: the bound on passes was met and the remaining violations were clamped
+  bool converged = true;  ///< false: the active set met its bound, and relaxation from there gave the forces
   bool finite = true;     ///< false: all forces were set to zero
 };
 
 /// Unilateral contact with Coulomb friction between tools and one body:
 /// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal.
-/// Solved by an active set that starts from the last step's and changes in a fixed order, at most max_passes times.
+/// Solved by an active set that starts from the last step's and changes in a fixed order, at most max_passes times;
+/// where that does not settle, a bounded relaxation goes on from there.
 class ContactLaw {
  public:
   static constexpr int max_passes = 32;
@@ -98,7 +99,8 @@ class ContactLaw {
   Eigen::Vector3d displacement(int contact) const;
   bool change_states(bool one_only, double smallest_force);
   bool change_state(int contact, double smallest_force);
-  void clamp();
+  void relax();
+  double relax_point(const TouchContact& contact, double gain, int point);
 
   std::span<const Eigen::Vector3d> rest_;
   Rule rule_;

@@ -101,6 +101,17 @@ void HeldPoints::forget_factor() {
   raised_.clear();
 }
 
+// A is symmetric, so that a point's rows are its columns, which lie together.
+Eigen::Vector3d HeldPoints::displacement(int point, const double* forces) const {
+  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  const int n = 3 * size();
+  for (int r = 0; r < 3; ++r) {
+    const double* a = column(3 * point + r);
+    for (int c = 0; c < n; ++c) u[r] += a[c] * forces[c];
+  }
+  return u;
+}
+
 void HeldPoints::displacements(const double* forces, double* displacement) const {
   const int n = 3 * size();
   std::fill(displacement, displacement + n, 0.0);

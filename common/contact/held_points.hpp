@@ -42,6 +42,12 @@ class HeldPoints {
   /// Forgets the factor, so that the next solve() depends on nothing but the points and the arguments.
   void forget_factor();
 
+  /// Compliance [m/N] of point i to forces at point j.
+  Eigen::Matrix3d block(int i, int j) const;
+  /// The compliance below which a pivot is raised, for a point whose own compliance is given [m/N].
+  double floor_of(double own) const;
+  /// Displacement [m] of one point under forces [N] at all points (3n).
+  Eigen::Vector3d displacement(int point, const double* forces) const;
   /// Displacements [m] of all points (3n) under forces [N] at all points (3n).
   void displacements(const double* forces, double* displacement) const;
 
@@ -54,11 +60,9 @@ class HeldPoints {
  private:
   double* column(int dof) { return a_.data() + stride_ * dof; }
   const double* column(int dof) const { return a_.data() + stride_ * dof; }
-  Eigen::Matrix3d block(int i, int j) const;
   void keep_full(std::span<const Hold> hold);
   int append_full(int point);
   int append_normal(int point, std::span<const Eigen::Vector3d> normal);
-  double floor_of(double own) const;
 
   const Compliance<double>& compliance_;
   int capacity_;
