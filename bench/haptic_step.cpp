@@ -50,23 +50,23 @@ int held_nodes(const HapticStep& haptic) {
   return held;
 }
 
-/// A ball of 0.2 m presses the liver from above until 64 nodes or more are held, then trembles there.
+/// A ball of 1 m presses the liver from above until 64 nodes or more are held, then trembles there.
 void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick) {
   Tool& tool = scene.tools[0];
-  tool.radius = 0.2;
-  tool.shaft_length = 0.2;
-  tool.pivot = {0, 0, 0.6};
+  tool.radius = 1.0;
+  tool.shaft_length = 1.0;
+  tool.pivot = {0, 0, 1.5};
   tool.axis = -Eigen::Vector3d::UnitZ();
   tool.up = Eigen::Vector3d::UnitY();
   scene.tools.resize(1);
-  scene.contact.friction = 1.0;
+  scene.contact.friction = 10;  // all stick, so that all three displacements of every node are held
   HapticStep haptic(scene, archives);
   ToolDofs dofs;
-  dofs.depth = 0.2;
+  dofs.depth = 0.4;
   haptic.start(std::array{dofs});
   int steps = 0;
-  while (held_nodes(haptic) < 64 && ++steps < 20000) {
-    dofs.depth += 1e-5;
+  while (held_nodes(haptic) < 64 && ++steps < 400000) {
+    dofs.depth += 2e-6;
     haptic.step(std::array{dofs});
   }
   const int held = held_nodes(haptic);

@@ -11,8 +11,9 @@
 namespace palpate {
 namespace {
 
+constexpr int whole_columns_from = 6;   // part of the touchable nodes, one in so many, from which whole columns are read
 constexpr double least_facing = 0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
-constexpr double margin_share = 0.1;  // of a sphere's radius: what is this near is watched before it is touched
+constexpr double margin_share = 0.1;  // of a sphere's radius or a mean edge: what is this near is watched before it is touched
 
 double mean_edge(const SurfaceMap& map) {
   double sum = 0;
@@ -58,6 +59,7 @@ TouchBody::TouchBody(const Archive& archive, const Scene& scene, int body)
       compliance_(archive, Compliance<double>::Rows::touchable),
       surface_(map_, bucket_size(map_, scene.contact)),
       law_(compliance_, map_.position, rule_of(scene.contact), scene.contact.friction, max_contacts),
+      body_edge_(mean_edge(map_)),
       vertex_stamp_(map_.size(), 0) {
   const Body& b = scene.bodies[body];
   for (const auto& t : map_.triangles) {
@@ -70,19 +72,31 @@ TouchBody::TouchBody(const Archive& archive, const Scene& scene, int body)
   coefficients_.reserve(27 * max_contacts);
   displacement_.reserve(3 * map_.size());
   of_tool_.reserve(3 * map_.size());
+  whole_.assign(compliance_.stride(), 0.0);
+  std::size_t spheres = 0;
+  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
+  near_.reserve(spheres * map_.triangles.size());
+  near_end_.reserve(spheres);
 }
+
+double TouchBody::margin(double radius) const { return margin_share * std::min(radius, body_edge_); }
 
 double TouchBody::reach(const MovingTool& moving, int sample) const {
   const double motion = (moving.centre(moving.now, sample) - moving.centre(moving.before, sample)).norm();
-  return (1 + margin_share) * moving.samples[sample].radius + motion;
+  return moving.samples[sample].radius + margin(moving.samples[sample].radius) + motion;
 }
 
 // ---- collide ---------------------------------------------------------------------------------------------------
 
 void TouchBody::collide(std::span<const MovingTool> tools) {
   update_surface(tools);
+  std::size_t begin = 0, sphere = 0;
   for (int t = 0; t < static_cast<int>(tools.size()); ++t)
-    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) collide_sample(tools, t, s);
+    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) {
+      const std::size_t end = near_end_[sphere++];
+      collide_sample(tools, t, s, std::span(near_).subspan(begin, end - begin));
+      begin = end;
+    }
 }
 
 void TouchBody::update_surface(std::span<const MovingTool> tools) {
@@ -90,11 +104,14 @@ void TouchBody::update_surface(std::span<const MovingTool> tools) {
   for (const TouchContact& c : law_.contacts())
     for (int v = 0; v < 3; ++v)
       if (c.anchor.weights[v] != 0) surface_.mark_node(c.anchor.nodes[v]);
+  near_.clear();
+  near_end_.clear();
   for (const MovingTool& tool : tools)
     for (int s = 0; s < static_cast<int>(tool.samples.size()); ++s) {
-      const Eigen::Vector3d a = tool.centre(tool.before, s), b = tool.centre(tool.now, s);
-      const Eigen::Vector3d grown = Eigen::Vector3d::Constant(2 * reach(tool, s));
-      surface_.mark_triangles(surface_.find(a.cwiseMin(b) - grown, a.cwiseMax(b) + grown));
+      const std::span<const int> found = surface_.find(tool.centre(tool.before, s), tool.centre(tool.now, s), reach(tool, s) + body_edge_);
+      surface_.mark_triangles(found);
+      near_.insert(near_.end(), found.begin(), found.end());
+      near_end_.push_back(near_.size());
     }
   displacement_.assign(3 * surface_.marked().size(), 0.0);
   if (!nonlinear_) {
@@ -130,9 +147,17 @@ void TouchBody::superpose(int tool, std::vector<double>& displacement) {
       coefficients_.push_back(f[axis]);
     }
   });
-  displacement.resize(3 * surface_.marked().size());
-  kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()), surface_.marked().data(),
-                                    static_cast<int>(surface_.marked().size()), displacement.data());
+  const std::span<const int> marked = surface_.marked();
+  const int count = static_cast<int>(columns_.size());
+  displacement.resize(3 * marked.size());
+  // Reading whole columns beats picking from them once a good part of the nodes is asked for.
+  if (marked.size() * whole_columns_from < static_cast<std::size_t>(map_.touchable)) {
+    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(), static_cast<int>(marked.size()),
+                                      displacement.data());
+    return;
+  }
+  kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map_.touchable, whole_.data());
+  for (std::size_t i = 0; i < marked.size(); ++i) std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
 }
 
 const TouchContact* TouchBody::held_by(int tool, int sample) const {
@@ -141,26 +166,23 @@ const TouchContact* TouchBody::held_by(int tool, int sample) const {
   return nullptr;
 }
 
-void TouchBody::collide_sample(std::span<const MovingTool> tools, int tool, int sample) {
+void TouchBody::collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near) {
   const MovingTool& moving = tools[tool];
-  const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
+  const Eigen::Vector3d now = moving.centre(moving.now, sample);
   const double within = reach(moving, sample);
-  const Eigen::Vector3d grown = Eigen::Vector3d::Constant(within);
-  const std::span<const int> near = surface_.find(before.cwiseMin(now) - grown, before.cwiseMax(now) + grown);
-  if (near.empty()) return;
-  if (add_crossing(moving, tool, sample, near)) return;
+  if (add_crossing(moving, tool, sample) || near.empty()) return;
   const double radius = moving.samples[sample].radius;
   add_vertices(now, radius, within, tool, sample, near);
   add_face(now, radius, within, tool, sample, near);
 }
 
 // The sphere's centre has passed through the surface within this step: the contact is made where it passed.
-bool TouchBody::add_crossing(const MovingTool& moving, int tool, int sample, std::span<const int> near) {
+bool TouchBody::add_crossing(const MovingTool& moving, int tool, int sample) {
   const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
   double earliest = std::numeric_limits<double>::infinity();
   int struck = -1;
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();
-  for (int t : near) {
+  for (int t : surface_.find(before, now, 0)) {
     const auto hit = sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t));
     if (!hit || !hit->from_outside || hit->time >= earliest) continue;
     earliest = hit->time;
@@ -312,7 +334,7 @@ void TouchBody::settle(std::span<const MovingTool> tools) {
     const double radius = moving.samples[c.sample].radius;
     const Eigen::Vector3d centre = moving.centre(moving.now, c.sample);
     if (c.touch == Touch::open) {
-      const bool gone = (anchor_position(c.anchor, surface_.positions()) - centre).norm() > reach(moving, c.sample) + margin_share * radius;
+      const bool gone = (anchor_position(c.anchor, surface_.positions()) - centre).norm() > reach(moving, c.sample) + margin(radius);
       if (c.face || gone) law_.remove(i);
       continue;
     }

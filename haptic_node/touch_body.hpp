@@ -61,8 +61,8 @@ class TouchBody {
  private:
   void update_surface(std::span<const MovingTool> tools);
   void superpose(int tool, std::vector<double>& displacement);
-  void collide_sample(std::span<const MovingTool> tools, int tool, int sample);
-  bool add_crossing(const MovingTool& moving, int tool, int sample, std::span<const int> near);
+  void collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near);
+  bool add_crossing(const MovingTool& moving, int tool, int sample);
   void add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
   void add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
   bool taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const;
@@ -70,6 +70,7 @@ class TouchBody {
   Eigen::Vector3d inward(const TouchContact& contact) const;
   void aim(TouchContact& contact, const MovingTool& moving) const;
   void settle(std::span<const MovingTool> tools);
+  double margin(double radius) const;
   double reach(const MovingTool& moving, int sample) const;
   const TouchContact* held_by(int tool, int sample) const;
   Eigen::Vector3d press_of(int tool) const;
@@ -79,11 +80,14 @@ class TouchBody {
   TouchSurface surface_;
   ContactLaw law_;
   std::optional<QuasiNonlinear> nonlinear_;
+  double body_edge_;  ///< [m] mean edge of the surface at rest
   std::vector<double> mean_edge_;  ///< [m] per triangle, at rest
   std::vector<int> vertex_stamp_;
   int vertex_clock_ = 0;
+  std::vector<int> near_;              ///< triangles near each sphere, sphere by sphere
+  std::vector<std::size_t> near_end_;  ///< where each sphere's end in near_
   std::vector<const double*> columns_;
-  std::vector<double> coefficients_, displacement_, of_tool_;
+  std::vector<double> coefficients_, displacement_, of_tool_, whole_;
 };
 
 }  // namespace palpate

@@ -48,19 +48,20 @@ Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
   return n.normalized();
 }
 
-std::span<const int> TouchSurface::find(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) {
-  const int candidates = buckets_.query(box_min, box_max, found_);
+std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) {
+  const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
+  const int candidates = buckets_.query(low.array() - radius, high.array() + radius, found_);
   // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
     const auto& n = triangles_[found_[i]];
-    Eigen::Vector3d low = position_[n[0]].cwiseMin(previous_[n[0]]), high = position_[n[0]].cwiseMax(previous_[n[0]]);
+    Eigen::Vector3d box_low = position_[n[0]].cwiseMin(previous_[n[0]]), box_high = position_[n[0]].cwiseMax(previous_[n[0]]);
     for (int v = 1; v < 3; ++v) {
-      low = low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
-      high = high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
+      box_low = box_low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
+      box_high = box_high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
     }
-    const bool meets = (low.array() <= box_max.array()).all() && (high.array() >= box_min.array()).all();
-    if (meets) found_[kept++] = found_[i];
+    const Eigen::Vector3d apart = (box_low - high).cwiseMax(low - box_high).cwiseMax(0.0);
+    if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
   }
   return std::span(found_).first(kept);
 }

@@ -26,8 +26,9 @@ class TouchSurface {
   Eigen::Vector3d triangle_normal(int t) const;  ///< outward, not normalised
   Eigen::Vector3d vertex_normal(int node) const; ///< outward, unit
 
-  /// Triangles whose boxes, swept from the previous to the present positions, meet the box; ascending.
-  std::span<const int> find(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max);
+  /// Triangles whose boxes, swept from the previous to the present positions, come within `radius` [m] of a point on
+  /// its way from a to b; ascending, a few others nearby among them.
+  std::span<const int> find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius);
 
   /// One update: begin, mark what is near, then move the marked nodes to rest + displacement.
   void begin_update();

@@ -132,6 +132,7 @@ VerifyReport verify_log(const std::filesystem::path& file) {
   const Scene scene = parse_scene(log.header().scene, file);
   const auto runs = read_runs(log);
   VerifyReport report;
+  report.damage = log.damage_text();
   for (const LogDamage& d : log.damage())
     if (!d.tail) report.gaps.push_back(fmt::format("{} bytes at byte {} are damaged", d.bytes, d.offset));
   for (const auto& [id, run] : runs)

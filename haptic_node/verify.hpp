@@ -12,6 +12,7 @@ struct VerifyReport {
   std::uint64_t forces = 0;           ///< recorded forces that were compared, and equal bit for bit
   std::vector<std::string> gaps;      ///< places that cannot be verified, and why
   std::string mismatch;               ///< the first force that differs; empty if none does
+  std::string damage;                 ///< what of the file cannot be read; empty if all can
   std::string code_path;
 
   bool verified() const { return mismatch.empty() && gaps.empty() && forces > 0; }

@@ -19,6 +19,7 @@ struct Options {
 
 void verify(const std::string& file) {
   const VerifyReport report = verify_log(file);
+  if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
   if (!report.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
   if (!report.verified())

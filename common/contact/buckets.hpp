@@ -27,7 +27,8 @@ class Buckets {
   /// Enters the triangle's new swept box; does nothing if it meets the same buckets as before.
   void move(int triangle, const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max);
 
-  /// Triangles whose buckets meet the box, ascending and without duplicates, into `found`; returns how many.
+  /// Triangles whose buckets meet the box, ascending and without duplicates, into `found`; returns how many. All of them
+  /// if the box covers most of the grid.
   /// `found` needs room for every triangle of the surface.
   int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, std::span<int> found) const;
 

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double gap_tolerance = 1e-9;        // [m] deeper than this an open contact closes
 constexpr double force_tolerance = 1e-9;      // share of the largest contact force that counts as tension
-constexpr int max_sweeps = 40;                // of relaxation
+constexpr int sweep_budget = 800;             // points relaxed in a step, in 5 to 40 sweeps
+constexpr int pass_budget = 400;              // points times passes of the active set under friction, 4 to 16 passes
 constexpr double sweep_tolerance = 1e-4;      // change of a force in a sweep, as a share of the largest, that ends it
 constexpr double friction_lag = 1e-3;         // share of the normal force by which lagged friction may be stale
 
@@ -199,18 +200,18 @@ bool ContactLaw::change_states(bool one_only, double smallest_force) {
 // what the active set leaves open, such as many rubbing contacts that wedge one another. It ends within its bound, and
 // every force it leaves lies in its cone.
 void ContactLaw::relax() {
+  held_.displacements(forces_.data(), displacements_.data());
+  const int most_sweeps = std::clamp(sweep_budget / held_.size(), 5, 40);
   double change = 1, largest = 0;
-  for (int sweep = 0; sweep < max_sweeps && change > sweep_tolerance * largest; ++sweep) {
+  for (int sweep = 0; sweep < most_sweeps && change > sweep_tolerance * largest; ++sweep) {
     change = largest = 0;
     int p = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       for (int k = 0; k < expansions_[c].points; ++k, ++p) {
-        const double before_change = relax_point(contacts_[c], expansions_[c].gain[k], p);
-        change = std::max(change, before_change);
+        change = std::max(change, relax_point(contacts_[c], expansions_[c].gain[k], p));
         largest = std::max(largest, ConstVec(forces_.data() + 3 * p).norm());
       }
   }
-  held_.displacements(forces_.data(), displacements_.data());
   int p = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     TouchContact& contact = contacts_[c];
@@ -234,7 +235,7 @@ double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) 
   const Eigen::Vector3d before = force;
   const double softest = held_.floor_of(own.trace() / 3);
 
-  const Eigen::Vector3d u = held_.displacement(p, forces_.data());
+  const Eigen::Vector3d u = ConstVec(displacements_.data() + 3 * p);
   const double gap_left = gain * (contact.plane - n.dot(rest)) - n.dot(u);
   const double pressing = std::max(0.0, force.dot(n) + gap_left / std::max(n.dot(own * n), softest));
   const Eigen::Vector3d normal_change = (pressing - force.dot(n)) * n;
@@ -246,7 +247,9 @@ double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) 
   const double allowed = friction_ * pressing, size = tangential.norm();
   if (size > allowed) tangential *= allowed / size;
   force = pressing * n + tangential;
-  return (force - before).norm();
+  const Eigen::Vector3d change = force - before;
+  held_.add_response(p, change, displacements_.data());
+  return change.norm();
 }
 
 LawOutcome ContactLaw::solve() {
@@ -254,7 +257,7 @@ LawOutcome ContactLaw::solve() {
   if (contacts_.empty()) return outcome;
   std::fill(restuck_.begin(), restuck_.end(), false);
   bool changed = true;
-  const int most_passes = friction_ > 0 ? max_passes / 2 : max_passes;
+  const int most_passes = friction_ > 0 ? std::clamp(pass_budget / held_.size(), 4, 16) : max_passes;
   while (changed && outcome.passes < most_passes) {
     outcome.raised = solve_held();
     ++outcome.passes;

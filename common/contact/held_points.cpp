@@ -29,6 +29,7 @@ HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
   raised_.reserve(capacity);
   normals_.reserve(capacity);
   a_.assign(stride_ * stride_, 0.0);
+  for (int c = 0; c < 3 * capacity; ++c) columns_.push_back(column(c));
   factor_.assign(stride_ * stride_, 0.0);
   rows_.assign(3 * stride_, 0.0);
   rhs_.assign(stride_, 0.0);
@@ -101,25 +102,14 @@ void HeldPoints::forget_factor() {
   raised_.clear();
 }
 
-// A is symmetric, so that a point's rows are its columns, which lie together.
-Eigen::Vector3d HeldPoints::displacement(int point, const double* forces) const {
-  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+void HeldPoints::add_response(int point, const Eigen::Vector3d& change, double* displacement) const {
   const int n = 3 * size();
-  for (int r = 0; r < 3; ++r) {
-    const double* a = column(3 * point + r);
-    for (int c = 0; c < n; ++c) u[r] += a[c] * forces[c];
-  }
-  return u;
+  const double *x = column(3 * point), *y = column(3 * point + 1), *z = column(3 * point + 2);
+  for (int r = 0; r < n; ++r) displacement[r] += x[r] * change.x() + y[r] * change.y() + z[r] * change.z();
 }
 
-void HeldPoints::displacements(const double* forces, double* displacement) const {
-  const int n = 3 * size();
-  std::fill(displacement, displacement + n, 0.0);
-  for (int c = 0; c < n; ++c) {
-    if (forces[c] == 0) continue;
-    const double* a = column(c);
-    for (int r = 0; r < n; ++r) displacement[r] += a[r] * forces[c];
-  }
+void HeldPoints::displacements(const double* forces, double* displacement) {
+  kernels::active().combine_d(columns_.data(), forces, 3 * size(), 3 * size(), displacement);
 }
 
 void HeldPoints::keep_full(std::span<const Hold> hold) {

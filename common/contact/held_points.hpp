@@ -46,10 +46,10 @@ class HeldPoints {
   Eigen::Matrix3d block(int i, int j) const;
   /// The compliance below which a pivot is raised, for a point whose own compliance is given [m/N].
   double floor_of(double own) const;
-  /// Displacement [m] of one point under forces [N] at all points (3n).
-  Eigen::Vector3d displacement(int point, const double* forces) const;
+  /// Adds the response of all points to a change of one point's force [N] to their displacements [m] (3n).
+  void add_response(int point, const Eigen::Vector3d& change, double* displacement) const;
   /// Displacements [m] of all points (3n) under forces [N] at all points (3n).
-  void displacements(const double* forces, double* displacement) const;
+  void displacements(const double* forces, double* displacement);
 
   /// Forces f (3n) such that held displacements are met: on entry f holds the given part of the forces (friction of
   /// points held along their normal, zero elsewhere); on return the whole. `hold`, `normal`, `target`
@@ -75,6 +75,7 @@ class HeldPoints {
   std::vector<int> raised_;       ///< pivots raised when full_[i] was appended
   std::vector<int> normals_;      ///< points held along their normal, in the order of the factor
   kernels::Buffer rows_, rhs_, given_, scratch_;
+  std::vector<const double*> columns_;  ///< of A, for displacements()
 };
 
 }  // namespace palpate

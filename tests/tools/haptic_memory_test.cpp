@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "common/mesh/generators.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tensors/compliance.hpp"
+#include "common/tensors/find_archive.hpp"
+#include "tests/tools/program_result.hpp"
+#include "tools/child_process.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::LoopbackScene;
+using testing::program;
+
+struct Footprint {
+  double resident = 0;    ///< [bytes] of the running haptic node
+  double compliance = 0;  ///< [bytes] of its touchable tensors
+  double others = 0;      ///< [bytes] of the tensors of visible nodes that are not touchable, on the disk
+};
+
+double resident_size(pid_t pid) {
+  std::ifstream status(fmt::format("/proc/{}/status", pid));
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmRSS:")) return 1024 * std::stod(line.substr(6));
+  ADD_FAILURE() << "no resident size of process " << pid;
+  return 0;
+}
+
+Footprint footprint_of(const LoopbackScene& at) {
+  write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {20, 20, 5}), at.folder() / "block.msh");
+  const auto made = testing::run_program(program("palpate") + " precompute " + at.scene());
+  EXPECT_EQ(made.status, 0) << made.err;
+  const Scene scene = load_scene(at.scene());
+  const Archive archive = find_archive(scene, scene.bodies[0], ArchivePart::surface);
+  const int touchable = archive.surface.touchable;
+  Footprint footprint{.compliance = static_cast<double>(Compliance<double>::bytes_of(touchable, touchable)),
+                      .others = 8.0 * static_cast<double>(archive.other_compliance.size())};
+
+  ChildProcess haptic("haptic_node", {program("haptic_node"), at.scene(), "--domain", std::to_string(testing::own_domain()), "--supervised"});
+  std::vector<std::string> lines;
+  for (const auto end = std::chrono::steady_clock::now() + 20s; lines.empty() && std::chrono::steady_clock::now() < end;) {
+    std::this_thread::sleep_for(10ms);
+    lines = haptic.take_lines();
+  }
+  EXPECT_EQ(lines, std::vector<std::string>{"ready"});
+  std::this_thread::sleep_for(1500ms);
+  EXPECT_TRUE(haptic.running());
+  footprint.resident = resident_size(haptic.pid());
+  return footprint;
+}
+
+TEST(ToolsHapticMemory, TheHapticNodeHoldsTheTensorsOfTouchableNodesAlone) {
+  const Footprint all = footprint_of(LoopbackScene("touch-all"));
+  const Footprint half = footprint_of(LoopbackScene("touch-half", "[body.touchable]\nbox = [[-1.0, -1.0, -1.0], [0.001, 1.0, 1.0]]\n"));
+  const double saved = all.compliance - half.compliance;
+  ASSERT_GT(saved, 20e6);
+  ASSERT_GT(half.others, 8e6) << "the restricted archive has blocks that the haptic node must leave alone";
+  const double difference = all.resident - half.resident;
+  EXPECT_GE(difference, 0.99 * saved) << "resident " << all.resident << " and " << half.resident;
+  EXPECT_LT(difference, saved + 0.5 * half.others) << "resident " << all.resident << " and " << half.resident;
+  EXPECT_LT(half.resident, half.compliance + 60e6) << "the node beside its tensors";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/tools/program_result.hpp"
+#include "tools/child_process.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::LoopbackScene;
+using testing::program;
+using testing::run_program;
+using testing::text_of;
+
+/// The files that a whole session of `palpate run` leaves.
+struct Session {
+  explicit Session(const fs::path& folder)
+      : film(folder / "session.mp4"), still(folder / "session.png"), log(folder / "session.lcmlog"), summary(folder / "session.json") {}
+  std::vector<std::string> arguments(const LoopbackScene& scene, int processes) const {
+    return {program("palpate"), "run",   scene.scene(), "--processes", std::to_string(processes), "--domain", std::to_string(testing::own_domain()),
+            "--film",           film,    "--still",     still,         "--record",                log,        "--summary",
+            summary};
+  }
+  fs::path film, still, log, summary;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += word + " ";
+  return line;
+}
+
+/// Seconds of a film that ffprobe can read to its end.
+double film_seconds(const fs::path& film) {
+  const auto probe = run_program("ffprobe -v error -count_frames -show_entries stream=nb_read_frames:format=duration -of json " + film.string());
+  EXPECT_EQ(probe.status, 0);
+  EXPECT_EQ(probe.err, "");
+  const json found = json::parse(probe.out);
+  EXPECT_GT(std::stoi(found["streams"][0]["nb_read_frames"].get<std::string>()), 10);
+  return std::stod(found["format"]["duration"].get<std::string>());
+}
+
+/// Processes whose command line names something in the folder.
+std::vector<std::string> processes_of(const fs::path& folder) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::string line = text_of(entry.path() / "cmdline");
+    std::replace(line.begin(), line.end(), '\0', ' ');
+    if (line.find(folder.string()) != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+json info_of(const fs::path& log) {
+  const auto info = run_program(program("palpate") + " info " + log.string() + " --json");
+  EXPECT_EQ(info.status, 0) << info.err;
+  return json::parse(info.out);
+}
+
+void expect_whole_session(const Session& session) {
+  for (const fs::path& file : {session.film, session.still, session.log, session.summary}) {
+    ASSERT_TRUE(fs::exists(file)) << file;
+    EXPECT_GT(fs::file_size(file), 100u) << file;
+  }
+  EXPECT_EQ(text_of(session.still).substr(0, 4), "\x89PNG");
+  EXPECT_GT(film_seconds(session.film), 0.5);
+}
+
+class ToolsSession : public ::testing::TestWithParam<int> {};
+
+TEST_P(ToolsSession, ARunLeavesFilmStillSummaryAndALogThatVerifies) {
+  const LoopbackScene scene(fmt::format("session{}", GetParam()));
+  const Session session(scene.folder());
+  const auto run = run_program(joined(session.arguments(scene, GetParam())) + "--seconds 2.3");
+  ASSERT_EQ(run.status, 0) << run.err;
+  expect_whole_session(session);
+
+  const json summary = json::parse(text_of(session.summary));
+  EXPECT_GT(summary["haptic_node"]["rate_hz"].get<double>(), 500);
+  EXPECT_GT(summary["haptic_node"]["force_max_n"].get<double>(), 0.05);
+  EXPECT_GT(summary["render_node"]["frames"].get<int>(), 10);
+  EXPECT_EQ(summary["recorder"]["lost"], 0);
+  EXPECT_EQ(summary.contains("deform_node"), GetParam() == 3);
+
+  const json topics = info_of(session.log)["topics"];
+  for (const char* topic : {"tool_state", "contact_state", "force_state", "haptic_keyframe", "node_status"})
+    EXPECT_TRUE(topics.contains(std::string("palpate/") + topic)) << topics.dump();
+  EXPECT_EQ(topics.contains("palpate/surface_state"), GetParam() == 3) << topics.dump();
+
+  const auto verified = run_program(program("palpate") + " replay " + session.log.string() + " --verify");
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  EXPECT_NE(verified.out.find("equal bit for bit"), std::string::npos) << verified.out;
+}
+
+TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
+  const LoopbackScene scene(fmt::format("interrupted{}", GetParam()));
+  scene.write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0.06,0.02,0.199,0.3,0\n");
+  const Session session(scene.folder());
+  ChildProcess run("palpate", session.arguments(scene, GetParam()));
+  std::this_thread::sleep_for(5s);
+  ASSERT_TRUE(run.running());
+  EXPECT_GT(processes_of(scene.folder()).size(), static_cast<std::size_t>(GetParam())) << "the run, the nodes and the recorder";
+  run.interrupt();
+  ASSERT_TRUE(run.wait(20s));
+  EXPECT_EQ(run.status(), 0);
+  EXPECT_EQ(processes_of(scene.folder()), std::vector<std::string>{});
+
+  expect_whole_session(session);
+  const json info = info_of(session.log);
+  EXPECT_TRUE(info["complete"].get<bool>()) << info.dump();
+  EXPECT_GT(info["topics"]["palpate/force_state"]["samples"].get<int>(), 500);
+  EXPECT_TRUE(json::parse(text_of(session.summary))["haptic_node"].is_object());
+}
+
+INSTANTIATE_TEST_SUITE_P(Processes, ToolsSession, ::testing::Values(2, 3));
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "common/mesh/mesh_file.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using testing::OwnFolder;
+using testing::program;
+using testing::run_program;
+
+struct Row {
+  Vector3d position, displacement, force;
+};
+using Table = std::map<int, Row>;
+
+Table read_table(const fs::path& file) {
+  std::istringstream in(testing::text_of(file));
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "node,x,y,z,ux,uy,uz,fx,fy,fz");
+  Table table;
+  while (std::getline(in, line)) {
+    std::vector<double> v;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+    EXPECT_EQ(v.size(), 10u) << line;
+    if (v.size() == 10) table[static_cast<int>(v[0])] = {{v[1], v[2], v[3]}, {v[4], v[5], v[6]}, {v[7], v[8], v[9]}};
+  }
+  return table;
+}
+
+int nearest_node(const TetMesh& mesh, const Vector3d& point) {
+  const auto closer = [&](const Vector3d& a, const Vector3d& b) { return (a - point).norm() < (b - point).norm(); };
+  return static_cast<int>(std::ranges::min_element(mesh.nodes, closer) - mesh.nodes.begin());
+}
+
+/// `palpate solve` with archives in a folder of the test's own.
+class ToolsSolve : public ::testing::Test {
+ protected:
+  void SetUp() override { setenv("PALPATE_CACHE", (folder_ / "cache").c_str(), 1); }
+
+  Table solve(const fs::path& scene, const std::string& method, const std::vector<std::string>& holds) {
+    const fs::path csv = folder_ / (method + ".csv");
+    std::string command = fmt::format("{} solve {} --method {} --csv {}", program("palpate"), scene.string(), method, csv.string());
+    for (const std::string& hold : holds) command += " --hold " + hold;
+    const auto result = run_program(command);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_table(csv);
+  }
+
+  void expect_agreement(const fs::path& scene, const std::vector<std::string>& holds) {
+    const Table direct = solve(scene, "direct", holds), tensors = solve(scene, "tensors", holds);
+    ASSERT_GT(tensors.size(), 50u);
+    ASSERT_GT(direct.size(), tensors.size());
+    double largest_u = 0, largest_f = 0, error_u = 0, error_f = 0;
+    for (const auto& [node, t] : tensors) {
+      ASSERT_TRUE(direct.contains(node));
+      const Row& d = direct.at(node);
+      EXPECT_EQ(t.position, d.position) << node;
+      largest_u = std::max(largest_u, d.displacement.norm());
+      largest_f = std::max(largest_f, d.force.norm());
+      error_u = std::max(error_u, (t.displacement - d.displacement).norm());
+      error_f = std::max(error_f, (t.force - d.force).norm());
+    }
+    ASSERT_GT(largest_u, 0.9e-3);
+    ASSERT_GT(largest_f, 0);
+    EXPECT_LT(error_u, 1e-8 * largest_u) << holds.size() << " holds";
+    EXPECT_LT(error_f, 1e-8 * largest_f) << holds.size() << " holds";
+  }
+
+  static fs::path plate() { return fs::path(PALPATE_SOURCE) / "scenes/plate.toml"; }
+  static TetMesh plate_mesh() { return load_tet_mesh(fs::path(PALPATE_SOURCE) / "scenes/meshes/plate.msh", 1); }
+
+  OwnFolder folder_{"solve"};
+};
+
+TEST_F(ToolsSolve, TensorsEqualDirectOnThePlateForOneNodeAndForSeveral) {
+  const TetMesh mesh = plate_mesh();
+  const auto hold = [&](double x, double y, const std::string& displacement) {
+    return fmt::format("{}:{}", nearest_node(mesh, {x, y, 0.008}), displacement);
+  };
+  const std::string first = hold(0, 0, "0,0,-0.001");
+  expect_agreement(plate(), {first});
+  expect_agreement(plate(), {first, hold(-0.02, 0.01, "0.0002,0,-0.002"), hold(0.02, 0, "0,-0.0003,-0.001"), hold(0.01, -0.03, "0,0,0.0005")});
+}
+
+TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
+  const int node = nearest_node(plate_mesh(), {0.015, 0.01, 0.008});
+  const std::vector<std::string> some{fmt::format("{}:0.0005,,-0.001", node)}, all{fmt::format("{}:0.0005,0,-0.001", node)};
+  expect_agreement(plate(), some);
+  for (const std::string method : {"direct", "tensors"}) {
+    const Row row = solve(plate(), method, some).at(node);
+    EXPECT_NEAR(row.displacement.x(), 0.0005, 1e-12);
+    EXPECT_NEAR(row.displacement.z(), -0.001, 1e-12);
+    EXPECT_LT(std::abs(row.force.y()), 1e-9 * row.force.norm()) << method;
+    EXPECT_GT(std::abs(row.displacement.y()), 1e-7) << method;
+    EXPECT_GT(std::abs(solve(plate(), method, all).at(node).force.y()), 1e-4 * row.force.norm()) << method;
+  }
+}
+
+TEST_F(ToolsSolve, TensorsEqualDirectOnTheRealLiver) {
+  const fs::path file = fs::path(PALPATE_SOURCE).parent_path() / "shared/data/liver.msh";
+  if (!fs::exists(file)) GTEST_SKIP() << "the real liver is not at " << file;
+  constexpr double scale = 0.03;
+  const TetMesh mesh = load_tet_mesh(file, scale);
+  Eigen::AlignedBox3d extent;
+  for (const Vector3d& node : mesh.nodes) extent.extend(node);
+  const Vector3d low = extent.min(), size = extent.sizes();
+  std::ofstream(folder_ / "liver.toml") << fmt::format(R"(title = "the real liver"
+[[body]]
+name = "liver"
+mesh = "{}"
+scale = {}
+young = 5000.0
+poisson = 0.45
+[[body.fixed]]
+box = [[-9.0, -9.0, -9.0], [9.0, {}, 9.0]]
+[[tool]]
+name = "probe"
+pivot = [0.0, 0.0, 1.0]
+radius = 0.005
+device = "bus"
+)", file.string(), scale, low.y() + 0.2 * size.y());
+  const auto hold = [&](const Vector3d& direction, const std::string& displacement) {
+    const Vector3d point = extent.center() + direction.cwiseProduct(size);
+    return fmt::format("{}:{}", nearest_node(mesh, point), displacement);
+  };
+  expect_agreement(folder_ / "liver.toml", {hold({0, 1, 0}, "0,-0.005,0"), hold({-1, 0.3, 0}, "0.003,0,0.001"), hold({0.5, 0.5, 1}, "0,0,-0.004")});
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "common/bus/log_reader.hpp"
+#include "common/bus/log_writer.hpp"
+#include "idl/topics.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::LoopbackScene;
+using testing::program;
+using testing::ProgramResult;
+using testing::run_program;
+
+/// Copies a log event by event with right checksums; `change` may alter each on its way.
+void rewrite(const fs::path& from, const fs::path& to, const std::function<void(LogEvent&)>& change) {
+  LogReader reader(from);
+  LogWriter writer(to, std::size_t{1} << 30);
+  writer.write(header_channel, reader.header().start_monotonic_ns, reader.header());
+  for (LogEvent event; reader.next(event);) {
+    change(event);
+    writer.write_payload(event.channel, event.receive_ns, event.payload);
+  }
+  EXPECT_EQ(writer.finish().lost, 0u);
+}
+
+template <class M>
+void put_back(LogEvent& event, const M& message) {
+  event.payload.clear();
+  encode(message, event.payload);
+}
+
+/// A recorded session of the haptic node, made anew for each test.
+class ToolsVerify : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto run = run_program(
+        fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"), scene_.scene(), testing::own_domain(), log().string()));
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+  fs::path log() const { return scene_.folder() / "session.lcmlog"; }
+  fs::path changed() const { return scene_.folder() / "changed.lcmlog"; }
+  static ProgramResult verify(const fs::path& file) { return run_program(program("palpate") + " replay " + file.string() + " --verify"); }
+
+  LoopbackScene scene_{"verify"};
+};
+
+TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
+  rewrite(log(), changed(), [](LogEvent&) {});
+  EXPECT_EQ(verify(changed()).status, 0) << "a log that was written anew as it was";
+
+  std::uint64_t altered = 0;
+  rewrite(log(), changed(), [&](LogEvent& event) {
+    ForceState force;
+    if (altered || !event.read(topics::force_state, force) || force.step < 1000) return;
+    force.force[2] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(force.force[2]) ^ 1);
+    put_back(event, force);
+    altered = force.step;
+  });
+  ASSERT_NE(altered, 0u);
+  const auto result = verify(changed());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find(fmt::format("the forces differ: step {}, tool 0", altered)), std::string::npos) << result.err;
+}
+
+TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
+  fs::copy_file(log(), changed());
+  fs::resize_file(changed(), fs::file_size(log()) * 6 / 10 + 7);
+  std::uint64_t forces_left = 0;
+  LogReader reader(changed());
+  ForceState force;
+  for (LogEvent event; reader.next(event);) forces_left += event.read(topics::force_state, force);
+  ASSERT_GT(forces_left, 500u);
+
+  const auto result = verify(changed());
+  const std::string said = result.out + result.err;
+  EXPECT_LE(result.status, 1);
+  EXPECT_NE(said.find(fmt::format("verified: {} forces", forces_left)) == std::string::npos,
+            said.find(fmt::format("not verified as a whole: {} forces", forces_left)) == std::string::npos)
+      << said;
+  EXPECT_NE(said.find("cut off"), std::string::npos) << said;
+
+  const auto info = run_program(program("palpate") + " info " + changed().string() + " --json");
+  EXPECT_EQ(info.status, 0) << info.err;
+  const auto json = nlohmann::json::parse(info.out);
+  EXPECT_FALSE(json["complete"].get<bool>());
+  ASSERT_EQ(json["damage"].size(), 1u);
+  EXPECT_TRUE(json["damage"][0]["tail"].get<bool>());
+}
+
+TEST_F(ToolsVerify, ALogOfAnotherCodePathIsRefusedInWords) {
+  const auto with_code_path = [&](const std::function<std::string(const std::string&)>& change) {
+    rewrite(log(), changed(), [&](LogEvent& event) {
+      HapticKeyframe keyframe;
+      if (!event.read(topics::haptic_keyframe, keyframe)) return;
+      keyframe.code_path = change(keyframe.code_path);
+      put_back(event, keyframe);
+    });
+  };
+  const std::string verify_changed = program("palpate") + " replay " + changed().string() + " --verify";
+  with_code_path([](const std::string& path) { return "x86-64-v9" + path.substr(path.find("; ")); });
+  testing::expect_refusal(verify_changed, {"x86-64-v9", "cannot run here"});
+  with_code_path([](const std::string& path) { return path.substr(0, path.find("; ")) + "; palpate 77.0 g++ 1.0"; });
+  testing::expect_refusal(verify_changed, {"palpate 77.0 g++ 1.0", "differ"});
+}
+
+}  // namespace
+}  // namespace palpate
