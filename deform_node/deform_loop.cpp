@@ -14,25 +14,14 @@ DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double 
       bus_(bus),
       presence_(presence),
       frame_ns_(static_cast<std::int64_t>(1e9 / visual_hz)),
-      contacts_(bus.reader(topics::contact_state)),
+      feed_(bus, presence, deformer),
       surfaces_(bus.writer(topics::surface_state)),
-      held_(bus.writer(topics::held_contacts)),
       messages_(deformer.bodies()) {
   for (int b = 0; b < deformer.bodies(); ++b) {
     messages_[b].body = static_cast<std::uint32_t>(b);
     messages_[b].position.resize(3 * deformer.surface(b).position.size());
     messages_[b].normal.resize(messages_[b].position.size());
   }
-}
-
-bool DeformLoop::take_contacts() {
-  bool news = false;
-  while (const auto contacts = contacts_->take()) {
-    const bool good = presence_.accepts(contacts->run) && deformer_.take(*contacts);
-    report_.refused += !good;
-    news |= good;
-  }
-  return news;
 }
 
 void DeformLoop::publish(std::int64_t now) {
@@ -56,14 +45,7 @@ void DeformLoop::publish(std::int64_t now) {
 // Peers, the death of the haptic node and the status: what is not for every frame.
 void DeformLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
-  const bool alive = contacts_->writers() > 0;
-  if (haptic_alive_ && !alive) {
-    int kept = 0;
-    for (const auto& [tool, contacts] : deformer_.contacts())
-      if (!contacts.contacts.empty()) kept += held_->write(contacts);
-    spdlog::warn("the haptic node is gone; keeping the contacts of {} tools for its return", kept);
-  }
-  haptic_alive_ = alive;
+  feed_.watch_haptic();
   if (now - last_status_ns_ < 1'000'000'000) return;
   const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)), 1e-3 * static_cast<double>(report_.latency.percentile(0.99)));
@@ -82,13 +64,14 @@ const DeformReport& DeformLoop::run(double seconds) {
       next_house = now + 50'000'000;
     }
     if (next_frame > now) bus_.wait(std::chrono::nanoseconds(next_frame - now));
-    const bool news = take_contacts();
+    const bool news = feed_.take();
     now = now_ns();
     if (!news && now < next_frame) continue;
     publish(now);
     if (news) report_.latency.record(messages_.empty() ? 0 : messages_.back().publish_ns - deformer_.sense_ns());
     next_frame = now + frame_ns_;
   }
+  report_.refused = feed_.refused();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
   return report_;
 }

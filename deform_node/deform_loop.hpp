@@ -7,7 +7,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
-#include "common/models/deformer.hpp"
+#include "common/models/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
 
 namespace palpate {
@@ -15,7 +15,8 @@ namespace palpate {
 /// What a run of the loop measured.
 struct DeformReport {
   double seconds = 0;
-  std::uint64_t frames = 0, refused = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t refused = 0;  ///< contact messages of other scenes
   Histogram latency;  ///< [ns] sense time of the step to the surface being published
   Histogram deform;   ///< [ns] superposition, correction and normals
 };
@@ -29,7 +30,6 @@ class DeformLoop {
   const DeformReport& run(double seconds);
 
  private:
-  bool take_contacts();
   void publish(std::int64_t now);
   void keep_house(std::int64_t now);
 
@@ -37,11 +37,9 @@ class DeformLoop {
   Bus& bus_;
   Presence& presence_;
   std::int64_t frame_ns_;
-  std::unique_ptr<Reader<ContactState>> contacts_;
+  ContactFeed feed_;
   std::unique_ptr<Writer<SurfaceState>> surfaces_;
-  std::unique_ptr<Writer<ContactState>> held_;
   std::vector<SurfaceState> messages_;
-  bool haptic_alive_ = false;
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_frames_ = 0;
   DeformReport report_;

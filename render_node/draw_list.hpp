@@ -12,8 +12,8 @@
 /// What one picture shows, as plain values without any OpenGL. Lengths in metres, world frame.
 namespace palpate {
 
-/// How a mesh reflects light; of both only the outer side is drawn. Bone: bones and the lining of a cavity.
-enum class Finish { tissue, bone };
+/// How a mesh reflects light; only the outer side is drawn. Lining: the smooth, moist wall of a cavity.
+enum class Finish { tissue, bone, lining };
 
 /// A triangle mesh to draw. The spans belong to the caller and must live until Renderer::draw returns.
 struct MeshView {

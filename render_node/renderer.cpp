@@ -39,7 +39,7 @@ struct Renderer::Impl {
   GlContext context;
   GlFunctions& gl = context.gl;
   RenderTarget target;
-  GLuint bone, metal, cavity, flat;
+  GLuint bone, lining, metal, cavity, flat;
   std::map<std::pair<bool, std::size_t>, GLuint> tissue;  ///< by (coloured by scalar, number of instruments)
   GLuint block = 0, empty_array = 0, glyph_texture = 0;
   std::optional<FontAtlas> font;
@@ -62,6 +62,7 @@ Renderer::Impl::Impl(int width, int height, int samples)
   const std::string lit = scene + "#define TOOLS 0\n" + shaders::noise + shaders::light;
   const std::string rigid = scene + shaders::rigid_vert;
   bone = context.link_program("bone", rigid, lit + shaders::bone_frag);
+  lining = context.link_program("lining", rigid, lit + shaders::lining_frag);
   metal = context.link_program("metal", rigid, lit + shaders::metal_frag);
   cavity = context.link_program("cavity", scene + shaders::cavity_vert, lit + shaders::cavity_frag);
   flat =
@@ -133,13 +134,14 @@ void Renderer::Impl::draw_tissue(const Frame& frame) {
 /// What stands still while the camera does is drawn once and copied into every frame.
 void Renderer::Impl::draw_backdrop(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
-  gl.UseProgram(bone);
   const Eigen::Matrix4f identity = Eigen::Matrix4f::Identity();
-  gl.ProgramUniformMatrix4fv(bone, 0, 1, GL_FALSE, identity.data());
   for (const MeshView& mesh : frame.meshes) {
-    if (mesh.finish != Finish::bone) continue;
+    if (mesh.finish == Finish::tissue) continue;
+    const GLuint program = mesh.finish == Finish::bone ? bone : lining;
     const auto& c = mesh.colour;
-    gl.ProgramUniform4f(bone, 4, float(c[0]), float(c[1]), float(c[2]), 1);
+    gl.ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, identity.data());
+    gl.ProgramUniform4f(program, 4, float(c[0]), float(c[1]), float(c[2]), 1);
+    gl.UseProgram(program);
     upload(mesh).draw();
   }
   gl.Disable(GL_CULL_FACE);
@@ -179,7 +181,7 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
 bool Renderer::Impl::backdrop_changed(const Frame& frame, const SceneBlock& block) {
   std::vector<std::uint64_t> now;
   for (const MeshView& mesh : frame.meshes)
-    if (mesh.finish == Finish::bone) now.insert(now.end(), {static_cast<std::uint64_t>(mesh.id), mesh.shape});
+    if (mesh.finish != Finish::tissue) now.insert(now.end(), {static_cast<std::uint64_t>(mesh.id), mesh.shape});
   std::array<Eigen::Vector4f, 6> view{block.eye,     block.right, block.up,
                                       block.forward, block.light, block.viewport};
   view[2].w() = 0;  // the legend's range does not matter here

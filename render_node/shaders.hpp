@@ -11,6 +11,7 @@ extern const char* const rigid_vert;
 extern const char* const tissue_vert;
 extern const char* const tissue_frag;
 extern const char* const bone_frag;
+extern const char* const lining_frag;
 extern const char* const metal_frag;
 extern const char* const cavity_vert;
 extern const char* const cavity_frag;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_triangles = 16000;  // of one body after refinement: what 60 frames a second allow
 constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54},
-    lining_colour{0.36, 0.12, 0.085};  // linear RGB
+    lining_colour{0.46, 0.20, 0.165};  // linear RGB
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3f> out;
@@ -49,8 +49,8 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
-  add_backdrop(sorted.bones, bone_colour);
-  add_backdrop(sorted.lining, lining_colour);
+  add_backdrop(sorted.bones, Finish::bone, bone_colour);
+  add_backdrop(sorted.lining, Finish::lining, lining_colour);
   for (const Tool& tool : scene.tools) {
     Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
     instrument.view.tip_radius = tool.radius;
@@ -60,9 +60,9 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   }
 }
 
-void Stage::add_backdrop(const TriangleMesh& mesh, const std::array<double, 3>& colour) {
+void Stage::add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour) {
   if (mesh.triangles.empty()) return;
-  Rigid part{to_float(mesh.nodes), {}, mesh.triangles, colour};
+  Rigid part{to_float(mesh.nodes), {}, mesh.triangles, finish, colour};
   part.normal.resize(part.position.size());
   vertex_normals(part.position, part.triangles, part.normal);
   backdrop_.push_back(std::move(part));
@@ -113,7 +113,7 @@ Frame Stage::frame() const {
   for (std::size_t i = 0; i < backdrop_.size(); ++i) {
     const Rigid& part = backdrop_[i];
     frame.meshes.push_back({.id = -1 - static_cast<int>(i),
-                            .finish = Finish::bone,
+                            .finish = part.finish,
                             .colour = part.colour,
                             .rest = part.position,
                             .position = part.position,

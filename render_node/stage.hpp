@@ -29,7 +29,7 @@ class Stage {
   Frame frame() const;
 
  private:
-  void add_backdrop(const TriangleMesh& mesh, const std::array<double, 3>& colour);
+  void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour);
 
   struct Soft {
     Refinement refinement;
@@ -40,6 +40,7 @@ class Stage {
   struct Rigid {
     std::vector<Eigen::Vector3f> position, normal;
     std::vector<std::array<int, 3>> triangles;
+    Finish finish;
     std::array<double, 3> colour;
   };
   struct Instrument {

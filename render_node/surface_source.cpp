@@ -1,5 +1,7 @@
 #include "render_node/surface_source.hpp"
 
+#include "common/models/contact_feed.hpp"
+
 #include <spdlog/spdlog.h>
 
 namespace palpate {
@@ -54,22 +56,14 @@ class ReceivedSurfaces : public SurfaceSource {
 class OwnSurfaces : public SurfaceSource {
  public:
   OwnSurfaces(Bus& bus, const Presence& presence, Deformer deformer)
-      : presence_(presence),
-        contacts_(bus.reader(topics::contact_state)),
-        held_(bus.writer(topics::held_contacts)),
-        deformer_(std::move(deformer)) {
+      : deformer_(std::move(deformer)), feed_(bus, presence, deformer_) {
     deformer_.deform();
   }
 
   bool update() override {
-    bool news = false;
-    while (const auto contacts = contacts_->take()) {
-      const bool good = presence_.accepts(contacts->run) && deformer_.take(*contacts);
-      refused_ += !good;
-      news |= good;
-    }
+    const bool news = feed_.take();
     if (news) deformer_.deform();
-    keep_contacts();
+    feed_.watch_haptic();
     return news;
   }
 
@@ -78,26 +72,11 @@ class OwnSurfaces : public SurfaceSource {
     return {surface.position, surface.normal};
   }
   std::int64_t sense_ns() const override { return deformer_.sense_ns(); }
-  std::uint64_t refused() const override { return refused_; }
+  std::uint64_t refused() const override { return feed_.refused(); }
 
  private:
-  void keep_contacts() {
-    const bool alive = contacts_->writers() > 0;
-    if (haptic_alive_ && !alive) {
-      int kept = 0;
-      for (const auto& [tool, contacts] : deformer_.contacts())
-        if (!contacts.contacts.empty()) kept += held_->write(contacts);
-      spdlog::warn("the haptic node is gone; keeping the contacts of {} tools for its return", kept);
-    }
-    haptic_alive_ = alive;
-  }
-
-  const Presence& presence_;
-  std::unique_ptr<Reader<ContactState>> contacts_;
-  std::unique_ptr<Writer<ContactState>> held_;
   Deformer deformer_;
-  bool haptic_alive_ = false;
-  std::uint64_t refused_ = 0;
+  ContactFeed feed_;
 };
 
 }  // namespace

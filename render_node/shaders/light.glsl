@@ -40,13 +40,9 @@ float instrument_shade(vec3 p, vec3 n, Lit lit) {
   return shade;
 }
 
-// Normal bent by a height [m] known at the pixels around, without texture coordinates (Mikkelsen 2010).
-vec3 bend(vec3 n, vec3 p, float height) {
-  vec3 px = dFdx(p), py = dFdy(p);
-  vec3 r1 = cross(py, n), r2 = cross(n, px);
-  float det = dot(px, r1);
-  vec3 gradient = sign(det) * (dFdx(height) * r1 + dFdy(height) * r2);
-  vec3 bent = abs(det) * n - gradient;
+// Normal of a surface on which a height with the gradient `slope` [1] lies.
+vec3 tilt(vec3 n, vec3 slope) {
+  vec3 bent = n * (1.0 + dot(slope, n)) - slope;
   return bent * inversesqrt(dot(bent, bent));
 }
 

@@ -12,21 +12,20 @@ void main() {
   float nl = max(dot(n, lit.to_light), 0.0), nv = max(dot(n, lit.to_eye), 0.0), nh = max(dot(n, h), 0.0);
   float bare = smoothstep(-colour.w - 0.0004, -colour.w, sticky.z);
   float ring = 1.0 - 0.75 * (1.0 - smoothstep(0.0002, 0.0005, abs(sticky.z + 0.55 * colour.w)));
-  float brush = 0.8 + 0.4 * noise(vec3(sticky.xy / 0.005, sticky.z / 0.0004));
+  float brush = 0.9 + 0.2 * noise(vec3(sticky.xy / 0.005, sticky.z / 0.0004));
 
   // Turned steel: a highlight that is narrow across the shaft and long along it, and a sharp one from the polish.
   float th = dot(shaft.xyz, h);
   float streak = pow(max(1.0 - th * th, 0.0), 2.0) * fifth(nh) * fifth(nh) * fifth(nh);
-  float shine = 0.7 * streak * brush + 1.6 * gloss(nh, 0.10);
+  float shine = 0.5 * streak * brush + 2.5 * gloss(nh, 0.09) + 0.5 * gloss(nh, 0.25);
 
-  // What the steel mirrors: lit tissue ahead, the light behind the camera, dark in between.
+  // What the steel mirrors: lit tissue ahead, the wide glow about the light behind the camera, dark beside it.
   vec3 mirror = reflect(-lit.to_eye, n);
-  float ahead = smoothstep(0.0, 1.0, dot(mirror, scene.forward.xyz));
-  float glow = max(dot(mirror, lit.to_light), 0.0);
-  vec3 room = vec3(0.13, 0.050, 0.040) * ahead * (0.4 + 0.9 * noise(mirror * 3.1)) + vec3(0.012, 0.008, 0.008);
-  room += vec3(0.50, 0.50, 0.50) * glow * glow;
+  float ahead = smoothstep(0.0, 0.9, dot(mirror, scene.forward.xyz));
+  float glow = smoothstep(-0.25, 1.0, dot(mirror, lit.to_light));
+  vec3 room = vec3(0.16, 0.06, 0.05) * ahead + vec3(0.85, 0.86, 0.88) * glow * glow + vec3(0.05);
   float edge = fifth(1.0 - nv);
-  vec3 steel = (room + vec3(0.15, 0.15, 0.155) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
-  vec3 sleeve = vec3(0.010) * nl + vec3(0.10) * pow(nh, 24.0) + room * (0.02 + 0.3 * edge);
+  vec3 steel = (0.85 * room + vec3(0.22) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
+  vec3 sleeve = vec3(0.010) * nl + vec3(0.10) * pow(nh, 24.0) + room * (0.015 + 0.2 * edge);
   pixel = vec4(display(mix(sleeve, steel, bare) * min(lit.strength, 1.15)), 1.0);
 }

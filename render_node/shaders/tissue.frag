@@ -3,14 +3,17 @@ in vec3 world;
 in vec3 facing;
 in vec3 sticky;
 in vec3 pattern;
+in vec4 relief;
 layout(location = 4) uniform vec4 colour;
 out vec4 pixel;
 void main() {
   Lit lit = light_at(world);
   vec3 n0 = facing * inversesqrt(dot(facing, facing));
-  float middle = noise(sticky / 0.0083 + 2.0 * pattern.x) - 0.5;
-  float fine = noise(sticky / 0.0021 + 2.0 * middle) - 0.5;
-  vec3 n = bend(n0, world, 0.0012 * middle + 0.00006 * fine);
+  float middle = relief.w;
+  vec4 grain = noise_slope(sticky / 0.0021 + 2.0 * middle);
+  float fine = grain.w - 0.5;
+  const float high = 0.0012, low = 0.00006;  // of the mottles and the grain [m]
+  vec3 n = tilt(n0, (high + 2.0 * low * (grain.x + grain.y + grain.z)) * relief.xyz + low / 0.0021 * grain.xyz);
 
 #ifdef BY_SCALAR
   vec3 base = scale_colour(pattern.z / scene.up.w);

@@ -5,14 +5,19 @@ layout(location = 2) in vec3 rest;
 layout(location = 3) in float scalar;
 out vec3 world;
 out vec3 facing;
-out vec3 sticky;   // rest position, around which the broad pattern winds
+out vec3 sticky;   // rest position
 out vec3 pattern;  // broad patches, the vessels' field, the scalar
+out vec4 relief;   // mottles of a few mm; xyz: gradient [1/m]; w: value
 void main() {
   world = position;
   facing = normal;
-  float broad = noise(rest / 0.033);
-  float vessel = noise(rest / 0.021 + 3.0 * noise(rest / 0.013)) ;
+  vec4 broad = noise_slope(rest / 0.033);
+  // The mottles wind about the patches: their gradient by the chain rule.
+  vec4 middle = noise_slope(rest / 0.0083 + 2.0 * broad.w);
+  relief.xyz = middle.xyz / 0.0083 + (middle.x + middle.y + middle.z) * 2.0 / 0.033 * broad.xyz;
+  relief.w = middle.w - 0.5;
+  float vessel = noise(rest / 0.021 + 3.0 * noise(rest / 0.013));
   sticky = rest;
-  pattern = vec3(broad, vessel, scalar);
+  pattern = vec3(broad.w, vessel, scalar);
   gl_Position = scene.view_projection * vec4(position, 1.0);
 }

@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <sstream>
 

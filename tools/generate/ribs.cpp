@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kMidline = 0.020;                    // [m] x of the spine; the liver lies mostly right of it
 constexpr double kHalfWidth = 0.170, kDepth = 0.118;  // [m] half axes of the chest at the ribs
-constexpr double kReach = 140;                        // [deg] from the spine to the front end of a rib
+constexpr double kReach = 112;  // [deg] from the spine to a rib's end: the front is cut away, where the camera looks in
 
 /// A point of the chest: `angle` [rad] from the spine (0) towards the patient's left (positive) or right.
 Vector3d chest(double angle, double height, double scale) {
@@ -47,7 +47,8 @@ void add_tube(TriangleMesh& mesh, int segments, int sides, const Vector3d& up,
               const std::function<Vector3d(double)>& centre,
               const std::function<Eigen::Vector2d(double)>& radii) {
   add_grid(mesh, segments, sides, true, [&](int r, int c) {
-    const double t = static_cast<double>(r) / segments, angle = 2 * std::numbers::pi * c / sides;
+    const double even = static_cast<double>(r) / segments, angle = 2 * std::numbers::pi * c / sides;
+    const double t = even - 0.13 * std::sin(2 * std::numbers::pi * even);  // closer rows make the ends round
     const Vector3d along = (centre(t + 1e-4) - centre(t - 1e-4)).normalized();
     const Vector3d across = along.cross(up).normalized(), upright = along.cross(across);
     const double end = std::sqrt(std::max(0.0, 1 - std::pow(std::abs(2 * t - 1), 24)));
@@ -67,7 +68,7 @@ void add_rib(TriangleMesh& mesh, double height, double scale, double side) {
 
 void add_spine(TriangleMesh& mesh) {
   add_tube(
-      mesh, 36, 8, Vector3d::UnitX(),
+      mesh, 60, 8, Vector3d::UnitX(),
       [](double t) { return Vector3d(kMidline, kDepth + 0.008, -0.13 + 0.28 * t); },
       [](double t) {
         const double bulge = 0.0016 * std::cos(2 * std::numbers::pi * 9 * t);  // vertebrae and discs
