@@ -53,6 +53,13 @@ target = [0.0, 0.0, 0.0]
 
   std::string scene() const { return folder_ / "scene.toml"; }
   std::filesystem::path folder() const { return folder_; }
+  /// Puts other text in place of a part of the scene file.
+  void replace(const std::string& from, const std::string& to) const {
+    std::ifstream in(scene());
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text.replace(text.find(from), from.size(), to);
+    write("scene.toml", text);
+  }
   void write(const std::string& file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
 
  private:
