@@ -128,9 +128,9 @@ class RunVerifier {
 
 VerifyReport verify_log(const std::filesystem::path& file) {
   LogReader log(file);
+  const auto runs = read_runs(log);
   if (log.header().scene.empty()) throw std::runtime_error(fmt::format("{}: the log holds no scene, so its steps cannot be computed again", file.string()));
   const Scene scene = parse_scene(log.header().scene, file);
-  const auto runs = read_runs(log);
   VerifyReport report;
   report.damage = log.damage_text();
   for (const LogDamage& d : log.damage())

@@ -26,10 +26,9 @@ for program in "$bin"/bench_*; do
   "$program" "${quick[@]}" | keep
 done
 
-# The running system: two processes for the rates, three for the way from the tool to the surface.
+# The running system.
 echo "# palpate run" >&2
-"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 97 --summary out/bench_run2.json >&2
-"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 98 --processes 3 --summary out/bench_run3.json >&2
-python3 scripts/run_rows.py out/bench_run2.json out/bench_run3.json | keep
-rm -f out/bench_run2.json out/bench_run3.json
+"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 97 --summary out/bench_run.json >&2
+python3 scripts/run_rows.py out/bench_run.json | keep
+rm -f out/bench_run.json
 echo "out/bench.csv: $(($(wc -l < out/bench.csv) - 1)) rows" >&2

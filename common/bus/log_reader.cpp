@@ -7,6 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "idl/topics.hpp"
+
 namespace palpate {
 namespace {
 
@@ -111,11 +113,20 @@ bool LogReader::next_raw(LogEvent& event) {
 bool LogReader::next(LogEvent& event) {
   while (next_raw(event)) {
     if (event.channel == header_channel) continue;
+    if (header_.scene.empty()) complete_header(event);
     if (event.channel != footer_channel) return true;
     LogFooter footer;
     if (decode(event.payload, footer)) footer_ = footer;
   }
   return false;
+}
+
+void LogReader::complete_header(const LogEvent& event) {
+  SceneText scene;
+  if (!event.read(topics::scene, scene)) return;
+  header_.scene = scene.text;
+  header_.scene_hash = scene.scene_hash;
+  header_.code_path = scene.code_path;
 }
 
 std::string LogReader::damage_text() const {

@@ -38,7 +38,9 @@ class LogReader {
   /// was written with other messages than this program's.
   explicit LogReader(const std::filesystem::path& file);
 
-  const LogHeader& header() const { return header_; }  ///< of the log's first event; empty if that is damaged
+  /// Of the log's first event; empty if that is damaged. A scene that the recorder heard of too late for it is
+  /// filled in once its event is read.
+  const LogHeader& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
   /// The next sample; false at the end. Header and footer are not samples.
@@ -53,6 +55,7 @@ class LogReader {
 
  private:
   bool next_raw(LogEvent& event);
+  void complete_header(const LogEvent& event);
   bool parse(std::uint64_t at, LogEvent& event, std::uint64_t& end);
   std::uint64_t find_sync(std::uint64_t from);
   const std::uint8_t* fetch(std::uint64_t at, std::size_t size);

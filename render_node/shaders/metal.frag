@@ -19,13 +19,15 @@ void main() {
   float streak = pow(max(1.0 - th * th, 0.0), 2.0) * fifth(nh) * fifth(nh) * fifth(nh);
   float shine = 0.5 * streak * brush + 2.5 * gloss(nh, 0.09) + 0.5 * gloss(nh, 0.25);
 
-  // What the steel mirrors: lit tissue ahead, the wide glow about the light behind the camera, dark beside it.
+  // What the steel mirrors: lit tissue ahead, the glow about the light, and the moist wall above, which catches it.
   vec3 mirror = reflect(-lit.to_eye, n);
   float ahead = smoothstep(0.0, 0.9, dot(mirror, scene.forward.xyz));
   float glow = smoothstep(-0.25, 1.0, dot(mirror, lit.to_light));
   vec3 room = vec3(0.16, 0.06, 0.05) * ahead + vec3(0.85, 0.86, 0.88) * glow * glow + vec3(0.05);
+  float above = smoothstep(0.45, 0.80, dot(mirror, normalize(scene.up.xyz + 0.3 * scene.right.xyz)));
+  room += vec3(1.15, 1.12, 1.10) * above;
   float edge = fifth(1.0 - nv);
-  vec3 steel = (0.85 * room + vec3(0.22) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
+  vec3 steel = (0.85 * room + vec3(0.18) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
   vec3 sleeve = vec3(0.010) * nl + vec3(0.10) * pow(nh, 24.0) + room * (0.015 + 0.2 * edge);
   pixel = vec4(display(mix(sleeve, steel, bare) * min(lit.strength, 1.15)), 1.0);
 }

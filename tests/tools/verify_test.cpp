@@ -18,10 +18,13 @@ using testing::ProgramResult;
 using testing::run_program;
 
 /// Copies a log event by event with right checksums; `change` may alter each on its way.
-void rewrite(const fs::path& from, const fs::path& to, const std::function<void(LogEvent&)>& change) {
+void rewrite(const fs::path& from, const fs::path& to, const std::function<void(LogEvent&)>& change,
+             const std::function<void(LogHeader&)>& change_header = [](LogHeader&) {}) {
   LogReader reader(from);
   LogWriter writer(to, std::size_t{1} << 30);
-  writer.write(header_channel, reader.header().start_monotonic_ns, reader.header());
+  LogHeader header = reader.header();
+  change_header(header);
+  writer.write(header_channel, header.start_monotonic_ns, header);
   for (LogEvent event; reader.next(event);) {
     change(event);
     writer.write_payload(event.channel, event.receive_ns, event.payload);
@@ -91,6 +94,18 @@ TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
   EXPECT_FALSE(json["complete"].get<bool>());
   ASSERT_EQ(json["damage"].size(), 1u);
   EXPECT_TRUE(json["damage"][0]["tail"].get<bool>());
+}
+
+TEST_F(ToolsVerify, ALogWhoseRecorderHeardTheSceneLateIsVerifiedWithTheSceneOfItsTopic) {
+  rewrite(log(), changed(), [](LogEvent&) {}, [](LogHeader& header) { header.scene = header.scene_hash = header.code_path = ""; });
+  const auto verified = verify(changed());
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  const auto info = run_program(program("palpate") + " info " + changed().string() + " --json");
+  EXPECT_EQ(nlohmann::json::parse(info.out)["title"], "loopback block");
+
+  rewrite(log(), changed(), [](LogEvent& event) { if (event.channel == topics::scene.name) event.channel = topics::node_status.name; },
+          [](LogHeader& header) { header.scene = ""; });
+  testing::expect_refusal(program("palpate") + " replay --verify " + changed().string(), {"changed.lcmlog: ", "no scene"});
 }
 
 TEST_F(ToolsVerify, ALogOfAnotherCodePathIsRefusedInWords) {
