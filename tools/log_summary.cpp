@@ -86,6 +86,10 @@ double TopicSummary::rate_hz() const {
 LogSummary summarise_log(const std::filesystem::path& file) {
   LogReader reader(file);
   LogSummary summary;
+  summary.header = reader.header();
+  summary.has_header = reader.has_header();
+  summary.title = title_of(summary.header.scene);
+  summary.code_path = summary.header.code_path;
   summary.bytes = reader.size();
 
   Summariser summariser(summary);
@@ -97,10 +101,6 @@ LogSummary summarise_log(const std::filesystem::path& file) {
     last = std::max(last, event.receive_ns);
   }
   summariser.finish();
-  summary.header = reader.header();
-  summary.has_header = reader.has_header();
-  summary.title = title_of(summary.header.scene);
-  summary.code_path = summary.header.code_path;
   if (last > first) summary.seconds = 1e-9 * static_cast<double>(last - first);
   summary.damage = reader.damage();
   summary.damage_text = reader.damage_text();
