@@ -1,0 +1,85 @@
+#include "haptic_node/device.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/bus/log_writer.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "idl/topics.hpp"
+
+namespace palpate {
+namespace {
+
+class DeviceTest : public ::testing::Test {
+ protected:
+  DeviceTest() : file_(std::filesystem::temp_directory_path() / ("palpate-device-" + std::to_string(getpid()))) {}
+  ~DeviceTest() override { std::filesystem::remove(file_); }
+  Scene scene_with(const std::string& device) {
+    Scene scene;
+    Tool tool;
+    tool.name = "probe";
+    tool.device = device;
+    tool.trajectory = file_;
+    scene.tools.push_back(tool);
+    return scene;
+  }
+  std::filesystem::path file_;
+};
+
+TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
+  {
+    LogWriter log(file_);
+    log.write(header_channel, 1, LogHeader{.schema = schema_text()});
+    for (std::uint64_t step = 40; step < 60; ++step) {
+      if (step == 45) continue;  // lost
+      log.write(topics::tool_state.name, 2, ToolState{.tool = 0, .run = 7, .seq = step, .step = step, .depth = 1e-3 * static_cast<double>(step)});
+      log.write(topics::tool_state.name, 2, ToolState{.tool = 1, .run = 7, .seq = step, .step = step, .depth = 9});
+    }
+  }
+  const auto device = make_device(scene_with("log"), 0);
+  EXPECT_DOUBLE_EQ(device->read(0).dofs.depth, 0.040);
+  EXPECT_DOUBLE_EQ(device->read(0.004).dofs.depth, 0.044);
+  EXPECT_DOUBLE_EQ(device->read(0.005).dofs.depth, 0.044);
+  EXPECT_DOUBLE_EQ(device->read(0.006).dofs.depth, 0.046);
+  EXPECT_FALSE(device->finished(0.019));
+  EXPECT_TRUE(device->finished(0.020));
+  EXPECT_DOUBLE_EQ(device->read(5).dofs.depth, 0.059);
+}
+
+TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
+  {
+    LogWriter log(file_);
+    log.write(header_channel, 1, LogHeader{.schema = schema_text()});
+    log.write(topics::tool_state.name, 2, ToolState{.tool = 3, .run = 7, .seq = 1, .step = 0});
+  }
+  try {
+    make_device(scene_with("log"), 0);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no motion of tool 'probe'"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
+  Scene scene = scene_with("bus");
+  scene.tools.push_back(scene.tools[0]);
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int t = 0; t < 2; ++t) devices.push_back(make_device(scene, t));
+  const auto network = make_memory_network();
+  const auto here = make_memory_bus(network), elsewhere = make_memory_bus(network);
+  BusDevices drivers(*here, devices);
+  ASSERT_TRUE(drivers.needed());
+  EXPECT_FALSE(devices[1]->ready());
+  elsewhere->writer(topics::device_state)->write({.tool = 1, .seq = 5, .yaw = 0.25, .depth = 0.1});
+  drivers.pump();
+  EXPECT_FALSE(devices[0]->ready());
+  ASSERT_TRUE(devices[1]->ready());
+  EXPECT_DOUBLE_EQ(devices[1]->read(0).dofs.yaw, 0.25);
+  EXPECT_EQ(devices[1]->read(0).seq, 5u);
+}
+
+}  // namespace
+}  // namespace palpate
