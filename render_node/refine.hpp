@@ -12,8 +12,10 @@ namespace palpate {
 class Refinement {
  public:
   Refinement() = default;
-  /// `vertices`: number of coarse vertices. Vertex order: the coarse ones, then those of each level.
-  Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels);
+  /// `vertices`: number of coarse vertices. Vertex order: the coarse ones, then those of each level. With `rest`
+  /// positions of the coarse vertices, what lies at a crease (faces that meet at more than 50 degrees) stays flat:
+  /// a sharp edge has no normal to bend by.
+  Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels, std::span<const Eigen::Vector3f> rest = {});
 
   int vertices() const { return coarse_ + static_cast<int>(edges_.size()); }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -26,9 +28,11 @@ class Refinement {
 
  private:
   void split();
+  void mark_creases(std::span<const Eigen::Vector3f> rest);
 
   int coarse_ = 0;
   std::vector<std::array<int, 2>> edges_;  ///< per new vertex, ends before it in order
+  std::vector<char> crease_;               ///< per vertex; empty: none
   std::vector<std::array<int, 3>> triangles_;
 };
 

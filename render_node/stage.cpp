@@ -36,7 +36,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   for (const SurfaceMap& map : surfaces) {
     Soft body;
     const int levels = refinement_levels(map.triangles.size(), most_triangles);
-    body.refinement = Refinement(map.triangles, map.size(), levels);
+    body.refinement = Refinement(map.triangles, map.size(), levels, to_float(map.position));
     body.coarse = map.position.size();
     body.position = to_float(map.position);
     body.normal.resize(body.coarse);

@@ -90,5 +90,17 @@ TEST(Instrument, JawsOpenAwayFromEachOther) {
   EXPECT_TRUE((part_pose(view, shape, 1) * hinge).isApprox(hinge));
 }
 
+TEST(Refinement, ASharpEdgeStaysStraight) {
+  // Two squares that meet at a right angle, with the normals that averaging gives.
+  const std::vector<std::array<int, 3>> roof{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+  const std::vector<Eigen::Vector3f> rest{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, -1}, {1, 1, -1}};
+  const Refinement refinement(roof, 6, 1, rest);
+  std::vector<Eigen::Vector3f> x = rest, n(6, Eigen::Vector3f(1, 0, 1).normalized());
+  x.resize(refinement.vertices());
+  n.resize(refinement.vertices());
+  refinement.apply(x, n);
+  for (int i = 6; i < refinement.vertices(); ++i) EXPECT_TRUE(x[i].z() == 0 || x[i].x() == 1) << x[i].transpose();
+}
+
 }  // namespace
 }  // namespace palpate
