@@ -12,7 +12,9 @@ TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
       triangles_(map.triangles),
       first_of_node_(map.size() + 1, 0),
       movable_(map.touchable),
-      buckets_(map.position, map.triangles, bucket_size) {
+      buckets_(map.position, map.triangles, bucket_size),
+      slack_(0.05 * bucket_size),
+      entered_(map.triangles.size(), {Eigen::Vector3d::Constant(1), Eigen::Vector3d::Constant(-1)}) {
   for (const auto& t : triangles_)
     for (int node : t) ++first_of_node_[node + 1];
   for (int n = 0; n < map.size(); ++n) first_of_node_[n + 1] += first_of_node_[n];
@@ -93,7 +95,14 @@ void TouchSurface::enter(int triangle) {
   const Triangle a = corners(triangle), b = previous_corners(triangle);
   const Eigen::Vector3d low = a[0].cwiseMin(a[1]).cwiseMin(a[2]).cwiseMin(b[0]).cwiseMin(b[1]).cwiseMin(b[2]);
   const Eigen::Vector3d high = a[0].cwiseMax(a[1]).cwiseMax(a[2]).cwiseMax(b[0]).cwiseMax(b[1]).cwiseMax(b[2]);
-  buckets_.move(triangle, low, high);
+  // Small motions stay within the box that was entered; one that has become far too large is entered anew.
+  auto& [entered_low, entered_high] = entered_[triangle];
+  const bool inside = (low.array() >= entered_low.array()).all() && (high.array() <= entered_high.array()).all();
+  const bool snug = ((entered_high - entered_low) - (high - low)).maxCoeff() <= 4 * slack_;
+  if (inside && snug) return;
+  entered_low = low.array() - slack_;
+  entered_high = high.array() + slack_;
+  buckets_.move(triangle, entered_low, entered_high);
 }
 
 void TouchSurface::move_marked(std::span<const double> displacement) {

@@ -48,13 +48,14 @@ class TouchSurface {
 
  private:
   void enter(int triangle);
-  void stop(int node);
 
   std::vector<Eigen::Vector3d> rest_, position_, previous_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> first_of_node_, of_node_;  ///< triangles of each node, compressed
   int movable_;                               ///< nodes that can move: the touchable ones
   Buckets buckets_;
+  double slack_;                              ///< [m] by which boxes are entered larger than they are
+  std::vector<std::array<Eigen::Vector3d, 2>> entered_;  ///< per triangle, the box by which it stands in the buckets
   std::vector<int> found_, marked_, last_marked_, stamp_, triangle_stamp_;
   int clock_ = 0, triangle_clock_ = 0, turn_ = 0;
 };

@@ -3,6 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PALPATE_LONG_TESTS=1
+export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 ./scripts/test.sh
 for preset in address thread; do
   ./scripts/build.sh "$preset"
