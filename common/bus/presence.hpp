@@ -26,7 +26,7 @@ class Presence {
 
   /// True if the haptic loop with this run is known and has the same scene and archives.
   bool accepts(std::uint64_t run) const;
-  /// Runs of haptic nodes that match.
+  /// True if a node of this role is known that has the same scene and archives.
   bool matched(const std::string& role) const;
   const std::map<std::string, NodeStatus>& peers() const { return peers_; }
 
