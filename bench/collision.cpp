@@ -91,7 +91,7 @@ class Collision {
     int hits = 0;
     for (int sample = 0; sample < kSamples; ++sample) {
       const Vector3d p0 = before + offset(sample), p1 = now + offset(sample);
-      const int count = buckets_.query(p0.cwiseMin(p1), p0.cwiseMax(p1), found_);
+      const int count = buckets_.query(p0.cwiseMin(p1), p0.cwiseMax(p1), 0, found_);
       double earliest = 2;
       for (int i = 0; i < count; ++i) {
         const auto hit = sweep_point(p0, p1, organ_.corners(organ_.previous, found_[i]),
@@ -112,8 +112,7 @@ class Collision {
   void list_nodes(const Vector3d& tip) {
     near_.clear();
     ++clock_;
-    const Vector3d reach = Vector3d::Constant(kNear);
-    const int count = buckets_.query(tip - reach, tip + reach, found_);
+    const int count = buckets_.query(tip, tip, kNear, found_);
     for (int i = 0; i < count; ++i)
       for (int node : organ_.triangles[found_[i]]) {
         if (stamp_[node] == clock_) continue;

@@ -1,6 +1,7 @@
 #include "haptic_node/touch_surface.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstring>
 
 namespace palpate {
@@ -52,7 +53,7 @@ Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
 
 std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) {
   const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
-  const int candidates = buckets_.query(low.array() - radius, high.array() + radius, found_);
+  const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
@@ -65,6 +66,7 @@ std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::V
     const Eigen::Vector3d apart = (box_low - high).cwiseMax(low - box_high).cwiseMax(0.0);
     if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
   }
+  std::sort(found_.begin(), found_.begin() + kept);
   return std::span(found_).first(kept);
 }
 

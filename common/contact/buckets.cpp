@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace palpate {
@@ -14,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMostCells = 1 << 24;
+constexpr double kRounding = 1e-9;  // of a query's reach: nothing on its border is lost to rounding
 
 }  // namespace
 
@@ -29,6 +29,7 @@ Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array
   if (!(size > 0) || !(counts.array().ceil().cwiseMax(1).prod() <= kMostCells))
     throw std::runtime_error(fmt::format("a bucket size of {} m does not suit a surface {:.4g} m across",
                                          size, (high - low).norm()));
+  size_ = size;
   per_metre_ = 1 / size;
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = std::max(1, static_cast<int>(std::ceil(counts[axis])));
   first_overflow_ = cells_[0] * cells_[1] * cells_[2];
@@ -65,6 +66,14 @@ Buckets::Range Buckets::range_of(const Vector3d& box_min, const Vector3d& box_ma
     range.high[axis] = high < last ? static_cast<int>(std::max(high, 0.0)) : static_cast<int>(last);
   }
   return range;
+}
+
+// Distance along one axis between an interval and a layer of buckets; the outermost layers reach to infinity.
+double Buckets::apart(double low, double high, int index, int axis) const {
+  const double begin = origin_[axis] + index * size_;
+  const double before = index > 0 ? begin - high : 0;
+  const double behind = index < cells_[axis] - 1 ? low - (begin + size_) : 0;
+  return std::max(0.0, std::max(before, behind));
 }
 
 template <class Visit>
@@ -118,16 +127,11 @@ void Buckets::leave(int triangle) {
   first_of_triangle_[triangle] = -1;
 }
 
-int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, std::span<int> found) const {
+int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, double radius, std::span<int> found) const {
   assert(found.size() >= range_.size());
   if (++clock_ == 0) {
     std::fill(stamp_.begin(), stamp_.end(), 0u);
     clock_ = 1;
-  }
-  const Range range = range_of(box_min, box_max);
-  if (2 * range.count() > cells_[0] * cells_[1] * cells_[2]) {  // most of the grid: quicker to name every triangle
-    std::iota(found.begin(), found.begin() + range_.size(), 0);
-    return static_cast<int>(range_.size());
   }
   int count = 0;
   const auto collect = [&](int bucket) {
@@ -138,9 +142,18 @@ int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, std::span<i
       found[count++] = triangle;
     }
   };
-  for_each_bucket(range, collect);
+  const double reach = radius + kRounding * (radius + size_);
+  const Range range = range_of(box_min.array() - reach, box_max.array() + reach);
+  for (int k = range.low[2]; k <= range.high[2]; ++k)
+    for (int j = range.low[1]; j <= range.high[1]; ++j) {
+      const double z = apart(box_min.z(), box_max.z(), k, 2), y = apart(box_min.y(), box_max.y(), j, 1);
+      const double left = reach * reach - z * z - y * y;
+      for (int i = range.low[0]; i <= range.high[0]; ++i) {
+        const double x = apart(box_min.x(), box_max.x(), i, 0);
+        if (!(x * x > left)) collect((k * cells_[1] + j) * cells_[0] + i);
+      }
+    }
   collect(first_overflow_);
-  std::sort(found.begin(), found.begin() + count);
   return count;
 }
 

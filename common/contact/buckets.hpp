@@ -27,10 +27,9 @@ class Buckets {
   /// Enters the triangle's new swept box; does nothing if it meets the same buckets as before.
   void move(int triangle, const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max);
 
-  /// Triangles whose buckets meet the box, ascending and without duplicates, into `found`; returns how many. All of them
-  /// if the box covers most of the grid.
+  /// Triangles whose buckets come within `radius` [m] of the box, each once, in no order, into `found`; returns how many.
   /// `found` needs room for every triangle of the surface.
-  int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, std::span<int> found) const;
+  int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, double radius, std::span<int> found) const;
 
   std::array<int, 3> cells() const { return cells_; }
   std::size_t bytes() const;  ///< memory taken
@@ -51,12 +50,13 @@ class Buckets {
   template <class Visit>
   void for_each_bucket(const Range& range, Visit&& visit) const;
   Range range_of(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) const;
+  double apart(double low, double high, int index, int axis) const;
   void enter(int triangle);
   void leave(int triangle);
   void link(int triangle, int bucket);
 
   Eigen::Vector3d origin_;
-  double per_metre_;
+  double size_, per_metre_;
   std::array<int, 3> cells_;
   std::vector<int> first_in_bucket_;    ///< entry, or -1
   std::vector<Range> range_;            ///< per triangle

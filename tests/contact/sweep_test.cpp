@@ -23,7 +23,7 @@ struct Found {
 Found with_buckets(const MovingSurface& surface, const Buckets& buckets, std::vector<int>& room,
                    const Vector3d& p0, const Vector3d& p1) {
   Found first;
-  const int count = buckets.query(p0.cwiseMin(p1), p0.cwiseMax(p1), room);
+  const int count = buckets.query(p0.cwiseMin(p1), p0.cwiseMax(p1), 0, room);
   for (int i = 0; i < count; ++i) {
     const auto hit = sweep_point(p0, p1, surface.before(room[i]), surface.after(room[i]));
     if (hit && hit->time < first.time) first = {hit->time, room[i], hit->from_outside};
