@@ -2,12 +2,19 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstring>
-
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
 
 namespace palpate {
+namespace {
+
+std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
+  std::vector<std::size_t> nodes;
+  for (int b = 0; b < deformer.bodies(); ++b) nodes.push_back(deformer.surface(b).position.size());
+  return nodes;
+}
+
+}  // namespace
 
 DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz)
     : deformer_(deformer),
@@ -15,30 +22,13 @@ DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double 
       presence_(presence),
       frame_ns_(static_cast<std::int64_t>(1e9 / visual_hz)),
       feed_(bus, presence, deformer),
-      surfaces_(bus.writer(topics::surface_state)),
-      messages_(deformer.bodies()) {
-  for (int b = 0; b < deformer.bodies(); ++b) {
-    messages_[b].body = static_cast<std::uint32_t>(b);
-    messages_[b].position.resize(3 * deformer.surface(b).position.size());
-    messages_[b].normal.resize(messages_[b].position.size());
-  }
-}
+      surfaces_(bus, surface_nodes(deformer)) {}
 
 void DeformLoop::publish(std::int64_t now) {
   deformer_.deform();
   report_.deform.record(now_ns() - now);
-  for (int b = 0; b < deformer_.bodies(); ++b) {
-    SurfaceState& m = messages_[b];
-    const DeformedSurface& surface = deformer_.surface(b);
-    std::memcpy(m.position.data(), surface.position.data(), m.position.size() * sizeof(float));
-    std::memcpy(m.normal.data(), surface.normal.data(), m.normal.size() * sizeof(float));
-    m.run = deformer_.run();
-    m.step = deformer_.step();
-    m.sense_ns = deformer_.sense_ns();
-    m.publish_ns = now_ns();
-    ++m.seq;
-    surfaces_->write(m);
-  }
+  for (int b = 0; b < deformer_.bodies(); ++b)
+    surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
 }
 
@@ -68,7 +58,7 @@ const DeformReport& DeformLoop::run(double seconds) {
     now = now_ns();
     if (!news && now < next_frame) continue;
     publish(now);
-    if (news) report_.latency.record(messages_.empty() ? 0 : messages_.back().publish_ns - deformer_.sense_ns());
+    if (news) report_.latency.record(surfaces_.last_publish_ns() - deformer_.sense_ns());
     next_frame = now + frame_ns_;
   }
   report_.refused = feed_.refused();

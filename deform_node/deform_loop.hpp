@@ -1,14 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
 #include "common/models/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
+#include "deform_node/surface_publisher.hpp"
 
 namespace palpate {
 
@@ -38,8 +35,7 @@ class DeformLoop {
   Presence& presence_;
   std::int64_t frame_ns_;
   ContactFeed feed_;
-  std::unique_ptr<Writer<SurfaceState>> surfaces_;
-  std::vector<SurfaceState> messages_;
+  SurfacePublisher surfaces_;
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_frames_ = 0;
   DeformReport report_;

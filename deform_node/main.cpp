@@ -1,36 +1,84 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/fem/dense.hpp"
+#include "common/kernels/code_path.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "deform_node/deform_loop.hpp"
+#include "deform_node/dynamic_loop.hpp"
 
 namespace palpate {
 namespace {
 
-void run(const NodeOptions& o) {
-  LoadedScene loaded = load_for_node(o, ArchivePart::surface);
-  Deformer deformer(loaded.scene, loaded.archives);
-  loaded.archives.clear();
+double us(const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); }
+
+double rate(std::uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; }
+
+nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
   Presence presence(*bus, "deform", 0, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
   DeformLoop loop(deformer, *bus, presence, loaded.scene.rates.visual_hz);
   say_ready(o);
   const DeformReport& r = loop.run(o.seconds);
-  const nlohmann::json summary{{"node", "deform"},
-                               {"seconds", r.seconds},
-                               {"frames", r.frames},
-                               {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
-                               {"latency_us_p50", 1e-3 * static_cast<double>(r.latency.percentile(0.5))},
-                               {"latency_us_p99", 1e-3 * static_cast<double>(r.latency.percentile(0.99))},
-                               {"deform_us_p50", 1e-3 * static_cast<double>(r.deform.percentile(0.5))},
-                               {"refused", r.refused}};
+  spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames, rate(r.frames, r.seconds), us(r.latency, 0.5),
+               us(r.latency, 0.99));
+  return {{"node", "deform"},
+          {"seconds", r.seconds},
+          {"frames", r.frames},
+          {"rate_hz", rate(r.frames, r.seconds)},
+          {"latency_us_p50", us(r.latency, 0.5)},
+          {"latency_us_p99", us(r.latency, 0.99)},
+          {"deform_us_p50", us(r.deform, 0.5)},
+          {"refused", r.refused}};
+}
+
+nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
+  set_linear_algebra_threads(1);  // the stiffness near the tools is worked out beside the loops
+  DynamicWorld world(loaded.scene, loaded.archives);
+  LocalModels local_models(world, loaded.archives);
+  const std::uint64_t run = new_run();
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
+  Presence presence(*bus, "deform", run, loaded.scene_hash, loaded.archive_hash);
+  catch_shutdown_signals();
+  for (int i = 0; i < world.organs(); ++i)
+    spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each", loaded.scene.bodies[world.bodies()[i]].name,
+                 world.organ(i).topology().alive_count(), world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
+  DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
+  say_ready(o);
+  const DynamicReport& r = loop.run(o.seconds);
+  spdlog::info("{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} fallen away",
+               rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped, r.cut, r.torn, r.fallen);
+  return {{"node", "deform"},
+          {"seconds", r.seconds},
+          {"frames", r.frames},
+          {"rate_hz", rate(r.frames, r.seconds)},
+          {"ticks", r.ticks},
+          {"tick_hz", rate(r.ticks, r.seconds)},
+          {"missed", r.period.skipped},
+          {"tick_us_p50", us(r.tick, 0.5)},
+          {"tick_us_p99", us(r.tick, 0.99)},
+          {"tick_us_max", us(r.tick, 1)},
+          {"latency_us_p50", us(r.latency, 0.5)},
+          {"latency_us_p99", us(r.latency, 0.99)},
+          {"tetrahedra_cut", r.cut},
+          {"tetrahedra_torn", r.torn},
+          {"tetrahedra_fallen", r.fallen},
+          {"state_hash", fmt::format("{:016x}", world.hash())},
+          {"refused", r.refused}};
+}
+
+void run(const NodeOptions& o) {
+  LoadedScene loaded = load_for_node(o, ArchivePart::surface);
+  Deformer deformer(loaded.scene, loaded.archives);
+  const bool moves = std::ranges::any_of(loaded.scene.bodies, is_dynamic);
+  if (!moves) loaded.archives.clear();
+  const nlohmann::json summary = moves ? advance(o, loaded, deformer) : superpose(o, loaded, deformer);
   if (o.supervised) fmt::print("{}\n", summary.dump());
-  spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames, summary["rate_hz"].get<double>(),
-               summary["latency_us_p50"].get<double>(), summary["latency_us_p99"].get<double>());
 }
 
 }  // namespace

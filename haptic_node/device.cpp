@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
 #include "common/bus/log_reader.hpp"
 #include "common/realtime/latest.hpp"
@@ -36,7 +35,7 @@ class LogDevice : public Device {
       if (!event.read(topics::tool_state, state) || state.tool != index) continue;
       if (samples_.empty()) first = state.step;
       if (state.step < first) continue;
-      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip};
+      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal};
       // A step whose sample was lost repeats the one before it.
       while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < max_samples) samples_.push_back(samples_.back());
       if (samples_.size() < max_samples) samples_.push_back({dofs, state.seq});
@@ -93,12 +92,11 @@ BusDevices::~BusDevices() = default;
 
 bool BusDevices::needed() const { return !targets_.empty(); }
 
-void BusDevices::pump() {
-  std::this_thread::sleep_for(std::chrono::microseconds(250));
+void BusDevices::take() {
   while (const auto sample = reader_->take())
     for (const Target& target : targets_)
       if (target.tool == sample->tool)
-        target.device->put({{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip}, sample->seq});
+        target.device->put({{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal}, sample->seq});
 }
 
 }  // namespace palpate

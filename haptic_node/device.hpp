@@ -29,8 +29,8 @@ class BusDevices {
  public:
   BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices);
   ~BusDevices();
-  /// Sleeps a quarter of a millisecond and takes what has come.
-  void pump();
+  /// Takes what has come.
+  void take();
   bool needed() const;  ///< some tool waits for a driver elsewhere
 
  private:

@@ -27,6 +27,7 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
       presence_(presence),
       publisher_(bus, haptic.tools(), run),
       bus_devices_(bus, devices),
+      local_feed_(bus, haptic, run),
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
       samples_(haptic.tools()),
       dofs_(haptic.tools()),
@@ -47,9 +48,13 @@ bool HapticLoop::all_finished(double seconds) const {
 const LoopReport& HapticLoop::run(double seconds) {
   std::jthread publisher([this] { publish_loop(); });
   std::jthread pump;
-  if (bus_devices_.needed())
+  if (bus_devices_.needed() || local_feed_.needed())
     pump = std::jthread([this](const std::stop_token& stop) {
-      while (!stop.stop_requested()) bus_devices_.pump();
+      while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(250us);
+        if (bus_devices_.needed()) bus_devices_.take();
+        if (local_feed_.needed()) local_feed_.take();
+      }
     });
   prefault_stack();
   for (const std::string& said : request_realtime({.priority = loop_priority}).sentences) spdlog::info("{}", said);
@@ -78,6 +83,7 @@ void HapticLoop::tick(double time) {
     samples_[t] = devices_[t]->read(time);
     dofs_[t] = samples_[t].dofs;
   }
+  local_feed_.give(haptic_);
   if (step_ % keyframe_interval_ == 0) checkpoint();
   haptic_.step(dofs_);
 
@@ -100,6 +106,8 @@ void HapticLoop::tick(double time) {
   report_.limited += (flags & (force_limited | slew_limited)) != 0;
   report_.regularised += (flags & regularised) != 0;
   report_.faults += (flags & fault) != 0;
+  report_.stale += (flags & stale_model) != 0;
+  if (flags & stale_model) shown_stale_.store(true, std::memory_order_relaxed);
   shown_ticks_.store(step_, std::memory_order_relaxed);
 }
 
@@ -141,7 +149,9 @@ void HapticLoop::report_status(std::int64_t now) {
   if (now - last_status_ns_ < 1'000'000'000) return;
   const std::uint64_t ticks = shown_ticks_.load(std::memory_order_relaxed);
   const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(ticks - last_status_ticks_) / static_cast<double>(now - last_status_ns_);
-  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0);
+  const bool stale = shown_stale_.exchange(false, std::memory_order_relaxed);
+  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0,
+                     stale ? "the force of moving tissue fades: its local contact models come too late" : "");
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
 }

@@ -12,6 +12,7 @@
 #include "common/realtime/spsc_ring.hpp"
 #include "haptic_node/device.hpp"
 #include "haptic_node/haptic_step.hpp"
+#include "haptic_node/local_feed.hpp"
 #include "haptic_node/publisher.hpp"
 
 namespace palpate {
@@ -24,11 +25,11 @@ struct LoopReport {
   Histogram step, push;              ///< [ns] whole tick; hand-over to the publisher
   PeriodStatistics period;
   double largest_force = 0;          ///< [N]
-  std::uint64_t limited = 0, regularised = 0, faults = 0;  ///< steps
+  std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0;  ///< steps
 };
 
 /// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and
-/// a pump for devices elsewhere. The tick itself reads devices, steps, and pushes into a ring: no more.
+/// a pump for devices elsewhere and local contact models. The tick itself reads devices and models, steps, and pushes into a ring: no more.
 class HapticLoop {
  public:
   HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
@@ -52,6 +53,7 @@ class HapticLoop {
   Presence& presence_;
   Publisher publisher_;
   BusDevices bus_devices_;
+  LocalFeed local_feed_;
   std::uint64_t step_ = 0, keyframe_interval_;
   std::vector<DeviceSample> samples_;
   std::vector<ToolDofs> dofs_;
@@ -61,6 +63,7 @@ class HapticLoop {
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> over_{false};
   std::atomic<std::uint64_t> shown_ticks_{0}, shown_missed_{0};
+  std::atomic<bool> shown_stale_{false};
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_status_ticks_ = 0;
   LoopReport report_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -13,14 +14,19 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     tool_names_.push_back(tool.name);
     samples_.push_back(sample_tool(tool.radius, tool.shaft_radius, tool.shaft_length));
     safety_.emplace_back(tool.max_force, tool.max_force_rate, dt_);
+    jaws_.push_back(tool.jaws);
   }
   for (const auto& samples : samples_) moving_.push_back({.samples = samples});
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    bodies_.push_back(std::make_unique<TouchBody>(archives[b], scene, static_cast<int>(b)));
+    dynamic_.push_back(is_dynamic(scene.bodies[b]));
+    bodies_.push_back(dynamic_[b] ? nullptr : std::make_unique<TouchBody>(archives[b], scene, static_cast<int>(b)));
     body_names_.push_back(scene.bodies[b].name);
   }
+  if (std::ranges::count(dynamic_, 1) > 0)
+    for (const Trocar& trocar : trocars_) local_.push_back(std::make_unique<LocalBody>(trocar, scene.contact.friction, dt_));
   loads_.resize(moving_.size());
   output_.resize(moving_.size());
+  jaws_closed_.assign(moving_.size(), 0);
 }
 
 HapticStep::~HapticStep() = default;
@@ -32,6 +38,7 @@ void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
   for (int t = 0; t < tools(); ++t)
     for (int s = 0; s < static_cast<int>(samples_[t].size()); ++s)
       for (int b = 0; b < bodies(); ++b) {
+        if (!bodies_[b]) continue;
         const double depth = bodies_[b]->penetration(moving_[t].centre(moving_[t].now, s), samples_[t][s].radius);
         if (depth > 0)
           throw std::runtime_error(fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it", tool_names_[t],
@@ -40,7 +47,7 @@ void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
 }
 
 void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
-  const bool fits = tool < moving_.size() && held.body < bodies_.size() && held.sample < samples_[tool].size();
+  const bool fits = tool < moving_.size() && held.body < bodies_.size() && bodies_[held.body] && held.sample < samples_[tool].size();
   if (!fits) throw std::runtime_error("a peer keeps a contact of a tool or body that this scene does not have");
   TouchContact c{.tool = static_cast<int>(tool), .sample = static_cast<int>(held.sample)};
   const int nodes = static_cast<int>(bodies_[held.body]->surface().positions().size());
@@ -70,11 +77,28 @@ bool HapticStep::sense(std::span<const ToolDofs> dofs) {
   return healthy;
 }
 
+// Jaws that close hold what is between them, until they open.
+void HapticStep::work_jaws(std::span<const ToolDofs> dofs) {
+  for (int t = 0; t < tools(); ++t) {
+    if (!jaws_[t]) continue;
+    const bool closes = !jaws_closed_[t] && dofs[t].grip < jaws_[t]->closed_below;
+    const bool opens = jaws_closed_[t] && dofs[t].grip > jaws_[t]->closed_below + jaw_slack;
+    if (!closes && !opens) continue;
+    jaws_closed_[t] = closes;
+    for (auto& body : bodies_) {
+      if (!body) continue;
+      closes ? body->grasp(t, moving_[t].before, *jaws_[t]) : body->let_go(t);
+    }
+  }
+}
+
 void HapticStep::step(std::span<const ToolDofs> dofs) {
   bool healthy = sense(dofs);
+  work_jaws(dofs);
   std::uint32_t softened = 0;
   for (int t = 0; t < tools(); ++t) output_[t] = {};
   for (auto& body : bodies_) {
+    if (!body) continue;
     body->collide(moving_);
     const LawOutcome outcome = body->hold(moving_);
     healthy &= outcome.finite;
@@ -86,7 +110,22 @@ void HapticStep::step(std::span<const ToolDofs> dofs) {
       if (output_[t].press.isZero(0)) output_[t].press = loads_[t].press;
     }
   }
-  for (int t = 0; t < tools(); ++t) output_[t].flags = softened | safety_[t].apply(output_[t].force, output_[t].torque, healthy);
+  for (int t = 0; t < static_cast<int>(local_.size()); ++t) {
+    const ToolLoad load = local_[t]->load(moving_[t], step_);
+    output_[t].force += load.force;
+    output_[t].torque += load.torque;
+    if (local_[t]->stale()) output_[t].flags = stale_model;
+  }
+  for (int t = 0; t < tools(); ++t) output_[t].flags |= softened | safety_[t].apply(output_[t].force, output_[t].torque, healthy);
+  ++step_;
+}
+
+bool HapticStep::consume(const LocalContactModel& message) {
+  if (message.tool >= local_.size()) return false;
+  LocalModel model;
+  if (!copy_model(message, dynamic_, model)) return false;
+  consume(static_cast<int>(message.tool), model);
+  return true;
 }
 
 void HapticStep::trip() {
@@ -95,8 +134,10 @@ void HapticStep::trip() {
 
 std::size_t HapticStep::state_size() const {
   std::size_t size = moving_.size() * (16 * sizeof(double) + sizeof(SafetyChain::State));
-  for (const auto& body : bodies_) size += body->state_size();
-  return size;
+  for (const auto& body : bodies_)
+    if (body) size += body->state_size();
+  for (const auto& local : local_) size += local->state_size();
+  return size + jaws_closed_.size() + (has_moving_tissue() ? sizeof step_ : 0);
 }
 
 void HapticStep::save(std::span<std::uint8_t> to) {
@@ -106,16 +147,24 @@ void HapticStep::save(std::span<std::uint8_t> to) {
     p += 16 * sizeof(double);
     std::memcpy(p, &safety_[t].state(), sizeof(SafetyChain::State));
     p += sizeof(SafetyChain::State);
+    *p++ = jaws_closed_[t];
   }
   for (auto& body : bodies_) {
+    if (!body) continue;
     body->save(p);
     p += body->state_size();
   }
+  for (auto& local : local_) {
+    local->save(p);
+    p += local->state_size();
+  }
+  if (has_moving_tissue()) std::memcpy(p, &step_, sizeof step_);
   forget_factors();
 }
 
 void HapticStep::forget_factors() {
-  for (auto& body : bodies_) body->forget_factor();
+  for (auto& body : bodies_)
+    if (body) body->forget_factor();
 }
 
 void HapticStep::restore(std::span<const std::uint8_t> from) {
@@ -129,11 +178,18 @@ void HapticStep::restore(std::span<const std::uint8_t> from) {
     std::memcpy(&state, p, sizeof state);
     safety_[t].set_state(state);
     p += sizeof state;
+    jaws_closed_[t] = *p++;
   }
   for (auto& body : bodies_) {
+    if (!body) continue;
     body->restore(p, moving_);
     p += body->state_size();
   }
+  for (auto& local : local_) {
+    local->restore(p);
+    p += local->state_size();
+  }
+  if (has_moving_tissue()) std::memcpy(&step_, p, sizeof step_);
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "common/scene/scene.hpp"
 #include "common/tensors/archive.hpp"
 #include "common/tool/kinematics.hpp"
+#include "haptic_node/local_body.hpp"
 #include "haptic_node/safety.hpp"
 #include "haptic_node/touch_body.hpp"
 
@@ -18,7 +20,7 @@ namespace palpate {
 /// the same bits for the same inputs on the same code path.
 class HapticStep {
  public:
-  /// One archive per body, read with ArchivePart::touchable.
+  /// One archive per body, read with ArchivePart::touchable; those of dynamic bodies are not looked at.
   HapticStep(const Scene& scene, const std::vector<Archive>& archives);
   ~HapticStep();
 
@@ -34,13 +36,23 @@ class HapticStep {
 
   void step(std::span<const ToolDofs> dofs);
 
+  /// Moving tissue: which bodies are dynamic, one entry per body, and what a tool feels of them.
+  bool has_moving_tissue() const { return !local_.empty(); }
+  std::span<const std::uint8_t> dynamic() const { return dynamic_; }
+  const LocalBody& local(int tool) const { return *local_[tool]; }
+  /// The next steps use this model of the tissue near `tool`.
+  void consume(int tool, const LocalModel& model) { local_[tool]->consume(model); }
+  /// The same for a message; false if it fits neither tools nor bodies of the scene.
+  bool consume(const LocalContactModel& message);
+
   /// What the hand gets [N, N m], on the tool at its tip, world frame.
   const Eigen::Vector3d& force(int tool) const { return output_[tool].force; }
   const Eigen::Vector3d& torque(int tool) const { return output_[tool].torque; }
   std::uint32_t flags(int tool) const { return output_[tool].flags; }
   const Eigen::Vector3d& press(int tool) const { return output_[tool].press; }
   const Eigen::Isometry3d& pose(int tool) const { return moving_[tool].now; }
-  const TouchBody& body(int b) const { return *bodies_[b]; }
+  bool is_touch_body(int b) const { return bodies_[b] != nullptr; }
+  const TouchBody& body(int b) const { return *bodies_[b]; }  ///< a quasi-static one
   void trip();  ///< fault from outside: the force ramps to zero
 
   /// Changing state as bytes, to start a replay from. save() leaves the factor forgotten, so that the run goes on
@@ -56,14 +68,20 @@ class HapticStep {
     std::uint32_t flags = 0;
   };
   bool sense(std::span<const ToolDofs> dofs);
+  void work_jaws(std::span<const ToolDofs> dofs);
 
   double dt_;
   std::vector<Trocar> trocars_;
   std::vector<std::string> tool_names_, body_names_;
   std::vector<std::vector<SampleSphere>> samples_;
   std::vector<MovingTool> moving_;
-  std::vector<std::unique_ptr<TouchBody>> bodies_;
+  std::vector<std::unique_ptr<TouchBody>> bodies_;  ///< null where the body is dynamic
+  std::vector<std::uint8_t> dynamic_;
+  std::vector<std::unique_ptr<LocalBody>> local_;   ///< one per tool; none without a dynamic body
+  std::uint64_t step_ = 0;
   std::vector<SafetyChain> safety_;
+  std::vector<std::optional<Jaws>> jaws_;      ///< per tool
+  std::vector<std::uint8_t> jaws_closed_;
   std::vector<ToolLoad> loads_;
   std::vector<Output> output_;
 };

@@ -3,23 +3,17 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/realtime/shutdown.hpp"
 #include "common/node/node_setup.hpp"
-#include "haptic_node/code_path.hpp"
+#include "common/kernels/code_path.hpp"
 #include "haptic_node/haptic_loop.hpp"
 
 namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
-
-std::uint64_t new_run() {
-  std::random_device random;
-  return (std::uint64_t{random()} << 32 | random()) | 1;
-}
 
 /// Waits until every driver elsewhere has spoken, saying once that it waits.
 void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
@@ -28,7 +22,10 @@ void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
     return std::all_of(devices.begin(), devices.end(), [](const auto& d) { return d->ready(); });
   };
   if (!all_ready()) spdlog::info("waiting for a driver on topic {}", topics::device_state.name);
-  while (!all_ready() && !shutdown_requested()) drivers.pump();
+  while (!all_ready() && !shutdown_requested()) {
+    std::this_thread::sleep_for(250us);
+    drivers.take();
+  }
 }
 
 /// The last contacts of a haptic node that died, if a peer with the same scene keeps them.
@@ -80,11 +77,12 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"force_max_n", r.largest_force},
           {"limited_steps", r.limited},
           {"regularised_steps", r.regularised},
-          {"fault_steps", r.faults}};
+          {"fault_steps", r.faults},
+          {"stale_model_steps", r.stale}};
 }
 
 void run(const NodeOptions& o) {
-  LoadedScene loaded = load_for_node(o, ArchivePart::touchable);
+  LoadedScene loaded = load_for_node(o, ArchivePart::touchable, ArchivePart::header);
   const Scene& scene = loaded.scene;
   if (scene.tools.size() > StepRecord::max_tools)
     throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(), StepRecord::max_tools));

@@ -19,7 +19,8 @@ void Publisher::publish(const StepRecord& r) {
     force_->write({.tool = tool, .run = run_, .seq = ++state.force_seq, .step = r.step, .sense_ns = r.sense_ns, .force = from.force,
                    .torque = from.torque, .flags = from.flags});
     tool_->write({.tool = tool, .run = run_, .seq = ++state.tool_seq, .step = r.step, .sense_ns = r.sense_ns, .device_seq = from.device_seq,
-                  .yaw = from.dofs.yaw, .pitch = from.dofs.pitch, .depth = from.dofs.depth, .roll = from.dofs.roll, .grip = from.dofs.grip});
+                  .yaw = from.dofs.yaw, .pitch = from.dofs.pitch, .depth = from.dofs.depth, .roll = from.dofs.roll, .grip = from.dofs.grip,
+                  .pedal = from.dofs.pedal, .local_model_run = from.model_run, .local_model_seq = from.model_seq});
   }
 }
 

@@ -13,10 +13,19 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
   r.sense_ns = sense_ns;
   r.tools = haptic.tools();
   r.contacts = r.forces = 0;
-  for (int t = 0; t < r.tools; ++t)
-    r.of_tool[t] = {samples[t].dofs,           samples[t].seq,           plain(haptic.force(t)),
-                    plain(haptic.torque(t)),   plain(haptic.press(t)),   haptic.flags(t)};
+  for (int t = 0; t < r.tools; ++t) {
+    const bool moving = haptic.has_moving_tissue();
+    r.of_tool[t] = {.dofs = samples[t].dofs,
+                    .device_seq = samples[t].seq,
+                    .force = plain(haptic.force(t)),
+                    .torque = plain(haptic.torque(t)),
+                    .press = plain(haptic.press(t)),
+                    .flags = haptic.flags(t),
+                    .model_run = moving ? haptic.local(t).model().run : 0,
+                    .model_seq = moving ? haptic.local(t).model().seq : 0};
+  }
   for (int b = 0; b < haptic.bodies(); ++b) {
+    if (!haptic.is_touch_body(b)) continue;
     const ContactLaw& law = haptic.body(b).law();
     for (const TouchContact& c : law.contacts()) {
       if (c.touch == Touch::open || r.contacts == StepRecord::max_contacts) continue;

@@ -20,6 +20,7 @@ struct StepRecord {
     std::uint64_t device_seq;
     std::array<double, 3> force, torque, press;
     std::uint32_t flags;
+    std::uint64_t model_run, model_seq;  ///< local contact model in use
   };
 
   std::uint64_t step;

@@ -1,7 +1,6 @@
 #include "haptic_node/touch_body.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "common/kernels/kernels.hpp"
@@ -9,15 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double least_facing = 0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
-constexpr double margin_share = 0.1;  // of a sphere's radius or a mean edge: what is this near is watched before it is touched
-
-double mean_edge(const SurfaceMap& map) {
-  double sum = 0;
-  for (const auto& t : map.triangles)
-    for (int v = 0; v < 3; ++v) sum += (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm();
-  return sum / (3.0 * map.triangles.size());
-}
+constexpr int whole_columns_from = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
 double bucket_size(const SurfaceMap& map, const Contact& contact) {
   return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
@@ -27,15 +18,10 @@ ContactLaw::Rule rule_of(const Contact& contact) {
   return contact.rule == "alpha" ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
 }
 
-// Direction from a sphere's centre to a surface point, kept on the tool's side: a point that has come to lie behind
-// the centre is led round to the front.
-Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& side) {
-  const Eigen::Vector3d d = point - centre;
-  const double ahead = d.dot(side);
-  if (ahead > 0) return d.normalized();
-  const Eigen::Vector3d lateral = d - ahead * side;
-  const double left = radius * radius - lateral.squaredNorm();
-  return left > 0 ? Eigen::Vector3d((lateral + std::sqrt(left) * side) / radius) : side;
+std::size_t spheres_of(const Scene& scene) {
+  std::size_t spheres = 0;
+  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
+  return spheres;
 }
 
 }  // namespace
@@ -43,89 +29,82 @@ Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d
 TouchBody::TouchBody(const Archive& archive, const Scene& scene, int body)
     : map_(archive.surface),
       compliance_(archive, Compliance<double>::Rows::touchable),
-      surface_(map_, bucket_size(map_, scene.contact)),
       law_(compliance_, map_.position, rule_of(scene.contact), scene.contact.friction, max_contacts),
-      body_edge_(mean_edge(map_)),
-      vertex_stamp_(map_.size(), 0) {
+      contacts_(map_, bucket_size(map_, scene.contact), law_, spheres_of(scene)) {
   const Body& b = scene.bodies[body];
-  for (const auto& t : map_.triangles) {
-    double edges = 0;
-    for (int v = 0; v < 3; ++v) edges += (map_.position[t[v]] - map_.position[t[(v + 1) % 3]]).norm();
-    mean_edge_.push_back(edges / 3);
-  }
   if (b.nonlinear) nonlinear_ = make_quasi_nonlinear(b, archive);
   columns_.reserve(27 * max_contacts);
   coefficients_.reserve(27 * max_contacts);
   displacement_.reserve(3 * map_.size());
   of_tool_.reserve(3 * map_.size());
   whole_.assign(compliance_.stride(), 0.0);
-  std::size_t spheres = 0;
-  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
-  near_.reserve(spheres * map_.triangles.size());
-  near_end_.reserve(spheres);
 }
 
-double TouchBody::margin(double radius) const { return margin_share * std::min(radius, body_edge_); }
-
-double TouchBody::reach(const MovingTool& moving, int sample) const {
-  const double motion = (moving.centre(moving.now, sample) - moving.centre(moving.before, sample)).norm();
-  return moving.samples[sample].radius + margin(moving.samples[sample].radius) + motion;
+void TouchBody::collide(std::span<const MovingTool> tools) {
+  update_surface(tools);
+  contacts_.collide(tools);
 }
 
-// Into the tissue, by the deformed surface's own normal at the anchor: the side from which a tool may touch it.
-Eigen::Vector3d TouchBody::inward(const TouchContact& c) const {
-  if (!c.face) return -surface_.vertex_normal(c.anchor.nodes[0]);
-  const auto& x = surface_.positions();
-  const auto& n = c.anchor.nodes;
-  return -(x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]).normalized();
-}
-
-void TouchBody::aim(TouchContact& c, const MovingTool& moving) const {
-  const Eigen::Vector3d centre = moving.centre(moving.now, c.sample), into = inward(c);
-  const double radius = moving.samples[c.sample].radius;
-  c.target = moving.now * c.offset;
-  const Eigen::Vector3d outward_of_tool = (c.target - centre).normalized();
-  if (c.touch == Touch::sticking && outward_of_tool.dot(into) > least_facing) {
-    c.normal = outward_of_tool;
+void TouchBody::update_surface(std::span<const MovingTool> tools) {
+  const std::span<const int> marked = contacts_.mark(tools);
+  displacement_.assign(3 * marked.size(), 0.0);
+  if (!nonlinear_) {
+    superpose(-1, displacement_);
   } else {
-    if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
-    c.normal = direction_to(anchor_position(c.anchor, surface_.positions()), centre, radius, into);
-    if (c.touch == Touch::open) c.target = centre + radius * c.normal;
+    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+      superpose(t, of_tool_);
+      const Eigen::Vector3d press = press_of(t);
+      for (std::size_t i = 0; i < marked.size(); ++i) {
+        const Eigen::Vector3d u = Eigen::Map<const Eigen::Vector3d>(of_tool_.data() + 3 * i);
+        Eigen::Map<Eigen::Vector3d>(displacement_.data() + 3 * i) += nonlinear_->correct(u, press);
+      }
+    }
+    // What is held stays where it is held.
+    superpose(-1, of_tool_);
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      for (const TouchContact& c : law_.contacts())
+        if (c.touch != Touch::open && (c.anchor.nodes[0] == marked[i] || (c.face && (c.anchor.nodes[1] == marked[i] ||
+                                                                                              c.anchor.nodes[2] == marked[i]))))
+          std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
   }
-  c.plane = c.normal.dot(centre) + radius;
+  contacts_.move_marked(displacement_);
+}
+
+// u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.
+void TouchBody::superpose(int tool, std::vector<double>& displacement) {
+  columns_.clear();
+  coefficients_.clear();
+  law_.for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
+    if (node >= compliance_.column_nodes() || (tool >= 0 && law_.contacts()[contact].tool != tool)) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      columns_.push_back(compliance_.column(node, axis));
+      coefficients_.push_back(f[axis]);
+    }
+  });
+  const std::span<const int> marked = surface().marked();
+  const int count = static_cast<int>(columns_.size());
+  displacement.resize(3 * marked.size());
+  // Reading whole columns beats picking from them once a good part of the nodes is asked for.
+  if (marked.size() * whole_columns_from < static_cast<std::size_t>(map_.touchable)) {
+    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(), static_cast<int>(marked.size()),
+                                      displacement.data());
+    return;
+  }
+  kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map_.touchable, whole_.data());
+  for (std::size_t i = 0; i < marked.size(); ++i) std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
 }
 
 LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
-  for (TouchContact& c : law_.contacts()) aim(c, tools[c.tool]);
+  contacts_.aim(tools);
   const LawOutcome outcome = law_.solve();
-  settle(tools);
+  contacts_.settle(tools);
   return outcome;
-}
-
-// After the solve: sliding contacts move on along the sphere, those that have opened and gone are dropped.
-void TouchBody::settle(std::span<const MovingTool> tools) {
-  for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
-    TouchContact& c = law_.contacts()[i];
-    const MovingTool& moving = tools[c.tool];
-    const double radius = moving.samples[c.sample].radius;
-    const Eigen::Vector3d centre = moving.centre(moving.now, c.sample);
-    if (c.touch == Touch::open) {
-      const bool gone = (anchor_position(c.anchor, surface_.positions()) - centre).norm() > reach(moving, c.sample) + margin(radius);
-      if (c.face || gone) law_.remove(i);
-      continue;
-    }
-    if (c.touch == Touch::sliding) {
-      c.offset = moving.now.inverse() * Eigen::Vector3d(centre + radius * (c.position - centre).normalized());
-    } else {
-      c.offset = moving.now.inverse() * c.target;
-    }
-  }
 }
 
 Eigen::Vector3d TouchBody::press_of(int tool) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.touch != Touch::open) sum += c.force.dot(c.normal) * c.normal;
+    if (c.tool == tool && c.touch != Touch::open && !c.grasped) sum += c.force.dot(c.normal) * c.normal;
   const double size = sum.norm();
   return size > 0 ? Eigen::Vector3d(sum / size) : Eigen::Vector3d::Zero();
 }
@@ -136,7 +115,7 @@ void TouchBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> load
     Eigen::Vector3d on_tissue = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
     for (const TouchContact& c : law_.contacts()) {
       if (c.tool != t || c.touch == Touch::open) continue;
-      const Eigen::Vector3d at = tools[t].centre(tools[t].now, c.sample) + tools[t].samples[c.sample].radius * c.normal;
+      const Eigen::Vector3d at = c.grasped ? c.target : tools[t].centre(tools[t].now, c.sample) + tools[t].samples[c.sample].radius * c.normal;
       on_tissue += c.force;
       moment += (at - tools[t].now.translation()).cross(c.force);
     }
@@ -148,9 +127,9 @@ void TouchBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> load
 
 double TouchBody::penetration(const Eigen::Vector3d& centre, double radius) const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < surface_.triangle_count(); ++t) nearest = std::min(nearest, closest_point(centre, surface_.corners(t)).squared_distance);
+  for (int t = 0; t < surface().triangle_count(); ++t) nearest = std::min(nearest, closest_point(centre, surface().corners(t)).squared_distance);
   nearest = std::sqrt(nearest);
-  return surface_.encloses(centre) ? radius + nearest : std::max(0.0, radius - nearest);
+  return surface().encloses(centre) ? radius + nearest : std::max(0.0, radius - nearest);
 }
 
 }  // namespace palpate

@@ -11,16 +11,23 @@
 #include "common/kernels/kernels.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/find_archive.hpp"
-#include "haptic_node/code_path.hpp"
+#include "common/kernels/code_path.hpp"
 #include "haptic_node/haptic_step.hpp"
+#include "haptic_node/recorded_models.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
 namespace {
 
-/// What was recorded of one step: per tool its input and its force.
+/// Which local contact model a step used.
+struct ModelName {
+  std::uint64_t run, seq;
+};
+
+/// What was recorded of one step: per tool its inputs and its force.
 struct RecordedStep {
   std::map<std::uint32_t, ToolDofs> dofs;
+  std::map<std::uint32_t, ModelName> model;  ///< of tools that used one
   std::map<std::uint32_t, ForceState> force;
 };
 
@@ -29,21 +36,32 @@ struct RecordedRun {
   std::map<std::uint64_t, HapticKeyframe> keyframes;
 };
 
-std::map<std::uint64_t, RecordedRun> read_runs(LogReader& log) {
+struct Recorded {
   std::map<std::uint64_t, RecordedRun> runs;
+  RunOrder deform_runs;
+};
+
+Recorded read_log(LogReader& log) {
+  Recorded recorded;
+  auto& runs = recorded.runs;
   LogEvent event;
   ToolState tool;
   ForceState force;
   HapticKeyframe keyframe;
+  LocalContactModel model;
   while (log.next(event)) {
-    if (event.read(topics::tool_state, tool))
-      runs[tool.run].steps[tool.step].dofs[tool.tool] = {tool.yaw, tool.pitch, tool.depth, tool.roll, tool.grip};
-    else if (event.read(topics::force_state, force))
+    if (event.read(topics::tool_state, tool)) {
+      RecordedStep& step = runs[tool.run].steps[tool.step];
+      step.dofs[tool.tool] = {tool.yaw, tool.pitch, tool.depth, tool.roll, tool.grip, tool.pedal};
+      if (tool.local_model_seq != 0) step.model[tool.tool] = {tool.local_model_run, tool.local_model_seq};
+    } else if (event.read(topics::force_state, force))
       runs[force.run].steps[force.step].force[force.tool] = force;
     else if (event.read(topics::haptic_keyframe, keyframe))
       runs[keyframe.run].keyframes[keyframe.step] = keyframe;
+    else if (event.read(topics::local_contact_model, model))
+      recorded.deform_runs.try_emplace(model.run, static_cast<int>(recorded.deform_runs.size()));
   }
-  return runs;
+  return recorded;
 }
 
 bool same_bits(const Eigen::Vector3d& a, const std::array<double, 3>& b) { return std::memcmp(a.data(), b.data(), sizeof b) == 0; }
@@ -65,7 +83,8 @@ class RunVerifier {
   RunVerifier(const Scene& scene, const std::vector<Archive>& archives, VerifyReport& report)
       : scene_(scene), archives_(archives), report_(report) {}
 
-  void verify(const RecordedRun& run) {
+  void verify(const RecordedRun& run, RecordedModels& models) {
+    models_ = &models;
     auto keyframe = run.keyframes.begin();
     while (keyframe != run.keyframes.end() && report_.mismatch.empty()) {
       const std::uint64_t reached = verify_from(run, keyframe->second);
@@ -85,11 +104,12 @@ class RunVerifier {
     for (; step <= last && report_.mismatch.empty(); ++step) {
       const auto recorded = run.steps.find(step);
       const bool whole = recorded != run.steps.end() && static_cast<int>(recorded->second.dofs.size()) == haptic.tools();
-      if (!whole) {
+      const std::string missing = whole ? feed_models(haptic, recorded->second) : "input";
+      if (!missing.empty()) {
         const auto next = run.keyframes.upper_bound(step);
         report_.gaps.push_back(next == run.keyframes.end()
-                                   ? fmt::format("cannot verify from step {}: its input is not in the log, and no keyframe follows", step)
-                                   : fmt::format("cannot verify steps {} to {}: the input of step {} is not in the log", step, next->first - 1, step));
+                                   ? fmt::format("cannot verify from step {}: its {} is not in the log, and no keyframe follows", step, missing)
+                                   : fmt::format("cannot verify steps {} to {}: the {} of step {} is not in the log", step, next->first - 1, missing, step));
         return next == run.keyframes.end() ? last + 1 : next->first - 1;
       }
       for (const auto& [tool, d] : recorded->second.dofs)
@@ -100,6 +120,18 @@ class RunVerifier {
       compare(haptic, step, recorded->second);
     }
     return step;
+  }
+
+  /// Gives each tool the model that the step used, if it is not the one in use. Returns what the log lacks, or nothing.
+  std::string feed_models(HapticStep& haptic, const RecordedStep& recorded) {
+    for (const auto& [tool, name] : recorded.model) {
+      if (!haptic.has_moving_tissue() || static_cast<int>(tool) >= haptic.tools()) return "moving tissue";
+      const LocalModel& used = haptic.local(static_cast<int>(tool)).model();
+      if (used.run == name.run && used.seq == name.seq) continue;
+      const LocalContactModel* model = models_->find(tool, name.run, name.seq);
+      if (!model || !haptic.consume(*model)) return fmt::format("local contact model {} of tool {}", name.seq, tool);
+    }
+    return {};
   }
 
   void compare(const HapticStep& haptic, std::uint64_t step, const RecordedStep& recorded) {
@@ -122,13 +154,15 @@ class RunVerifier {
   const Scene& scene_;
   const std::vector<Archive>& archives_;
   VerifyReport& report_;
+  RecordedModels* models_ = nullptr;
 };
 
 }  // namespace
 
 VerifyReport verify_log(const std::filesystem::path& file) {
   LogReader log(file);
-  const auto runs = read_runs(log);
+  const Recorded recorded = read_log(log);
+  const auto& runs = recorded.runs;
   if (log.header().scene.empty()) throw std::runtime_error(fmt::format("{}: the log holds no scene, so its steps cannot be computed again", file.string()));
   const Scene scene = parse_scene(log.header().scene, file);
   VerifyReport report;
@@ -141,10 +175,14 @@ VerifyReport verify_log(const std::filesystem::path& file) {
   take_code_path(report.code_path);
 
   std::vector<Archive> archives;
-  for (const Body& body : scene.bodies) archives.push_back(find_archive(scene, body, ArchivePart::touchable));
+  for (const Body& body : scene.bodies)
+    archives.push_back(is_dynamic(body) ? Archive{} : find_archive(scene, body, ArchivePart::touchable));
   RunVerifier verifier(scene, archives, report);
-  for (const auto& [id, run] : runs)
-    if (!run.keyframes.empty() && report.mismatch.empty()) verifier.verify(run);
+  for (const auto& [id, run] : runs) {
+    if (run.keyframes.empty() || !report.mismatch.empty()) continue;
+    RecordedModels models(file, recorded.deform_runs, id);
+    verifier.verify(run, models);
+  }
   return report;
 }
 

@@ -6,10 +6,13 @@
 /// The table of topics: everything that crosses the bus, and between whom. docs/topics.md shows these rows.
 namespace palpate {
 
+/// Depth of a topic whose writer keeps every sample. Only for what is bounded by itself.
+inline constexpr int keep_all = 0;
+
 /// Quality of service of a topic. Every writer also asserts a liveliness lease, so that its death shows.
 struct Qos {
   bool reliable = true;  ///< lost datagrams are repeated; the writer never waits for a reader
-  int depth = 1;         ///< samples that a writer keeps per key for repair and, if so, for late joiners
+  int depth = 1;         ///< samples that a writer keeps per key for repair and, if so, for late joiners; or keep_all
   bool transient_local = false;  ///< a reader that joins late gets what the writer keeps
 };
 
@@ -29,11 +32,13 @@ namespace topics {
 
 /// Two seconds at 1 kHz: how far a recorder may fall behind before it loses samples.
 inline constexpr int step_depth = 2048;
+/// Half a second of local contact models at 1 kHz, which are larger.
+inline constexpr int model_depth = 512;
 
 // clang-format off
 inline constexpr Topic<ToolState> tool_state{
     "palpate/tool_state", "ToolState", {true, step_depth, false},
-    "every haptic step", "haptic", "render",
+    "every haptic step", "haptic", "deform, render",
     "degrees of freedom of one tool as the step consumed them"};
 inline constexpr Topic<DeviceState> device_state{
     "palpate/device_state", "DeviceState", {true, 16, false},
@@ -67,11 +72,28 @@ inline constexpr Topic<SceneText> scene{
     "palpate/scene", "SceneText", {true, 1, true},
     "once per run", "haptic", "-",
     "the resolved scene, for recorders that have no scene file"};
+inline constexpr Topic<TopologyChange> topology_change{
+    "palpate/topology_change", "TopologyChange", {true, keep_all, true},
+    "on each cut or tear", "deform", "render",
+    "tetrahedra that a body has lost; read all, in order"};
+inline constexpr Topic<LocalContactModel> local_contact_model{
+    "palpate/local_contact_model", "LocalContactModel", {true, model_depth, false},
+    "every deform tick near a tool", "deform", "haptic",
+    "moving tissue around one tool: its contacts, near surface and stiffness"};
+inline constexpr Topic<DeformStep> deform_step{
+    "palpate/deform_step", "DeformStep", {true, step_depth, false},
+    "every deform tick", "deform", "-",
+    "journal of moving tissue: inputs consumed and hash of the state"};
+inline constexpr Topic<DeformKeyframe> deform_keyframe{
+    "palpate/deform_keyframe", "DeformKeyframe", {true, 4, false},
+    "1 Hz", "deform", "-",
+    "state of moving tissue, from which a replay starts"};
 // clang-format on
 
 inline constexpr auto all =
-    std::tuple{tool_state,    device_state, contact_state,   held_contacts, force_state,
-               surface_state, node_status,  haptic_keyframe, scene};
+    std::tuple{tool_state,  device_state,    contact_state, held_contacts,       force_state,
+               surface_state, node_status,   haptic_keyframe, scene,
+               topology_change, local_contact_model, deform_step, deform_keyframe};
 
 /// Calls f(topic) for every row.
 template <class F>

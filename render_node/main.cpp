@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -71,6 +72,8 @@ void summarise(const RenderReport& r, const Film* film, bool supervised) {
 void run(const NodeOptions& o) {
   if (options.threads > 0) ::setenv("LP_NUM_THREADS", fmt::format("{}", options.threads).c_str(), 1);
   LoadedScene loaded = load_for_node(o, options.deform ? ArchivePart::surface : ArchivePart::header);
+  if (options.deform && std::ranges::any_of(loaded.scene.bodies, is_dynamic))
+    throw std::runtime_error(o.scene + ": moving tissue belongs to a deform node; leave --deform out");
   Stage stage = make_stage(loaded);
   const Render picture = loaded.scene.render.value_or(Render{});
   Renderer renderer(picture.width, picture.height, options.samples);
@@ -80,9 +83,12 @@ void run(const NodeOptions& o) {
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
   Presence presence(*bus, "render", 0, loaded.scene_hash, loaded.archive_hash);
   const std::unique_ptr<SurfaceSource> source = make_source(*bus, presence, loaded);
+  std::optional<TopologyFeed> topology;
+  if (std::ranges::any_of(loaded.scene.bodies, is_dynamic)) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   catch_shutdown_signals();
   RenderLoop loop(loaded.scene, std::move(stage), *source, *bus, presence, renderer);
+  if (topology) loop.set_topology(&*topology);
   if (film) loop.set_film(&*film);
   say_ready(o);
   const RenderReport& report = loop.run(o.seconds);

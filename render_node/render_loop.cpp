@@ -39,6 +39,7 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
 
 void RenderLoop::take() {
   news_ = source_.update();
+  if (topology_) follow_cuts();
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const SurfaceSource::Shape shape = source_.shape(static_cast<int>(b));
     stage_.set_surface(static_cast<int>(b), shape.position, shape.normal);
@@ -50,6 +51,10 @@ void RenderLoop::take() {
     if (good) latest_force_[force->tool] = *force;
     report_.refused += !good;
   }
+}
+
+void RenderLoop::follow_cuts() {
+  for (const int body : topology_->take()) stage_.set_triangles(body, topology_->triangles(body));
 }
 
 void RenderLoop::write_overlay() {

@@ -5,6 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
+#include "common/models/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"
@@ -32,6 +33,9 @@ class RenderLoop {
   /// missed.
   void set_film(Film* film) { film_ = film; }
 
+  /// The cuts of the scene's dynamic bodies; null, as at first, where there are none.
+  void set_topology(TopologyFeed* topology) { topology_ = topology; }
+
   /// Until `seconds` are over (0: no limit) or a stop is requested.
   const RenderReport& run(double seconds);
 
@@ -41,6 +45,7 @@ class RenderLoop {
  private:
   void step(std::int64_t begin);
   void take();
+  void follow_cuts();
   void write_overlay();
   void add_to_film(std::int64_t since_begin);
   void keep_house(std::int64_t now);
@@ -52,6 +57,7 @@ class RenderLoop {
   Presence& presence_;
   Renderer& renderer_;
   Film* film_ = nullptr;
+  TopologyFeed* topology_ = nullptr;
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Reader<ForceState>> forces_;
   std::vector<ForceState> latest_force_;  ///< by tool

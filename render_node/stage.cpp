@@ -35,17 +35,14 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   if (!scene.render) render_.camera = fit_camera(surfaces);
   for (const SurfaceMap& map : surfaces) {
     Soft body;
-    const int levels = refinement_levels(map.triangles.size(), most_triangles);
-    body.refinement = Refinement(map.triangles, map.size(), levels, to_float(map.position));
     body.coarse = map.position.size();
-    body.position = to_float(map.position);
+    body.rest = to_float(map.position);
+    refine(body, map.triangles);
+    body.position = body.rest;
     body.normal.resize(body.coarse);
-    vertex_normals(body.position, map.triangles, body.normal);
-    body.position.resize(body.refinement.vertices());
+    vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
     body.normal.resize(body.refinement.vertices());
     body.refinement.apply(body.position, body.normal);
-    body.rest = body.position;
-    if (render_.colour == "displacement") body.displacement.assign(body.rest.size(), 0.0f);
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
@@ -58,6 +55,28 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     instrument.view.shaft_length = tool.shaft_length;
     tools_.push_back(instrument);
   }
+}
+
+// A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
+void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) const {
+  body.rest.resize(body.coarse);
+  const int levels = refinement_levels(triangles.size(), most_triangles);
+  body.refinement = Refinement(triangles, static_cast<int>(body.coarse), levels, body.rest);
+  std::vector<Eigen::Vector3f> normal(body.coarse);
+  vertex_normals(body.rest, triangles, normal);
+  body.rest.resize(body.refinement.vertices());
+  normal.resize(body.refinement.vertices());
+  body.refinement.apply(body.rest, normal);
+  if (render_.colour == "displacement") body.displacement.assign(body.rest.size(), 0.0f);
+  ++body.shape;
+}
+
+void Stage::set_triangles(int index, std::span<const std::array<int, 3>> triangles) {
+  Soft& body = bodies_.at(index);
+  refine(body, triangles);
+  body.position.resize(body.refinement.vertices());
+  body.normal.resize(body.refinement.vertices());
+  body.refinement.apply(body.position, body.normal);
 }
 
 void Stage::add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour) {
@@ -103,6 +122,7 @@ Frame Stage::frame() const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Soft& body = bodies_[b];
     frame.meshes.push_back({.id = static_cast<int>(b),
+                            .shape = body.shape,
                             .colour = render_.tissue_colour,
                             .rest = body.rest,
                             .position = body.position,

@@ -21,6 +21,8 @@ class Stage {
   /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is.
   void set_surface(int body, std::span<const Eigen::Vector3f> position,
                    std::span<const Eigen::Vector3f> normal);
+  /// Another surface of one body over the same nodes, after a cut: outward triangles.
+  void set_triangles(int body, std::span<const std::array<int, 3>> triangles);
   /// False (and nothing set) if the scene has no such tool.
   bool set_tool(const ToolState& state);
   void set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge);
@@ -30,9 +32,12 @@ class Stage {
 
  private:
   void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour);
+  struct Soft;
+  void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
 
   struct Soft {
     Refinement refinement;
+    std::uint64_t shape = 0;  ///< counts changes of the triangles
     std::size_t coarse;
     std::vector<Eigen::Vector3f> rest, position, normal;
     std::vector<float> displacement;  ///< [m], empty unless coloured by it

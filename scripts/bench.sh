@@ -26,9 +26,13 @@ for program in "$bin"/bench_*; do
   "$program" "${quick[@]}" | keep
 done
 
-# The running system.
-echo "# palpate run" >&2
-"$bin/palpate" run scenes/liver.toml --seconds "$seconds" --domain 97 --summary out/bench_run.json >&2
-python3 scripts/run_rows.py out/bench_run.json | keep
+# The running systems: the liver for a while, the hepatectomy to its end.
+for scene in liver hepatectomy; do
+  echo "# palpate run $scene" >&2
+  limit=()
+  [ "$scene" = liver ] && limit=(--seconds "$seconds")
+  "$bin/palpate" run "scenes/$scene.toml" "${limit[@]}" --domain 97 --summary out/bench_run.json >&2
+  python3 scripts/run_rows.py out/bench_run.json "$scene" | keep
+done
 rm -f out/bench_run.json
 echo "out/bench.csv: $(($(wc -l < out/bench.csv) - 1)) rows" >&2

@@ -4,8 +4,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 export PALPATE_LONG_TESTS=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
+export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
 ./scripts/test.sh
 for preset in address thread; do
   ./scripts/build.sh "$preset"
-  ctest --preset "$preset" --timeout 1200
+  # OpenMP's own joins are not seen by the thread sanitizer.
+  OMP_NUM_THREADS=1 ctest --preset "$preset" --timeout 1200
 done

@@ -4,6 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/contact/tool_contacts.hpp"
+#include "common/contact/touch_surface.hpp"
 #include "common/contact/triangle.hpp"
 #include "common/fem/assembly.hpp"
 #include "common/fem/fixation.hpp"
@@ -15,7 +17,7 @@
 #include "common/tensors/precompute.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/trajectory.hpp"
-#include "haptic_node/touch_surface.hpp"
+#include "tools/check_dynamic.hpp"
 #include "tools/commands.hpp"
 #include "tools/footprint.hpp"
 
@@ -90,6 +92,8 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   const DofMap dofs = apply_fixation(mesh, body.fixed, fmt::format("body '{}'", body.name));
   const MaterialField materials = material_field(body, mesh);
   const SurfaceMap surface = make_surface_map(body, mesh, dofs);
+  Archive moving;
+  if (is_dynamic(body)) moving = dynamic_archive(scene, body, mesh);
   fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", body.name,
              mesh.nodes.size(), mesh.tetrahedra.size(), dofs.size(), body.model);
   fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
@@ -97,9 +101,12 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   print_fixation(body, mesh);
   print_material(body);
   print_nonlinear(body);
+  if (is_dynamic(body)) print_dynamic(body, mesh, moving);
 
   print_archive(scene, body);
-  for (const MemoryPart& part : body_memory(scene, body, surface, materials.of_element.size()))
+  const auto memory = is_dynamic(body) ? dynamic_memory(scene, body, moving)
+                                       : body_memory(scene, body, surface, materials.of_element.size());
+  for (const MemoryPart& part : memory)
     fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
   return surface;
 }
@@ -119,7 +126,12 @@ void check_start(const Tool& tool, const Eigen::Isometry3d& pose, const Body& bo
 }
 
 void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceMap>& surfaces) {
-  fmt::print("tool '{}': tip radius {} m, device {}", tool.name, tool.radius, tool.device);
+  fmt::print("tool '{}': tip radius {} m", tool.name, tool.radius);
+  if (tool.cautery) fmt::print(", cautery of radius {} m", tool.cautery->radius);
+  if (tool.jaws)
+    fmt::print(", jaws {} x {} m that close below {} rad", tool.jaws->length, tool.jaws->width,
+               tool.jaws->closed_below);
+  fmt::print(", device {}", tool.device);
   if (tool.device != "scripted") {
     fmt::print("{}\n", tool.trajectory.empty() ? "" : " " + tool.trajectory.string());
     return;
@@ -151,15 +163,23 @@ void print_left_out(const Scene& scene) {
   fmt::print("left out:\n");
   for (const Body& body : scene.bodies) {
     if (body.materials.empty()) fmt::print("  body '{}': one material, nothing per element\n", body.name);
-    if (!body.nonlinear) fmt::print("  body '{}': no quasi non-linear correction\n", body.name);
+    if (!is_dynamic(body) && !body.nonlinear)
+      fmt::print("  body '{}': no quasi non-linear correction\n", body.name);
+    if (is_dynamic(body) && !body.tearing) fmt::print("  body '{}': does not tear by itself\n", body.name);
+    if (is_dynamic(body)) fmt::print("  body '{}': no archive in the haptic node\n", body.name);
   }
+  if (std::ranges::none_of(scene.bodies, is_dynamic))
+    fmt::print("  no dynamic body: no masses, no cutting, no topology topic\n");
+  const auto works = [](const Tool& tool) { return tool.cautery || tool.jaws; };
+  if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
   const bool driven = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
   if (!driven) fmt::print("  no tool on the bus: no device topic and no thread for it\n");
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
   if (!scene.render) fmt::print("  no [render]: default picture\n");
   if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
-  fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
+  if (std::ranges::none_of(scene.bodies, is_dynamic))
+    fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
 }
 
 void check(const Scene& scene) {
@@ -172,6 +192,7 @@ void check(const Scene& scene) {
   for (std::size_t b = 0; b < surfaces.size(); ++b)
     for (const std::string& sentence : body_warnings(scene, scene.bodies[b], surfaces[b]))
       fmt::print("warning: {}\n", sentence);
+  for (const std::string& sentence : cutting_warnings(scene)) fmt::print("warning: {}\n", sentence);
   fmt::print("hash {}\n", scene_hash(scene));
 }
 

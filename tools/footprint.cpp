@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/contact/buckets.hpp"
+#include "common/contact/tool_contacts.hpp"
 #include "common/tensors/compliance.hpp"
 
 namespace palpate {
@@ -14,13 +15,6 @@ DofCounts count_dofs(const SurfaceMap& surface) {
   for (int n = 0; n < surface.size(); ++n)
     (n < surface.touchable ? counts.touchable : counts.other) += std::ranges::count(surface.fixed[n], false);
   return counts;
-}
-
-double mean_edge(const SurfaceMap& surface) {
-  double sum = 0;
-  for (const auto& t : surface.triangles)
-    for (int v = 0; v < 3; ++v) sum += (surface.position[t[v]] - surface.position[t[(v + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(surface.triangles.size()));
 }
 
 std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const SurfaceMap& surface,

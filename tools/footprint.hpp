@@ -21,9 +21,6 @@ struct DofCounts {
 };
 DofCounts count_dofs(const SurfaceMap& surface);
 
-/// Mean length of the triangles' edges [m].
-double mean_edge(const SurfaceMap& surface);
-
 /// What one body takes, computed by the classes that take it or by their own formulas. `elements`: entries of
 /// the material field, 0 with one material.
 std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const SurfaceMap& surface,

@@ -16,9 +16,22 @@ void show_stage(std::string_view stage, double seconds) {
 
 void describe(const Archive& archive, const ArchiveState& state) {
   const double megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(state.file));
-  fmt::print("  {} surface nodes, {} of them touchable; {} touchable dofs, {} others; {:.1f} MB\n",
+  fmt::print("  {} nodes, {} of them touchable; {} touchable dofs, {} others; {:.1f} MB\n",
              archive.surface.size(), archive.surface.touchable, archive.touchable_dofs.size(),
              archive.other_dofs.size(), megabytes);
+}
+
+void describe_moving_part(const Archive& archive) {
+  if (archive.tetrahedra.empty()) return;
+  fmt::print("  {} tetrahedra that move with inertia\n", archive.tetrahedra.size());
+  if (!archive.hybrid) return;
+  const HybridTensors& hybrid = *archive.hybrid;
+  fmt::print("  {} connection nodes to the quasi-static part\n", hybrid.connection.size());
+  if (hybrid.held_by_connection)
+    fmt::print("  a piece of the quasi-static part has too few fixed nodes: the connection nodes hold it\n");
+  if (!hybrid.gap.empty())
+    fmt::print("  partial connection: {} nodes of the border are not shared, the gap is up to {:.3g} m at rest\n",
+               hybrid.gap.size(), hybrid.largest_gap);
 }
 
 void precompute_body(const Scene& scene, const Body& body) {
@@ -29,7 +42,9 @@ void precompute_body(const Scene& scene, const Body& body) {
   else
     fmt::print("body '{}': computed and written in {:.3f} s: {}\n", body.name, state.seconds,
                state.file.string());
-  describe(read_archive(state.file, ArchivePart::header, {}), state);
+  const auto archive = read_archive(state.file, ArchivePart::header, {});
+  describe(archive, state);
+  describe_moving_part(archive);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "common/realtime/shutdown.hpp"
+#include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
 #include "tools/commands.hpp"
 #include "tools/log_player.hpp"
@@ -26,6 +27,12 @@ void verify(const std::string& file) {
     throw std::runtime_error(fmt::format("{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified",
                                          file, report.forces, report.steps, report.gaps.size()));
   fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces, report.steps, report.code_path);
+  const TissueReport tissue = verify_tissue(file);  // on the code path that verify_log() took up
+  for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
+  if (!tissue.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
+  if (!tissue.gaps.empty())
+    throw std::runtime_error(fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
+  if (tissue.ticks > 0) fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
 }
 
 void play(const Options& o) {
@@ -53,7 +60,7 @@ void add_replay_command(CLI::App& app) {
   command->add_option("--speed", o->play.speed, "2 plays twice as fast")->check(CLI::PositiveNumber)->capture_default_str();
   command->add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
   add_network_options(*command, o->network);
-  command->add_flag("--verify", o->verify, "Compute every recorded haptic step again and require its forces bit for bit")
+  command->add_flag("--verify", o->verify, "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
       ->excludes("--speed", "--topic");
   command->callback([o] { o->verify ? verify(o->file) : play(*o); });
 }

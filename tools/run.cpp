@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -108,10 +109,12 @@ void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
   if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log)));
   const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
-  if (drawn && o.processes == 3) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  const bool moves = std::ranges::any_of(scene.bodies, is_dynamic);  // moving tissue needs the node that owns it
+  const bool three = o.processes == 3 || moves;
+  if (moves || (drawn && three)) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (drawn) {
     std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
-    if (o.processes == 2) render.push_back("--deform");
+    if (!three) render.push_back("--deform");
     if (!o.film.empty()) render.insert(render.end(), {"--film", o.film});
     if (!o.still.empty()) render.insert(render.end(), {"--still", o.still});
     nodes.start("render_node", render);
@@ -134,6 +137,12 @@ void print_summary(const nlohmann::json& s) {
     fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n", number(s["render_node"], "rate_hz"),
                1e-3 * number(s["render_node"], "latency_us_p50"), 1e-3 * number(s["render_node"], "latency_us_p99"),
                s["render_node"].value("frames", 0));
+  if (s.contains("deform_node") && s["deform_node"].contains("tick_hz")) {
+    const auto& deform = s["deform_node"];
+    fmt::print("tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, {} fallen away\n",
+               number(deform, "tick_hz"), number(deform, "tick_us_p50"), number(deform, "tick_us_p99"), deform.value("missed", 0),
+               deform.value("ticks", 0), deform.value("tetrahedra_cut", 0), deform.value("tetrahedra_torn", 0), deform.value("tetrahedra_fallen", 0));
+  }
   if (s.contains("deform_node") && s["deform_node"].is_object())
     fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(s["deform_node"], "rate_hz"),
                number(s["deform_node"], "latency_us_p50"), number(s["deform_node"], "latency_us_p99"));
@@ -181,7 +190,7 @@ void add_run_command(CLI::App& app) {
   run_command->add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
   run_command->add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
   run_command->add_option("--domain", o->domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
-  run_command->add_option("--processes", o->processes, "2: the render node deforms too; 3: a deformation node of its own")->check(CLI::IsMember({2, 3}));
+  run_command->add_option("--processes", o->processes, "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")->check(CLI::IsMember({2, 3}));
   run_command->callback([o] { run(*o); });
 }
 

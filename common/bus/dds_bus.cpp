@@ -97,9 +97,11 @@ QosPtr common_qos(const Qos& qos) {
 
 QosPtr writer_qos(const Qos& qos, int lease_ms) {
   QosPtr q = common_qos(qos);
-  dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
-  dds_qset_durability_service(q.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
-                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  const bool all = qos.depth == keep_all;
+  const dds_history_kind_t kind = all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
+  const int depth = all ? DDS_LENGTH_UNLIMITED : qos.depth;
+  dds_qset_history(q.get(), kind, depth);
+  dds_qset_durability_service(q.get(), 0, kind, depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_liveliness(q.get(), DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(lease_ms));
   dds_qset_writer_data_lifecycle(q.get(), false);
   return q;

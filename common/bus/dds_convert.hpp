@@ -36,6 +36,27 @@ PALPATE_SAME_PLACE(HeldContact, normal);
 PALPATE_SAME_PLACE(HeldContact, force);
 PALPATE_SAME_PLACE(HeldContact, sample);
 PALPATE_SAME_PLACE(HeldContact, sticking);
+static_assert(sizeof(LocalContact) == sizeof(palpate_LocalContact));
+PALPATE_SAME_PLACE(LocalContact, body);
+PALPATE_SAME_PLACE(LocalContact, grasped);
+PALPATE_SAME_PLACE(LocalContact, position);
+PALPATE_SAME_PLACE(LocalContact, normal);
+PALPATE_SAME_PLACE(LocalContact, force);
+PALPATE_SAME_PLACE(LocalContact, stiffness);
+static_assert(sizeof(LocalNode) == sizeof(palpate_LocalNode));
+PALPATE_SAME_PLACE(LocalNode, body);
+PALPATE_SAME_PLACE(LocalNode, node);
+PALPATE_SAME_PLACE(LocalNode, position);
+PALPATE_SAME_PLACE(LocalNode, velocity);
+PALPATE_SAME_PLACE(LocalNode, stiffness);
+static_assert(sizeof(LocalTriangle) == sizeof(palpate_LocalTriangle));
+PALPATE_SAME_PLACE(LocalTriangle, a);
+PALPATE_SAME_PLACE(LocalTriangle, b);
+PALPATE_SAME_PLACE(LocalTriangle, c);
+static_assert(sizeof(ConsumedStep) == sizeof(palpate_ConsumedStep));
+PALPATE_SAME_PLACE(ConsumedStep, tool);
+PALPATE_SAME_PLACE(ConsumedStep, run);
+PALPATE_SAME_PLACE(ConsumedStep, step);
 #undef PALPATE_SAME_PLACE
 
 /// Copies the text into a bounded string; what does not fit is cut before the character that it would split.

@@ -31,14 +31,16 @@
 /// Calls X(M) for every message that a topic carries.
 #define PALPATE_MESSAGES(X) \
   X(ToolState)              \
-  X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText)
+  X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) \
+  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe)
 
 namespace palpate {
 
 PALPATE_FIELDS(NodalForce, body, node, force)
 PALPATE_FIELDS(HeldContact, body, nodes, weights, offset, normal, force, sample, sticking)
-PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch, depth, roll, grip)
-PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip)
+PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch, depth, roll, grip, pedal,
+               local_model_run, local_model_seq)
+PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, pedal)
 PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts)
 PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, flags)
 PALPATE_FIELDS(SurfaceState, body, run, seq, step, sense_ns, publish_ns, position, normal)
@@ -46,6 +48,15 @@ PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_h
                missed, latency_p50_us, latency_p99_us, text)
 PALPATE_FIELDS(HapticKeyframe, run, seq, step, dt, code_path, state)
 PALPATE_FIELDS(SceneText, run, seq, scene_hash, text, version, code_path)
+PALPATE_FIELDS(TopologyChange, body, run, seq, tick, cause, removed)
+PALPATE_FIELDS(LocalContact, body, grasped, position, normal, force, stiffness)
+PALPATE_FIELDS(LocalNode, body, node, position, velocity, stiffness)
+PALPATE_FIELDS(LocalTriangle, a, b, c)
+PALPATE_FIELDS(LocalContactModel, tool, run, seq, tick, tool_run, tool_step, sense_ns, yaw, pitch, depth, roll, grip,
+               contacts, nodes, triangles)
+PALPATE_FIELDS(ConsumedStep, tool, run, step)
+PALPATE_FIELDS(DeformStep, run, seq, tick, consumed, hash)
+PALPATE_FIELDS(DeformKeyframe, run, seq, tick, dt, code_path, state)
 
 /// True for the structs listed above.
 template <class M>

@@ -103,7 +103,7 @@ class MemoryWriter final : public Writer<M> {
   void keep_for_late_joiners(const M& message) {
     auto& kept = channel_.kept[{this, key_of(message)}];
     kept.push_back(message);
-    if (kept.size() > static_cast<std::size_t>(qos_.depth)) kept.pop_front();
+    if (qos_.depth != keep_all && kept.size() > static_cast<std::size_t>(qos_.depth)) kept.pop_front();
   }
 
   std::shared_ptr<MemoryNetwork> network_;

@@ -20,6 +20,9 @@ struct ToolState {
   double depth = 0;              ///< [m] tip beyond the trocar along the shaft
   double roll = 0;               ///< [rad] about the shaft
   double grip = 0;               ///< [rad] jaw opening
+  double pedal = 0;              ///< [1] 1 while the tool's pedal is down
+  std::uint64_t local_model_run = 0;  ///< run and seq of the LocalContactModel that this step used for this tool;
+  std::uint64_t local_model_seq = 0;  ///< 0: none
 };
 
 /// A driver elsewhere publishes this for a tool whose device is "bus".
@@ -27,7 +30,7 @@ struct DeviceState {
   std::uint32_t tool = 0;  ///< key
   std::uint64_t seq = 0;
   std::int64_t sense_ns = 0;
-  double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0;  ///< as in ToolState
+  double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0, pedal = 0;  ///< as in ToolState
 };
 
 /// Linear force on the tissue at one surface node.
@@ -72,7 +75,8 @@ struct ForceState {
   std::array<double, 3> torque{};  ///< [N m]
   std::uint32_t flags = 0;         ///< bits of ForceFlag
 };
-enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8 };
+/// `stale_model`: the force of moving tissue fades or is gone, because its local contact model comes too late.
+enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8, stale_model = 16 };
 
 /// Visible surface of one body.
 struct SurfaceState {
@@ -121,6 +125,83 @@ struct SceneText {
   std::string text;       ///< TOML, every default written out
   std::string version;    ///< software version
   std::string code_path;  ///< vector width and libraries of the haptic step
+};
+
+/// Tetrahedra that a body has lost: one cut or tear, or a part that fell away. Messages are numbered from 1 without gaps, so that a node knows
+/// that it has them all; applied in order they give the topology.
+struct TopologyChange {
+  std::uint32_t body = 0;   ///< key
+  std::uint64_t run = 0;    ///< start of the deform node
+  std::uint64_t seq = 0;    ///< from 1
+  std::uint64_t tick = 0;   ///< of the deform node, after which they are gone
+  std::uint32_t cause = 0;  ///< a RemovalCause
+  std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal, those that followed included
+};
+enum RemovalCause : std::uint32_t { cut = 0, torn = 1, fell_away = 2 };
+
+/// A place where a tool holds moving tissue, as it was with the tool's pose in the message.
+struct LocalContact {
+  std::uint32_t body = 0;
+  std::uint32_t grasped = 0;         ///< 1: held between jaws, which pull as well as push; 0: rests against the tool
+  std::array<double, 3> position{};  ///< [m] world
+  std::array<double, 3> normal{};    ///< unit, world, from the tool into the tissue
+  std::array<double, 3> force{};     ///< [N] on the tissue, world
+  std::array<double, 9> stiffness{}; ///< [N/m] row-major: change of that force per motion of the tool
+};
+
+/// A node of moving tissue near a tool.
+struct LocalNode {
+  std::uint32_t body = 0;
+  std::uint32_t node = 0;            ///< surface node index of that body's archive
+  std::array<double, 3> position{};  ///< [m] world
+  std::array<double, 3> velocity{};  ///< [m/s] world
+  std::array<double, 9> stiffness{}; ///< [N/m] row-major, static, all other nodes free: force per displacement
+};
+
+/// A surface triangle near a tool; its three nodes as indices into the message's nodes, outward.
+struct LocalTriangle {
+  std::uint32_t a = 0, b = 0, c = 0;
+};
+
+/// Moving tissue around one tool: all that the haptic node needs to render its force until the next message.
+struct LocalContactModel {
+  std::uint32_t tool = 0;       ///< key
+  std::uint64_t run = 0;        ///< start of the deform node
+  std::uint64_t seq = 0;        ///< from 1
+  std::uint64_t tick = 0;       ///< of the deform node
+  std::uint64_t tool_run = 0;   ///< run of the haptic loop that published the pose below
+  std::uint64_t tool_step = 0;  ///< newest haptic step whose tool pose is in here
+  std::int64_t sense_ns = 0;    ///< sense time of that step
+  double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0;  ///< that pose, as in ToolState
+  std::vector<LocalContact> contacts;
+  std::vector<LocalNode> nodes;
+  std::vector<LocalTriangle> triangles;
+};
+
+/// The newest step of one tool that a tick of the deform node consumed.
+struct ConsumedStep {
+  std::uint32_t tool = 0;
+  std::uint64_t run = 0;   ///< start of the haptic loop
+  std::uint64_t step = 0;
+};
+
+/// Journal of the deform node's moving tissue: what one tick consumed and where it led.
+struct DeformStep {
+  std::uint64_t run = 0;   ///< start of the deform node
+  std::uint64_t seq = 0;   ///< from 1
+  std::uint64_t tick = 0;
+  std::vector<ConsumedStep> consumed;  ///< at most one per tool
+  std::uint64_t hash = 0;  ///< of the state after the tick
+};
+
+/// State of the deform node's moving tissue, from which a replay can start.
+struct DeformKeyframe {
+  std::uint64_t run = 0;   ///< start of the deform node
+  std::uint64_t seq = 0;
+  std::uint64_t tick = 0;  ///< the state is the one before this tick
+  double dt = 0;           ///< [s] nominal period of a tick
+  std::string code_path;   ///< vector width and software version
+  std::vector<std::uint8_t> state;
 };
 
 }  // namespace palpate

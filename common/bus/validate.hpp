@@ -4,7 +4,7 @@
 #include "common/bus/fields.hpp"
 
 /// What a sample from outside must fulfil before a node sees it: finite numbers, bounded lengths, sizes that
-/// fit each other. Indices are checked against the scene by the node that uses them.
+/// fit each other, indices into its own sequences, unit normals of local contacts. Other indices are checked against the scene by the node that uses them.
 namespace palpate {
 
 /// Bounds on lengths, the same as in idl/palpate.idl.
@@ -13,6 +13,11 @@ struct Limits {
   static constexpr std::size_t surface_floats = 3000000;  ///< one million surface nodes
   static constexpr std::size_t keyframe_bytes = 16777216;
   static constexpr std::size_t text_bytes = 1048576;
+  static constexpr std::size_t tetrahedra = 4000000;      ///< removed at once
+  static constexpr std::size_t local_contacts = 32;       ///< of one LocalContactModel
+  static constexpr std::size_t local_nodes = 192;
+  static constexpr std::size_t local_triangles = 128;
+  static constexpr std::size_t consumed_steps = 64;
 };
 
 namespace detail {
@@ -53,6 +58,27 @@ inline bool sizes_fit(const NodeStatus& m) {
 }
 inline bool sizes_fit(const HapticKeyframe& m) {
   return m.dt > 0 && m.state.size() <= Limits::keyframe_bytes;
+}
+inline bool sizes_fit(const DeformKeyframe& m) {
+  return m.dt > 0 && m.state.size() <= Limits::keyframe_bytes;
+}
+inline bool sizes_fit(const TopologyChange& m) {
+  return m.seq > 0 && m.cause <= fell_away && m.removed.size() <= Limits::tetrahedra;
+}
+inline bool sizes_fit(const LocalContactModel& m) {
+  if (m.seq == 0 || m.contacts.size() > Limits::local_contacts || m.nodes.size() > Limits::local_nodes ||
+      m.triangles.size() > Limits::local_triangles)
+    return false;
+  for (const LocalContact& c : m.contacts) {
+    const auto& n = c.normal;
+    if (c.grasped > 1 || !(std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6)) return false;
+  }
+  for (const LocalTriangle& t : m.triangles)
+    if (t.a >= m.nodes.size() || t.b >= m.nodes.size() || t.c >= m.nodes.size()) return false;
+  return true;
+}
+inline bool sizes_fit(const DeformStep& m) {
+  return m.consumed.size() <= Limits::consumed_steps;
 }
 inline bool sizes_fit(const SceneText& m) {
   return m.text.size() <= Limits::text_bytes;

@@ -20,6 +20,26 @@ constexpr double kRounding = 1e-9;  // of a query's reach: nothing on its border
 Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array<int, 3>> triangles,
                  double size)
     : range_(triangles.size()), first_of_triangle_(triangles.size(), -1), stamp_(triangles.size(), 0) {
+  lay_grid(positions, size);
+  // Four times what the rest position takes, and eight entries a triangle; one more each for the overflow.
+  std::size_t needed = 0;
+  std::vector<std::array<Vector3d, 2>> boxes;
+  for (const auto& t : triangles) {
+    const Vector3d &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+    needed += std::min(range_of(boxes.back()[0], boxes.back()[1]).count(), kMostBuckets);
+  }
+  take_entries(4 * needed + 9 * triangles.size());
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) move(t, boxes[t][0], boxes[t][1]);
+}
+
+Buckets::Buckets(std::span<const Vector3d> positions, double size, int most, std::size_t entries)
+    : range_(most), first_of_triangle_(most, -1), stamp_(most, 0) {
+  lay_grid(positions, size);
+  take_entries(entries + most);
+}
+
+void Buckets::lay_grid(std::span<const Vector3d> positions, double size) {
   Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();
   if (!positions.empty()) low = high = positions[0];
   for (const Vector3d& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -34,19 +54,12 @@ Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = std::max(1, static_cast<int>(std::ceil(counts[axis])));
   first_overflow_ = cells_[0] * cells_[1] * cells_[2];
   first_in_bucket_.assign(first_overflow_ + 1, -1);
+}
 
-  // Four times what the rest position takes, and eight entries a triangle; one more each for the overflow.
-  std::size_t needed = 0;
-  std::vector<std::array<Vector3d, 2>> boxes;
-  for (const auto& t : triangles) {
-    const Vector3d &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
-    needed += std::min(range_of(boxes.back()[0], boxes.back()[1]).count(), kMostBuckets);
-  }
-  entries_.resize(4 * needed + 9 * triangles.size());
-  for (int i = static_cast<int>(entries_.size()) - 1; i >= 0; --i) entries_[i].after = free_, free_ = i;
-  free_count_ = static_cast<int>(entries_.size());
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) move(t, boxes[t][0], boxes[t][1]);
+void Buckets::take_entries(std::size_t count) {
+  entries_.resize(count);
+  for (int i = static_cast<int>(count) - 1; i >= 0; --i) entries_[i].after = free_, free_ = i;
+  free_count_ = static_cast<int>(count);
 }
 
 std::size_t Buckets::bytes() const {
@@ -89,6 +102,11 @@ void Buckets::move(int triangle, const Vector3d& box_min, const Vector3d& box_ma
   leave(triangle);
   range_[triangle] = range;
   enter(triangle);
+}
+
+void Buckets::remove(int triangle) {
+  leave(triangle);
+  range_[triangle] = {};
 }
 
 void Buckets::link(int triangle, int bucket) {

@@ -23,9 +23,14 @@ class Buckets {
   /// Throws std::runtime_error if the size is not positive or gives more than 2^24 buckets.
   Buckets(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles,
           double size);
+  /// A grid around `positions` with no triangle in it, for triangles 0 ... `most` - 1 that come and go. Each has room
+  /// in one bucket; `entries` more are shared.
+  Buckets(std::span<const Eigen::Vector3d> positions, double size, int most, std::size_t entries);
 
-  /// Enters the triangle's new swept box; does nothing if it meets the same buckets as before.
+  /// Enters the triangle, or its new swept box; does nothing if it meets the same buckets as before.
   void move(int triangle, const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max);
+  /// Takes the triangle out of all buckets; move() enters it again.
+  void remove(int triangle);
 
   /// Triangles whose buckets come within `radius` [m] of the box, each once, in no order, into `found`; returns how many.
   /// `found` needs room for every triangle of the surface.
@@ -47,6 +52,8 @@ class Buckets {
     int triangle, bucket, before, after, next_of_triangle;
   };
 
+  void lay_grid(std::span<const Eigen::Vector3d> positions, double size);
+  void take_entries(std::size_t count);
   template <class Visit>
   void for_each_bucket(const Range& range, Visit&& visit) const;
   Range range_of(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) const;
@@ -59,7 +66,7 @@ class Buckets {
   double size_, per_metre_;
   std::array<int, 3> cells_;
   std::vector<int> first_in_bucket_;    ///< entry, or -1
-  std::vector<Range> range_;            ///< per triangle
+  std::vector<Range> range_;            ///< per triangle; of one that is out it is empty
   std::vector<int> first_of_triangle_;  ///< entry, or -1
   std::vector<Entry> entries_;
   int free_ = -1, free_count_ = 0;

@@ -156,6 +156,7 @@ int ContactLaw::solve_held() {
 bool ContactLaw::change_state(int c, double smallest_force) {
   TouchContact& contact = contacts_[c];
   contact.position = anchor_position(contact.anchor, rest_) + displacement(c);
+  if (contact.grasped) return false;
   if (contact.touch == Touch::open) {
     if (contact.normal.dot(contact.position) - contact.plane >= -gap_tolerance) return false;
     contact.touch = friction_ > 0 ? Touch::sticking : Touch::sliding;
@@ -218,6 +219,7 @@ void ContactLaw::relax() {
     contact.force.setZero();
     for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
     contact.position = anchor_position(contact.anchor, rest_) + displacement(static_cast<int>(c));
+    if (contact.grasped) continue;
     const double pressing = contact.force.dot(contact.normal);
     const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;
     const bool slides = tangential.norm() >= friction_ * pressing * (1 - 1e-6);
@@ -236,6 +238,12 @@ double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) 
   const double softest = held_.floor_of(own.trace() / 3);
 
   const Eigen::Vector3d u = ConstVec(displacements_.data() + 3 * p);
+  if (contact.grasped) {
+    const Eigen::Vector3d change = (gain * (contact.target - rest) - u) / std::max(own.trace(), softest);
+    force += change;
+    held_.add_response(p, change, displacements_.data());
+    return change.norm();
+  }
   const double gap_left = gain * (contact.plane - n.dot(rest)) - n.dot(u);
   const double pressing = std::max(0.0, force.dot(n) + gap_left / std::max(n.dot(own * n), softest));
   const Eigen::Vector3d normal_change = (pressing - force.dot(n)) * n;

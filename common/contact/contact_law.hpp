@@ -15,11 +15,12 @@ enum class Touch : std::uint8_t {
   sticking,  ///< all three displacements are held
 };
 
-/// One contact between a sphere of a tool and a point of the surface. It pushes and never pulls.
+/// One contact between a sphere of a tool and a point of the surface. It pushes and never pulls, unless jaws hold it.
 struct TouchContact {
   int tool = 0;
   int sample = 0;     ///< which sphere of the tool
   bool face = false;  ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
+  bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
   Anchor anchor;
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] touching point of the sphere, tip frame
@@ -58,6 +59,7 @@ class ContactLaw {
   std::span<TouchContact> contacts() { return contacts_; }
   std::span<const TouchContact> contacts() const { return contacts_; }
   bool full() const;
+  int capacity() const { return static_cast<int>(contacts_.capacity()); }
   void add(const TouchContact& contact);
   /// Adds a contact together with the forces of its held points (3 or 9 numbers [N]), as point_forces() gave them.
   void add(const TouchContact& contact, std::span<const double> point_forces);

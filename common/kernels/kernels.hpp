@@ -4,6 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "common/kernels/block_rows.hpp"
+#include "common/kernels/quads.hpp"
+
 /// The hot dense loops, compiled once per vector width and chosen when the program starts. Nothing here
 /// allocates. Everything is deterministic for a given code path: same input, same bits; another path may
 /// round differently.
@@ -74,6 +77,27 @@ struct Table {
   /// What a raised pivot added within the removed rows goes with them; elsewhere it stays.
   /// `scratch`: k * ld doubles.
   void (*cholesky_remove)(double* l, int n, std::ptrdiff_t ld, int first, int k, double* scratch);
+
+  /// One step of classical RK4 in two passes over the blocks. With loads that stay constant the step is the Taylor
+  /// polynomial of degree four, whose products with K pair up: the first pass takes [u | v] and leaves v' = M^-1
+  /// (load - K u) - a v and v'' = -M^-1 K v - a v' in `rates`; the second takes those and moves u and v on by `step`
+  /// [s]. `damping` is a [1/s]. Forces of others stand in `product` before each pass, for the same two vectors.
+  void (*rk4_first_f)(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping);
+  void (*rk4_first_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping);
+  void (*rk4_second_f)(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*rk4_second_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step);
+  /// One step of semi-implicit Euler (the new velocity moves the node) or of forward Euler (the old one does).
+  void (*semi_implicit_f)(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*semi_implicit_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step);
+  void (*forward_euler_f)(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*forward_euler_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step);
+
+  /// Adds the forces of springs [N] to `force` at displacements `u` [m], see SpringQuad.
+  void (*springs_f)(const SpringQuad<float>* quads, int count, const float* u, float* force);
+  void (*springs_d)(const SpringQuad<double>* quads, int count, const double* u, double* force);
+  /// Adds the forces of corotated tetrahedra, see TetQuad: linear elasticity in each element's own rotated frame.
+  void (*corotated_f)(const TetQuad<float>* quads, int count, const float* u, float* force);
+  void (*corotated_d)(const TetQuad<double>* quads, int count, const double* u, double* force);
 };
 
 /// The code paths that this processor can run, widest last.

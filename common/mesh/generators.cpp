@@ -32,6 +32,13 @@ void check_axis(const std::vector<double>& axis) {
   }
 }
 
+std::array<std::vector<double>, 3> even_axes(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                                             const std::array<int, 3>& cells) {
+  std::array<std::vector<double>, 3> axes;
+  for (int a = 0; a < 3; ++a) axes[a] = graded_axis(min[a], max[a], cells[a], 1);
+  return axes;
+}
+
 // Six tetrahedra around the diagonal from corner `start` to the opposite corner: one path along the edges per
 // permutation of the axes. Corner bits: 1 = x, 2 = y, 4 = z.
 void cut_cell(TetMesh& mesh, const std::array<int, 8>& corner, int start) {
@@ -41,6 +48,55 @@ void cut_cell(TetMesh& mesh, const std::array<int, 8>& corner, int start) {
     const int b = a ^ (1 << axes[1]);
     add_positive(mesh, {corner[start], corner[a], corner[b], corner[start ^ 7]});
   } while (std::next_permutation(axes.begin(), axes.end()));
+}
+
+// One tetrahedron of every other corner, `odd` of their bits set or not, and one of each corner between with
+// its three neighbours. Cells side by side take turns and so agree on the diagonals of their faces.
+void cut_cell_in_five(TetMesh& mesh, const std::array<int, 8>& corner, bool odd) {
+  const std::array<int, 4> inner = odd ? std::array{1, 2, 4, 7} : std::array{0, 3, 5, 6};
+  add_positive(mesh, {corner[inner[0]], corner[inner[1]], corner[inner[2]], corner[inner[3]]});
+  for (int c : odd ? std::array{0, 3, 5, 6} : std::array{1, 2, 4, 7})
+    add_positive(mesh, {corner[c], corner[c ^ 1], corner[c ^ 2], corner[c ^ 4]});
+}
+
+// Nodes and groups of a block, and its cells, each cut by `cut(mesh, corner, i, j, k)`.
+template <class Cut>
+TetMesh make_grid(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs,
+                  Cut&& cut) {
+  for (const auto* axis : {&xs, &ys, &zs}) check_axis(*axis);
+  const int nx = static_cast<int>(xs.size()), ny = static_cast<int>(ys.size()),
+            nz = static_cast<int>(zs.size());
+  const auto node = [&](int i, int j, int k) { return (k * ny + j) * nx + i; };
+
+  TetMesh mesh;
+  mesh.nodes.reserve(static_cast<std::size_t>(nx) * ny * nz);
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      for (int i = 0; i < nx; ++i) {
+        const int n = node(i, j, k);
+        mesh.nodes.emplace_back(xs[i], ys[j], zs[k]);
+        if (i == 0) mesh.groups["x0"].nodes.push_back(n);
+        if (i == nx - 1) mesh.groups["x1"].nodes.push_back(n);
+        if (j == 0) mesh.groups["y0"].nodes.push_back(n);
+        if (j == ny - 1) mesh.groups["y1"].nodes.push_back(n);
+        if (k == 0) mesh.groups["z0"].nodes.push_back(n);
+        if (k == nz - 1) mesh.groups["z1"].nodes.push_back(n);
+      }
+    }
+  }
+  mesh.groups["bottom"] = mesh.groups["z0"];
+  mesh.groups["top"] = mesh.groups["z1"];
+
+  for (int k = 0; k + 1 < nz; ++k) {
+    for (int j = 0; j + 1 < ny; ++j) {
+      for (int i = 0; i + 1 < nx; ++i) {
+        std::array<int, 8> corner;
+        for (int c = 0; c < 8; ++c) corner[c] = node(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+        cut(mesh, corner, i, j, k);
+      }
+    }
+  }
+  return mesh;
 }
 
 // Three tetrahedra of a prism. The corners come in the order of their colours, which both prisms at a shared
@@ -105,48 +161,24 @@ Disc make_disc(int rings) {
 }  // namespace
 
 TetMesh make_block(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const std::array<int, 3>& cells) {
-  std::array<std::vector<double>, 3> axes;
-  for (int a = 0; a < 3; ++a) axes[a] = graded_axis(min[a], max[a], cells[a], 1);
+  const auto axes = even_axes(min, max, cells);
   return make_graded_block(axes[0], axes[1], axes[2]);
 }
 
 TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys,
                           const std::vector<double>& zs) {
-  for (const auto* axis : {&xs, &ys, &zs}) check_axis(*axis);
-  const int nx = static_cast<int>(xs.size()), ny = static_cast<int>(ys.size()),
-            nz = static_cast<int>(zs.size());
-  const auto node = [&](int i, int j, int k) { return (k * ny + j) * nx + i; };
+  return make_grid(xs, ys, zs, [](TetMesh& mesh, const std::array<int, 8>& corner, int i, int j, int k) {
+    cut_cell(mesh, corner, (i & 1) | (j & 1) << 1 | (k & 1) << 2);
+  });
+}
 
-  TetMesh mesh;
-  mesh.nodes.reserve(static_cast<std::size_t>(nx) * ny * nz);
-  for (int k = 0; k < nz; ++k) {
-    for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) {
-        const int n = node(i, j, k);
-        mesh.nodes.emplace_back(xs[i], ys[j], zs[k]);
-        if (i == 0) mesh.groups["x0"].nodes.push_back(n);
-        if (i == nx - 1) mesh.groups["x1"].nodes.push_back(n);
-        if (j == 0) mesh.groups["y0"].nodes.push_back(n);
-        if (j == ny - 1) mesh.groups["y1"].nodes.push_back(n);
-        if (k == 0) mesh.groups["z0"].nodes.push_back(n);
-        if (k == nz - 1) mesh.groups["z1"].nodes.push_back(n);
-      }
-    }
-  }
-  mesh.groups["bottom"] = mesh.groups["z0"];
-  mesh.groups["top"] = mesh.groups["z1"];
-
-  mesh.tetrahedra.reserve(6 * static_cast<std::size_t>(nx - 1) * (ny - 1) * (nz - 1));
-  for (int k = 0; k + 1 < nz; ++k) {
-    for (int j = 0; j + 1 < ny; ++j) {
-      for (int i = 0; i + 1 < nx; ++i) {
-        std::array<int, 8> corner;
-        for (int c = 0; c < 8; ++c) corner[c] = node(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-        cut_cell(mesh, corner, (i & 1) | (j & 1) << 1 | (k & 1) << 2);
-      }
-    }
-  }
-  return mesh;
+TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                           const std::array<int, 3>& cells) {
+  const auto axes = even_axes(min, max, cells);
+  return make_grid(axes[0], axes[1], axes[2],
+                   [](TetMesh& mesh, const std::array<int, 8>& corner, int i, int j, int k) {
+                     cut_cell_in_five(mesh, corner, (i + j + k) % 2 == 1);
+                   });
 }
 
 std::vector<double> graded_axis(double begin, double end, int cells, double ratio) {

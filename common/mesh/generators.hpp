@@ -18,6 +18,11 @@ TetMesh make_block(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const
 TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys,
                           const std::vector<double>& zs);
 
+/// The block of make_block, nodes and groups alike, with five tetrahedra to a cell: one in the middle with a
+/// third of the volume, and four at corners. Neighbouring cells are mirror images.
+TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                           const std::array<int, 3>& cells);
+
 /// Ascending grid coordinates from `begin` to `end` [m] in `cells` steps; each step is `ratio` times the one
 /// before it. ratio = 1: uniform.
 std::vector<double> graded_axis(double begin, double end, int cells, double ratio);

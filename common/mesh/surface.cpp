@@ -5,9 +5,6 @@
 namespace palpate {
 namespace {
 
-// Face i lies opposite to vertex i; of a positive tetrahedron its right-hand normal points outward.
-constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-
 struct Face {
   std::array<int, 3> key;  // ascending
   int place;               // 4 * tetrahedron + face
@@ -19,7 +16,7 @@ std::vector<Face> all_faces(const TetMesh& mesh) {
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
     for (int f = 0; f < 4; ++f) {
       const auto& tet = mesh.tetrahedra[t];
-      std::array<int, 3> key{tet[kFaces[f][0]], tet[kFaces[f][1]], tet[kFaces[f][2]]};
+      std::array<int, 3> key{tet[kTetFaces[f][0]], tet[kTetFaces[f][1]], tet[kTetFaces[f][2]]};
       std::sort(key.begin(), key.end());
       faces.push_back({key, 4 * t + f});
     }
@@ -47,7 +44,7 @@ Surface extract_surface(const TetMesh& mesh) {
   surface.triangles.reserve(single.size());
   for (int place : single) {
     const auto& tet = mesh.tetrahedra[place / 4];
-    const auto& face = kFaces[place % 4];
+    const auto& face = kTetFaces[place % 4];
     surface.triangles.push_back({tet[face[0]], tet[face[1]], tet[face[2]]});
     surface.tetrahedra.push_back(place / 4);
   }

@@ -21,6 +21,10 @@ struct TetMesh {
   std::map<std::string, MeshGroup> groups;
 };
 
+/// Corners of the faces of a tetrahedron: face f lies opposite to vertex f, and of a positive tetrahedron its
+/// right-hand normal points outward.
+inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
 /// Triangles with outward normals by the right-hand rule.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m]

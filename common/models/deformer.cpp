@@ -20,7 +20,8 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 
 Deformer::Deformer(const Scene& scene, const std::vector<Archive>& archives) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
-    DeformableBody body{.map = archives[b].surface, .compliance = {archives[b], Compliance<float>::Rows::surface}};
+    DeformableBody body{.map = archives[b].surface};
+    if (!is_dynamic(scene.bodies[b])) body.compliance.emplace(archives[b], Compliance<float>::Rows::surface);
     if (scene.bodies[b].nonlinear) body.nonlinear = make_quasi_nonlinear(scene.bodies[b], archives[b]);
     const std::size_t nodes = body.map.position.size();
     body.surface.position.resize(nodes);
@@ -44,9 +45,9 @@ bool Deformer::take(const ContactState& contacts) {
 
 void Deformer::add_columns(DeformableBody& body, std::uint32_t index, const ContactState& contacts) {
   for (const NodalForce& f : contacts.forces) {
-    if (f.body != index || static_cast<int>(f.node) >= body.compliance.column_nodes()) continue;
+    if (f.body != index || static_cast<int>(f.node) >= body.compliance->column_nodes()) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      body.columns.push_back(body.compliance.column(static_cast<int>(f.node), axis));
+      body.columns.push_back(body.compliance->column(static_cast<int>(f.node), axis));
       body.coefficients.push_back(static_cast<float>(f.force[axis]));
     }
   }

@@ -21,7 +21,7 @@ struct DeformedSurface {
   std::vector<Eigen::Vector3f> normal;        ///< unit, outward
 };
 
-/// Rebuilds the shape of all quasi-static bodies from contact information: u = sum over contacts of C f
+/// Rebuilds the shape of all quasi-static bodies (others stay at rest) from contact information: u = sum over contacts of C f
 /// (TVCG99 eq. 9 in compliance form) over the whole visible surface, in single precision, then the quasi
 /// non-linear correction per tool (TVCG99 eq. 3-4) and normals.
 class Deformer {
@@ -47,7 +47,7 @@ class Deformer {
  private:
   struct DeformableBody {
     SurfaceMap map;
-    Compliance<float> compliance;
+    std::optional<Compliance<float>> compliance;  ///< none: moving tissue, which is not this one's to shape
     std::optional<QuasiNonlinear> nonlinear;
     DeformedSurface surface;
     std::vector<const float*> columns;

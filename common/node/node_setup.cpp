@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
+#include <random>
 
 #include "common/tensors/find_archive.hpp"
 
@@ -27,14 +28,19 @@ BusSettings bus_settings(const Scene& scene, const NodeOptions& o) {
   return settings;
 }
 
-LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) {
+LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic) {
   LoadedScene loaded{.scene = load_scene(options.scene)};
   loaded.scene_hash = scene_hash(loaded.scene);
   for (const Body& body : loaded.scene.bodies) {
-    loaded.archives.push_back(find_archive(loaded.scene, body, part));
+    loaded.archives.push_back(find_archive(loaded.scene, body, is_dynamic(body) ? of_dynamic : part));
     loaded.archive_hash += loaded.archives.back().content_hash;
   }
   return loaded;
+}
+
+std::uint64_t new_run() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32 | random()) | 1;
 }
 
 void say_ready(const NodeOptions& options) {

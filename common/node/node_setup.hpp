@@ -29,7 +29,12 @@ struct LoadedScene {
   std::vector<Archive> archives;  ///< one per body
   std::string scene_hash, archive_hash;
 };
-LoadedScene load_for_node(const NodeOptions& options, ArchivePart part);
+/// Reads `part` of each body's archive, `of_dynamic` of those whose model is dynamic.
+LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic);
+inline LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) { return load_for_node(options, part, part); }
+
+/// A random number, not 0, that identifies one start of a loop.
+std::uint64_t new_run();
 
 /// Tells `palpate run` that this node listens.
 void say_ready(const NodeOptions& options);

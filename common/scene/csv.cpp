@@ -50,32 +50,38 @@ void CsvTable::fail(int line, std::string_view sentence) const {
   throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), line, std::string(sentence)));
 }
 
-CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string_view>& columns) {
+CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string_view>& columns,
+                  std::string_view optional) {
   CsvTable table{file, {}};
   std::error_code error;
   std::ifstream stream(file, std::ios::binary);
   if (!std::filesystem::is_regular_file(file, error) || !stream) table.fail(1, "the file cannot be read");
 
-  bool header_seen = false;
+  std::vector<std::string_view> longer = columns;
+  std::string header = fmt::format("'{}'", joined(columns));
+  if (!optional.empty()) {
+    longer.push_back(optional);
+    header += fmt::format(" or '{}'", joined(longer));
+  }
+  std::size_t wanted = 0;  // columns, once the header has been read
   int number = 0;
   for (std::string text; std::getline(stream, text);) {
     ++number;
     const std::string_view line = trimmed(text);
     if (line.empty() || line.starts_with('#')) continue;
     const std::vector<std::string_view> cells = split(line);
-    if (!header_seen) {
-      if (cells != columns) table.fail(number, fmt::format("the header must be '{}'", joined(columns)));
-      header_seen = true;
+    if (wanted == 0) {
+      if (cells != columns && cells != longer)
+        table.fail(number, fmt::format("the header must be {}", header));
+      wanted = cells.size();
       continue;
     }
-    if (cells.size() != columns.size())
-      table.fail(number,
-                 fmt::format("{} columns are needed, and there are {}", columns.size(), cells.size()));
+    if (cells.size() != wanted)
+      table.fail(number, fmt::format("{} columns are needed, and there are {}", wanted, cells.size()));
     CsvRow& row = table.rows.emplace_back(CsvRow{number, {}});
     for (std::string_view cell : cells) row.values.push_back(finite_number(table, number, cell));
   }
-  if (!header_seen)
-    table.fail(std::max(1, number), fmt::format("the header '{}' is missing", joined(columns)));
+  if (wanted == 0) table.fail(std::max(1, number), fmt::format("the header {} is missing", header));
   if (table.rows.empty()) table.fail(number, "there is no row of numbers");
   return table;
 }

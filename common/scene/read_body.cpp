@@ -12,12 +12,6 @@ void check_name(const TableReader& table, const std::string& name) {
     table.fail_at("name", fmt::format("name '{}' must be 1 to 31 letters, digits, '_' or '-'", name));
 }
 
-namespace {
-
-const Range kPositive = above(0);
-/// Positive definite elasticity that is not incompressible.
-const Range kPoisson = strictly_within(-1, 0.5);
-
 Selector read_selector(const TableReader& table, std::string_view list_key) {
   const int given = table.has(list_key) + table.has("box") + table.has("group");
   if (given != 1)
@@ -34,6 +28,12 @@ Selector read_selector(const TableReader& table, std::string_view list_key) {
   }
   return where;
 }
+
+namespace {
+
+const Range kPositive = above(0);
+/// Positive definite elasticity that is not incompressible.
+const Range kPoisson = strictly_within(-1, 0.5);
 
 FixedRegion read_fixed(const TableReader& table) {
   FixedRegion fixed;
@@ -82,7 +82,7 @@ Body read_body(const TableReader& table) {
   check_name(table, body.name);
   table.existing_file("mesh", body.mesh, Need::required);
   table.number("scale", body.scale, kPositive);
-  table.choice("model", body.model, {"quasi_static"});
+  table.choice("model", body.model, {"quasi_static", "tensor_mass", "spring_mass", "hybrid"});
   table.number("young", body.material.young, kPositive, Need::required);
   table.number("poisson", body.material.poisson, kPoisson, Need::required);
   table.number("density", body.material.density, kPositive);
@@ -98,6 +98,7 @@ Body read_body(const TableReader& table) {
     body.nonlinear = read_nonlinear(*nonlinear);
   if (const auto touchable = table.table("touchable", "[body.touchable]"))
     body.touchable = read_selector(*touchable, "nodes");
+  read_dynamics(table, body);
   return body;
 }
 

@@ -28,6 +28,20 @@ void read_direction(const TableReader& table, std::string_view key, Eigen::Vecto
   if (std::abs(length - 1) > 1e-14) direction /= length;
 }
 
+Cautery read_cautery(const TableReader& table, double tip_radius) {
+  Cautery cautery{tip_radius};
+  table.number("radius", cautery.radius, kPositive);
+  return cautery;
+}
+
+Jaws read_jaws(const TableReader& table) {
+  Jaws jaws;
+  table.number("length", jaws.length, kPositive);
+  table.number("width", jaws.width, kPositive);
+  table.number("closed_below", jaws.closed_below, kPositive);
+  return jaws;
+}
+
 Tool read_tool(const TableReader& table) {
   Tool tool;
   table.text("name", tool.name, Need::required);
@@ -46,6 +60,9 @@ Tool read_tool(const TableReader& table) {
   if (tool.device != "bus") table.existing_file("trajectory", tool.trajectory, Need::required);
   table.number("max_force", tool.max_force, kPositive);
   table.number("max_force_rate", tool.max_force_rate, kPositive);
+  if (const auto cautery = table.table("cautery", "[tool.cautery]"))
+    tool.cautery = read_cautery(*cautery, tool.radius);
+  if (const auto jaws = table.table("jaws", "[tool.jaws]")) tool.jaws = read_jaws(*jaws);
   return tool;
 }
 

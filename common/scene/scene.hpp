@@ -48,16 +48,57 @@ struct Nonlinear {
   double specimen_scale = 1;           ///< [m per unit of specimen_mesh]
 };
 
+/// Motion of tissue that is cut or torn (RR3510 sec. 4); means nothing to a quasi-static body.
+struct Dynamic {
+  std::string integrator = "rk4";    ///< rk4 | semi_implicit
+  std::string precision = "single";  ///< single | double
+  double step = 0;                   ///< [s] 0: chosen from the frequency bound
+  double damping = 5;                ///< [1/s] proportional to mass: gamma_i = damping * m_i
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  bool corotational = false;         ///< elements turn with the tissue
+};
+
+/// When dynamic tissue tears by itself (RR3510 sec. 4.4).
+struct Tearing {
+  std::string criterion = "volume";  ///< volume | mean_elongation | largest_elongation
+  double threshold = 0;              ///< [1] > 0, relative change
+};
+
+/// Which part of a hybrid body is tensor-mass; either regions or a mesh is set in a validated scene.
+struct Hybrid {
+  std::vector<Selector> regions;  ///< elements of the body's mesh: the tensor-mass part
+  std::filesystem::path mesh;     ///< a coarse tensor-mass mesh joined where its nodes coincide with the body's
+  double scale = 1;               ///< [m per unit of mesh]
+};
+
 struct Body {
   std::string name;
   std::filesystem::path mesh;
   double scale = 1;  ///< [m per mesh unit]
-  std::string model = "quasi_static";
+  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid
   Material material;
   std::vector<FixedRegion> fixed;
   std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
   std::optional<Nonlinear> nonlinear;
   std::optional<Selector> touchable;      ///< absent: every free surface node
+  Dynamic dynamic;                        ///< defaults where the section is absent
+  std::optional<Tearing> tearing;
+  std::optional<Hybrid> hybrid;           ///< set exactly for the model hybrid
+};
+
+/// Whether some of the body moves with inertia and can be cut: every model but quasi_static.
+bool is_dynamic(const Body& body);
+
+/// An electric scalpel: removes the dynamic tissue that the tip touches while the pedal is down.
+struct Cautery {
+  double radius = 0;  ///< [m] of the sphere that cuts, about the tip's centre
+};
+
+/// Two jaws at the tip that hold the tissue between them once closed.
+struct Jaws {
+  double length = 0.012;      ///< [m] along the shaft
+  double width = 0.006;       ///< [m] across the plane they open in
+  double closed_below = 0.1;  ///< [rad] of grip
 };
 
 struct Tool {
@@ -72,6 +113,8 @@ struct Tool {
   std::filesystem::path trajectory;        ///< for scripted: CSV; for log: an LCM event log
   double max_force = 10;        ///< [N] limit of the safety chain
   double max_force_rate = 5000; ///< [N/s] slew limit
+  std::optional<Cautery> cautery;
+  std::optional<Jaws> jaws;
 };
 
 struct Contact {

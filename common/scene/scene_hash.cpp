@@ -36,6 +36,7 @@ std::string scene_hash(const Scene& scene) {
   // Where files lie and what moves a tool is each machine's own affair. Meshes go into the archive's hash.
   for (Body& body : agreed.bodies) {
     body.mesh.clear();
+    if (body.hybrid && !body.hybrid->mesh.empty()) body.hybrid->mesh = "coarse";
     if (!body.nonlinear) continue;
     for (std::filesystem::path* curve : {&body.nonlinear->force_curve, &body.nonlinear->radial_curve})
       *curve = file_digest(*curve);

@@ -93,6 +93,32 @@ void write(Writer& out, const Nonlinear& nonlinear) {
   out.write("specimen_scale", nonlinear.specimen_scale);
 }
 
+void write(Writer& out, const Dynamic& dynamic) {
+  out.table("[body.dynamic]");
+  out.write("integrator", dynamic.integrator);
+  out.write("precision", dynamic.precision);
+  out.write("step", dynamic.step);
+  out.write("damping", dynamic.damping);
+  out.write("gravity", dynamic.gravity);
+  out.write("corotational", dynamic.corotational);
+}
+
+void write(Writer& out, const Tearing& tearing) {
+  out.table("[body.tearing]");
+  out.write("criterion", tearing.criterion);
+  out.write("threshold", tearing.threshold);
+}
+
+void write(Writer& out, const Hybrid& hybrid) {
+  out.table("[body.hybrid]");
+  out.write("mesh", hybrid.mesh);
+  if (!hybrid.mesh.empty()) out.write("scale", hybrid.scale);
+  for (const Selector& region : hybrid.regions) {
+    out.table("[[body.hybrid.region]]");
+    write(out, region, "elements");
+  }
+}
+
 void write(Writer& out, const Body& body) {
   out.table("[[body]]");
   out.write("name", body.name);
@@ -111,6 +137,9 @@ void write(Writer& out, const Body& body) {
     out.table("[body.touchable]");
     write(out, *body.touchable, "nodes");
   }
+  if (is_dynamic(body)) write(out, body.dynamic);
+  if (body.tearing) write(out, *body.tearing);
+  if (body.hybrid) write(out, *body.hybrid);
 }
 
 void write(Writer& out, const Tool& tool) {
@@ -126,6 +155,15 @@ void write(Writer& out, const Tool& tool) {
   out.write("trajectory", tool.trajectory);
   out.write("max_force", tool.max_force);
   out.write("max_force_rate", tool.max_force_rate);
+  if (tool.cautery) {
+    out.table("[tool.cautery]");
+    out.write("radius", tool.cautery->radius);
+  }
+  if (!tool.jaws) return;
+  out.table("[tool.jaws]");
+  out.write("length", tool.jaws->length);
+  out.write("width", tool.jaws->width);
+  out.write("closed_below", tool.jaws->closed_below);
 }
 
 void write(Writer& out, const Network& network) {

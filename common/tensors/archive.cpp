@@ -4,8 +4,10 @@
 
 #include <cstdlib>
 
+#include "common/tensors/archive_dynamic.hpp"
 #include "common/tensors/atomic_file.hpp"
 #include "common/tensors/hdf5_file.hpp"
+#include "common/tensors/rows.hpp"
 
 namespace palpate {
 namespace {
@@ -13,28 +15,14 @@ namespace {
 constexpr const char* kFormat = "palpate compliance archive";
 constexpr std::size_t kMetadataBytes = 64 * 1024;
 
-template <class Row, class Convert>
-auto flatten(const std::vector<Row>& rows, std::size_t columns, Convert convert) {
-  std::vector<decltype(convert(rows[0], 0))> flat;
-  flat.reserve(columns * rows.size());
-  for (const auto& row : rows)
-    for (std::size_t c = 0; c < columns; ++c) flat.push_back(convert(row, c));
-  return flat;
-}
-
-std::vector<std::int32_t> flatten(const std::vector<Dof>& dofs) {
-  return flatten(dofs, 2,
-                 [](const Dof& dof, std::size_t c) { return std::int32_t{c == 0 ? dof.node : dof.axis}; });
-}
-
 std::size_t payload_bytes(const Archive& archive) {
   const auto& surface = archive.surface;
   const std::size_t doubles = archive.touchable_compliance.size() + archive.other_compliance.size() +
-                              3 * surface.position.size() + 2 * archive.young.size();
+                              3 * surface.position.size() + 3 * archive.young.size();
   const std::size_t integers = 4 * surface.position.size() + 3 * surface.triangles.size() +
                                2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
                                archive.material_of_element.size();
-  return sizeof(double) * doubles + sizeof(std::int32_t) * integers;
+  return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive);
 }
 
 void write_header(Hdf5Writer& file, const Archive& archive) {
@@ -42,6 +30,7 @@ void write_header(Hdf5Writer& file, const Archive& archive) {
   file.attribute("format_version", std::int64_t{kArchiveFormat});
   file.attribute("software", archive.software);
   file.attribute("body", archive.body);
+  file.attribute("model", archive.model);
   file.attribute("content_hash", archive.content_hash);
   file.attribute("mesh_nodes", std::int64_t{archive.mesh_nodes});
   file.attribute("touchable_nodes", std::int64_t{archive.surface.touchable});
@@ -50,12 +39,12 @@ void write_header(Hdf5Writer& file, const Archive& archive) {
 }
 
 void write_surface(Hdf5Writer& file, const SurfaceMap& surface) {
-  file.dataset({"surface/position", "m", "rest position of each surface node, touchable ones first"},
+  file.dataset({"surface/position", "m", "rest position of each node, touchable ones first, then the rest of the surface, then inner ones"},
                flatten(surface.position, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }),
                3);
-  file.dataset({"surface/node_number", "1", "0-based node number in the mesh file of each surface node"},
+  file.dataset({"surface/node_number", "1", "0-based node number in the mesh file of each node"},
                std::vector<std::int32_t>(surface.node_number.begin(), surface.node_number.end()));
-  file.dataset({"surface/fixed", "1", "1 where x, y, z of a surface node is fixed"},
+  file.dataset({"surface/fixed", "1", "1 where x, y, z of a node is fixed"},
                flatten(surface.fixed, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }),
                3);
   file.dataset(
@@ -68,8 +57,9 @@ void write_material(Hdf5Writer& file, const Archive& archive) {
                archive.young);
   file.dataset({"material/poisson", "1", "Poisson's ratio of the body, then of its material regions"},
                archive.poisson);
+  file.dataset({"material/density", "kg/m^3", "density of the body, then of its material regions"}, archive.density);
   file.dataset(
-      {"material/of_element", "1", "row of material/young for each tetrahedron; absent: 0 for all"},
+      {"material/of_element", "1", "row of material/young for each tetrahedron (of dynamic/tetrahedra if there); absent: 0 for all"},
       std::vector<std::int32_t>(archive.material_of_element.begin(), archive.material_of_element.end()));
 }
 
@@ -88,28 +78,13 @@ void write_compliance(Hdf5Writer& file, const Archive& archive) {
       archive.other_compliance, std::max<std::size_t>(archive.touchable_dofs.size(), 1));
 }
 
-std::vector<Dof> read_dofs(const Hdf5Reader& file, const std::string& name) {
-  const auto flat = file.integers(name);
-  std::vector<Dof> dofs;
-  for (std::size_t i = 0; i + 1 < flat.size(); i += 2) dofs.push_back({flat[i], flat[i + 1]});
-  return dofs;
-}
-
-template <class Row, class Value>
-std::vector<Row> rows_of_three(const std::vector<Value>& flat) {
-  std::vector<Row> rows(flat.size() / 3);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) rows[i][c] = flat[3 * i + c];
-  return rows;
-}
-
 SurfaceMap read_surface(const Hdf5Reader& file) {
   SurfaceMap surface;
-  surface.position = rows_of_three<Eigen::Vector3d>(file.doubles("surface/position"));
+  surface.position = rows_of<Eigen::Vector3d>(3, file.doubles("surface/position"));
   const auto numbers = file.integers("surface/node_number");
   surface.node_number.assign(numbers.begin(), numbers.end());
-  surface.fixed = rows_of_three<std::array<bool, 3>>(file.integers("surface/fixed"));
-  surface.triangles = rows_of_three<std::array<int, 3>>(file.integers("surface/triangles"));
+  surface.fixed = rows_of<std::array<bool, 3>>(3, file.integers("surface/fixed"));
+  surface.triangles = rows_of<std::array<int, 3>>(3, file.integers("surface/triangles"));
   surface.touchable = static_cast<int>(file.integer("touchable_nodes"));
   return surface;
 }
@@ -128,7 +103,7 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
   const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
   bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
                     surface.touchable <= surface.size() && !archive.young.empty() &&
-                    archive.young.size() == archive.poisson.size();
+                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part);
   if (part != ArchivePart::header)
     consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
@@ -153,6 +128,7 @@ void write_archive(const Archive& archive, const std::filesystem::path& file) {
   write_surface(writer, archive.surface);
   write_material(writer, archive);
   write_compliance(writer, archive);
+  write_dynamic_part(writer, archive);
   writer.close();
   atomic.commit();
 }
@@ -162,6 +138,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   check_identity(reader, expected_hash);
   Archive archive;
   archive.body = reader.text("body");
+  archive.model = reader.text("model");
   archive.content_hash = reader.text("content_hash");
   archive.software = reader.text("software");
   archive.mesh_nodes = static_cast<int>(reader.integer("mesh_nodes"));
@@ -169,6 +146,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   archive.specimen_radial_slope = reader.number("specimen_radial_slope");
   archive.young = reader.doubles("material/young");
   archive.poisson = reader.doubles("material/poisson");
+  archive.density = reader.doubles("material/density");
   const auto material = reader.integers("material/of_element");
   archive.material_of_element.assign(material.begin(), material.end());
   archive.surface = read_surface(reader);
@@ -176,6 +154,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   archive.other_dofs = read_dofs(reader, "other/dofs");
   if (part != ArchivePart::header) archive.touchable_compliance = reader.doubles("touchable/compliance");
   if (part == ArchivePart::surface) archive.other_compliance = reader.doubles("other/compliance");
+  read_dynamic_part(reader, part, archive);
   check_sizes(reader, archive, part);
   return archive;
 }

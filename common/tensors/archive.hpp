@@ -3,13 +3,17 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/tensors/hybrid_tensors.hpp"
+
 namespace palpate {
 
-/// Geometry and numbering of the visible surface of a body. Surface nodes 0 .. touchable-1 are the touchable
-/// ones (on the surface, at least one free axis), the others follow; both groups ascend in mesh node number.
+/// Geometry and numbering of the nodes in a body's archive. Nodes 0 .. touchable-1 are the touchable ones (on the
+/// surface, at least one free axis), the other surface nodes follow, and where a part of the body moves with inertia
+/// the remaining nodes of that part's tetrahedra; each group ascends in mesh node number.
 struct SurfaceMap {
   std::vector<Eigen::Vector3d> position;      ///< [m] rest position per surface node
   std::vector<int> node_number;               ///< mesh node number per surface node
@@ -20,25 +24,23 @@ struct SurfaceMap {
   int size() const { return static_cast<int>(position.size()); }
 };
 
-/// A degree of freedom of the compliance: surface node index and axis.
-struct Dof {
-  int node;
-  int axis;
-};
-
 /// Tensors of one body as stored in the HDF5 archive. Compliance only: T^f_k = C_kk^-1 and
-/// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it.
+/// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it. Bodies that move with inertia have their
+/// tetrahedra in place of a compliance; hybrid ones have both, each for its part.
 struct Archive {
   std::string body;
+  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid
   std::string content_hash;            ///< over mesh, material, fixation, touchable set and format version
   std::string software;                ///< version that computed it
   int mesh_nodes = 0;                  ///< nodes in the mesh file
   std::vector<double> young, poisson;  ///< [Pa], [1]: the body's material, then one per material region
-  std::vector<std::uint16_t>
-      material_of_element;  ///< index into those per tetrahedron; empty: all have the first
+  std::vector<double> density;         ///< [kg/m^3] likewise; empty for a quasi-static body
+  /// Index into those per tetrahedron (of the mesh; of `tetrahedra` where there are any); empty: all have the first.
+  std::vector<std::uint16_t> material_of_element;
   SurfaceMap surface;
-  std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes, ascending
-  std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes
+  std::vector<std::array<int, 4>> tetrahedra;  ///< those that move with inertia: surface nodes, positively oriented
+  std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes (hybrid: those among i), ascending
+  std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes (hybrid: those among i)
   /// C_tt, packed lower triangle by rows: entry (i,j), j <= i, at i(i+1)/2 + j.  [m/N]
   std::vector<double> touchable_compliance;
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
@@ -46,10 +48,11 @@ struct Archive {
   /// Slopes of the linear model's specimen curves where the scene names a specimen mesh, else 0.
   double specimen_force_slope = 0;   ///< [N/m]
   double specimen_radial_slope = 0;  ///< [1]
+  std::optional<HybridTensors> hybrid;
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 1;
+constexpr int kArchiveFormat = 2;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.
@@ -61,7 +64,7 @@ std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const
 /// std::runtime_error on failure (a full disk, say), leaving nothing.
 void write_archive(const Archive& archive, const std::filesystem::path& file);
 
-/// Which part of an archive to read: the header with maps and material, C_tt as well (all that the haptic
+/// Which part of an archive to read: the header with maps, tetrahedra and material, C_tt as well (all that the haptic
 /// node needs), or everything. What is not asked for is not read.
 enum class ArchivePart { header, touchable, surface };
 

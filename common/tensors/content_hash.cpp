@@ -67,6 +67,20 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
+/// What the archives of bodies that move with inertia hold beyond those of quasi-static ones.
+void add_dynamic(Hasher& hash, const Body& body) {
+  hash.add(body.model);
+  hash.add(body.material.density);
+  for (const auto& region : body.materials) hash.add(region.material.density);
+  if (body.model != "hybrid" || !body.hybrid) return;
+  for (int axis = 0; axis < 3; ++axis) hash.add(body.dynamic.gravity[axis]);
+  hash.add(static_cast<std::int64_t>(body.hybrid->regions.size()));
+  for (const auto& region : body.hybrid->regions) hash.add(region);
+  if (body.hybrid->mesh.empty()) return;
+  hash.add_file(body.hybrid->mesh);
+  hash.add(body.hybrid->scale);
+}
+
 }  // namespace
 
 std::string content_hash(const Body& body) {
@@ -93,6 +107,7 @@ std::string content_hash(const Body& body) {
     hash.add_file(body.nonlinear->specimen_mesh);
     hash.add(body.nonlinear->specimen_scale);
   }
+  if (body.model != "quasi_static") add_dynamic(hash, body);
   return hash.text();
 }
 

@@ -9,7 +9,8 @@ namespace palpate {
 
 /// XXH3-128, as 32 hexadecimal digits, over everything that changes a number in the archive of a body: the
 /// bytes of the mesh file and its scale, Young's modulus and Poisson's ratio of the body and of its regions,
-/// fixations, touchable set, specimen mesh, and the format version. It reads the mesh file but does not parse
+/// fixations, touchable set, specimen mesh, and the format version; where the body moves with inertia its model and
+/// densities too, and of a hybrid its regions, its second mesh and gravity. It reads the mesh file but does not parse
 /// it, so that every node finds its archive without a mesh library. Throws std::runtime_error if a file
 /// cannot be read.
 std::string content_hash(const Body& body);

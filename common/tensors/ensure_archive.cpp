@@ -8,6 +8,7 @@
 #include "common/tensors/content_hash.hpp"
 #include "common/tensors/find_archive.hpp"
 #include "common/tensors/precompute.hpp"
+#include "common/tensors/precompute_dynamic.hpp"
 
 namespace palpate {
 namespace {
@@ -27,6 +28,15 @@ std::optional<TetMesh> load_specimen(const Body& body) {
   return load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
 }
 
+Archive compute(const Body& body, const TetMesh& mesh, const Progress& progress) {
+  if (body.hybrid && !body.hybrid->mesh.empty()) {
+    const auto coarse = load_tet_mesh(body.hybrid->mesh, body.hybrid->scale);
+    return precompute_dynamic(body, mesh, &coarse, progress);
+  }
+  const auto specimen = load_specimen(body);
+  return precompute(body, mesh, specimen ? &*specimen : nullptr, progress);
+}
+
 }  // namespace
 
 ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress) {
@@ -38,9 +48,8 @@ ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress
     if (state.up_to_date) return state;
   }
   const auto mesh = load_tet_mesh(body.mesh, body.scale);
-  const auto specimen = load_specimen(body);
   const auto begin = std::chrono::steady_clock::now();
-  auto archive = precompute(body, mesh, specimen ? &*specimen : nullptr, progress);
+  auto archive = compute(body, mesh, progress);
   archive.content_hash = hash;
   Stopwatch watch(progress);
   write_archive(archive, state.file);

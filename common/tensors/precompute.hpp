@@ -5,8 +5,10 @@
 
 namespace palpate {
 
-/// Geometry and numbering of a body's visible surface. Throws std::runtime_error if no node is touchable.
-SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs);
+/// Geometry and numbering of a body's visible surface, and of the inner ones among the mesh nodes `also` behind it.
+/// Throws std::runtime_error if no node is touchable.
+SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs,
+                            const std::vector<int>& also = {});
 
 /// What precompute() did.
 struct PrecomputeCost {
@@ -14,7 +16,8 @@ struct PrecomputeCost {
   bool condensed = false;  ///< see SurfaceCompliance
 };
 
-/// The compliance of a body's surface: assembly, elimination of fixed dofs, one sparse factorisation, dense
+/// The archive of a body of any model on one mesh; of a quasi-static one this is
+/// the compliance of its surface: assembly, elimination of fixed dofs, one sparse factorisation, dense
 /// inverse or block solves (TVCG99 sec. 4-1, by elimination where the paper iterates). `specimen`: the mesh
 /// of Nonlinear::specimen_mesh, null without one. The content hash is left empty: it belongs to the files the
 /// body names, see ensure_archive(). Throws std::runtime_error on an unfixed body, empty selections, or too

@@ -84,6 +84,9 @@ SurfaceSolution respond(const Archive& archive, const std::vector<Entry>& forces
 }
 
 void check_complete(const Archive& archive) {
+  if (!archive.tetrahedra.empty())
+    throw std::runtime_error(fmt::format(
+        "body '{}' moves with inertia: its archive holds no compliance of the whole surface", archive.body));
   const std::size_t t = archive.touchable_dofs.size();
   if (archive.touchable_compliance.size() != t * (t + 1) / 2 ||
       archive.other_compliance.size() != archive.other_dofs.size() * t)

@@ -3,13 +3,14 @@
 
 namespace palpate {
 
-/// The five degrees of freedom of an instrument about its trocar.
+/// The five degrees of freedom of an instrument about its trocar, and its pedal.
 struct ToolDofs {
   double yaw = 0;    ///< [rad] about the zero pose's y axis (up), positive by the right-hand rule
   double pitch = 0;  ///< [rad] about the yawed x axis, positive by the right-hand rule
   double depth = 0;  ///< [m] from the trocar to the tip's centre, along the shaft
   double roll = 0;   ///< [rad] about the shaft, from handle to tip
   double grip = 0;   ///< [rad] jaw opening
+  double pedal = 0;  ///< [-] 1 while the tool's pedal is down (cautery on), 0 while it is up
 };
 
 /// Fixed frame of the trocar: origin at the pivot, z along the zero pose's shaft (handle to tip), y up.
@@ -24,7 +25,7 @@ Trocar make_trocar(const Eigen::Vector3d& pivot, const Eigen::Vector3d& axis, co
 /// Pose of the tip frame in the world: origin at the tip's centre, z along the shaft (handle to tip).
 Eigen::Isometry3d tip_pose(const Trocar& trocar, const ToolDofs& dofs);
 
-/// The dofs (grip excluded) that put the tip's centre at a world point, with the given roll; inverse of
+/// The dofs (grip and pedal excluded) that put the tip's centre at a world point, with the given roll; inverse of
 /// tip_pose.
 ToolDofs dofs_for_tip(const Trocar& trocar, const Eigen::Vector3d& tip, double roll);
 

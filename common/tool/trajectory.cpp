@@ -28,7 +28,10 @@ Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& do
     throw std::invalid_argument("a trajectory needs one time for each row, and a row");
   if (std::ranges::adjacent_find(time_, std::greater_equal<>{}) != time_.end())
     throw std::invalid_argument("a trajectory's times must increase");
-  for (const ToolDofs& d : dofs) value_.push_back({d.yaw, d.pitch, d.depth, d.roll, d.grip});
+  for (const ToolDofs& d : dofs) {
+    value_.push_back({d.yaw, d.pitch, d.depth, d.roll, d.grip});
+    pedal_.push_back(d.pedal);
+  }
   speed_.assign(n, Row{});
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double h0 = time_[i] - time_[i - 1], h1 = time_[i + 1] - time_[i];
@@ -40,22 +43,25 @@ Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& do
 
 ToolDofs Trajectory::at(double time) const {
   Row now;
+  std::size_t i = 0;
   if (!(time > time_.front())) {
     now = value_.front();
   } else if (time >= time_.back()) {
+    i = time_.size() - 1;
     now = value_.back();
   } else {
-    const std::size_t i = std::upper_bound(time_.begin(), time_.end(), time) - time_.begin() - 1;
+    i = std::upper_bound(time_.begin(), time_.end(), time) - time_.begin() - 1;
     const double h = time_[i + 1] - time_[i], s = (time - time_[i]) / h;
     const double b = s * s * (3 - 2 * s), c = s * (1 - s) * (1 - s) * h, d = s * s * (s - 1) * h;  // Hermite
     for (int k = 0; k < kDofs; ++k)
       now[k] = value_[i][k] + b * (value_[i + 1][k] - value_[i][k]) + c * speed_[i][k] + d * speed_[i + 1][k];
   }
-  return {.yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4]};
+  return {
+      .yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4], .pedal = pedal_[i]};
 }
 
 Trajectory load_trajectory(const std::filesystem::path& file) {
-  const CsvTable table = read_csv(file, {"time", "yaw", "pitch", "depth", "roll", "grip"});
+  const CsvTable table = read_csv(file, {"time", "yaw", "pitch", "depth", "roll", "grip"}, "pedal");
   std::vector<double> time;
   std::vector<ToolDofs> dofs;
   for (const CsvRow& row : table.rows) {
@@ -63,7 +69,9 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
     if (!time.empty() && !(v[0] > time.back()))
       table.fail(row.line, fmt::format("time {} does not come after {}", v[0], time.back()));
     time.push_back(v[0]);
-    dofs.push_back({.yaw = v[1], .pitch = v[2], .depth = v[3], .roll = v[4], .grip = v[5]});
+    const double pedal = v.size() > 6 ? v[6] : 0;
+    if (pedal != 0 && pedal != 1) table.fail(row.line, fmt::format("pedal must be 0 or 1, and is {}", pedal));
+    dofs.push_back({.yaw = v[1], .pitch = v[2], .depth = v[3], .roll = v[4], .grip = v[5], .pedal = pedal});
   }
   return {std::move(time), dofs};
 }

@@ -9,6 +9,7 @@ namespace palpate {
 
 /// A tool's motion over time. Between the given rows the dofs follow monotone cubics (Fritsch and Carlson
 /// 1980): continuous speed, no overshoot, so that a tool which rests between two equal rows stays at rest.
+/// The pedal is a switch: it stays where the last row put it.
 class Trajectory {
  public:
   /// `time` [s] increases strictly and is as long as `dofs`; at least one row. Throws std::invalid_argument.
@@ -26,11 +27,12 @@ class Trajectory {
   std::vector<double> time_;
   std::vector<Row> value_;
   std::vector<Row> speed_;  ///< per second, at the rows
+  std::vector<double> pedal_;
 };
 
-/// Reads a CSV file with the header `time,yaw,pitch,depth,roll,grip` [s, rad, rad, m, rad, rad] and strictly
-/// increasing times; lines that begin with '#' and empty lines are skipped.
-/// Throws std::runtime_error("FILE:LINE: sentence").
+/// Reads a CSV file with the header `time,yaw,pitch,depth,roll,grip` [s, rad, rad, m, rad, rad], after which
+/// `pedal` (0 or 1) may follow, and strictly increasing times; lines that begin with '#' and empty lines are
+/// skipped. Throws std::runtime_error("FILE:LINE: sentence").
 Trajectory load_trajectory(const std::filesystem::path& file);
 
 }  // namespace palpate

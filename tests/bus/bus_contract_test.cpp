@@ -70,6 +70,48 @@ TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
   expect_round_trip(topics::node_status, status_sample());
   expect_round_trip(topics::haptic_keyframe, keyframe_sample());
   expect_round_trip(topics::scene, scene_sample());
+  expect_round_trip(topics::topology_change, topology_sample());
+  expect_round_trip(topics::local_contact_model, local_model_sample());
+  expect_round_trip(topics::local_contact_model, local_model_sample(32, 128));
+  expect_round_trip(topics::deform_step, deform_step_sample());
+  expect_round_trip(topics::deform_keyframe, deform_keyframe_sample());
+}
+
+TEST_P(BusContract, ALateReaderGetsEveryChangeOfTopologyInOrder) {
+  constexpr std::uint64_t changes = 3000;  // more than any topic that keeps the last ones
+  auto writer = a->writer(topics::topology_change);
+  for (std::uint64_t seq = 1; seq <= changes; ++seq) ASSERT_TRUE(writer->write(topology_sample(seq)));
+  auto late = b->reader(topics::topology_change, Keep::all);
+  for (std::uint64_t seq = 1; seq <= changes; ++seq) {
+    const auto change = take_within(*b, *late);
+    ASSERT_TRUE(change) << seq;
+    ASSERT_EQ(change->seq, seq);
+  }
+  TopologyChange unknown = topology_sample(changes + 1);
+  unknown.cause = fell_away + 1;
+  EXPECT_FALSE(writer->write(unknown));
+  ASSERT_TRUE(writer->write(topology_sample(changes + 1)));
+  EXPECT_EQ(take_within(*b, *late)->seq, changes + 1);
+}
+
+TEST_P(BusContract, LocalContactModelsThatCannotBeAreRefused) {
+  auto writer = a->writer(topics::local_contact_model);
+  const auto refused = [&](auto&& change) {
+    LocalContactModel model = local_model_sample(3, 4);
+    EXPECT_TRUE(writer->write(model));
+    change(model);
+    return !writer->write(model);
+  };
+  EXPECT_TRUE(refused([](auto& m) { m.triangles[1].b = static_cast<std::uint32_t>(m.nodes.size()); }));
+  EXPECT_TRUE(refused([](auto& m) { m.contacts[2].normal = {0, 0, 1.001}; }));
+  EXPECT_TRUE(refused([](auto& m) { m.contacts[2].grasped = 2; }));
+  EXPECT_TRUE(refused([](auto& m) { m.contacts[0].stiffness[8] = std::numeric_limits<double>::infinity(); }));
+  EXPECT_TRUE(refused([](auto& m) { m.nodes[0].velocity[1] = std::numeric_limits<double>::quiet_NaN(); }));
+  EXPECT_TRUE(refused([](auto& m) { m.contacts.resize(33, m.contacts[0]); }));
+  EXPECT_TRUE(refused([](auto& m) { m.nodes.resize(193, m.nodes[0]); }));
+  EXPECT_TRUE(refused([](auto& m) { m.triangles.resize(129, m.triangles[0]); }));
+  EXPECT_TRUE(refused([](auto& m) { m.seq = 0; }));
+  EXPECT_FALSE(refused([](auto& m) { m.contacts.resize(32, m.contacts[0]); }));
 }
 
 TEST_P(BusContract, AReaderOfTheLatestSkipsOlderSamplesOfTheSameKeyOnly) {

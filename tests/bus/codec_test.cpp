@@ -24,6 +24,11 @@ void for_each_message(F&& f) {
   f(status_sample());
   f(keyframe_sample());
   f(scene_sample());
+  f(topology_sample());
+  f(local_model_sample());
+  f(local_model_sample(0, 0));
+  f(deform_step_sample());
+  f(deform_keyframe_sample());
 }
 
 TEST(Codec, DecodingGivesBackEveryMessage) {
@@ -57,12 +62,20 @@ TEST(Codec, ACountBeyondTheTextAllocatesNothing) {
   SurfaceState back;
   EXPECT_FALSE(decode(bytes, back));
   EXPECT_EQ(back.position.capacity(), 0u);
+
+  LocalContactModel model;
+  Bytes longer;
+  encode(model, longer);
+  std::fill(longer.end() - 4, longer.end(), 0xFF);
+  LocalContactModel model_back;
+  EXPECT_FALSE(decode(longer, model_back));
+  EXPECT_EQ(model_back.triangles.capacity(), 0u);
 }
 
 TEST(Codec, NumbersAreLittleEndianAndUnpadded) {
   Bytes bytes;
-  encode(DeviceState{0x01020304, 5, 6, 0, 0, 0, 0, 1.0}, bytes);
-  ASSERT_EQ(bytes.size(), 4u + 8 + 8 + 5 * 8);
+  encode(DeviceState{0x01020304, 5, 6, 0, 0, 0, 0, 1.0, 0}, bytes);
+  ASSERT_EQ(bytes.size(), 4u + 8 + 8 + 6 * 8);
   EXPECT_EQ(bytes[0], 4);
   EXPECT_EQ(bytes[3], 1);
   EXPECT_EQ(bytes[4], 5);

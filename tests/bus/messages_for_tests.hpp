@@ -5,7 +5,7 @@
 namespace palpate::testing {
 
 inline ToolState tool_sample(std::uint64_t seq = 7, std::uint32_t tool = 3) {
-  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5};
+  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5, 1, 15, 16};
 }
 
 inline ContactState contact_sample(int contacts = 2) {
@@ -52,7 +52,31 @@ inline ForceState force_sample() {
 }
 
 inline DeviceState device_sample() {
-  return {1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5};
+  return {1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+}
+
+inline TopologyChange topology_sample(std::uint64_t seq = 3) {
+  return {1, 2, seq, 4, fell_away, {17, 5, 4000001}};
+}
+
+inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uint32_t triangles = 3) {
+  LocalContactModel m;
+  m.tool = 1, m.run = 2, m.seq = 3, m.tick = 4, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7;
+  m.yaw = 0.1, m.pitch = 0.2, m.depth = 0.3, m.roll = 0.4, m.grip = 0.5;
+  for (std::uint32_t i = 0; i < contacts; ++i)
+    m.contacts.push_back({i, i % 2, {0.1 * i, 0.2, 0.3}, {0, 0.6, -0.8}, {1, 2, 3.5}, {100, 1, 2, 3, 200, 4, 5, 6, 300.5 + i}});
+  for (std::uint32_t i = 0; triangles > 0 && i < triangles + 2; ++i)
+    m.nodes.push_back({i, 7 + i, {0.01 * i, -0.02, 0.03}, {1e-3, 2e-3, -3e-3 * i}, {10, 1, 2, 1, 20, 3, 2, 3, 30.5 + i}});
+  for (std::uint32_t i = 0; i < triangles; ++i) m.triangles.push_back({i, i + 1, i + 2});
+  return m;
+}
+
+inline DeformStep deform_step_sample() {
+  return {1, 2, 3, {{4, 5, 6}, {7, 8, 9}}, 0xFEDCBA9876543210};
+}
+
+inline DeformKeyframe deform_keyframe_sample() {
+  return {1, 2, 3, 0.001, "avx2 0.1.0", {0, 1, 2, 254, 255}};
 }
 
 }  // namespace palpate::testing

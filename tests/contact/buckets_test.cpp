@@ -3,29 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <stdexcept>
 
 #include "tests/contact/moving_surface.hpp"
-
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "tests/tool/count_allocations.hpp"
 
 namespace palpate {
 namespace {
@@ -146,16 +128,44 @@ TEST(Buckets, EnterWhatLiesBeyondTheGridInItsOutermostBuckets) {
   EXPECT_EQ(near, std::vector<int>{8});
 }
 
+TEST(Buckets, ForgetATriangleUntilItIsEnteredAgain) {
+  MovingSurface surface(12);
+  Buckets whole(surface.rest, surface.triangles, 0.008);
+  Buckets comers(surface.rest, 0.008, surface.size(), 8 * surface.triangles.size());
+  EXPECT_TRUE(ask(comers, surface, {Vector3d::Constant(-1), Vector3d::Constant(1)}).empty());
+  std::vector<char> in(surface.size(), 0);
+  for (int round = 0; round < 40; ++round) {
+    surface.step(0.002);
+    enter_all(whole, surface);
+    for (int t = 0; t < surface.size(); ++t) {
+      in[t] = surface.pick(3) > 0;
+      const Box box = swept_box(surface.before(t), surface.after(t));
+      if (in[t])
+        comers.move(t, box[0], box[1]);
+      else
+        comers.remove(t);
+    }
+    for (int trial = 0; trial < 20; ++trial) {
+      const Box box = random_box(surface);
+      std::vector<int> expected = ask(whole, surface, box);
+      std::erase_if(expected, [&](int t) { return !in[t]; });
+      ASSERT_EQ(ask(comers, surface, box), expected);
+    }
+  }
+  EXPECT_EQ(comers.overflow(), 0);
+}
+
 TEST(Buckets, TakeNoMemoryAfterConstruction) {
   MovingSurface surface(5);
   Buckets buckets(surface.rest, surface.triangles, 0.005);
   std::vector<int> found(surface.size());
   surface.step(0.01);
-  const long before = allocations;
+  const long before = allocations();
   enter_all(buckets, surface);
+  buckets.remove(3);
   buckets.move(3, Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
   const int count = buckets.query(Vector3d(-1, -1, -1), Vector3d(1, 1, 1), 0, found);
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(allocations() - before, 0);
   EXPECT_EQ(count, surface.size());
 }
 

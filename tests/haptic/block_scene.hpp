@@ -32,6 +32,25 @@ struct BlockScene {
   }
 };
 
+/// A scene whose only body is moving tissue, under a tool that comes down along -z as in BlockScene; without friction.
+/// A haptic step takes it with one empty archive.
+inline Scene moving_block_scene(double radius) {
+  Scene scene;
+  Body body;
+  body.name = "block";
+  body.model = "tensor_mass";
+  scene.bodies.push_back(body);
+  Tool tool;
+  tool.name = "probe";
+  tool.pivot = {0, 0, 0.2};
+  tool.radius = radius;
+  tool.max_force = 100;
+  tool.max_force_rate = 1e6;
+  scene.tools.push_back(tool);
+  scene.contact.friction = 0;
+  return scene;
+}
+
 /// Degrees of freedom that put the tip's centre at p.
 inline ToolDofs tip_at(const Tool& tool, const Eigen::Vector3d& p, double roll = 0) {
   return dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), p, roll);

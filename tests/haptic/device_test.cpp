@@ -74,7 +74,7 @@ TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
   ASSERT_TRUE(drivers.needed());
   EXPECT_FALSE(devices[1]->ready());
   elsewhere->writer(topics::device_state)->write({.tool = 1, .seq = 5, .yaw = 0.25, .depth = 0.1});
-  drivers.pump();
+  drivers.take();
   EXPECT_FALSE(devices[0]->ready());
   ASSERT_TRUE(devices[1]->ready());
   EXPECT_DOUBLE_EQ(devices[1]->read(0).dofs.yaw, 0.25);

@@ -237,5 +237,33 @@ TEST_F(HapticStepTest, TheShaftTouchesToo) {
   EXPECT_GT(haptic.torque(0).norm(), 1e-4);
 }
 
+TEST(HapticJaws, HoldQuasiStaticTissueUntilTheyOpen) {
+  BlockScene block;
+  block.scene.tools[0].jaws = Jaws{0.02, 0.03, 0.1};
+  HapticStep haptic(block.scene, block.archives);
+  const auto at = [&](double height, double grip) {
+    ToolDofs d = tip_at(block.scene.tools[0], {0, 0, height});
+    d.grip = grip;
+    return std::array{d};
+  };
+  haptic.start(at(0.02, 0.6));
+  const double touch = 0.0075;
+  for (int i = 0; i < 200; ++i) haptic.step(at(0.02 + (touch - 0.02) * i / 199, 0.6));
+  for (int i = 0; i < 10; ++i) haptic.step(at(touch, 0.05));
+  for (int i = 0; i < 200; ++i) haptic.step(at(touch + 0.005 * i / 199, 0.05));
+  EXPECT_LT(haptic.force(0).z(), -0.05) << "the tissue pulls at the jaws";
+  std::vector<std::uint8_t> state(haptic.state_size());
+  haptic.save(state);
+  HapticStep other(block.scene, block.archives);
+  other.restore(state);
+  for (int i = 0; i < 20; ++i) {
+    haptic.step(at(touch + 0.005, 0.05));
+    other.step(at(touch + 0.005, 0.05));
+    EXPECT_EQ(haptic.force(0), other.force(0));
+  }
+  for (int i = 0; i < 200; ++i) haptic.step(at(0.03, 0.6));
+  EXPECT_TRUE(haptic.force(0).isZero(0));
+}
+
 }  // namespace
 }  // namespace palpate

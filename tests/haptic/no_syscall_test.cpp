@@ -13,8 +13,10 @@
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/spsc_ring.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "haptic_node/local_feed.hpp"
 #include "haptic_node/step_record.hpp"
-#include "tests/haptic/block_scene.hpp"
+#include "tests/haptic/local_models_for_tests.hpp"
 
 // Every allocation of this process goes through these.
 namespace {
@@ -87,6 +89,66 @@ class Ticks {
   long contacts_ = 0;
 };
 
+/// The same with a body of moving tissue beside the block, whose models another thread has put where the loop finds them.
+class TicksOnMovingTissue {
+ public:
+  TicksOnMovingTissue() : scene_(1), haptic_(both(), archives()), models_(make_memory_bus(make_memory_network())),
+                          writer_(models_->writer(topics::local_contact_model)), feed_(*models_, haptic_, 5), ring_(64), state_(haptic_.state_size()) {
+    haptic_.start(input(0));
+  }
+  /// A model as the deform node would send it with the pose of step i: the other thread's part of the work.
+  void send(int i) {
+    const Eigen::Vector3d at = tip(i);
+    LocalContactModel m = testing::empty_model(both_.tools[0], at, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(i) + 1);
+    testing::add_square(m, 0.001, 300);
+    m.contacts.push_back({1, 0, testing::plain(at - Eigen::Vector3d(0, 0, 0.008)), {0, 0, -1}, {0, 0, -0.5}, testing::isotropic(300)});
+    for (LocalNode& n : m.nodes) n.body = 1;
+    writer_->write(m);
+    feed_.take();
+  }
+  void run(int from, int to) {
+    for (int i = from; i < to; ++i) {
+      const auto dofs = input(i);
+      feed_.give(haptic_);
+      if (i % 100 == 0) haptic_.save(state_);
+      haptic_.step(dofs);
+      if (StepRecord* record = ring_.begin_push()) {
+        fill_record(haptic_, std::array{DeviceSample{dofs[0], 0}}, i, now_ns(), *record);
+        used_ += record->of_tool[0].model_seq != 0;
+        ring_.commit_push();
+      }
+      if (ring_.begin_pop()) ring_.commit_pop();
+      felt_ += haptic_.force(0).norm() > 0;
+    }
+  }
+  long felt() const { return felt_; }
+  long used() const { return used_; }
+
+ private:
+  static Eigen::Vector3d tip(int i) { return {0.0001 * i / 10, 0, 0.012 - 0.009 * std::sin(4e-3 * i)}; }
+  std::array<ToolDofs, 1> input(int i) const { return {tip_at(both_.tools[0], tip(i))}; }
+  const Scene& both() {
+    both_ = scene_.scene;
+    both_.bodies.push_back(testing::moving_block_scene(0.008).bodies[0]);
+    return both_;
+  }
+  const std::vector<Archive>& archives() {
+    archives_ = scene_.archives;
+    archives_.emplace_back();
+    return archives_;
+  }
+  BlockScene scene_;
+  Scene both_;
+  std::vector<Archive> archives_;
+  HapticStep haptic_;
+  std::unique_ptr<Bus> models_;
+  std::unique_ptr<Writer<LocalContactModel>> writer_;
+  LocalFeed feed_;
+  SpscRing<StepRecord> ring_;
+  std::vector<std::uint8_t> state_;
+  long felt_ = 0, used_ = 0;
+};
+
 TEST(NoSyscall, TheCountersCount) {
   counting = true;
   void* volatile first = std::malloc(10);
@@ -105,6 +167,20 @@ TEST(NoSyscall, TheHapticStepAllocatesNothing) {
   counting = false;
   EXPECT_EQ(allocations.exchange(0), 0);
   EXPECT_GT(ticks.contacts(), 100) << "the tools must touch for this to mean anything";
+}
+
+TEST(NoSyscall, TheHapticStepOnMovingTissueAllocatesNothing) {
+  TicksOnMovingTissue ticks;
+  ticks.run(1, 10);
+  for (int i = 10; i < 2000; i += 5) {
+    ticks.send(i);
+    counting = true;
+    ticks.run(i, i + 5);
+    counting = false;
+  }
+  EXPECT_EQ(allocations.exchange(0), 0);
+  EXPECT_GT(ticks.felt(), 500);
+  EXPECT_GT(ticks.used(), 1900);
 }
 
 /// From here on any system call but exit kills the process: no I/O, no sleeping lock, no memory from the system.
@@ -140,6 +216,12 @@ TEST(NoSyscall, TheHapticStepMakesNoSystemCall) {
   ASSERT_TRUE(WIFSIGNALED(forbidden)) << "a system call must kill the child, or the test below proves nothing";
   const int status = status_without_system_calls([&] { ticks.run(10, 2000); });
   EXPECT_TRUE(WIFEXITED(status)) << "killed by signal " << (WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+
+  TicksOnMovingTissue moving;
+  moving.run(1, 10);
+  moving.send(10);
+  const int moving_status = status_without_system_calls([&] { moving.run(10, 600); });
+  EXPECT_TRUE(WIFEXITED(moving_status)) << "killed by signal " << (WIFSIGNALED(moving_status) ? WTERMSIG(moving_status) : 0);
 }
 
 }  // namespace

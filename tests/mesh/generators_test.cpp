@@ -51,6 +51,29 @@ TEST(Block, GroupsHoldExactlyTheNodesOfTheFaces) {
   }
 }
 
+TEST(BlockOfFive, HasTheCountsTheVolumeAndPassesTheChecks) {
+  const TetMesh mesh = make_block_of_five({-1, 0, 2}, {1, 3, 6}, {21, 21, 21});
+  EXPECT_EQ(mesh.nodes.size(), 10648u);
+  EXPECT_EQ(mesh.tetrahedra.size(), 46305u);
+  std::set<std::array<int, 2>> edges;
+  for (const auto& t : mesh.tetrahedra)
+    for (int a : t)
+      for (int b : t)
+        if (a < b) edges.insert({a, b});
+  EXPECT_EQ(edges.size(), 59598u);
+  EXPECT_NEAR(volume_of(mesh), 24, 1e-10);
+  EXPECT_NO_THROW(check_tet_mesh(mesh, "block of five"));
+}
+
+TEST(BlockOfFive, HasOneThirdOfEachCellInTheMiddleAndASixthAtFourCorners) {
+  const TetMesh mesh = make_block_of_five({0, 0, 0}, {3, 2, 2}, {3, 2, 2});
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    EXPECT_NEAR(tet_volume(mesh, mesh.tetrahedra[t]), t % 5 == 0 ? 1.0 / 3 : 1.0 / 6, 1e-14);
+  const TetMesh six = make_block({0, 0, 0}, {3, 2, 2}, {3, 2, 2});
+  EXPECT_EQ(mesh.nodes, six.nodes);
+  for (const auto& [name, group] : six.groups) EXPECT_EQ(mesh.groups.at(name).nodes, group.nodes) << name;
+}
+
 // Node-number sets of all tetrahedra after a mirroring of the grid.
 std::set<std::set<int>> mirrored(const TetMesh& mesh,
                                  const std::function<Eigen::Vector3d(Eigen::Vector3d)>& mirror) {

@@ -1,12 +1,18 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "common/mesh/fill.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "tests/mesh/mesh_test_helpers.hpp"
+#include "tools/generate/cylinders.hpp"
+#include "tools/generate/flips.hpp"
+#include "tools/generate/hepatectomy.hpp"
 #include "tools/generate/liver.hpp"
 #include "tools/generate/plate.hpp"
+#include "tools/generate/plate_cut.hpp"
 #include "tools/generate/ribs.hpp"
 #include "tools/generate/wrap.hpp"
 
@@ -82,6 +88,94 @@ TEST(Plate, IsWhatItsGeneratorMakesWithFourCorners) {
 TEST(Cylinder, FileHasTheSizeOfTheBrainSpecimen) {
   const TetMesh cylinder = load_tet_mesh(kMeshes / "cylinder.msh", 1);
   expect_same(make_cylinder(0.015, 0.013, 6, 6), cylinder);
+}
+
+double least_angle(const TetMesh& mesh) {
+  double angle = std::numbers::pi;
+  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, smallest_dihedral_angle(mesh, t));
+  return angle * 180 / std::numbers::pi;
+}
+
+TetMesh part_of(const TetMesh& mesh, const std::string& group) {
+  TetMesh part;
+  part.nodes = mesh.nodes;
+  for (int t : mesh.groups.at(group).tetrahedra) part.tetrahedra.push_back(mesh.tetrahedra[t]);
+  return part;
+}
+
+TEST(FlipFaces, AddsATetrahedronEachAndKeepsVolumeSurfaceAndSoundness) {
+  TetMesh mesh = make_block_of_five({0, 0, 0}, {4, 3, 2}, {4, 3, 2});
+  const double volume = volume_of(mesh);
+  const std::size_t before = mesh.tetrahedra.size();
+  const std::vector<int> surface = extract_surface(mesh).nodes;
+  flip_faces(mesh, 5);
+  EXPECT_EQ(mesh.tetrahedra.size(), before + 5);
+  EXPECT_NO_THROW(check_tet_mesh(mesh, "flipped"));
+  EXPECT_NEAR(volume_of(mesh), volume, 1e-12);
+  EXPECT_EQ(extract_surface(mesh).nodes, surface);
+}
+
+TEST(FlipFaces, RefusesMoreThanThereAre) {
+  TetMesh two;
+  two.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1}, {0.3, 0.3, -1}};
+  two.tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  EXPECT_NE(sentence_of([&] { flip_faces(two, 2); }), "");
+  flip_faces(two, 1);
+  EXPECT_EQ(two.tetrahedra.size(), 3u);
+  EXPECT_NEAR(volume_of(two), 1.0 / 3, 1e-15);
+}
+
+TEST(PlateCut, IsWhatItsGeneratorMakesWithThePapersCounts) {
+  const TetMesh plate = load_tet_mesh(kMeshes / "plate_cut.msh", 1);
+  expect_same(make_plate_cut(), plate);
+  EXPECT_EQ(plate.nodes.size(), 759u);
+  EXPECT_EQ(plate.tetrahedra.size(), 2212u);
+  EXPECT_EQ(plate.groups.at("corners").nodes.size(), 4u * 4 * 3);
+  EXPECT_NEAR(volume_of(plate), 0.05 * 0.11 * 0.01, 1e-16);
+  EXPECT_GT(least_angle(plate), 35);
+}
+
+TEST(CylinderTear, IsWhatItsGeneratorMakesWithThePapersCounts) {
+  const TetMesh cylinder = load_tet_mesh(kMeshes / "cylinder_tear.msh", 1);
+  expect_same(make_cylinder_tear(), cylinder);
+  EXPECT_EQ(cylinder.nodes.size(), 248u);
+  EXPECT_EQ(cylinder.tetrahedra.size(), 889u);
+  EXPECT_EQ(cylinder.groups.at("top").nodes.size(), 31u);
+  EXPECT_EQ(cylinder.groups.at("bottom").nodes.size(), 31u);
+  EXPECT_EQ(cylinder.groups.at("side").nodes.size(), 18u * 8);
+  EXPECT_NEAR(volume_of(cylinder), 0.05 * 9 * std::sin(std::numbers::pi / 9) * 0.015 * 0.015, 1e-11);
+  EXPECT_GT(least_angle(cylinder), 13.9);
+}
+
+TEST(CylinderHybrid, IsWhatItsGeneratorMakesInTwoEqualHalves) {
+  const TetMesh cylinder = load_tet_mesh(kMeshes / "cylinder_hybrid.msh", 1);
+  expect_same(make_cylinder_hybrid(), cylinder);
+  const MeshGroup &lower = cylinder.groups.at("lower"), &upper = cylinder.groups.at("upper");
+  EXPECT_EQ(lower.tetrahedra.size(), upper.tetrahedra.size());
+  EXPECT_EQ(lower.tetrahedra.size() + upper.tetrahedra.size(), cylinder.tetrahedra.size());
+  std::vector<int> shared;
+  std::set_intersection(lower.nodes.begin(), lower.nodes.end(), upper.nodes.begin(), upper.nodes.end(),
+                        std::back_inserter(shared));
+  EXPECT_EQ(shared.size(), 61u);
+  for (int n : shared) EXPECT_EQ(cylinder.nodes[n].z(), 0.025);
+}
+
+TEST(Hepatectomy, IsWhatItsGeneratorMakesOfThePapersSize) {
+  const TetMesh liver = load_tet_mesh(kMeshes / "hepatectomy.msh", 1);
+  expect_same(make_hepatectomy(), liver);
+  EXPECT_NEAR(liver.nodes.size(), 1537, 0.02 * 1537);
+  EXPECT_NEAR(liver.tetrahedra.size(), 7039, 0.02 * 7039);
+  EXPECT_NEAR(liver.groups.at("segment").tetrahedra.size() / double(liver.tetrahedra.size()), 0.18, 0.005);
+  EXPECT_GT(least_angle(liver), 20);
+}
+
+TEST(Hepatectomy, PartsAreSoundAndMakeUpTheWhole) {
+  const TetMesh liver = load_tet_mesh(kMeshes / "hepatectomy.msh", 1);
+  const TetMesh segment = part_of(liver, "segment"), remnant = part_of(liver, "remnant");
+  EXPECT_EQ(segment.tetrahedra.size() + remnant.tetrahedra.size(), liver.tetrahedra.size());
+  EXPECT_NO_THROW(check_tet_mesh(segment, "segment"));
+  EXPECT_NO_THROW(check_tet_mesh(remnant, "remnant"));
+  for (int n : liver.groups.at("segment").nodes) EXPECT_GT(liver.nodes[n].x(), 0.03);
 }
 
 TEST(Ribs, FileIsSmallAndStaysClearOfTheLiver) {

@@ -20,6 +20,18 @@ TEST(Csv, ReadsNumbersBelowItsHeaderAndKeepsLineNumbers) {
   EXPECT_EQ(table.rows[1].values, (std::vector<double>{-0.03, 4}));
 }
 
+TEST(Csv, AnOptionalLastColumnIsThereForAllRowsOrForNone) {
+  const SceneFolder folder;
+  EXPECT_EQ(read_csv(folder.write("a.csv", "a,b\n1,2\n"), {"a", "b"}, "c").rows[0].values,
+            (std::vector<double>{1, 2}));
+  EXPECT_EQ(read_csv(folder.write("b.csv", "a,b,c\n1,2,3\n"), {"a", "b"}, "c").rows[0].values,
+            (std::vector<double>{1, 2, 3}));
+  EXPECT_THROW(read_csv(folder.write("c.csv", "a,b,c\n1,2,3\n1,2\n"), {"a", "b"}, "c"), std::runtime_error);
+  EXPECT_THROW(read_csv(folder.write("d.csv", "a,b\n1,2,3\n"), {"a", "b"}, "c"), std::runtime_error);
+  EXPECT_THROW(read_csv(folder.write("e.csv", "a,b,d\n1,2,3\n"), {"a", "b"}, "c"), std::runtime_error);
+  EXPECT_THROW(read_csv(folder.write("f.csv", "a,b,c\n1,2,3\n"), {"a", "b"}), std::runtime_error);
+}
+
 TEST(Csv, RefusesWithTheLine) {
   const SceneFolder folder;
   const std::pair<const char*, const char*> cases[] = {

@@ -12,7 +12,7 @@ class SceneFolder {
     char name[] = "/tmp/palpate_scene_XXXXXX";
     path_ = mkdtemp(name);
     for (const char* file :
-         {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "move.csv", "session.lcmlog", "ribs.stl"})
+         {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "coarse.msh", "move.csv", "session.lcmlog", "ribs.stl"})
       write(file, "some bytes\n");
   }
   ~SceneFolder() { std::filesystem::remove_all(path_); }
@@ -91,6 +91,55 @@ poisson = 0
 fixed = [{ group = "edge" }]
 touchable = { group = "top" }
 
+[[body]]
+name = "segment"
+mesh = "liver.msh"
+model = "hybrid"
+young = 4000
+poisson = 0.4
+fixed = [{ group = "edge" }]
+
+[body.dynamic]
+integrator = "semi_implicit"
+precision = "double"
+step = 0.0005
+damping = 12
+gravity = [0, 0, -9.81]
+corotational = true
+
+[body.tearing]
+criterion = "mean_elongation"
+threshold = 0.7
+
+[body.hybrid]
+
+[[body.hybrid.region]]
+elements = [4, 2]
+
+[[body.hybrid.region]]
+box = [[0, 0, 0], [0.01, 0.02, 0.03]]
+
+[[body.hybrid.region]]
+group = 5
+
+[[body]]
+name = "duct"
+mesh = "liver.msh"
+model = "hybrid"
+young = 4000
+poisson = 0.4
+fixed = [{ group = "edge" }]
+hybrid = { mesh = "coarse.msh", scale = 0.01 }
+
+[[body]]
+name = "web"
+mesh = "liver.msh"
+model = "spring_mass"
+young = 4000
+poisson = 0.4
+fixed = [{ group = "edge" }]
+dynamic = { gravity = [0, 0, -1.5] }
+
 [[tool]]
 name = "probe"
 pivot = [0.1, 0.2, 0.3]
@@ -103,6 +152,14 @@ device = "scripted"
 trajectory = "move.csv"
 max_force = 8
 max_force_rate = 4000
+
+[tool.cautery]
+radius = 0.002
+
+[tool.jaws]
+length = 0.02
+width = 0.005
+closed_below = 0.2
 
 [[tool]]
 name = "hook"

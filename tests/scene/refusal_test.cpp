@@ -59,7 +59,63 @@ const Refusal kRefusals[] = {
      "poisson must be greater than -1 and less than 0.5, and is -1"},
     {"density = 1060.0", "density = 0", "0\n\n[[body.fixed", "density must be greater than 0, and is 0"},
     {"scale = 0.001", "scale = -1", "-1\nmodel", "scale must be greater than 0, and is -1"},
-    {"\"quasi_static\"", "\"jelly\"", "\"jelly\"", "model 'jelly' is unknown; known: quasi_static"},
+    {"\"quasi_static\"", "\"jelly\"", "\"jelly\"",
+     "model 'jelly' is unknown; known: quasi_static, tensor_mass, spring_mass, hybrid"},
+    {"\"quasi_static\"", "\"tensor_mass\"", "[body.nonlinear]",
+     "[body.nonlinear] corrects the model 'quasi_static' alone, and the model is 'tensor_mass'"},
+    {"model = \"hybrid\"\n", "", "[body.dynamic]",
+     "[body.dynamic] means nothing for the model 'quasi_static'"},
+    {"[body.touchable]\nnodes = [10, 11]", "[body.tearing]\nthreshold = 1", "[body.tearing]",
+     "[body.tearing] means nothing for the model 'quasi_static'"},
+    {"touchable = { group = \"top\" }", "hybrid = { mesh = \"coarse.msh\" }", "{ mesh = \"coarse.msh\" }",
+     "[body.hybrid] means nothing for the model 'quasi_static'"},
+    {"dynamic = { gravity", "hybrid = { mesh = \"coarse.msh\" }\ndynamic = { gravity",
+     "{ mesh = \"coarse.msh\" }", "[body.hybrid] means nothing for the model 'spring_mass'"},
+    {"hybrid = { mesh = \"coarse.msh\", scale = 0.01 }", "",
+     "\"hybrid\"\nyoung = 4000\npoisson = 0.4\nfixed = [{ group = \"edge\" }]\n\n\n",
+     "the model 'hybrid' needs a [body.hybrid] that says which part is tensor-mass"},
+    {"mesh = \"coarse.msh\", scale = 0.01", "", "{  }",
+     "[body.hybrid] needs a [[body.hybrid.region]] or a 'mesh', and has neither"},
+    {"[body.hybrid]\n", "[body.hybrid]\nmesh = \"coarse.msh\"\n", "[body.hybrid]",
+     "[body.hybrid] needs a [[body.hybrid.region]] or a 'mesh', and has both"},
+    {"[body.hybrid]\n", "[body.hybrid]\nscale = 0.5\n", "0.5\n\n[[body.hybrid.region]]",
+     "scale means nothing without 'mesh'"},
+    {"scale = 0.01 }", "scale = 0 }", "0 }\n\n[[body]]\nname = \"web\"",
+     "scale must be greater than 0, and is 0"},
+    {"[body.hybrid]\n", "[body.hybrid]\nregoin = 1\n", "regoin",
+     "unknown key 'regoin' in [body.hybrid]; did you mean 'region'?"},
+    {"elements = [4, 2]", "", "[[body.hybrid.region]]",
+     "exactly one of 'elements', 'box' and 'group' is needed, and there are 0"},
+    {"elements = [4, 2]", "nodes = [4, 2]", "nodes = [4", "unknown key 'nodes' in [[body.hybrid.region]]"},
+    {"\"semi_implicit\"", "\"forward_euler\"", "\"forward_euler",
+     "integrator 'forward_euler' is unknown; known: rk4, semi_implicit"},
+    {"precision = \"double\"", "precision = \"half\"", "\"half",
+     "precision 'half' is unknown; known: single, double"},
+    {"step = 0.0005", "step = -0.0005", "-0.0005", "step must be at least 0, and is -0.0005"},
+    {"damping = 12", "damping = -1", "-1\ngravity", "damping must be at least 0, and is -1"},
+    {"gravity = [0, 0, -9.81]", "gravity = -9.81", "-9.81", "gravity must be a list of three numbers"},
+    {"gravity = [0, 0, -9.81]", "gravity = [0, 0, nan]", "nan]", "gravity must be finite"},
+    {"corotational = true", "corotational = 1", "1\n\n[body.tearing]",
+     "corotational must be true or false, not an integer"},
+    {"gravity = [0, 0, -1.5]", "corotational = true", "true }",
+     "corotational is for elements, and springs turn with the tissue by themselves"},
+    {"damping = 12", "dampnig = 12", "dampnig",
+     "unknown key 'dampnig' in [body.dynamic]; did you mean 'damping'?"},
+    {"\"mean_elongation\"", "\"strain\"", "\"strain",
+     "criterion 'strain' is unknown; known: volume, mean_elongation, largest_elongation"},
+    {"threshold = 0.7", "threshold = 0", "0\n\n[body.hybrid]", "threshold must be greater than 0, and is 0"},
+    {"threshold = 0.7", "threshold = -0.7", "-0.7", "threshold must be greater than 0, and is -0.7"},
+    {"threshold = 0.7", "", "[body.tearing]", "[body.tearing] needs the key 'threshold'"},
+    {"fixed = [{ group = \"edge\" }]\ndynamic", "dynamic", "[[body]]\nname = \"web\"",
+     "body 'web' is not fixed anywhere and would float: give it a [[body.fixed]]"},
+    {"radius = 0.002\n\n[tool.jaws]", "radius = -0.002\n\n[tool.jaws]", "-0.002",
+     "radius must be greater than 0, and is -0.002"},
+    {"radius = 0.002\n\n[tool.jaws]", "power = 30\n\n[tool.jaws]", "power",
+     "unknown key 'power' in [tool.cautery]"},
+    {"length = 0.02\n", "length = 0\n", "0\nwidth", "length must be greater than 0, and is 0"},
+    {"width = 0.005", "width = -1", "-1\nclosed", "width must be greater than 0, and is -1"},
+    {"closed_below = 0.2", "closed_below = 0", "0\n\n[[tool]]",
+     "closed_below must be greater than 0, and is 0"},
     {"name = \"liver\"", "name = \"\"", "\"\"", "name must not be empty"},
     {"name = \"liver\"", "name = \"a/b\"", "\"a/b", "name 'a/b' must be 1 to 31 letters, digits, '_' or '-'"},
     {"name = \"plate\"", "name = \"liver\"", "\"liver\"\nmesh = \"liver.msh\"\nyoung",
@@ -97,7 +153,8 @@ const Refusal kRefusals[] = {
     {"pivot = [0.1, 0.2, 0.3]", "", "[[tool]]", "[[tool]] needs the key 'pivot'"},
     {"pivot = [0.1, 0.2, 0.3]", "pivot = [0.1, 0.2]", "[0.1, 0.2]\naxis",
      "pivot must be a list of three numbers"},
-    {"pivot = [0.1, 0.2, 0.3]", "pivot = [0.1, true, 0]", "true", "pivot must be a number, not a boolean"},
+    {"pivot = [0.1, 0.2, 0.3]", "pivot = [0.1, true, 0]", "true, 0]",
+     "pivot must be a number, not a boolean"},
     {"axis = [1, 2, -3]", "axis = [0, 0, 0]", "[0, 0, 0]\nup", "axis must not be zero"},
     {"axis = [1, 2, -3]", "axis = [0, -2, 0]", "[0, 1, 0]\nradius",
      "up must not be parallel to the tool's axis"},
@@ -142,8 +199,8 @@ TEST(SceneRefusal, NamesTheExactPlaceAndTheReason) {
 TEST(SceneRefusal, MissingFilesAreNamed) {
   const SceneFolder folder;
   const auto file = folder / "scene.toml";
-  for (const char* name :
-       {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "move.csv", "session.lcmlog", "ribs.stl"}) {
+  for (const char* name : {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "coarse.msh", "move.csv",
+                           "session.lcmlog", "ribs.stl"}) {
     const std::string absent = std::string("no_") + name;
     const std::string text = replaced(kFullScene, std::string("\"") + name, std::string("\"") + absent);
     const std::string said = refusal(text, file);
@@ -204,12 +261,20 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         const std::string header = std::string(table.name) + "\n";
         auto place = text.find(header);
         ASSERT_NE(place, text.npos) << header;
-        if (key == "camera" || key == "fixed" || key == "material" || key == "nonlinear" ||
-            key == "touchable") {
-          text = key == "camera"
-                     ? body + "[render]\n" + line
-                     : "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n" +
-                           std::string(key == "fixed" ? "" : "fixed = [{ group = \"a\" }]\n") + line;
+        const std::string plain = "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n";
+        const std::string held = plain + "fixed = [{ group = \"a\" }]\n";
+        if (key == "camera") {
+          text = body + "[render]\n" + line;
+        } else if (key == "cautery" || key == "jaws") {
+          text = body + tool + line;
+        } else if (key == "fixed") {
+          text = plain + line;
+        } else if (key == "material" || key == "nonlinear" || key == "touchable") {
+          text = held + line;
+        } else if (key == "dynamic" || key == "tearing" || key == "hybrid") {
+          text = held + "model = \"hybrid\"\n" + line;
+        } else if (key == "region") {
+          text = held + "model = \"hybrid\"\n[body.hybrid]\n" + line;
         } else {
           place += header.size();
           auto end = text.find("\n[", place);
@@ -228,7 +293,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
       ++tried;
     }
   }
-  EXPECT_GT(tried, 70);
+  EXPECT_GT(tried, 90);
 }
 
 }  // namespace

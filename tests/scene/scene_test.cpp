@@ -17,7 +17,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   const Scene scene = load_scene(folder.write("scene.toml", kFullScene));
   EXPECT_EQ(scene.file, folder / "scene.toml");
   EXPECT_EQ(scene.title, "All \"keys\" at once");
-  ASSERT_EQ(scene.bodies.size(), 3u);
+  ASSERT_EQ(scene.bodies.size(), 6u);
   const Body& body = scene.bodies[0];
   EXPECT_EQ(body.name, "liver");
   EXPECT_EQ(body.mesh, folder / "liver.msh");
@@ -62,12 +62,50 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_FALSE(scene.render->overlay);
 }
 
+TEST_F(SceneFile, KeysOfMovingTissueArriveWhereTheyBelong) {
+  const Scene scene = parse(kFullScene);
+  const Body &segment = scene.bodies[3], &duct = scene.bodies[4], &web = scene.bodies[5];
+  EXPECT_FALSE(is_dynamic(scene.bodies[0]));
+  EXPECT_TRUE(is_dynamic(segment) && is_dynamic(web));
+  EXPECT_EQ(segment.model, "hybrid");
+  EXPECT_EQ(segment.dynamic.integrator, "semi_implicit");
+  EXPECT_EQ(segment.dynamic.precision, "double");
+  EXPECT_EQ(segment.dynamic.step, 0.0005);
+  EXPECT_EQ(segment.dynamic.damping, 12);
+  EXPECT_EQ(segment.dynamic.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_TRUE(segment.dynamic.corotational);
+  EXPECT_EQ(segment.tearing->criterion, "mean_elongation");
+  EXPECT_EQ(segment.tearing->threshold, 0.7);
+  ASSERT_EQ(segment.hybrid->regions.size(), 3u);
+  EXPECT_EQ(segment.hybrid->regions[0].indices, (std::vector<int>{4, 2}));
+  EXPECT_EQ(segment.hybrid->regions[1].box->max, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(segment.hybrid->regions[2].group, "5");
+  EXPECT_TRUE(segment.hybrid->mesh.empty());
+  EXPECT_EQ(duct.hybrid->mesh, folder / "coarse.msh");
+  EXPECT_EQ(duct.hybrid->scale, 0.01);
+  EXPECT_TRUE(duct.hybrid->regions.empty());
+  EXPECT_EQ(web.dynamic.gravity, Eigen::Vector3d(0, 0, -1.5));
+  EXPECT_EQ(web.dynamic.integrator, Dynamic{}.integrator);
+  EXPECT_EQ(scene.tools[0].cautery->radius, 0.002);
+  EXPECT_EQ(scene.tools[0].jaws->length, 0.02);
+  EXPECT_EQ(scene.tools[0].jaws->width, 0.005);
+  EXPECT_EQ(scene.tools[0].jaws->closed_below, 0.2);
+  EXPECT_FALSE(scene.tools[1].cautery || scene.tools[1].jaws);
+}
+
+TEST_F(SceneFile, ACauteryCutsWithTheTipUnlessItsRadiusIsGiven) {
+  const std::string tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\nradius = 0.003\n";
+  EXPECT_EQ(parse(kLeastScene + tool + "cautery = {}\n").tools[0].cautery->radius, 0.003);
+  EXPECT_EQ(parse(kLeastScene + tool + "cautery = { radius = 0.001 }\n").tools[0].cautery->radius, 0.001);
+}
+
 TEST_F(SceneFile, AbsentSectionsStayEmpty) {
   const Scene scene = parse(kLeastScene);
   EXPECT_TRUE(scene.title.empty());
   EXPECT_TRUE(scene.tools.empty());
   EXPECT_FALSE(scene.record || scene.render);
   EXPECT_FALSE(scene.bodies[0].nonlinear || scene.bodies[0].touchable);
+  EXPECT_FALSE(scene.bodies[0].tearing || scene.bodies[0].hybrid || is_dynamic(scene.bodies[0]));
   EXPECT_TRUE(scene.bodies[0].materials.empty());
   EXPECT_EQ(scene.contact.friction, Contact{}.friction);
 }
@@ -122,6 +160,19 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { s.tools[0].radius = 0.007; }));
   EXPECT_TRUE(changed([](Scene& s) { s.contact.friction = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.step = 0; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.gravity.x() = 1; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.precision = "single"; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.integrator = "rk4"; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.corotational = false; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.damping = 13; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].tearing->threshold = 0.8; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].hybrid->regions.pop_back(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[4].hybrid->scale = 1; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[5].model = "tensor_mass"; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].cautery->radius = 0.003; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].jaws.reset(); }));
+  EXPECT_FALSE(changed([](Scene& s) { s.bodies[4].hybrid->mesh = "/elsewhere/coarse.msh"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));
   EXPECT_FALSE(changed([](Scene& s) { s.record.reset(); }));

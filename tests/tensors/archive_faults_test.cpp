@@ -89,7 +89,37 @@ TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
   later.attribute("format_version", std::int64_t{3});
   later.close();
   EXPECT_EQ(refusal(folder / "a.h5"),
-            (folder / "a.h5").string() + ": format version 3, this program reads 1");
+            (folder / "a.h5").string() + ": format version 3, this program reads 2");
+}
+
+TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
+  const TemporaryFolder folder;
+  const std::vector<std::function<void(Archive&)>> faults{
+      [](Archive& a) { a.tetrahedra[2][1] = a.surface.size(); },
+      [](Archive& a) { a.tetrahedra.clear(); },
+      [](Archive& a) { a.tetrahedra.pop_back(); },  // materials are left over
+      [](Archive& a) { a.density.pop_back(); },
+      [](Archive& a) { a.model = "tensor_mass"; },
+      [](Archive& a) { a.hybrid.reset(); },
+      [](Archive& a) { a.hybrid->connection[0] = -1; },
+      [](Archive& a) { a.hybrid->mass.pop_back(); },
+      [](Archive& a) { a.hybrid->dofs[0].node = 3; },  // no connection node
+      [](Archive& a) { a.hybrid->stiffness.pop_back(); },
+      [](Archive& a) { a.hybrid->reaction.pop_back(); },
+      [](Archive& a) { a.hybrid->follow.resize(a.hybrid->follow.size() - a.hybrid->dofs.size()); },
+      [](Archive& a) { a.hybrid->sag.pop_back(); },
+      [](Archive& a) { a.hybrid->interface[0][3] = 16; },
+      [](Archive& a) { a.hybrid->gap[1].triangle[2] = 99; },
+      [](Archive& a) { a.hybrid->quasi_static_triangles = 100; },
+  };
+  write_archive(testing::make_hybrid_archive(20, 8), folder / "a.h5");
+  EXPECT_EQ(refusal(folder / "a.h5"), "");
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    auto archive = testing::make_hybrid_archive(20, 8);
+    faults[i](archive);
+    write_archive(archive, folder / "a.h5");
+    EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": damaged: its datasets do not fit together") << i;
+  }
 }
 
 TEST(ArchiveFaults, StaleArchiveIsRefused) {

@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 using testing::make_archive;
+using testing::make_hybrid_archive;
 using testing::TemporaryFolder;
 
 TEST(Archive, ReadsBackWhatWasWritten) {
@@ -30,6 +31,33 @@ TEST(Archive, ReadsBackWithoutOtherNodesAndRegions) {
   archive.poisson.resize(1);
   write_archive(archive, folder / "a.h5");
   EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
+}
+
+TEST(Archive, ReadsBackWhatMovesWithInertia) {
+  const TemporaryFolder folder;
+  auto archive = make_hybrid_archive(20, 8);
+  write_archive(archive, folder / "a.h5");
+  EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
+  archive.model = "tensor_mass";
+  archive.hybrid.reset();
+  archive.touchable_dofs.clear();
+  archive.other_dofs.clear();
+  archive.touchable_compliance.clear();
+  archive.other_compliance.clear();
+  write_archive(archive, folder / "b.h5");
+  EXPECT_TRUE(testing::same(read_archive(folder / "b.h5", ArchivePart::surface, {}), archive));
+}
+
+TEST(Archive, HeaderHasTheTopologyOfAHybridBodyWithoutItsTensors) {
+  const TemporaryFolder folder;
+  const auto archive = make_hybrid_archive(20, 8);
+  write_archive(archive, folder / "a.h5");
+  const auto header = read_archive(folder / "a.h5", ArchivePart::header, {});
+  EXPECT_EQ(header.tetrahedra, archive.tetrahedra);
+  EXPECT_EQ(header.hybrid->connection, archive.hybrid->connection);
+  EXPECT_EQ(header.hybrid->interface, archive.hybrid->interface);
+  EXPECT_TRUE(header.hybrid->stiffness.empty());
+  EXPECT_TRUE(header.hybrid->follow.empty());
 }
 
 TEST(Archive, ReplacesTheFileThatWasThere) {
@@ -102,7 +130,7 @@ TEST(Archive, OpensInH5pyWithUnitsAndDescriptions) {
       "assert f['surface/position'].shape == (28, 3) and f['surface/node_number'][3] == 6\n"
       "assert f.attrs['content_hash'] in ('0123456789abcdef0123456789abcdef', "
       "b'0123456789abcdef0123456789abcdef')\n"
-      "assert f.attrs['format_version'] == 1 and f['material/young'][1] == 2e4\n\" ";
+      "assert f.attrs['format_version'] == 2 and f['material/young'][1] == 2e4\n\" ";
   EXPECT_EQ(std::system((script + (folder / "a.h5").string()).c_str()), 0);
 }
 

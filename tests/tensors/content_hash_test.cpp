@@ -89,6 +89,75 @@ TEST_F(ContentHash, ChangesWithEveryKeyThatChangesAStoredNumber) {
   for (const auto& hash : hashes) EXPECT_EQ(hash.size(), 32u);
 }
 
+TEST_F(ContentHash, CoversWhatBodiesThatMoveWithInertiaStore) {
+  const auto tensor_mass = [](Body& b) { b.model = "tensor_mass"; };
+  const auto hybrid = [](Body& b) {
+    b.model = "hybrid";
+    b.hybrid.emplace();
+    b.hybrid->regions.push_back({{1, 2}, {}, ""});
+  };
+  const auto with_mesh = [&](Body& b) {
+    b.model = "hybrid";
+    b.hybrid.emplace();
+    b.hybrid->mesh = folder / "other.msh";
+  };
+  const std::vector<std::function<void(Body&)>> changes{
+      [](Body&) {},
+      tensor_mass,
+      [](Body& b) { b.model = "spring_mass"; },
+      [&](Body& b) {
+        tensor_mass(b);
+        b.material.density = 1100;
+      },
+      [&](Body& b) {
+        tensor_mass(b);
+        b.materials.push_back({{{}, {}, "tumour"}, {5e4, 0.3, 1000}});
+      },
+      [&](Body& b) {
+        tensor_mass(b);
+        b.materials.push_back({{{}, {}, "tumour"}, {5e4, 0.3, 1200}});
+      },
+      hybrid,
+      [&](Body& b) {
+        hybrid(b);
+        b.hybrid->regions[0].indices = {1, 3};
+      },
+      [&](Body& b) {
+        hybrid(b);
+        b.hybrid->regions.push_back({{3}, {}, ""});
+      },
+      [&](Body& b) {
+        hybrid(b);
+        b.dynamic.gravity = {0, 0, -9.81};
+      },
+      [&](Body& b) {
+        hybrid(b);
+        b.material.density = 1100;
+      },
+      with_mesh,
+      [&](Body& b) {
+        with_mesh(b);
+        b.hybrid->scale = 0.5;
+      },
+      [&](Body& b) {
+        with_mesh(b);
+        b.hybrid->mesh = folder / "liver.msh";
+      },
+  };
+  std::set<std::string> hashes;
+  for (const auto& change : changes) hashes.insert(with(change));
+  EXPECT_EQ(hashes.size(), changes.size());
+
+  const auto original = with(tensor_mass);
+  EXPECT_EQ(with([&](Body& b) {
+              tensor_mass(b);
+              b.dynamic.gravity = {0, 0, -9.81};
+              b.dynamic.damping = 1;
+              b.tearing.emplace();
+            }),
+            original);
+}
+
 TEST_F(ContentHash, IgnoresWhatChangesNoStoredNumber) {
   const auto original = content_hash(body);
   EXPECT_EQ(with([](Body& b) { b.name = "another"; }), original);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/tensors/find_archive.hpp"
 #include "common/tensors/precompute.hpp"
+#include "common/tensors/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
@@ -94,6 +96,63 @@ TEST_F(EnsureArchive, RunTimeAsksForAPrecomputationInWords) {
   } catch (const std::exception& error) {
     EXPECT_NE(std::string(error.what()).find("palpate precompute"), std::string::npos);
   }
+}
+
+TEST_F(EnsureArchive, StoresTheTetrahedraOfBodiesThatMoveWithInertia) {
+  MaterialRegion dense;
+  dense.where.indices = {0, 1, 2};
+  dense.material = {5e4, 0.3, 1300};
+  body().materials = {dense};
+  for (const std::string model : {"tensor_mass", "spring_mass"}) {
+    body().model = model;
+    const auto archive = load_or_precompute(scene, ArchivePart::surface)[0];
+    EXPECT_EQ(archive.model, model);
+    EXPECT_EQ(archive.density, (std::vector<double>{1000, 1300}));
+    EXPECT_EQ(archive.material_of_element.size(), mesh.tetrahedra.size());
+    EXPECT_TRUE(archive.touchable_compliance.empty());
+    EXPECT_TRUE(archive.touchable_dofs.empty());
+    const auto& map = archive.surface;
+    ASSERT_EQ(map.size(), static_cast<int>(mesh.nodes.size()));
+    EXPECT_LT(map.touchable, map.size());
+    ASSERT_EQ(archive.tetrahedra.size(), mesh.tetrahedra.size());
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
+      for (int v = 0; v < 4; ++v) EXPECT_EQ(map.node_number[archive.tetrahedra[e][v]], mesh.tetrahedra[e][v]);
+    // Touchable nodes, other surface nodes, inner ones; each group ascends.
+    const auto surface = extract_surface(mesh);
+    const auto on_surface = [&](int node) { return std::ranges::binary_search(surface.nodes, node); };
+    const auto middle = map.node_number.begin() + map.touchable, inner = map.node_number.begin() + static_cast<long>(surface.nodes.size());
+    EXPECT_TRUE(std::is_sorted(map.node_number.begin(), middle));
+    EXPECT_TRUE(std::is_sorted(middle, inner) && std::all_of(map.node_number.begin(), inner, on_surface));
+    EXPECT_TRUE(std::is_sorted(inner, map.node_number.end()) && std::none_of(inner, map.node_number.end(), on_surface));
+  }
+}
+
+TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
+  body().model = "hybrid";
+  body().hybrid.emplace();
+  body().hybrid->regions.push_back({{20, 21, 22, 23, 24, 25}, {}, ""});
+  EXPECT_FALSE(ensure_archive(scene, body()).up_to_date);
+  EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
+  const auto archive = find_archive(scene, body(), ArchivePart::surface);
+  EXPECT_EQ(archive.tetrahedra.size(), 6u);
+  EXPECT_GT(archive.hybrid->connection.size(), 3u);
+  EXPECT_GT(archive.touchable_compliance.size(), 0u);
+
+  write_mesh(make_block({0, 0, 0}, {0.04, 0.04, 0.02}, {2, 2, 1}), folder / "organ.msh");
+  write_mesh(make_block({0, 0, 0.02}, {0.04, 0.04, 0.04}, {1, 1, 1}), folder / "coarse.msh");
+  body().fixed[0].where.indices = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  body().hybrid->regions.clear();
+  body().hybrid->mesh = folder / "coarse.msh";
+  const auto joined = load_or_precompute(scene, ArchivePart::surface)[0];
+  EXPECT_EQ(joined.tetrahedra.size(), 6u);
+  EXPECT_EQ(joined.hybrid->connection.size(), 4u);
+  EXPECT_GT(joined.hybrid->gap.size(), 0u);
+}
+
+TEST_F(EnsureArchive, StaticSolveByTensorsIsRefusedForBodiesThatMoveWithInertia) {
+  body().model = "tensor_mass";
+  const auto archive = load_or_precompute(scene, ArchivePart::surface)[0];
+  EXPECT_THROW(solve_tensors(archive, {hold(archive.surface.node_number[0], 0, 1e-3)}), std::runtime_error);
 }
 
 TEST_F(EnsureArchive, StoresMaterialRegionsAndSpecimen) {

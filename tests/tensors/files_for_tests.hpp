@@ -81,13 +81,42 @@ inline Archive make_archive(int touchable, int others, unsigned seed = 1) {
   return archive;
 }
 
+/// The same with a part that moves with inertia; `touchable` and `others` at least 4.
+inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1) {
+  auto archive = make_archive(touchable, others, seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  archive.model = "hybrid";
+  archive.density = {1000, 1200};
+  archive.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}};
+  auto& hybrid = archive.hybrid.emplace();
+  hybrid.connection = {1, 2, 4};
+  hybrid.mass = {0.001, 0.002, 0.003};
+  hybrid.bound = 1.5e6;
+  hybrid.held_by_connection = true;
+  hybrid.dofs = {{1, 0}, {1, 1}, {2, 2}, {4, 1}};
+  hybrid.quasi_static_triangles = 3;
+  hybrid.interface = {{1, 2, 4, 7}};
+  hybrid.gap = {{5, {1, 2, 4}, {0.5, 0.25, 0.25}}, {6, {4, 2, 1}, {1, 0, 0}}};
+  hybrid.largest_gap = 2e-4;
+  const std::size_t c = hybrid.dofs.size(), i = archive.touchable_dofs.size() + archive.other_dofs.size();
+  hybrid.stiffness.resize(c * (c + 1) / 2);
+  hybrid.reaction.resize(c);
+  hybrid.follow.resize(i * c);
+  hybrid.sag.resize(i);
+  for (auto* values : {&hybrid.stiffness, &hybrid.reaction, &hybrid.follow, &hybrid.sag})
+    std::generate(values->begin(), values->end(), [&] { return uniform(random); });
+  return archive;
+}
+
 inline bool same_dofs(const std::vector<Dof>& a, const std::vector<Dof>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Dof& x, const Dof& y) { return x.node == y.node && x.axis == y.axis; });
 }
 
 inline bool same(const Archive& a, const Archive& b) {
-  return a.body == b.body && a.content_hash == b.content_hash && a.software == b.software &&
+  return a.body == b.body && a.model == b.model && a.density == b.density && a.tetrahedra == b.tetrahedra &&
+         a.hybrid == b.hybrid && a.content_hash == b.content_hash && a.software == b.software &&
          a.mesh_nodes == b.mesh_nodes && a.young == b.young && a.poisson == b.poisson &&
          a.material_of_element == b.material_of_element && a.surface.position == b.surface.position &&
          a.surface.node_number == b.surface.node_number && a.surface.fixed == b.surface.fixed &&

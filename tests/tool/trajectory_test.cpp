@@ -79,6 +79,16 @@ TEST_F(TrajectoryFile, SpeedIsContinuousAndNothingOvershoots) {
   }
 }
 
+TEST_F(TrajectoryFile, ThePedalIsASwitchThatStaysWhereTheLastRowPutIt) {
+  const Trajectory move = load_trajectory(
+      file("time,yaw,pitch,depth,roll,grip,pedal\n0,0,0,0.1,0,0,0\n1,0,0,0.2,0,0,1\n2,0,0,0.2,0,0,0\n"));
+  for (double t : {-1.0, 0.0, 0.5, 0.999}) EXPECT_EQ(move.at(t).pedal, 0) << t;
+  for (double t : {1.0, 1.5, 1.999}) EXPECT_EQ(move.at(t).pedal, 1) << t;
+  for (double t : {2.0, 9.0}) EXPECT_EQ(move.at(t).pedal, 0) << t;
+  EXPECT_NEAR(move.at(0.5).depth, 0.15, 1e-12);
+  EXPECT_EQ(load_trajectory(file(kHeader + kRows)).at(0.7).pedal, 0);
+}
+
 TEST_F(TrajectoryFile, OneRowIsAToolThatRests) {
   const Trajectory rest = load_trajectory(file(kHeader + "0,0.1,0.2,0.3,0.4,0.5\n"));
   EXPECT_EQ(rest.duration(), 0);
@@ -96,8 +106,15 @@ TEST_F(TrajectoryFile, EvaluationAllocatesNothing) {
 
 TEST_F(TrajectoryFile, RefusesWithTheLine) {
   EXPECT_EQ(refusal("t,yaw,pitch,depth,roll,grip\n0,0,0,0,0,0\n"),
-            ":1: the header must be 'time,yaw,pitch,depth,roll,grip'");
-  EXPECT_EQ(refusal(""), ":1: the header 'time,yaw,pitch,depth,roll,grip' is missing");
+            ":1: the header must be 'time,yaw,pitch,depth,roll,grip' or "
+            "'time,yaw,pitch,depth,roll,grip,pedal'");
+  EXPECT_EQ(refusal(""),
+            ":1: the header 'time,yaw,pitch,depth,roll,grip' or "
+            "'time,yaw,pitch,depth,roll,grip,pedal' is missing");
+  EXPECT_EQ(refusal("time,yaw,pitch,depth,roll,grip,pedal\n0,0,0,0.1,0,0,0.5\n"),
+            ":2: pedal must be 0 or 1, and is 0.5");
+  EXPECT_EQ(refusal("time,yaw,pitch,depth,roll,grip,pedal\n0,0,0,0.1,0,0\n"),
+            ":2: 7 columns are needed, and there are 6");
   EXPECT_EQ(refusal(kHeader), ":1: there is no row of numbers");
   EXPECT_EQ(refusal(kHeader + "0,0,0,0.1,0,0\n1,0,nan,0.1,0,0\n"), ":3: 'nan' is not a finite number");
   EXPECT_EQ(refusal(kHeader + "0,0,0,0.1,0\n"), ":2: 6 columns are needed, and there are 5");

@@ -9,8 +9,11 @@
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
+#include "tools/generate/cylinders.hpp"
+#include "tools/generate/hepatectomy.hpp"
 #include "tools/generate/liver.hpp"
 #include "tools/generate/plate.hpp"
+#include "tools/generate/plate_cut.hpp"
 #include "tools/generate/ribs.hpp"
 
 namespace {
@@ -83,6 +86,13 @@ int main(int argc, char** argv) {
   shape->add_option("--cells", plate_cells, "cells along each side")->check(CLI::Range(4, 1000));
 
   add_shape("ribs", "the backdrop of the liver scene (.stl)", [&] { save(make_ribs(), file); });
+
+  add_shape("hepatectomy", "the organ a segment of which is cut off (.msh)",
+            [&] { save(make_hepatectomy(), file); });
+  add_shape("plate_cut", "the plate that is cut (.msh)", [&] { save(make_plate_cut(), file); });
+  add_shape("cylinder_tear", "the cylinder that tears (.msh)", [&] { save(make_cylinder_tear(), file); });
+  add_shape("cylinder_hybrid", "the cylinder of two halves (.msh)",
+            [&] { save(make_cylinder_hybrid(), file); });
 
   BlockOptions block;
   shape = add_shape("block", "a block (.msh)", [&] { save(make_top_centred_block(block), file); });

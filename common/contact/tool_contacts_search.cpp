@@ -1,29 +1,12 @@
-// How a TouchBody finds what the tools touch.
+// How ToolContacts finds what the tools touch.
 #include <algorithm>
 #include <limits>
 
-#include "common/kernels/kernels.hpp"
-#include "haptic_node/touch_body.hpp"
+#include "common/contact/tool_contacts.hpp"
 
 namespace palpate {
-namespace {
 
-constexpr int whole_columns_from = 6;   // part of the touchable nodes, one in so many, from which whole columns are read
-
-}  // namespace
-
-void TouchBody::collide(std::span<const MovingTool> tools) {
-  update_surface(tools);
-  std::size_t begin = 0, sphere = 0;
-  for (int t = 0; t < static_cast<int>(tools.size()); ++t)
-    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) {
-      const std::size_t end = near_end_[sphere++];
-      collide_sample(tools, t, s, std::span(near_).subspan(begin, end - begin));
-      begin = end;
-    }
-}
-
-void TouchBody::update_surface(std::span<const MovingTool> tools) {
+std::span<const int> ToolContacts::mark(std::span<const MovingTool> tools) {
   surface_.begin_update();
   for (const TouchContact& c : law_.contacts())
     for (int v = 0; v < 3; ++v)
@@ -37,60 +20,26 @@ void TouchBody::update_surface(std::span<const MovingTool> tools) {
       near_.insert(near_.end(), found.begin(), found.end());
       near_end_.push_back(near_.size());
     }
-  displacement_.assign(3 * surface_.marked().size(), 0.0);
-  if (!nonlinear_) {
-    superpose(-1, displacement_);
-  } else {
-    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-      superpose(t, of_tool_);
-      const Eigen::Vector3d press = press_of(t);
-      for (std::size_t i = 0; i < surface_.marked().size(); ++i) {
-        const Eigen::Vector3d u = Eigen::Map<const Eigen::Vector3d>(of_tool_.data() + 3 * i);
-        Eigen::Map<Eigen::Vector3d>(displacement_.data() + 3 * i) += nonlinear_->correct(u, press);
-      }
-    }
-    // What is held stays where it is held.
-    superpose(-1, of_tool_);
-    for (std::size_t i = 0; i < surface_.marked().size(); ++i)
-      for (const TouchContact& c : law_.contacts())
-        if (c.touch != Touch::open && (c.anchor.nodes[0] == surface_.marked()[i] || (c.face && (c.anchor.nodes[1] == surface_.marked()[i] ||
-                                                                                              c.anchor.nodes[2] == surface_.marked()[i]))))
-          std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
-  }
-  surface_.move_marked(displacement_);
+  return surface_.marked();
 }
 
-// u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.
-void TouchBody::superpose(int tool, std::vector<double>& displacement) {
-  columns_.clear();
-  coefficients_.clear();
-  law_.for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
-    if (node >= compliance_.column_nodes() || (tool >= 0 && law_.contacts()[contact].tool != tool)) return;
-    for (int axis = 0; axis < 3; ++axis) {
-      columns_.push_back(compliance_.column(node, axis));
-      coefficients_.push_back(f[axis]);
+void ToolContacts::collide(std::span<const MovingTool> tools) {
+  std::size_t begin = 0, sphere = 0;
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t)
+    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) {
+      const std::size_t end = near_end_[sphere++];
+      collide_sample(tools, t, s, std::span(near_).subspan(begin, end - begin));
+      begin = end;
     }
-  });
-  const std::span<const int> marked = surface_.marked();
-  const int count = static_cast<int>(columns_.size());
-  displacement.resize(3 * marked.size());
-  // Reading whole columns beats picking from them once a good part of the nodes is asked for.
-  if (marked.size() * whole_columns_from < static_cast<std::size_t>(map_.touchable)) {
-    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(), static_cast<int>(marked.size()),
-                                      displacement.data());
-    return;
-  }
-  kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map_.touchable, whole_.data());
-  for (std::size_t i = 0; i < marked.size(); ++i) std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
 }
 
-const TouchContact* TouchBody::held_by(int tool, int sample) const {
+const TouchContact* ToolContacts::held_by(int tool, int sample) const {
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.sample == sample && c.touch != Touch::open) return &c;
+    if (c.tool == tool && c.sample == sample && !c.grasped && c.touch != Touch::open) return &c;
   return nullptr;
 }
 
-void TouchBody::collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near) {
+void ToolContacts::collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near) {
   const MovingTool& moving = tools[tool];
   const Eigen::Vector3d now = moving.centre(moving.now, sample);
   const double within = reach(moving, sample);
@@ -101,7 +50,7 @@ void TouchBody::collide_sample(std::span<const MovingTool> tools, int tool, int 
 }
 
 // The sphere's centre has passed through the surface within this step: the contact is made where it passed.
-bool TouchBody::add_crossing(const MovingTool& moving, int tool, int sample) {
+bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int sample) {
   const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
   double earliest = std::numeric_limits<double>::infinity();
   int struck = -1;
@@ -126,17 +75,17 @@ bool TouchBody::add_crossing(const MovingTool& moving, int tool, int sample) {
 
 // Where triangles are smaller than the sphere, their vertices carry the contact: the force then belongs to the patch
 // under the sphere and not to the mesh.
-void TouchBody::add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample,
+void ToolContacts::add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample,
                              std::span<const int> near) {
   ++vertex_clock_;
   const TouchContact* held = held_by(tool, sample);
   const bool has_side = held != nullptr;
   const Eigen::Vector3d side = held ? held->normal : Eigen::Vector3d::Zero();  // copied: adding moves the contacts
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.sample == sample && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
+    if (c.tool == tool && (c.sample == sample || c.grasped) && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
   for (int t : near)
     for (int node : surface_.triangle(t)) {
-      const bool seen = node >= map_.touchable || vertex_stamp_[node] == vertex_clock_;
+      const bool seen = node >= touchable_ || vertex_stamp_[node] == vertex_clock_;
       if (seen || mean_edge_[t] > radius || law_.full()) continue;
       vertex_stamp_[node] = vertex_clock_;
       const Eigen::Vector3d away = centre - surface_.positions()[node];
@@ -154,12 +103,12 @@ void TouchBody::add_vertices(const Eigen::Vector3d& centre, double radius, doubl
 // Where triangles are larger than the sphere, it touches between their vertices, at the surface point nearest to its
 // centre (TVCG99 sec. 5, sub-triangular precision). One point a sphere: a second one in the same dent would depend on
 // the first.
-void TouchBody::add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near) {
+void ToolContacts::add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near) {
   int face = -1;
   bool vertices_carry = false;
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (c.tool != tool || c.sample != sample) continue;
+    if (c.tool != tool || c.sample != sample || c.grasped) continue;
     if (c.face) face = i;
     vertices_carry |= !c.face && c.touch != Touch::open;
   }
@@ -191,15 +140,15 @@ void TouchBody::add_face(const Eigen::Vector3d& centre, double radius, double wi
 }
 
 // A triangle cannot follow several spheres of a shaft at once: the first to touch it has it.
-bool TouchBody::taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const {
+bool ToolContacts::taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const {
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.sample != sample && c.face && c.anchor.nodes == nodes) return true;
+    if (c.tool == tool && c.sample != sample && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
   return false;
 }
 
 // A sliding contact keeps to the nearest point of its triangle and goes over to a neighbour only across the border
 // that it has reached: in the dent that it makes, other triangles may be nearer.
-void TouchBody::follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near) {
+void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near) {
   const Anchor& now = law_.contacts()[contact].anchor;
   const auto& x = surface_.positions();
   const ClosestPoint own = closest_point(centre, {x[now.nodes[0]], x[now.nodes[1]], x[now.nodes[2]]});

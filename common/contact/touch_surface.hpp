@@ -28,7 +28,7 @@ class TouchSurface {
 
   /// Triangles whose boxes, swept from the previous to the present positions, come within `radius` [m] of a point on
   /// its way from a to b; ascending, a few others nearby among them.
-  std::span<const int> find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius);
+  std::span<const int> find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const;
 
   /// One update: begin, mark what is near, then move the marked nodes to rest + displacement.
   void begin_update();
@@ -56,7 +56,8 @@ class TouchSurface {
   Buckets buckets_;
   double slack_;                              ///< [m] by which boxes are entered larger than they are
   std::vector<std::array<Eigen::Vector3d, 2>> entered_;  ///< per triangle, the box by which it stands in the buckets
-  std::vector<int> found_, marked_, last_marked_, stamp_, triangle_stamp_;
+  mutable std::vector<int> found_;
+  std::vector<int> marked_, last_marked_, stamp_, triangle_stamp_;
   int clock_ = 0, triangle_clock_ = 0, turn_ = 0;
 };
 

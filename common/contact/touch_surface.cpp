@@ -1,4 +1,4 @@
-#include "haptic_node/touch_surface.hpp"
+#include "common/contact/touch_surface.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -51,7 +51,7 @@ Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
   return n.normalized();
 }
 
-std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) {
+std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const {
   const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
   const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.

@@ -1,4 +1,4 @@
-#include "haptic_node/code_path.hpp"
+#include "common/kernels/code_path.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-// The state of a TouchBody as bytes, from which a replay starts.
+// The state of ToolContacts as bytes, from which a replay starts.
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
-#include "haptic_node/touch_body.hpp"
+#include "common/contact/tool_contacts.hpp"
 
 namespace palpate {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 // A contact as plain bytes for the state that replay starts from.
 struct StoredContact {
   int tool, sample, nodes[3];
-  unsigned char face, touch;
+  unsigned char face, grasped, touch;
   double weights[3], offset[3], normal[3], slip[3], force[3], point_force[9];
   int points;
 };
@@ -21,15 +21,15 @@ Eigen::Vector3d get(const double* from) { return {from[0], from[1], from[2]}; }
 
 }  // namespace
 
-std::size_t TouchBody::state_size() const { return surface_.state_size() + sizeof(int) + max_contacts * sizeof(StoredContact); }
+std::size_t ToolContacts::state_size() const { return surface_.state_size() + sizeof(int) + law_.capacity() * sizeof(StoredContact); }
 
-void TouchBody::save(unsigned char* to) const {
+void ToolContacts::save(unsigned char* to) const {
   surface_.save(to);
   to += surface_.state_size();
   const int count = static_cast<int>(law_.contacts().size());
   std::memcpy(to, &count, sizeof count);
   to += sizeof count;
-  std::memset(to, 0, max_contacts * sizeof(StoredContact));
+  std::memset(to, 0, law_.capacity() * sizeof(StoredContact));
   for (int i = 0; i < count; ++i) {
     const TouchContact& c = law_.contacts()[i];
     const std::span<const double> forces = law_.point_forces(i);
@@ -38,6 +38,7 @@ void TouchBody::save(unsigned char* to) const {
     s.sample = c.sample;
     std::copy(c.anchor.nodes.begin(), c.anchor.nodes.end(), s.nodes);
     s.face = c.face;
+    s.grasped = c.grasped;
     s.touch = static_cast<unsigned char>(c.touch);
     put(s.weights, c.anchor.weights);
     put(s.offset, c.offset);
@@ -51,13 +52,13 @@ void TouchBody::save(unsigned char* to) const {
   }
 }
 
-void TouchBody::restore(const unsigned char* from, std::span<const MovingTool> tools) {
+void ToolContacts::restore(const unsigned char* from, std::span<const MovingTool> tools) {
   surface_.restore(from);
   from += surface_.state_size();
   int count = 0;
   std::memcpy(&count, from, sizeof count);
   from += sizeof count;
-  if (count < 0 || count > max_contacts) throw std::runtime_error("the state names an impossible number of contacts");
+  if (count < 0 || count > law_.capacity()) throw std::runtime_error("the state names an impossible number of contacts");
   law_.clear();
   for (int i = 0; i < count; ++i, from += sizeof(StoredContact)) {
     StoredContact s;
@@ -67,8 +68,8 @@ void TouchBody::restore(const unsigned char* from, std::span<const MovingTool> t
         (s.points != 1 && s.points != 3))
       throw std::runtime_error("the state holds a contact that this scene cannot have");
     for (int node : s.nodes)
-      if (node < 0 || node >= map_.size()) throw std::runtime_error("the state names a surface node that the body lacks");
-    TouchContact c{.tool = s.tool, .sample = s.sample, .face = s.face != 0, .touch = static_cast<Touch>(s.touch)};
+      if (node < 0 || node >= nodes_) throw std::runtime_error("the state names a surface node that the body lacks");
+    TouchContact c{.tool = s.tool, .sample = s.sample, .face = s.face != 0, .grasped = s.grasped != 0, .touch = static_cast<Touch>(s.touch)};
     c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
     c.offset = get(s.offset);
     c.normal = get(s.normal);

@@ -1,0 +1,19 @@
+#include "common/dynamics/elastic_mesh.hpp"
+
+#include <stdexcept>
+
+#include "common/tensors/archive.hpp"
+
+namespace palpate {
+
+ElasticMesh elastic_mesh(const Archive& archive) {
+  if (archive.tetrahedra.empty())
+    throw std::runtime_error("body '" + archive.body + "': no part of it moves with inertia");
+  ElasticMesh mesh{
+      archive.surface.position, archive.tetrahedra, archive.surface.fixed, {}, archive.material_of_element};
+  for (std::size_t m = 0; m < archive.young.size(); ++m)
+    mesh.materials.push_back({archive.young[m], archive.poisson[m], archive.density[m]});
+  return mesh;
+}
+
+}  // namespace palpate

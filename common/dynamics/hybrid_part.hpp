@@ -1,0 +1,152 @@
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "common/contact/contact_law.hpp"
+#include "common/dynamics/dynamic_model.hpp"
+#include "common/tensors/archive.hpp"
+#include "common/tensors/compliance.hpp"
+
+namespace palpate {
+
+/// The quasi-static part of a hybrid body at run time (RR3510 sec. 6; see HybridTensors for the symbols). It
+/// answers the tensor-mass part with forces on the connection nodes in every stage of the integrator, and
+/// moves with them at once, without inertia of its own beyond the mass that the connection nodes carry for
+/// it.
+///
+/// Tools touch it through a ContactLaw on its own compliance. Points held there are held together with the
+/// connection nodes: with J their rows, the forces f = G (d - J x), G = (J C J^T)^-1, follow the connection
+/// nodes within a step,
+///   f_c = -(S + (J H)^T G (J H)) u_c + g_c + (J H)^T G (d - J x_0).
+/// One round of the owner's loop, all tools being rigid and known:
+///   take(model)          where the connection nodes are
+///   update(nodes)        positions() of the nodes near the tools, for the search for contacts
+///   law().contacts()     added, removed and aimed by the owner
+///   hold()               which contacts press, stick and slide; condenses them on the connection nodes
+///   add_loads(model)     the constant part, on top of what the owner has set
+///   model.step(dt) ...   calls apply()
+///   take(model)          contact_force() and the nodes' displacements, at the new state
+/// Nodes are those of the archive. Nothing is allocated after construction.
+class HybridPart final : public Coupling {
+ public:
+  static constexpr int max_contacts = 32;
+
+  /// The archive read with ArchivePart::surface. `single`: S u in single precision, for a model in single
+  /// precision. Throws std::runtime_error if the archive is not that of a hybrid body or was read in part.
+  HybridPart(const Archive& archive, double friction, bool single);
+  HybridPart(const HybridPart&) = delete;
+  HybridPart& operator=(const HybridPart&) = delete;
+
+  /// Puts this part's mass, forces and frequency bound on the model's connection nodes. The bound covers S,
+  /// points held, and the stiffness of contacts that rest on connection nodes; that may be what is free below
+  /// the model's own bound, or as much as `bound` of HybridTensors.
+  void couple(DynamicModel& model);
+  std::span<const int> connection() const { return connection_; }
+
+  /// Dead force [N] on a touchable node of this part; stays until set again. Takes effect with hold(). Throws
+  /// std::runtime_error for any other node.
+  void set_force(int node, const Eigen::Vector3d& force);
+
+  void take(const DynamicModel& model);
+  /// Fills in positions() for these nodes of this part (connection nodes included).
+  void update(std::span<const int> nodes);
+  std::span<const Eigen::Vector3d> positions() const { return position_; }
+  /// Contacts anchored on nodes of this part; anchors may have weight on connection nodes, which yield by
+  /// their mass.
+  ContactLaw& law() { return law_; }
+  const ContactLaw& law() const { return law_; }
+  LawOutcome hold();
+
+  /// [N] constant force on connection()[k]: weight of this part, its dead forces and what contacts hold. The
+  /// weight of quasi-static elements at the connection nodes is in it; the model's gravity is for its own
+  /// tetrahedra alone.
+  Eigen::Vector3d load(int k) const { return Eigen::Map<const Eigen::Vector3d>(load_.data() + 3 * k); }
+  /// Adds load() to the model's loads, in place of what the last call added.
+  void add_loads(DynamicModel& model);
+
+  void apply(const double* u, double* force) override;
+
+  /// [N] on the tissue, of law().contacts()[contact], at the last take().
+  Eigen::Vector3d contact_force(int contact) const { return contact_force_[contact]; }
+  /// [m] of a node of this part at the last take().
+  Eigen::Vector3d displacement(int node) const;
+  /// [m] Displacements of all visible nodes of this part, connection nodes included, per archive node; others
+  /// are left.
+  void superpose(std::span<Eigen::Vector3f> displacement);
+  /// [N/m] Static stiffness of a touchable node of this part while the connection nodes stand still; zero
+  /// elsewhere.
+  Eigen::Matrix3d stiffness(int node) const;
+  /// [m] Largest distance between the two sides of a partial connection at the last take(); 0 at a full one.
+  double gap(const DynamicModel& model) const;
+  /// Whether a node belongs to this part alone.
+  bool owns(int node) const { return row_[node] >= 0; }
+
+ private:
+  template <class T>
+  using Array = std::vector<T, kernels::LineAllocator<T>>;
+
+  /// One held direction of one contact.
+  struct HeldRow {
+    int contact;
+    Eigen::Vector3d axis;
+  };
+  /// A force [N] on a node.
+  struct NodeForce {
+    int node;
+    Eigen::Vector3d force;
+  };
+
+  void fill_stiffness(const HybridTensors& hybrid);
+  void fill_follow(const Archive& archive);
+  const double* follow(int node, int axis) const { return follow_.data() + size_ * (row_[node] + axis); }
+  Eigen::Vector3d followed(int node) const;
+  Eigen::Matrix3d compliance(int i, int j) const;
+  Eigen::Matrix3d compliance(const Anchor& a, const Anchor& b) const;
+  Eigen::Vector3d respond(int node, std::span<const NodeForce> forces) const;
+  double softness(const TouchContact& contact) const;
+  void count_shares();
+  void list_rows();
+  void fill_row(int row);
+  void factorise();
+  void condense();
+  void add_follow_force(const Anchor& anchor, const Eigen::Vector3d& force);
+  Eigen::Vector3d still_position(const Anchor& anchor) const;
+  void find_forces();
+
+  std::vector<Eigen::Vector3d> rest_;    // per node
+  std::vector<int> connection_, place_;  // nodes; per node its place among them, or -1
+  std::vector<double> mass_;
+  double bound_, contact_bound_, friction_, typical_;
+  int size_ = 0;  // three entries per connection node
+  bool single_;
+  Array<float> stiffness_f_, follow_f_;  // S, H by columns
+  Array<double> stiffness_d_;
+  std::vector<const float*> stiffness_columns_f_, follow_columns_f_;
+  std::vector<const double*> stiffness_columns_d_;
+  std::vector<double> follow_;  // H by rows
+  std::vector<int> row_;        // per node: its first row of H, or -1
+  std::vector<double> reaction_;
+  std::vector<Eigen::Vector3d> sag_;  // per node
+  std::vector<GapPair> gap_;
+  Compliance<double> compliance_;
+  Compliance<float> picture_;
+
+  std::vector<Eigen::Vector3d> free_, position_;  // per node: without and with the forces of contacts
+  ContactLaw law_;
+  std::vector<NodeForce> dead_, node_forces_;
+  std::vector<HeldRow> rows_;
+  std::vector<int> row_begin_;  // first row of each contact, and the end
+  kernels::Buffer factor_, floor_;
+  Array<double> held_, product_, multiplier_, constant_;  // J H by rows; S u; and per row
+  std::vector<const double*> held_rows_;
+  std::vector<int> shares_;  // per connection node: contacts that rest on it
+  std::vector<Eigen::Vector3d> friction_force_, contact_force_;  // per contact
+  std::vector<double> u_, load_, added_;                         // per connection dof
+  std::vector<float> u_f_;
+  Array<float> product_f_, whole_;
+  std::vector<const float*> columns_;
+  std::vector<float> coefficients_;
+};
+
+}  // namespace palpate

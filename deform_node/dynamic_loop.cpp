@@ -1,0 +1,181 @@
+#include "deform_node/dynamic_loop.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/settings.hpp"
+#include "common/realtime/shutdown.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int loop_priority = 50;         // below the haptic loop, above the picture
+
+std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
+  std::vector<std::size_t> nodes;
+  for (int b = 0; b < deformer.bodies(); ++b) nodes.push_back(deformer.map(b).position.size());
+  return nodes;
+}
+
+}  // namespace
+
+DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence,
+                         const Scene& scene, std::uint64_t run, std::string code_path)
+    : world_(world),
+      deformer_(deformer),
+      presence_(presence),
+      run_(run),
+      visual_hz_(scene.rates.visual_hz),
+      local_models_(local_models),
+      feed_(bus, presence, deformer),
+      surfaces_(bus, surface_nodes(deformer)),
+      tools_(bus.reader(topics::tool_state)),
+      changes_(bus.writer(topics::topology_change)),
+      models_(bus.writer(topics::local_contact_model)),
+      steps_(bus.writer(topics::deform_step)),
+      keyframes_(bus.writer(topics::deform_keyframe)),
+      change_seq_(scene.bodies.size(), 0),
+      model_(scene.tools.size()) {
+  keyframe_.dt = world.dt();
+  keyframe_.code_path = std::move(code_path);
+  for (const Body& body : scene.bodies) moves_.push_back(is_dynamic(body));
+}
+
+void DynamicLoop::take_tools() {
+  while (const auto state = tools_->take()) {
+    const bool good = presence_.accepts(state->run) && world_.take(*state);
+    begun_ |= good;
+    report_.refused += !good;
+  }
+}
+
+void DynamicLoop::tick() {
+  feed_.take();
+  const auto interval = static_cast<std::uint64_t>(std::lround(1 / world_.dt()));
+  if (world_.ticks() % interval == 0) {
+    keyframe_.run = run_;
+    ++keyframe_.seq;
+    keyframe_.tick = world_.ticks();
+    keyframe_.state = world_.save();
+    keyframes_->write(keyframe_);
+  }
+  const std::int64_t begin = now_ns();
+  const std::uint64_t number = world_.ticks();
+  world_.tick();
+  report_.tick.record(now_ns() - begin);
+
+  step_.run = run_;
+  ++step_.seq;
+  step_.tick = number;
+  step_.consumed.clear();
+  for (int t = 0; t < world_.tools(); ++t)
+    if (world_.consumed_anew(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), world_.consumed(t).run, world_.consumed(t).step});
+  step_.hash = world_.hash();
+  steps_->write(step_);
+  publish_changes();
+  publish_models();
+}
+
+void DynamicLoop::publish_changes() {
+  for (int i = 0; i < world_.organs(); ++i) {
+    for (const DynamicOrgan::Change& change : world_.organ(i).changes()) {
+      const int body = world_.bodies()[i];
+      TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = world_.ticks() - 1};
+      m.cause = static_cast<std::uint32_t>(change.cause);
+      m.removed.assign(change.removed.begin(), change.removed.end());
+      changes_->write(m);
+      report_.cut += change.cause == Removal::cut ? change.removed.size() : 0;
+      report_.torn += change.cause == Removal::torn ? change.removed.size() : 0;
+      report_.fallen += change.cause == Removal::fell_away ? change.removed.size() : 0;
+    }
+  }
+}
+
+void DynamicLoop::publish_models() {
+  local_models_.refresh();
+  for (int t = 0; t < world_.tools(); ++t) {
+    LocalContactModel& m = model_[t];
+    const bool was_near = !m.triangles.empty() || !m.contacts.empty();
+    const bool near = local_models_.describe(t, m);
+    if (!near && !was_near) continue;  // an empty one says that there is nothing near any more
+    const ToolState& s = world_.consumed(t);
+    m.tool = static_cast<std::uint32_t>(t);
+    m.run = run_;
+    ++m.seq;
+    m.tick = world_.ticks() - 1;
+    m.tool_run = s.run;
+    m.tool_step = s.step;
+    m.sense_ns = s.sense_ns;
+    m.yaw = s.yaw;
+    m.pitch = s.pitch;
+    m.depth = s.depth;
+    m.roll = s.roll;
+    m.grip = s.grip;
+    models_->write(m);
+  }
+}
+
+void DynamicLoop::publish_frames() {
+  deformer_.deform();
+  SurfacePublisher::Origin newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
+  for (int t = 0; t < world_.tools(); ++t) {
+    const ToolState& s = world_.consumed(t);
+    if (s.sense_ns > newest.sense_ns) newest = {s.run, s.step, s.sense_ns};
+  }
+  for (int b = 0; b < deformer_.bodies(); ++b)
+    if (!moves_[b]) surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, newest);
+  for (int i = 0; i < world_.organs(); ++i) {
+    world_.organ(i).shape(position_, normal_);
+    surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
+  }
+  ++report_.frames;
+  if (newest.sense_ns > shown_sense_ns_) report_.latency.record(surfaces_.last_publish_ns() - newest.sense_ns);
+  shown_sense_ns_ = newest.sense_ns;
+}
+
+void DynamicLoop::keep_house(std::int64_t now) {
+  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  feed_.watch_haptic();
+  if (now - last_status_ns_ < ns_per_s) return;
+  const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.ticks - last_ticks_) / static_cast<double>(now - last_status_ns_);
+  const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
+  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99));
+  last_status_ns_ = now;
+  last_ticks_ = report_.ticks;
+}
+
+const DynamicReport& DynamicLoop::run(double seconds) {
+  for (const std::string& said : request_realtime({.priority = loop_priority}).sentences) spdlog::info("{}", said);
+  const std::int64_t begin = now_ns();
+  const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
+  PeriodicTimer timer(1 / world_.dt(), 0);
+  std::int64_t next_frame = begin, next_house = begin;
+  while (!shutdown_requested()) {
+    timer.wait();
+    const std::int64_t now = now_ns();
+    if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
+    take_tools();
+    if (begun_) {
+      tick();
+      ++report_.ticks;
+      report_.period.skipped = timer.statistics().skipped;
+    } else {
+      timer.reset_statistics();
+    }
+    if (now >= next_frame) {
+      publish_frames();
+      next_frame = std::max(next_frame + frame_ns, now);
+    }
+    if (now >= next_house) {
+      keep_house(now);
+      next_house = now + 50'000'000;
+    }
+  }
+  report_.period = timer.statistics();
+  report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  return report_;
+}
+
+}  // namespace palpate

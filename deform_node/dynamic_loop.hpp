@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/models/contact_feed.hpp"
+#include "common/realtime/histogram.hpp"
+#include "common/realtime/periodic.hpp"
+#include "deform_node/dynamic_world.hpp"
+#include "deform_node/local_model.hpp"
+#include "deform_node/surface_publisher.hpp"
+
+namespace palpate {
+
+/// What a run of the loop measured.
+struct DynamicReport {
+  double seconds = 0;
+  std::uint64_t ticks = 0, frames = 0;
+  std::uint64_t refused = 0;           ///< tool states of other scenes
+  std::uint64_t cut = 0, torn = 0, fallen = 0;  ///< tetrahedra
+  Histogram tick;     ///< [ns] advancing the tissue
+  Histogram latency;  ///< [ns] sense time of the tool's step to the surface being published
+  PeriodStatistics period;
+};
+
+/// Advances moving tissue in real time: takes the tools' newest states, ticks the world, journals, sends local contact
+/// models and cuts, and publishes all surfaces at the visual rate. A tick that comes late is left out: time in the
+/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of.
+class DynamicLoop {
+ public:
+  /// `deformer`: of the scene's quasi-static bodies.
+  DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence, const Scene& scene,
+              std::uint64_t run, std::string code_path);
+
+  /// Until `seconds` are over (0: no limit) or a stop is requested.
+  const DynamicReport& run(double seconds);
+
+ private:
+  void take_tools();
+  void tick();
+  void publish_changes();
+  void publish_models();
+  void publish_frames();
+  void keep_house(std::int64_t now);
+
+  DynamicWorld& world_;
+  Deformer& deformer_;
+  Presence& presence_;
+  std::uint64_t run_;
+  double visual_hz_;
+  std::vector<char> moves_;  ///< per body: it is dynamic
+  LocalModels& local_models_;
+  ContactFeed feed_;
+  SurfacePublisher surfaces_;
+  std::unique_ptr<Reader<ToolState>> tools_;
+  std::unique_ptr<Writer<TopologyChange>> changes_;
+  std::unique_ptr<Writer<LocalContactModel>> models_;
+  std::unique_ptr<Writer<DeformStep>> steps_;
+  std::unique_ptr<Writer<DeformKeyframe>> keyframes_;
+  std::vector<std::uint64_t> change_seq_;  ///< per body
+  std::vector<LocalContactModel> model_;   ///< per tool
+  DeformStep step_;
+  DeformKeyframe keyframe_;
+  std::vector<Eigen::Vector3f> position_, normal_;
+  bool begun_ = false;  ///< a tool has been heard of
+  std::int64_t shown_sense_ns_ = 0, last_status_ns_ = 0;
+  std::uint64_t last_ticks_ = 0;
+  DynamicReport report_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,259 @@
+#include "deform_node/dynamic_organ.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/contact/triangle.hpp"
+#include "common/dynamics/make_model.hpp"
+#include "common/mesh/normals.hpp"
+#include "common/tool/jaws.hpp"
+#include "deform_node/state_bytes.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double bound_share = 0.9;       // of the largest stable step that is used where the scene names none
+constexpr double lost_beyond = 3;         // diagonals from its place, beyond which a part that floats is taken away
+constexpr int most_cuts = 4, most_tears = 8;  // tetrahedra that one tick takes away, conformity's apart
+
+double bucket_size(const Scene& scene, const ElasticMesh& mesh) {
+  if (scene.contact.bucket_size > 0) return scene.contact.bucket_size;
+  double edges = 0;
+  for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
+  return 2 * edges / static_cast<double>(mesh.tetrahedra.size());
+}
+
+}  // namespace
+
+DynamicOrgan::DynamicOrgan(const Archive& archive, const Scene& scene, int body)
+    : scene_(scene),
+      body_(scene.bodies[body]),
+      mesh_(elastic_mesh(archive)),
+      topology_(mesh_.tetrahedra, mesh_.nodes()),
+      shown_(archive.surface.triangles, topology_),
+      surface_(topology_, mesh_.rest, bucket_size(scene, mesh_)),
+      model_(make_dynamic_model(mesh_, body_)),
+      still_(archive.hybrid ? std::make_unique<HybridTouch>(archive, scene, body_.dynamic.precision == "single", *model_) : nullptr),
+      contacts_(mesh_, topology_, shown_, surface_, *model_, scene.contact.friction),
+      jaws_closed_(scene.tools.size(), 0),
+      position_(mesh_.rest),
+      poses_(scene.tools.size(), Eigen::Isometry3d::Identity()),
+      poses_before_(poses_),
+      moving_(scene.tools.size()),
+      in_step_(scene.tools.size()) {
+  if (still_) topology_.join(shown_.joints());
+  const double bound = palpate::largest_step(integrator_of(body_), model_->frequency_bound(), body_.dynamic.damping);
+  if (body_.dynamic.step > bound)
+    throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", body_.name, body_.dynamic.step, bound));
+  largest_step_ = body_.dynamic.step > 0 ? body_.dynamic.step : bound_share * bound;
+  if (body_.tearing) tearing_.emplace(mesh_, tear_criterion(body_.tearing->criterion), body_.tearing->threshold, most_tears);
+  Eigen::Vector3d low = mesh_.rest[0], high = low;
+  for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  diagonal_ = (high - low).norm();
+  middle_ = 0.5 * (low + high);
+}
+
+DynamicOrgan::~DynamicOrgan() = default;
+
+int DynamicOrgan::steps_in(double dt) const { return std::max(1, static_cast<int>(std::ceil(dt / largest_step_ - 1e-9))); }
+
+void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
+  changes_.clear();
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    moving_[t] = tools[t].moving;
+    if (!tools[t].present) {
+      moving_[t].samples = {};
+      contacts_.drop_tool(static_cast<int>(t));
+      if (still_) still_->drop_tool(static_cast<int>(t));
+    }
+  }
+  work_jaws(tools);
+  contacts_.find(moving_);
+  if (still_) still_->find(moving_);
+  in_step_ = moving_;
+  const int steps = steps_in(dt);
+  for (std::size_t t = 0; t < moving_.size(); ++t) poses_[t] = moving_[t].before;
+  for (int s = 1; s <= steps; ++s) {
+    const double share = static_cast<double>(s) / steps;
+    poses_.swap(poses_before_);
+    for (std::size_t t = 0; t < moving_.size(); ++t) {
+      const Eigen::Isometry3d &a = moving_[t].before, &b = moving_[t].now;
+      poses_[t].translation() = (1 - share) * a.translation() + share * b.translation();
+      poses_[t].linear() = Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    }
+    for (std::size_t t = 0; t < moving_.size(); ++t) in_step_[t].now = poses_[t];
+    if (still_) still_->hold(in_step_);
+    contacts_.step(moving_, poses_before_, poses_, dt / steps);
+    if (still_) still_->take();
+  }
+  contacts_.end_tick(moving_);
+  if (still_) still_->end_tick(moving_);
+  update_positions();
+  cut(tools);
+  tear();
+  drop_fallen();
+}
+
+void DynamicOrgan::update_positions() {
+  for (int n = 0; n < mesh_.nodes(); ++n) position_[n] = mesh_.rest[n] + model_->displacement(n);
+  surface_.set_positions(position_);
+}
+
+// Jaws that close hold what is between them, until they open.
+void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    const auto& jaws = scene_.tools[t].jaws;
+    if (!jaws || !tools[t].present) continue;
+    const double grip = tools[t].dofs.grip;
+    if (!jaws_closed_[t] && grip < jaws->closed_below) {
+      jaws_closed_[t] = 1;
+      const bool moving = contacts_.grasp(t, tools[t].moving.before, jaws->length, jaws->width);
+      if (still_ && !moving) still_->grasp(t, tools[t].moving.before, jaws->length, jaws->width);
+    } else if (jaws_closed_[t] && grip > jaws->closed_below + jaw_slack) {
+      jaws_closed_[t] = 0;
+      contacts_.let_go(t);
+      if (still_) still_->let_go(t);
+    }
+  }
+}
+
+bool DynamicOrgan::holds(int tool) const { return contacts_.grasping(tool) || (still_ && still_->grasping(tool)); }
+
+// Cautery takes the tetrahedra whose visible facets the glowing sphere touches.
+void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
+  const std::size_t first = removed_.size();
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const auto& cautery = scene_.tools[t].cautery;
+    if (!cautery || !tools[t].present || tools[t].dofs.pedal < 0.5) continue;
+    for (int i = 0; i < most_cuts; ++i) {
+      const Eigen::Vector3d tip = moving_[t].now.translation();
+      double least = cautery->radius * cautery->radius;
+      int nearest = -1;
+      for (int facet : surface_.find(tip, tip, cautery->radius)) {
+        const double squared = closest_point(tip, surface_.corners(facet)).squared_distance;
+        if (squared >= least || is_joint(facet)) continue;
+        least = squared;
+        nearest = facet;
+      }
+      if (nearest < 0) break;
+      remove(nearest / 4);
+    }
+  }
+  note_change(Removal::cut, first);
+}
+
+void DynamicOrgan::tear() {
+  if (!tearing_) return;
+  const std::size_t first = removed_.size();
+  for (int t : tearing_->find(position_))
+    if (topology_.alive(t)) remove(t);
+  note_change(Removal::torn, first);
+}
+
+void DynamicOrgan::remove(int tetrahedron) {
+  topology_.remove(tetrahedron, removed_);
+  surface_.follow();
+}
+
+void DynamicOrgan::note_change(Removal cause, std::size_t first) {
+  if (first == removed_.size()) return;
+  changes_.push_back({cause, {removed_.begin() + static_cast<std::ptrdiff_t>(first), removed_.end()}});
+  model_->remove(changes_.back().removed);
+  if (tearing_) tearing_->remove(changes_.back().removed);
+  contacts_.forget_removed();
+  follow_change();
+}
+
+// Which parts float now.
+void DynamicOrgan::follow_change() {
+  const int parts = topology_.parts(part_of_);
+  std::vector<char> held(parts, 0);
+  std::vector<int> first(parts, -1);
+  for (int t = 0; t < topology_.size(); ++t) {
+    const int part = part_of_[t];
+    if (part < 0) continue;
+    if (first[part] < 0) first[part] = t;
+    for (int node : topology_.tetrahedron(t)) held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
+    for (int f = 0; f < 4; ++f) held[part] |= is_joint(4 * t + f);
+  }
+  loose_.clear();
+  for (int part = 0; part < parts; ++part)
+    if (!held[part]) loose_.push_back(first[part]);
+}
+
+// A part that floats and has gone far away is not followed for ever.
+void DynamicOrgan::drop_fallen() {
+  if (loose_.empty()) return;
+  const std::size_t first = removed_.size();
+  for (int t : loose_) {
+    if (!topology_.alive(t)) continue;
+    const Eigen::Vector3d& at = position_[topology_.tetrahedron(t)[0]];
+    if ((at - middle_).squaredNorm() < lost_beyond * lost_beyond * diagonal_ * diagonal_) continue;
+    topology_.parts(part_of_);
+    const int part = part_of_[t];
+    std::vector<int> gone;
+    for (int other = 0; other < topology_.size(); ++other)
+      if (part_of_[other] == part) gone.push_back(other);
+    topology_.erase(gone);
+    surface_.follow();
+    removed_.insert(removed_.end(), gone.begin(), gone.end());
+  }
+  note_change(Removal::fell_away, first);
+}
+
+void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal) {
+  position.resize(position_.size());
+  normal.resize(position_.size());
+  for (std::size_t n = 0; n < position_.size(); ++n) position[n] = position_[n].cast<float>();
+  if (still_) still_->shape(mesh_.rest, position);
+  vertex_normals(position, shown_.triangles(topology_), normal);
+}
+
+std::vector<std::uint8_t> DynamicOrgan::save() const {
+  std::vector<std::uint8_t> bytes;
+  state_bytes::put(bytes, std::span<const int>(removed_));
+  state_bytes::put(bytes, model_->state());
+  state_bytes::put(bytes, contacts_.list());
+  state_bytes::put(bytes, std::span<const char>(jaws_closed_));
+  state_bytes::put(bytes, std::span<const std::uint8_t>(still_ ? still_->save() : std::vector<std::uint8_t>{}));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.previous()));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.positions()));
+  return bytes;
+}
+
+void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
+  const auto removed = state_bytes::take<int>(state);
+  const auto motion = state_bytes::take<std::byte>(state);
+  const auto contacts = state_bytes::take<TissueContact>(state);
+  const auto jaws = state_bytes::take<char>(state);
+  const auto still = state_bytes::take<std::uint8_t>(state);
+  const auto previous = state_bytes::take<Eigen::Vector3d>(state), present = state_bytes::take<Eigen::Vector3d>(state);
+  const bool fits = motion.size() == model_->state().size() && jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
+                    previous.size() == position_.size() && present.size() == position_.size() &&
+                    std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+  if (!fits || !removed_.empty()) throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", body_.name));
+  removed_ = removed;
+  topology_.erase(removed_);
+  surface_.follow();
+  model_->remove(removed_);
+  if (tearing_) tearing_->remove(removed_);
+  model_->set_state(motion);
+  contacts_.set_list(contacts);
+  jaws_closed_ = jaws;
+  if (still_) still_->restore(still, tools);
+  surface_.set_positions(previous);
+  surface_.set_positions(present);
+  position_ = present;
+  follow_change();
+}
+
+std::uint64_t DynamicOrgan::hash() const {
+  const auto state = model_->state();
+  return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed_.data(), removed_.size() * sizeof(int));
+}
+
+}  // namespace palpate

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/bus/messages.hpp"
+#include "common/tool/kinematics.hpp"
+#include "deform_node/dynamic_organ.hpp"
+
+namespace palpate {
+
+/// All dynamic bodies of a scene with the tools that move among them: what the deformation node owns and advances. A
+/// tick is a function of the tools' newest states and of the world's own state.
+class DynamicWorld {
+ public:
+  /// One archive per body of the scene; those of quasi-static bodies are not looked at.
+  DynamicWorld(const Scene& scene, const std::vector<Archive>& archives);
+
+  double dt() const { return dt_; }  ///< [s] nominal period of a tick: that of the haptic loop
+  int tools() const { return static_cast<int>(tools_.size()); }
+  std::span<const int> bodies() const { return body_of_; }  ///< the dynamic ones
+  const DynamicOrgan& organ(int i) const { return *organs_[i]; }
+  DynamicOrgan& organ(int i) { return *organs_[i]; }
+  int organs() const { return static_cast<int>(organs_.size()); }
+
+  /// The newest state of a tool; false (and nothing kept) if the scene has no such tool or the pose is no number.
+  bool take(const ToolState& state);
+  /// Moves everything on by dt(). A tool of which nothing has been heard for half a second is gone, unless its jaws hold
+  /// something.
+  void tick();
+
+  std::uint64_t ticks() const { return ticks_; }
+  const ToolInTick& tool(int t) const { return tools_[t]; }
+  /// The state that the last tick consumed; tool_run 0 before any.
+  const ToolState& consumed(int t) const { return consumed_[t]; }
+  bool consumed_anew(int t) const { return anew_[t]; }  ///< by the last tick
+
+  std::vector<std::uint8_t> save() const;
+  void restore(std::span<const std::uint8_t> state);
+  std::uint64_t hash() const;
+
+ private:
+  void drop_silent();
+
+  double dt_;
+  std::vector<Trocar> trocars_;
+  std::vector<std::vector<SampleSphere>> samples_;
+  std::vector<ToolInTick> tools_;
+  std::vector<ToolState> newest_, consumed_;
+  std::vector<char> waiting_, anew_;
+  std::vector<std::uint64_t> heard_;  ///< tick of the last state, per tool
+  std::vector<std::unique_ptr<DynamicOrgan>> organs_;
+  std::vector<int> body_of_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "common/dynamics/elastic_mesh.hpp"
+
+namespace palpate {
+
+/// Stiffness of one part of a body that is condensed onto some of its nodes, to be added where it is joined.
+struct CondensedPart {
+  std::vector<int> nodes;
+  Eigen::MatrixXd stiffness;  ///< [N/m] 3 nodes x 3 nodes; rows of fixed axes are zero
+};
+
+/// The static compliance of a dynamic body at a few of its nodes, for the local contact model. It is solved from the
+/// remaining tetrahedra on a thread of its own; the loop asks and takes answers without waiting, and goes on with
+/// the last answer meanwhile. A part that floats is held by its inertia at a fifth of a hertz.
+class LocalStiffness {
+ public:
+  static constexpr int most_nodes = 64;
+
+  struct Answer {
+    std::vector<int> nodes;       ///< ascending
+    Eigen::MatrixXd compliance;   ///< [m/N] 3n x 3n among them; rows of fixed axes are zero
+    std::uint64_t topology = 0;   ///< cuts that it knows of
+    int find(int node) const;     ///< place of a node, or -1
+    Eigen::Matrix3d block(int i, int j) const { return compliance.block<3, 3>(3 * i, 3 * j); }
+  };
+
+  LocalStiffness(const ElasticMesh& mesh, CondensedPart joined);
+
+  /// Wants these nodes (ascending, the first most_nodes count) after the removal of all of `removed` so far. The newest
+  /// question is answered; false if the worker is at it, so that it was not taken.
+  bool ask(std::span<const int> nodes, std::span<const int> removed);
+  /// True if a newer answer has come; it is then current().
+  bool take();
+  const Answer& current() const { return current_; }
+
+ private:
+  struct Question {
+    std::vector<int> nodes, removed;
+  };
+  void work(const std::stop_token& stop);
+  Answer solve(const Question& question);
+
+  const ElasticMesh mesh_;
+  const CondensedPart joined_;
+  Answer current_, next_;
+  Question question_;
+  bool asked_ = false, answered_ = false;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread worker_;
+};
+
+}  // namespace palpate

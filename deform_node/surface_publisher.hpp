@@ -1,0 +1,31 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+
+namespace palpate {
+
+/// Publishes the shapes of a scene's bodies, in messages whose memory is kept.
+class SurfacePublisher {
+ public:
+  /// `nodes`: surface nodes per body.
+  SurfacePublisher(Bus& bus, std::span<const std::size_t> nodes);
+
+  /// Where the newest step shown comes from.
+  struct Origin {
+    std::uint64_t run = 0, step = 0;
+    std::int64_t sense_ns = 0;
+  };
+  void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal, const Origin& origin);
+  std::int64_t last_publish_ns() const { return last_ns_; }
+
+ private:
+  std::unique_ptr<Writer<SurfaceState>> writer_;
+  std::vector<SurfaceState> messages_;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace palpate

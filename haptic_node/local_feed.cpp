@@ -1,0 +1,34 @@
+#include "haptic_node/local_feed.hpp"
+
+namespace palpate {
+
+struct LocalFeed::OfTool {
+  Latest<LocalModel> newest;
+};
+
+LocalFeed::LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run) : run_(run) {
+  if (!haptic.has_moving_tissue()) return;
+  dynamic_.assign(haptic.dynamic().begin(), haptic.dynamic().end());
+  for (int t = 0; t < haptic.tools(); ++t) of_tool_.push_back(std::make_unique<OfTool>());
+  copy_ = std::make_unique<LocalModel>();
+  reader_ = bus.reader(topics::local_contact_model);
+}
+
+LocalFeed::~LocalFeed() = default;
+
+void LocalFeed::take() {
+  while (const auto message = reader_->take()) {
+    if (message->tool_run != run_ || message->tool >= of_tool_.size()) continue;
+    if (copy_model(*message, dynamic_, *copy_)) of_tool_[message->tool]->newest.put(*copy_);
+  }
+}
+
+void LocalFeed::give(HapticStep& haptic) {
+  for (std::size_t t = 0; t < of_tool_.size(); ++t) {
+    const LocalModel& model = of_tool_[t]->newest.get();
+    const LocalModel& used = haptic.local(static_cast<int>(t)).model();
+    if (model.seq != 0 && (model.seq != used.seq || model.run != used.run)) haptic.consume(static_cast<int>(t), model);
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/realtime/latest.hpp"
+#include "haptic_node/haptic_step.hpp"
+
+namespace palpate {
+
+/// Brings local contact models from the bus to the haptic step without locks. take() runs on a thread of its own, give()
+/// in the haptic loop. Subscribes to nothing in a scene without moving tissue.
+class LocalFeed {
+ public:
+  /// `run`: of the haptic loop; models for another one are passed over.
+  LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run);
+  ~LocalFeed();
+
+  bool needed() const { return reader_ != nullptr; }
+  /// Takes what has come.
+  void take();
+  /// Hands each tool's newest model to the step, if it is not the one in use.
+  void give(HapticStep& haptic);
+
+ private:
+  struct OfTool;
+  std::unique_ptr<Reader<LocalContactModel>> reader_;
+  std::uint64_t run_;
+  std::vector<std::uint8_t> dynamic_;
+  std::vector<std::unique_ptr<OfTool>> of_tool_;
+  std::unique_ptr<LocalModel> copy_;
+};
+
+}  // namespace palpate

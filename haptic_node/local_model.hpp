@@ -1,0 +1,48 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "common/bus/validate.hpp"
+#include "common/tool/kinematics.hpp"
+
+namespace palpate {
+
+/// A LocalContactModel as plain memory of fixed size: it crosses threads and enters keyframes as bytes.
+struct LocalModel {
+  static constexpr int max_contacts = Limits::local_contacts;
+  static constexpr int max_nodes = Limits::local_nodes;
+  static constexpr int max_triangles = Limits::local_triangles;
+
+  struct Contact {
+    std::array<double, 3> position, normal, force;  ///< [m], unit into the tissue, [N] on the tissue; world
+    std::array<double, 9> stiffness;                ///< [N/m] row-major
+    std::uint64_t grasped;
+  };
+  struct Node {
+    std::array<double, 3> position, velocity;  ///< [m], [m/s] world
+    std::array<double, 9> stiffness;           ///< [N/m] row-major
+  };
+  struct Dofs {
+    double yaw, pitch, depth, roll, grip;
+  };
+
+  std::uint64_t run = 0, seq = 0;  ///< of the message; seq 0: none has come yet
+  std::uint64_t tool_step = 0;     ///< haptic step whose pose is in it
+  Dofs dofs{};                     ///< that pose
+  std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;
+  std::array<Contact, max_contacts> contact{};
+  std::array<Node, max_nodes> node{};
+  std::array<std::array<std::uint32_t, 3>, max_triangles> triangle{};
+
+  ToolDofs pose() const { return {.yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll, .grip = dofs.grip}; }
+};
+static_assert(std::is_trivially_copyable_v<LocalModel>);
+
+/// Copies a message that passed valid(). False, and `to` is as it was, if it names a body that is not dynamic
+/// (`dynamic`: one entry per body of the scene). Allocates nothing.
+bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dynamic, LocalModel& to);
+
+}  // namespace palpate

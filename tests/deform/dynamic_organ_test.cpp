@@ -1,0 +1,249 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/fem/direct.hpp"
+#include "tests/deform/organ_bench.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Bench;
+using testing::block_scene;
+
+constexpr double top = 0.03, radius = 0.006;
+
+double from_above(int tick, int ticks, double from, double to) { return from + (to - from) * std::min(1.0, static_cast<double>(tick) / ticks); }
+
+TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
+  Bench bench(block_scene());
+  for (int i = 0; i < 100; ++i) bench.tick(top + 0.02);
+  EXPECT_TRUE(bench.force().isZero(0));
+  for (int n = 0; n < bench.organ().mesh().nodes(); ++n) EXPECT_TRUE(bench.organ().model().displacement(n).isZero(1e-12));
+}
+
+TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
+  Scene scene = block_scene();
+  scene.bodies[0].dynamic.precision = "double";
+  scene.contact.friction = 10;
+  Bench bench(scene);
+  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, top + radius + 0.001, top + radius - 0.004));
+  const auto contacts = bench.organ().contacts();
+  ASSERT_FALSE(contacts.empty());
+  const TetMesh mesh = testing::block_mesh();
+  const Archive& archive = bench.archives()[0];
+  std::vector<Constraint> held;
+  Vector3d sum = Vector3d::Zero();
+  for (const TissueContact& c : contacts) {
+    if (c.force.dot(c.normal) <= 0) continue;
+    ASSERT_FALSE(c.face);
+    const int node = c.anchor.nodes[0];
+    for (int axis = 0; axis < 3; ++axis)
+      held.push_back(hold(archive.surface.node_number[node], axis, bench.organ().model().displacement(node)[axis]));
+    sum += c.force;
+  }
+  const StaticSolution exact = solve_direct(make_static_problem(scene.bodies[0], mesh), held);
+  Vector3d wanted = Vector3d::Zero();
+  for (const TissueContact& c : contacts)
+    if (c.force.dot(c.normal) > 0) wanted += exact.force[archive.surface.node_number[c.anchor.nodes[0]]];
+  EXPECT_LT(sum.z(), -0.05);
+  EXPECT_LT((sum - wanted).norm(), 0.01 * wanted.norm()) << sum.transpose() << " against " << wanted.transpose();
+}
+
+TEST(DynamicOrgan, LetsATipGoWithoutPullingAtIt) {
+  Bench bench(block_scene());
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, top + radius + 0.001, top + radius - 0.004));
+  EXPECT_LT(bench.force().z(), -0.01);
+  for (int i = 0; i < 400; ++i) {
+    bench.tick(from_above(i, 200, top + radius - 0.004, top + 0.03));
+    for (const TissueContact& c : bench.organ().contacts()) EXPECT_GE(c.force.dot(c.normal), 0);
+  }
+  EXPECT_TRUE(bench.force().isZero(0));
+}
+
+TEST(DynamicOrgan, ATipNeverTunnelsAtAnySpeed) {
+  for (const double speed : {0.01, 0.1, 1.0, 5.0}) {
+    Bench bench(block_scene());
+    double z = top + 0.02;
+    for (int i = 0; i < 20; ++i) bench.tick(z);
+    for (; z > top - 0.01; z -= 1e-3 * speed) bench.tick(z);
+    for (int i = 0; i < 20; ++i) bench.tick(top - 0.01);
+    EXPECT_LT(bench.force().z(), -0.01) << speed << " m/s";
+    EXPECT_TRUE(bench.finite());
+  }
+}
+
+TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
+  Scene scene = block_scene();
+  scene.tools[0].cautery = Cautery{0.0065};
+  Bench bench(scene);
+  for (int i = 0; i < 100; ++i) bench.tick(from_above(i, 50, top + 0.01, top + radius - 0.002));
+  EXPECT_TRUE(bench.organ().removed().empty());
+  for (int i = 0; i < 200; ++i) bench.tick(top + radius - 0.002 - 4e-5 * i, 0, 1);
+  EXPECT_GT(bench.organ().removed().size(), 20u);
+  EXPECT_TRUE(bench.finite());
+  const std::size_t cut = bench.organ().removed().size();
+  for (int i = 0; i < 100; ++i) bench.tick(top + radius);
+  EXPECT_EQ(bench.organ().removed().size(), cut);
+  EXPECT_EQ(bench.organ().topology().alive_count() + static_cast<int>(cut), bench.organ().topology().size());
+}
+
+TEST(DynamicOrgan, ACutThroughEverythingLeavesARunningSystem) {
+  Scene scene = block_scene();
+  scene.tools[0].cautery = Cautery{0.2};
+  Bench bench(scene);
+  for (int i = 0; i < 2500; ++i) bench.tick(0.02, 0, 1);
+  EXPECT_EQ(bench.organ().topology().alive_count(), 0);
+  EXPECT_TRUE(bench.finite());
+  for (int i = 0; i < 10; ++i) bench.tick(0.02, 0, 1);
+}
+
+TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
+  Scene scene = block_scene();
+  scene.bodies[0].dynamic.gravity = {0, 0, 9.81};  // upwards: off the base
+  scene.bodies[0].dynamic.damping = 5;
+  scene.bodies[0].fixed[0].where = {.indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
+  scene.tools[0].cautery = Cautery{0.0062};
+  scene.tools[0].radius = 0.003;
+  scene.tools[0].pivot = {-0.2, 0, 0.02};
+  scene.tools[0].axis = Vector3d::UnitX();
+  scene.tools[0].up = Vector3d::UnitZ();
+  const TetMesh mesh = make_block({-0.01, -0.005, 0}, {0.01, 0.005, 0.04}, {4, 2, 8});
+  Bench bench(scene, mesh);
+  const auto at = [&](double x) {
+    ToolState s{.run = 7, .step = 1, .depth = 0.2 + x};
+    s.pedal = 1;
+    bench.world().take(s);
+    bench.world().tick();
+  };
+  for (int i = 0; i < 400; ++i) at(-0.03 + 0.06 * i / 400);
+  EXPECT_GT(bench.organ().topology().alive_count(), 0);
+  for (int i = 0; i < 600; ++i) {
+    at(0.05);
+    ASSERT_TRUE(bench.finite()) << i;
+  }
+  std::vector<int> part;
+  EXPECT_EQ(bench.organ().topology().parts(part), 1) << "what floated is gone, what is fixed is left";
+}
+
+TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
+  Scene scene = block_scene();
+  scene.tools[0].jaws = Jaws{0.012, 0.012, 0.1};
+  Bench bench(scene);
+  const double low = top + radius - 0.001;
+  for (int i = 0; i < 50; ++i) bench.tick(from_above(i, 40, top + 0.012, low), 0, 0, 0.6);
+  for (int i = 0; i < 20; ++i) bench.tick(low, 0, 0, 0.05);
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 250, low, low + 0.008), 0, 0, 0.05);
+  EXPECT_GT(bench.force().z(), 0.02) << "the tissue is pulled up";
+  double highest = 0;
+  for (const Vector3d& x : bench.organ().surface().positions()) highest = std::max(highest, x.z());
+  EXPECT_NEAR(highest, top + 0.008, 0.0015);
+  for (int i = 0; i < 500; ++i) bench.tick(low + 0.02, 0, 0, 0.6);
+  EXPECT_TRUE(bench.force().isZero(0));
+  for (const Vector3d& x : bench.organ().surface().positions()) EXPECT_LT(x.z(), top + 0.001);
+}
+
+TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
+  Scene scene = block_scene();
+  scene.tools[0].cautery = Cautery{0.0065};
+  scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
+  Bench first(scene), second(scene);
+  const auto z = [](int i) { return top + radius + 0.002 - 1.5e-5 * i; };
+  for (int i = 0; i < 300; ++i) first.tick(z(i), 1e-5 * i, i > 200);
+  second.world().restore(first.world().save());
+  EXPECT_EQ(first.world().hash(), second.world().hash());
+  for (int i = 300; i < 600; ++i) {
+    first.tick(z(i), 1e-5 * i, i % 100 > 50);
+    second.tick(z(i), 1e-5 * i, i % 100 > 50);
+    ASSERT_EQ(first.world().hash(), second.world().hash()) << "tick " << i;
+  }
+  EXPECT_FALSE(first.organ().removed().empty());
+  EXPECT_EQ(first.organ().removed(), second.organ().removed());
+}
+
+TEST(DynamicOrgan, AStateOfAnotherSceneIsRefused) {
+  Bench bench(block_scene());
+  std::vector<std::uint8_t> state = bench.world().save();
+  for (const std::size_t size : {std::size_t{0}, std::size_t{7}, state.size() / 2, state.size() - 1}) {
+    Bench other(block_scene());
+    EXPECT_THROW(other.world().restore(std::span(state).first(size)), std::runtime_error) << size;
+  }
+}
+
+TEST(DynamicOrgan, TearsBeyondItsThreshold) {
+  Scene scene = block_scene();
+  scene.tools[0].jaws = Jaws{0.012, 0.012, 0.1};
+  scene.bodies[0].tearing = Tearing{"largest_elongation", 0.5};
+  Bench bench(scene);
+  const double low = top + radius - 0.001;
+  for (int i = 0; i < 40; ++i) bench.tick(low, 0, 0, 0.6);
+  for (int i = 0; i < 20; ++i) bench.tick(low, 0, 0, 0.05);
+  EXPECT_TRUE(bench.organ().removed().empty());
+  for (int i = 0; i < 500; ++i) {
+    bench.tick(low + 1e-4 * i, 0, 0, 0.05);
+    ASSERT_TRUE(bench.finite());
+  }
+  EXPECT_FALSE(bench.organ().removed().empty());
+}
+
+/// Force of a settled press of 3 mm at x, on all parts of the organ.
+Vector3d settled_press(const Scene& scene, double x) {
+  Bench bench(scene);
+  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 800, top + radius + 0.001, top + radius - 0.003), x);
+  EXPECT_TRUE(bench.finite());
+  Vector3d sum = bench.force();
+  if (const HybridTouch* still = bench.organ().still_part())
+    for (std::size_t c = 0; c < still->contacts().size(); ++c) sum += still->force(static_cast<int>(c));
+  return sum;
+}
+
+TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
+  Scene whole = block_scene();
+  whole.bodies[0].dynamic.precision = "double";
+  whole.contact.friction = 0;
+  for (const double x : {-0.01, 0.002, 0.015}) {
+    const Vector3d wanted = settled_press(whole, x);
+    EXPECT_LT(wanted.z(), -0.03);
+    Scene hybrid = whole;
+    hybrid.bodies[0].model = "hybrid";
+    hybrid.bodies[0].hybrid = Hybrid{};
+    hybrid.bodies[0].hybrid->regions.push_back({.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(0.0026, 1, 1)}, .group = ""});
+    const Vector3d felt = settled_press(hybrid, x);
+    EXPECT_LT((felt - wanted).norm(), 0.05 * wanted.norm()) << "at x = " << x << ": " << felt.transpose() << " against " << wanted.transpose();
+  }
+}
+
+TEST(DynamicOrgan, AnUnstableStepIsRefusedWithTheBound) {
+  Scene scene = block_scene();
+  scene.bodies[0].dynamic.step = 0.1;
+  try {
+    Bench bench(scene);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("the bound is"), std::string::npos) << error.what();
+  }
+}
+
+TEST(DynamicOrgan, RandomManipulationStaysFinite) {
+  for (const char* model : {"tensor_mass", "spring_mass"}) {
+    Scene scene = block_scene(model);
+    scene.tools[0].cautery = Cautery{0.0065};
+    scene.tools[0].jaws = Jaws{};
+    scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
+    Bench bench(scene);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0, 1);
+    double z = top + 0.02, x = 0, pedal = 0, grip = 1;
+    for (int i = 0; i < 2500; ++i) {
+      if (i % 50 == 0) pedal = unit(random) > 0.8, grip = unit(random) > 0.5 ? 1 : 0;
+      z += 1e-3 * (unit(random) - 0.5 - 4 * (z - top));
+      x += 1e-3 * (unit(random) - 0.5 - 4 * x);
+      bench.tick(z, x, pedal, grip);
+      ASSERT_TRUE(bench.finite()) << model << " at tick " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
