@@ -151,7 +151,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
   PeriodicTimer timer(1 / world_.dt(), 0);
-  std::int64_t next_frame = begin, next_house = begin;
+  std::int64_t next_frame = begin, next_house = begin, first_tick = begin;
   while (!shutdown_requested()) {
     timer.wait();
     const std::int64_t now = now_ns();
@@ -163,6 +163,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
       report_.period.skipped = timer.statistics().skipped;
     } else {
       timer.reset_statistics();
+      first_tick = now;
     }
     if (now >= next_frame) {
       publish_frames();
@@ -174,7 +175,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
     }
   }
   report_.period = timer.statistics();
-  report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  report_.seconds = 1e-9 * static_cast<double>(now_ns() - first_tick);
   return report_;
 }
 

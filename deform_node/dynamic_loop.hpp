@@ -16,7 +16,7 @@ namespace palpate {
 
 /// What a run of the loop measured.
 struct DynamicReport {
-  double seconds = 0;
+  double seconds = 0;                  ///< since the first tick
   std::uint64_t ticks = 0, frames = 0;
   std::uint64_t refused = 0;           ///< tool states of other scenes
   std::uint64_t cut = 0, torn = 0, fallen = 0;  ///< tetrahedra

@@ -9,6 +9,7 @@ namespace palpate {
 namespace {
 
 constexpr double softening = 0.02;  // of a contact's own compliance: contacts that nearly depend on one another stay finite
+constexpr int asked_each = 8;       // ticks from one look at what stiffness is wanted to the next
 constexpr int condensed_for = 16;   // ticks for which the contacts' stiffness holds while they stay the same
 
 void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) { std::copy_n(from.data(), 3, to.begin()); }
@@ -58,6 +59,7 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
 }
 
 void LocalModels::refresh() {
+  if (++ticks_ % asked_each != 0) return;
   for (int i = 0; i < world_.organs(); ++i) {
     OfOrgan& own = organs_[i];
     const DynamicOrgan& organ = world_.organ(i);

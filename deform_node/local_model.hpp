@@ -45,6 +45,7 @@ class LocalModels {
   std::vector<OfOrgan> organs_;
   std::vector<std::pair<double, int>> by_distance_;
   std::vector<int> seen_;
+  std::uint64_t ticks_ = 0;
 };
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace palpate {
 namespace {
@@ -39,6 +40,7 @@ CutSurface::CutSurface(const CutMesh& mesh, std::span<const Vector3d> rest, doub
     for (int node : mesh.facet(facet))
       if (facets_of_node_[node]++ == 0) stand(node);
   for (int facet : mesh.visible()) enter(facet);
+  find_bounds();
 }
 
 // The previous position needs no question: it was the present one when the box was last found to fit.
@@ -70,6 +72,7 @@ void CutSurface::set_positions(std::span<const Vector3d> positions) {
     stand(node);
     leavers_.push_back(node);
   }
+  find_bounds();
   ++step_;
   const auto enter_once = [&](int facet) {
     if (entered_in_[facet] == step_) return;
@@ -77,6 +80,17 @@ void CutSurface::set_positions(std::span<const Vector3d> positions) {
     enter(facet);
   };
   for (int node : leavers_) for_each_facet_of(node, enter_once);
+}
+
+// Of everything that is or may come to the surface, on its way from the previous to the present positions.
+void CutSurface::find_bounds() {
+  low_.setConstant(std::numeric_limits<double>::infinity());
+  high_ = -low_;
+  for (int node = 0; node < mesh_.nodes(); ++node) {
+    if (!mesh_.has_node(node)) continue;
+    low_ = low_.cwiseMin(position_[node]).cwiseMin(previous_[node]);
+    high_ = high_.cwiseMax(position_[node]).cwiseMax(previous_[node]);
+  }
 }
 
 void CutSurface::follow() {
@@ -92,6 +106,7 @@ void CutSurface::follow() {
 
 std::span<const int> CutSurface::find(const Vector3d& a, const Vector3d& b, double radius) const {
   const Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
+  if ((low_ - high).cwiseMax(low - high_).maxCoeff() > radius) return {};
   const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when boxes were entered; the positions do not, and replay needs that.
   int kept = 0;

@@ -57,11 +57,13 @@ class CutSurface {
   bool fits(int node) const;
   void stand(int node);
   void enter(int facet);
+  void find_bounds();
 
   const CutMesh& mesh_;
   std::vector<Eigen::Vector3d> position_, previous_;
   Buckets buckets_;
   double slack_;                     ///< [m] by which a node's box is larger than its motion
+  Eigen::Vector3d low_, high_;       ///< [m] bounds of all living nodes, now and one step ago
   std::vector<Box> box_;             ///< per node on the surface
   std::vector<int> facets_of_node_;  ///< how many visible facets
   std::vector<int> leavers_;         ///< nodes that left their boxes in this step
