@@ -2,8 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
-
 #include "common/realtime/clock.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -53,8 +51,7 @@ void DynamicLoop::take_tools() {
 
 void DynamicLoop::tick() {
   feed_.take();
-  const auto interval = static_cast<std::uint64_t>(std::lround(1 / world_.dt()));
-  if (world_.ticks() % interval == 0) {
+  if (world_.ticks() % world_.keyframe_interval() == 0) {
     keyframe_.run = run_;
     ++keyframe_.seq;
     keyframe_.tick = world_.ticks();

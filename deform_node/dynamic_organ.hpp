@@ -40,6 +40,11 @@ class DynamicOrgan {
   /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
   void tick(std::span<const ToolInTick> tools, double dt);
 
+  /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
+  void forget_factors() {
+    if (still_) still_->forget_factor();
+  }
+
   double largest_step() const { return largest_step_; }   ///< [s] that the bound allows, or the scene gives
   int steps_in(double dt) const;                          ///< steps of the integrator in a tick of dt [s]
   const CutMesh& topology() const { return topology_; }

@@ -58,6 +58,8 @@ void DynamicWorld::drop_silent() {
 
 void DynamicWorld::tick() {
   drop_silent();
+  if (ticks_ % keyframe_interval() == 0)
+    for (auto& organ : organs_) organ->forget_factors();
   for (int t = 0; t < tools(); ++t) {
     ToolInTick& tool = tools_[t];
     tool.moving.before = tool.moving.now;

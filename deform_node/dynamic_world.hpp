@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,6 +20,8 @@ class DynamicWorld {
   DynamicWorld(const Scene& scene, const std::vector<Archive>& archives);
 
   double dt() const { return dt_; }  ///< [s] nominal period of a tick: that of the haptic loop
+  /// Ticks from one keyframe to the next: a second.
+  std::uint64_t keyframe_interval() const { return static_cast<std::uint64_t>(std::lround(1 / dt_)); }
   int tools() const { return static_cast<int>(tools_.size()); }
   std::span<const int> bodies() const { return body_of_; }  ///< the dynamic ones
   const DynamicOrgan& organ(int i) const { return *organs_[i]; }

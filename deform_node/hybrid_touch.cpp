@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "deform_node/state_bytes.hpp"
+
 namespace palpate {
 namespace {
 
@@ -46,7 +48,6 @@ void HybridTouch::drop_tool(int tool) {
 }
 
 void HybridTouch::find(std::span<const MovingTool> tools) {
-  take();
   const std::span<const int> marked = contacts_.mark(tools);
   part_.update(marked);
   displacement_.clear();
@@ -73,13 +74,19 @@ void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::
 std::vector<std::uint8_t> HybridTouch::save() const {
   std::vector<std::uint8_t> bytes(contacts_.state_size());
   contacts_.save(bytes.data());
+  std::vector<Eigen::Vector3d> forces;
+  for (std::size_t c = 0; c < contacts().size(); ++c) forces.push_back(force(static_cast<int>(c)));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(forces));
   return bytes;
 }
 
 void HybridTouch::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
-  if (state.size() != contacts_.state_size()) throw std::runtime_error("the recorded state is of another hybrid body");
+  if (state.size() < contacts_.state_size()) throw std::runtime_error("the recorded state is of another hybrid body");
   contacts_.restore(state.data(), tools);
-  take();
+  state = state.subspan(contacts_.state_size());
+  const auto forces = state_bytes::take<Eigen::Vector3d>(state);
+  if (forces.size() != contacts().size()) throw std::runtime_error("the recorded state is of another hybrid body");
+  part_.adopt(model_, forces);
 }
 
 }  // namespace palpate

@@ -42,6 +42,8 @@ class HybridTouch {
   /// Overwrites the positions [m] of this part's visible nodes.
   void shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::Vector3f> position);
 
+  /// What is held is factorised anew in the next step, so that a restored state goes on alike.
+  void forget_factor() { part_.law().forget_factor(); }
   std::vector<std::uint8_t> save() const;
   void restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools);
 

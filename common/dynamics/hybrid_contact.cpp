@@ -170,7 +170,19 @@ void HybridPart::find_forces() {
   for (std::size_t c = 0; c < contacts.size(); ++c) contact_force_[c] = friction_force_[c];
   for (int r = 0; r < count; ++r)
     contact_force_[rows_[r].contact] += (constant_[r] - multiplier_[r]) * rows_[r].axis;
+  list_node_forces();
+}
 
+void HybridPart::adopt(const DynamicModel& model, std::span<const Vector3d> forces) {
+  rows_.clear();
+  take(model);
+  std::copy(forces.begin(), forces.end(), contact_force_.begin());
+  list_node_forces();
+}
+
+/// What contacts and dead forces come to at the nodes of this part.
+void HybridPart::list_node_forces() {
+  const auto contacts = law_.contacts();
   node_forces_.assign(dead_.begin(), dead_.end());
   for (std::size_t c = 0; c < contacts.size(); ++c)
     for (int v = 0; v < 3; ++v) {

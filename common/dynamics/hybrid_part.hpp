@@ -49,6 +49,8 @@ class HybridPart final : public Coupling {
   void set_force(int node, const Eigen::Vector3d& force);
 
   void take(const DynamicModel& model);
+  /// The same, with given forces [N] of the law's contacts: to go on from a recorded state.
+  void adopt(const DynamicModel& model, std::span<const Eigen::Vector3d> forces);
   /// Fills in positions() for these nodes of this part (connection nodes included).
   void update(std::span<const int> nodes);
   std::span<const Eigen::Vector3d> positions() const { return position_; }
@@ -113,6 +115,7 @@ class HybridPart final : public Coupling {
   void add_follow_force(const Anchor& anchor, const Eigen::Vector3d& force);
   Eigen::Vector3d still_position(const Anchor& anchor) const;
   void find_forces();
+  void list_node_forces();
 
   std::vector<Eigen::Vector3d> rest_;    // per node
   std::vector<int> connection_, place_;  // nodes; per node its place among them, or -1

@@ -1,6 +1,7 @@
 #pragma once
 #include "common/mesh/generators.hpp"
 #include "common/tensors/precompute.hpp"
+#include "common/tensors/precompute_dynamic.hpp"
 #include "deform_node/dynamic_world.hpp"
 
 /// A soft block on a fixed base with a tool above it, for the tests of the deformation node.
@@ -33,7 +34,10 @@ inline TetMesh block_mesh() { return make_block({-0.03, -0.03, 0}, {0.03, 0.03, 
 class Bench {
  public:
   explicit Bench(Scene scene, const TetMesh& mesh = block_mesh())
-      : scene_(std::move(scene)), archives_{precompute(scene_.bodies[0], mesh)}, world_(scene_, archives_) {}
+      : Bench(std::move(scene), [&](const Body& body) { return precompute(body, mesh); }) {}
+  /// A hybrid whose tensor-mass part has a mesh of its own.
+  Bench(Scene scene, const TetMesh& mesh, const TetMesh& coarse)
+      : Bench(std::move(scene), [&](const Body& body) { return precompute_dynamic(body, mesh, &coarse); }) {}
 
   /// One tick with the first tool's tip at height z [m] over the block's base.
   void tick(double z, double x = 0, double pedal = 0, double grip = 1) {
@@ -63,6 +67,9 @@ class Bench {
   }
 
  private:
+  template <class Make>
+  Bench(Scene scene, Make&& make) : scene_(std::move(scene)), archives_{make(scene_.bodies[0])}, world_(scene_, archives_) {}
+
   Scene scene_;
   std::vector<Archive> archives_;
   DynamicWorld world_;
