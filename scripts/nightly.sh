@@ -8,6 +8,6 @@ export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_mo
 ./scripts/test.sh
 for preset in address thread; do
   ./scripts/build.sh "$preset"
-  # OpenMP's own joins are not seen by the thread sanitizer.
-  OMP_NUM_THREADS=1 ctest --preset "$preset" --timeout 1200
+  # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
+  OMP_NUM_THREADS=1 ctest --preset "$preset" --timeout 1200 -E HapticMemory
 done

@@ -148,7 +148,7 @@ TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
   Scene scene = block_scene();
   scene.tools[0].cautery = Cautery{0.0065};
   scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
-  Bench first(scene), second(scene);
+  Bench first(scene), second(first);
   const auto z = [](int i) { return top + radius + 0.002 - 1.5e-5 * i; };
   for (int i = 0; i < 300; ++i) first.tick(z(i), 1e-5 * i, i > 200);
   second.world().restore(first.world().save());
@@ -167,7 +167,7 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
   scene.bodies[0].hybrid = Hybrid{};
   scene.bodies[0].hybrid->regions.push_back({.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}, .group = ""});
-  Bench first(scene), second(scene);
+  Bench first(scene), second(first);
   const auto move = [](Bench& bench, int i) { bench.tick(top + radius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i); };
   const int keyframe = static_cast<int>(first.world().keyframe_interval());
   for (int i = 0; i < keyframe; ++i) move(first, i);

@@ -39,6 +39,9 @@ class Bench {
   Bench(Scene scene, const TetMesh& mesh, const TetMesh& coarse)
       : Bench(std::move(scene), [&](const Body& body) { return precompute_dynamic(body, mesh, &coarse); }) {}
 
+  /// Another one of the same scene and the same tensors, at rest.
+  explicit Bench(const Bench& other) : scene_(other.scene_), archives_(other.archives_), world_(scene_, archives_) {}
+
   /// One tick with the first tool's tip at height z [m] over the block's base.
   void tick(double z, double x = 0, double pedal = 0, double grip = 1) {
     const Trocar trocar = make_trocar(scene_.tools[0].pivot, scene_.tools[0].axis, scene_.tools[0].up);
