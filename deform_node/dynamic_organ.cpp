@@ -232,7 +232,12 @@ void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const 
   const auto jaws = state_bytes::take<char>(state);
   const auto still = state_bytes::take<std::uint8_t>(state);
   const auto previous = state_bytes::take<Eigen::Vector3d>(state), present = state_bytes::take<Eigen::Vector3d>(state);
-  const bool fits = motion.size() == model_->state().size() && jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
+  const auto known = [&](const TissueContact& c) {
+    const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
+    const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < static_cast<int>(tools[c.tool].samples.size());
+    return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
+  };
+  const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() && jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
                     previous.size() == position_.size() && present.size() == position_.size() &&
                     std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
   if (!fits || !removed_.empty()) throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", body_.name));

@@ -19,12 +19,6 @@ double bucket_size(const Scene& scene, const SurfaceMap& map) {
   return scene.contact.bucket_size > 0 ? scene.contact.bucket_size : 2 * mean_edge(map);
 }
 
-std::size_t spheres_of(const Scene& scene) {
-  std::size_t spheres = 0;
-  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
-  return spheres;
-}
-
 }  // namespace
 
 HybridTouch::HybridTouch(const Archive& archive, const Scene& scene, bool single, DynamicModel& model)

@@ -1,7 +1,11 @@
 #include "deform_node/local_stiffness.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <exception>
 #include <numbers>
+#include <optional>
 
 #include "common/fem/assembly.hpp"
 #include "common/fem/factorisation.hpp"
@@ -76,10 +80,15 @@ void LocalStiffness::work(const std::stop_token& stop) {
       if (!wake_.wait(lock, stop, [this] { return asked_; })) return;
       question = question_;
     }
-    Answer answer = solve(question);
+    std::optional<Answer> answer;
+    try {
+      answer = solve(question);
+    } catch (const std::exception& error) {  // what is left is too badly shaped: the last answer stands
+      spdlog::warn("stiffness near the tools: {}", error.what());
+    }
     const std::lock_guard lock(mutex_);
-    next_ = std::move(answer);
-    answered_ = true;
+    answered_ |= answer.has_value();
+    if (answer) next_ = std::move(*answer);
     asked_ = false;
   }
 }

@@ -18,12 +18,6 @@ ContactLaw::Rule rule_of(const Contact& contact) {
   return contact.rule == "alpha" ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
 }
 
-std::size_t spheres_of(const Scene& scene) {
-  std::size_t spheres = 0;
-  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
-  return spheres;
-}
-
 }  // namespace
 
 TouchBody::TouchBody(const Archive& archive, const Scene& scene, int body)

@@ -23,6 +23,12 @@ Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d
 
 }  // namespace
 
+std::size_t spheres_of(const Scene& scene) {
+  std::size_t spheres = 0;
+  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
+  return spheres;
+}
+
 double mean_edge(const SurfaceMap& map) {
   double sum = 0;
   for (const auto& t : map.triangles)

@@ -5,6 +5,7 @@
 
 #include "common/contact/contact_law.hpp"
 #include "common/contact/touch_surface.hpp"
+#include "common/scene/scene.hpp"
 #include "common/tool/jaws.hpp"
 #include "common/tool/moving_tool.hpp"
 
@@ -77,6 +78,9 @@ class ToolContacts {
   std::vector<int> near_;              ///< triangles near each sphere, sphere by sphere
   std::vector<std::size_t> near_end_;  ///< where each sphere's end in near_
 };
+
+/// Spheres of all tools of a scene.
+std::size_t spheres_of(const Scene& scene);
 
 /// [m] mean edge of a surface at rest.
 double mean_edge(const SurfaceMap& map);

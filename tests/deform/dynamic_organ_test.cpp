@@ -189,6 +189,21 @@ TEST(DynamicOrgan, AStateOfAnotherSceneIsRefused) {
   }
 }
 
+TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
+  Bench bench(block_scene());
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, top + radius + 0.001, top + radius - 0.004));
+  const std::vector<std::uint8_t> state = bench.world().save();
+  const TissueContact& first = bench.organ().contacts()[0];
+  const auto* pattern = reinterpret_cast<const std::uint8_t*>(&first.anchor);
+  const auto at = std::search(state.begin(), state.end(), pattern, pattern + sizeof first.anchor.nodes);
+  ASSERT_NE(at, state.end());
+  std::vector<std::uint8_t> damaged = state;
+  damaged[static_cast<std::size_t>(at - state.begin()) + 3] = 0x7f;
+  Bench other(bench), whole(bench);
+  EXPECT_THROW(other.world().restore(damaged), std::runtime_error);
+  EXPECT_NO_THROW(whole.world().restore(state));
+}
+
 TEST(DynamicOrgan, TearsBeyondItsThreshold) {
   Scene scene = block_scene();
   scene.tools[0].jaws = Jaws{0.012, 0.012, 0.1};

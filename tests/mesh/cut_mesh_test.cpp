@@ -16,12 +16,12 @@ template <class Thing>
 bool hangs_together(const std::map<Thing, std::vector<Thing>>& beside) {
   if (beside.empty()) return true;
   std::set<Thing> reached{beside.begin()->first};
-  std::vector<Thing> todo(reached.begin(), reached.end());
-  while (!todo.empty()) {
-    const Thing thing = todo.back();
-    todo.pop_back();
+  std::vector<Thing> waiting(reached.begin(), reached.end());
+  while (!waiting.empty()) {
+    const Thing thing = waiting.back();
+    waiting.pop_back();
     for (const Thing& next : beside.at(thing))
-      if (reached.insert(next).second) todo.push_back(next);
+      if (reached.insert(next).second) waiting.push_back(next);
   }
   return reached.size() == beside.size();
 }
