@@ -24,11 +24,15 @@ DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double 
       feed_(bus, presence, deformer),
       surfaces_(bus, surface_nodes(deformer)) {}
 
-void DeformLoop::publish(std::int64_t now) {
-  deformer_.deform();
-  report_.deform.record(now_ns() - now);
+void DeformLoop::publish(bool all) {
+  if (deformer_.fresh()) {
+    const std::int64_t begin = now_ns();
+    deformer_.deform();
+    report_.deform.record(now_ns() - begin);
+  }
   for (int b = 0; b < deformer_.bodies(); ++b)
-    surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
+    if (all || deformer_.changed(b))
+      surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
 }
 
@@ -56,10 +60,11 @@ const DeformReport& DeformLoop::run(double seconds) {
     if (next_frame > now) bus_.wait(std::chrono::nanoseconds(next_frame - now));
     const bool news = feed_.take();
     now = now_ns();
-    if (!news && now < next_frame) continue;
-    publish(now);
+    const bool frame = now >= next_frame;
+    if (!news && !frame) continue;
+    publish(frame);
     if (news) report_.latency.record(surfaces_.last_publish_ns() - deformer_.sense_ns());
-    next_frame = now + frame_ns_;
+    if (frame) next_frame = now + frame_ns_;
   }
   report_.refused = feed_.refused();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);

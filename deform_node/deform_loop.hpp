@@ -13,12 +13,13 @@ namespace palpate {
 struct DeformReport {
   double seconds = 0;
   std::uint64_t frames = 0;
-  std::uint64_t refused = 0;  ///< contact messages of other scenes
+  std::uint64_t refused = 0;  ///< messages of other scenes
   Histogram latency;  ///< [ns] sense time of the step to the surface being published
-  Histogram deform;   ///< [ns] superposition, correction and normals
+  Histogram deform;   ///< [ns] rebuilding the fields, correction and normals
 };
 
-/// Takes contacts, superposes, publishes: at once when a contact message comes, and at least at the visual rate.
+/// Takes contacts and reduced states, rebuilds the shapes and publishes: what has changed at once when a message comes, and
+/// everything at least at the visual rate.
 class DeformLoop {
  public:
   DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz);
@@ -27,7 +28,7 @@ class DeformLoop {
   const DeformReport& run(double seconds);
 
  private:
-  void publish(std::int64_t now);
+  void publish(bool all);
   void keep_house(std::int64_t now);
 
   Deformer& deformer_;

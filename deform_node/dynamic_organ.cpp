@@ -66,7 +66,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     moving_[t] = tools[t].moving;
     if (!tools[t].present) {
-      moving_[t].samples = {};
+      moving_[t].parts = moving_[t].parts_before = {};
       contacts_.drop_tool(static_cast<int>(t));
       if (still_) still_->drop_tool(static_cast<int>(t));
     }
@@ -234,7 +234,7 @@ void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const 
   const auto previous = state_bytes::take<Eigen::Vector3d>(state), present = state_bytes::take<Eigen::Vector3d>(state);
   const auto known = [&](const TissueContact& c) {
     const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
-    const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < static_cast<int>(tools[c.tool].samples.size());
+    const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < tools[c.tool].size();
     return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
   };
   const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() && jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&

@@ -1,5 +1,8 @@
 #include "deform_node/dynamic_world.hpp"
 
+#include <algorithm>
+
+#include "common/tool/instrument.hpp"
 #include "deform_node/state_bytes.hpp"
 
 namespace palpate {
@@ -30,9 +33,14 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
       heard_(scene.tools.size(), 0) {
   for (const Tool& tool : scene.tools) {
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
-    samples_.push_back(sample_tool(tool.radius, tool.shaft_radius, tool.shaft_length));
+    parts_.push_back(tool_parts(tool));
+    forceps_.push_back(forceps_shape(tool) ? tool.jaws : std::nullopt);
   }
-  for (std::size_t t = 0; t < tools_.size(); ++t) tools_[t].moving.samples = samples_[t];
+  parts_before_ = parts_;
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    tools_[t].moving.parts = parts_[t];
+    tools_[t].moving.parts_before = parts_before_[t];
+  }
   for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
     if (!is_dynamic(scene.bodies[b])) continue;
     organs_.push_back(std::make_unique<DynamicOrgan>(archives[b], scene, b));
@@ -56,6 +64,10 @@ void DynamicWorld::drop_silent() {
   }
 }
 
+void DynamicWorld::turn_jaws(int t) {
+  if (forceps_[t]) set_opening(std::clamp(tools_[t].dofs.grip, 0.0, forceps_[t]->most_open), parts_[t]);
+}
+
 void DynamicWorld::tick() {
   drop_silent();
   if (ticks_ % keyframe_interval() == 0)
@@ -63,6 +75,7 @@ void DynamicWorld::tick() {
   for (int t = 0; t < tools(); ++t) {
     ToolInTick& tool = tools_[t];
     tool.moving.before = tool.moving.now;
+    parts_before_[t] = parts_[t];
     anew_[t] = waiting_[t];
     if (!waiting_[t]) continue;
     waiting_[t] = 0;
@@ -70,8 +83,12 @@ void DynamicWorld::tick() {
     const ToolState& state = newest_[t];
     tool.dofs = dofs_of(state);
     tool.moving.now = tip_pose(trocars_[t], tool.dofs);
+    turn_jaws(t);
     // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
-    if (!tool.present || state.run != consumed_[t].run) tool.moving.before = tool.moving.now;
+    if (!tool.present || state.run != consumed_[t].run) {
+      tool.moving.before = tool.moving.now;
+      parts_before_[t] = parts_[t];
+    }
     tool.present = true;
     consumed_[t] = state;
   }
@@ -98,6 +115,7 @@ void DynamicWorld::restore(std::span<const std::uint8_t> state) {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     tools_[t].moving.now.matrix() = tools[t].pose;
     tools_[t].dofs = tools[t].dofs;
+    turn_jaws(static_cast<int>(t));
     tools_[t].present = tools[t].present != 0;
     consumed_[t] = tools[t].consumed;
     heard_[t] = tools[t].heard;

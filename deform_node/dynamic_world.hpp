@@ -46,10 +46,12 @@ class DynamicWorld {
 
  private:
   void drop_silent();
+  void turn_jaws(int tool);
 
   double dt_;
   std::vector<Trocar> trocars_;
-  std::vector<std::vector<SampleSphere>> samples_;
+  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
+  std::vector<std::optional<Jaws>> forceps_;                 ///< per tool; none for other kinds
   std::vector<ToolInTick> tools_;
   std::vector<ToolState> newest_, consumed_;
   std::vector<char> waiting_, anew_;

@@ -25,7 +25,7 @@ HybridTouch::HybridTouch(const Archive& archive, const Scene& scene, bool single
     : model_(model),
       map_(quasi_static_surface(archive)),
       part_(archive, scene.contact.friction, single),
-      contacts_(map_, bucket_size(scene, map_), part_.law(), spheres_of(scene)),
+      contacts_(map_, bucket_size(scene, map_), part_.law(), parts_of(scene)),
       moved_(map_.size(), Eigen::Vector3f::Zero()) {
   part_.couple(model);
   displacement_.reserve(3 * map_.size());

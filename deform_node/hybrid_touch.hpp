@@ -33,8 +33,6 @@ class HybridTouch {
   void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
 
   const HybridPart& part() const { return part_; }
-  /// Triangles of this part near a point; ascending, valid until the next call.
-  std::span<const int> near(const Eigen::Vector3d& centre, double radius) const { return contacts_.near(centre, radius); }
   const TouchSurface& surface() const { return contacts_.surface(); }
   std::span<const TouchContact> contacts() const { return part_.law().contacts(); }
   Eigen::Vector3d force(int contact) const { return part_.contact_force(contact); }  ///< [N] on the tissue

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "common/contact/triangle.hpp"
+#include "common/contact/segment.hpp"
 
 namespace palpate {
 namespace {
@@ -69,12 +69,13 @@ void LocalModels::refresh() {
     for (int t = 0; t < world_.tools(); ++t) {
       const ToolInTick& tool = world_.tool(t);
       if (!tool.present) continue;
-      for (int s = 0; s < static_cast<int>(tool.moving.samples.size()); ++s) {
-        const Eigen::Vector3d centre = tool.moving.centre(tool.moving.now, s);
-        const double radius = tool.moving.samples[s].radius;
-        for (int facet : organ.surface().find(centre, centre, radius + own.look_ahead))
+      for (int p = 0; p < tool.moving.size(); ++p) {
+        const Segment axis = tool.moving.axis(p);
+        const double radius = tool.moving.radius(p);
+        for (int facet : organ.surface().find(axis.start, axis.end, radius + own.look_ahead))
           for (int node : organ.topology().facet(facet)) {
-            const double distance = (organ.surface().positions()[node] - centre).norm() - radius;
+            const Eigen::Vector3d& x = organ.surface().positions()[node];
+            const double distance = (x - nearest_point(axis, x)).norm() - radius;
             by_distance_.emplace_back(distance, node);
             lacks |= distance < 0.5 * own.look_ahead && own.stiffness->current().find(node) < 0;
           }
@@ -157,17 +158,17 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
   }
 }
 
-// The surface nearest to the tool's spheres, with each node's own static stiffness.
+// The surface nearest to the tool's parts, with each node's own static stiffness.
 void LocalModels::add_surface(int tool, int i, LocalContactModel& model) {
   const DynamicOrgan& organ = world_.organ(i);
   const ToolInTick& t = world_.tool(tool);
   const LocalStiffness::Answer& answer = organs_[i].stiffness->current();
   by_distance_.clear();
-  for (int s = 0; s < static_cast<int>(t.moving.samples.size()); ++s) {
-    const Eigen::Vector3d centre = t.moving.centre(t.moving.now, s);
-    const double radius = t.moving.samples[s].radius;
-    for (int facet : organ.surface().find(centre, centre, radius + organs_[i].look_ahead))
-      if (!organ.is_joint(facet)) by_distance_.emplace_back(std::sqrt(closest_point(centre, organ.surface().corners(facet)).squared_distance) - radius, facet);
+  for (int p = 0; p < t.moving.size(); ++p) {
+    const Segment axis = t.moving.axis(p);
+    const double radius = t.moving.radius(p);
+    for (int facet : organ.surface().find(axis.start, axis.end, radius + organs_[i].look_ahead))
+      if (!organ.is_joint(facet)) by_distance_.emplace_back(std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
   add_triangles(
@@ -230,11 +231,11 @@ void LocalModels::add_still_surface(int tool, int i, LocalContactModel& model) {
   const TouchSurface& surface = still.surface();
   by_distance_.clear();
   const ToolInTick& t = world_.tool(tool);
-  for (int s = 0; s < static_cast<int>(t.moving.samples.size()); ++s) {
-    const Eigen::Vector3d centre = t.moving.centre(t.moving.now, s);
-    const double radius = t.moving.samples[s].radius;
-    for (int triangle : still.near(centre, radius + organs_[i].look_ahead))
-      by_distance_.emplace_back(std::sqrt(closest_point(centre, surface.corners(triangle)).squared_distance) - radius, triangle);
+  for (int p = 0; p < t.moving.size(); ++p) {
+    const Segment axis = t.moving.axis(p);
+    const double radius = t.moving.radius(p);
+    for (int triangle : surface.find(axis, axis, radius + organs_[i].look_ahead))
+      by_distance_.emplace_back(std::sqrt(closest_points(axis, surface.corners(triangle)).squared_distance) - radius, triangle);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
   add_triangles(

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <limits>
 
-#include "common/contact/triangle.hpp"
+#include "common/contact/segment.hpp"
 #include "common/tool/jaws.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr int sweeps = 8;             // Gauss-Seidel over the contacts: more than one where they share nodes
-constexpr double margin_share = 0.1;  // of a sphere's radius: what is this near is watched before it is touched
+constexpr double margin_share = 0.1;  // of a part's radius: what is this near is watched before it is touched
 
-// From a sphere's centre to a surface point, on the side from which the surface may be touched.
+// From a part's axis to a surface point, on the side from which the surface may be touched.
 Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre, const Eigen::Vector3d& outward) {
   const Eigen::Vector3d d = point - centre;
   return d.dot(outward) < 0 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d(-outward);
@@ -73,49 +73,58 @@ void TissueContacts::find(std::span<const MovingTool> tools) {
   for (const TissueContact& c : before_)
     if (c.sample == TissueContact::in_jaws) contacts_.push_back(c);
   for (int t = 0; t < static_cast<int>(tools.size()); ++t)
-    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) find_sphere(tools, t, s);
+    for (int p = 0; p < tools[t].size(); ++p) find_part(tools, t, p);
 }
 
-void TissueContacts::find_sphere(std::span<const MovingTool> tools, int tool, int sample) {
+void TissueContacts::find_part(std::span<const MovingTool> tools, int tool, int sample) {
   const MovingTool& moving = tools[tool];
-  const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
-  const double reach = (1 + margin_share) * moving.samples[sample].radius;
+  const Segment before = moving.axis_before(sample), now = moving.axis(sample);
+  const double reach = (1 + margin_share) * moving.radius(sample);
   if (add_crossing(moving, tool, sample)) return;
-  const std::span<const int> near = surface_.find(before, now, reach);
+  // The boxes of the axis and of its way here: all that a sphere sweeps, and of a segment what its ends sweep.
+  const Eigen::Vector3d low = now.start.cwiseMin(now.end).cwiseMin(before.start).cwiseMin(before.end);
+  const Eigen::Vector3d high = now.start.cwiseMax(now.end).cwiseMax(before.start).cwiseMax(before.end);
+  const std::span<const int> near = surface_.find(low, high, reach);
   if (near.empty()) return;
   const std::size_t first = contacts_.size();
   add_nodes(moving, tool, sample, near);
   if (contacts_.size() == first) add_face(moving, tool, sample, near);
 }
 
-// The sphere's centre has passed through the surface within this tick: the contact is made where it passed.
+// The part's axis has passed through the surface within this tick: the contact is made where a point of it, one in each
+// radius, passed first.
 bool TissueContacts::add_crossing(const MovingTool& moving, int tool, int sample) {
-  const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
+  const Segment from = moving.axis_before(sample), to = moving.axis(sample);
+  const int last = static_cast<int>(std::ceil(moving.parts[sample].length / moving.radius(sample)));
   double earliest = std::numeric_limits<double>::infinity();
   TissueContact c{.tool = tool, .sample = sample, .face = 1};
-  for (int facet : surface_.find(before, now, 0)) {
-    const auto hit = sweep_point(before, now, surface_.previous_corners(facet), surface_.corners(facet));
-    if (!hit || !hit->from_outside || shown_.is_joint(facet) || hit->time >= earliest) continue;
-    earliest = hit->time;
-    c.anchor = {topology_.facet(facet), hit->weights};
-    c.normal = -surface_.normal(facet);
+  for (int i = 0; i <= last; ++i) {
+    const double share = last > 0 ? static_cast<double>(i) / last : 0.0;
+    const Eigen::Vector3d before = from.at(share), now = to.at(share);
+    for (int facet : surface_.find(before, now, 0)) {
+      const auto hit = sweep_point(before, now, surface_.previous_corners(facet), surface_.corners(facet));
+      if (!hit || !hit->from_outside || shown_.is_joint(facet) || hit->time >= earliest) continue;
+      earliest = hit->time;
+      c.anchor = {topology_.facet(facet), hit->weights};
+      c.normal = -surface_.normal(facet);
+    }
   }
   if (!std::isfinite(earliest)) return false;
   add(c, moving);
   return true;
 }
 
-// Where facets are smaller than the sphere, their nodes carry the contact.
+// Where facets are smaller than the part's radius, their nodes carry the contact.
 void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, std::span<const int> near) {
-  const Eigen::Vector3d centre = moving.centre(moving.now, sample);
-  const double radius = moving.samples[sample].radius, reach = (1 + margin_share) * radius;
+  const Segment axis = moving.axis(sample);
+  const double radius = moving.radius(sample), reach = (1 + margin_share) * radius;
   for (int facet : near) {
     const std::array<int, 3> nodes = topology_.facet(facet);
     double edges = 0;
     for (int v = 0; v < 3; ++v) edges += (mesh_.rest[nodes[v]] - mesh_.rest[nodes[(v + 1) % 3]]).norm();
     if (edges / 3 > radius || shown_.is_joint(facet)) continue;
     for (int node : nodes) {
-      const Eigen::Vector3d& x = surface_.positions()[node];
+      const Eigen::Vector3d &x = surface_.positions()[node], centre = nearest_point(axis, x);
       if ((x - centre).squaredNorm() > reach * reach) continue;
       const bool taken = std::ranges::any_of(contacts_, [&](const TissueContact& c) {
         return c.tool == tool && !c.face && c.anchor.nodes[0] == node && (c.sample == sample || c.sample == TissueContact::in_jaws);
@@ -129,16 +138,17 @@ void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, s
   }
 }
 
-// Where they are larger, the sphere touches between nodes, at the surface point nearest to its centre.
+// Where they are larger, the part touches between nodes, at the surface point nearest to its axis.
 void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, std::span<const int> near) {
-  const Eigen::Vector3d centre = moving.centre(moving.now, sample);
-  const double reach = (1 + margin_share) * moving.samples[sample].radius;
+  const Segment axis = moving.axis(sample);
+  const double reach = (1 + margin_share) * moving.radius(sample);
   double least = reach * reach;
   TissueContact c{.tool = tool, .sample = sample, .face = 1};
   int nearest = -1;
   for (int facet : near) {
     const Triangle corners = surface_.corners(facet);
-    const ClosestPoint p = closest_point(centre, corners);
+    const ClosestOfTriangle p = closest_points(axis, corners);
+    const Eigen::Vector3d centre = axis.at(p.share);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
     if (p.squared_distance >= least || shown_.is_joint(facet) || (centre - at).dot(surface_.normal(facet)) <= 0) continue;
     least = p.squared_distance;
@@ -146,11 +156,11 @@ void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, st
     c.anchor = {topology_.facet(facet), p.weights};
     c.normal = direction_to(at, centre, surface_.normal(facet));
   }
-  // In its own dent the sphere's centre may have come behind every facet: what it touched before goes on.
+  // In its own dent the part's axis may have come behind every facet: what it touched before goes on.
   const auto held = std::ranges::find_if(before_, [&](const TissueContact& b) { return b.tool == tool && b.sample == sample && b.face; });
   const bool goes_on = held != before_.end() && anchored(*held) && held->force.dot(held->normal) > 0;
   if (goes_on && (nearest < 0 || held->sticking)) {
-    const Eigen::Vector3d at = anchor_position(held->anchor, surface_.positions());
+    const Eigen::Vector3d at = anchor_position(held->anchor, surface_.positions()), centre = nearest_point(axis, at);
     c.anchor = held->anchor;
     c.normal = (at - centre).dot(held->normal) > 0 ? Eigen::Vector3d((at - centre).normalized()) : held->normal;
     nearest = 0;
@@ -158,7 +168,7 @@ void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, st
   if (nearest >= 0) add(c, moving);
 }
 
-// A contact of the same sphere at the same node, or within a facet, keeps where it sticks.
+// A contact of the same part at the same node, or within a facet, keeps where it sticks.
 void TissueContacts::add(const TissueContact& contact, const MovingTool& tool) {
   if (contacts_.size() == most) return;
   TissueContact& c = contacts_.emplace_back(contact);
@@ -168,7 +178,7 @@ void TissueContacts::add(const TissueContact& contact, const MovingTool& tool) {
   const bool goes_on = old != before_.end() && old->force.dot(old->normal) > 0;
   c.sticking = goes_on ? old->sticking : 1;
   if (goes_on) c.force = old->force;
-  c.offset = goes_on && old->sticking ? old->offset : Eigen::Vector3d(tool.before.inverse() * position(c.anchor));
+  c.offset = goes_on && old->sticking ? old->offset : tool.to_part_before(c.sample, position(c.anchor));
 }
 
 bool TissueContacts::grasp(int tool, const Eigen::Isometry3d& pose, double length, double width) {
@@ -248,14 +258,19 @@ void TissueContacts::step(std::span<const MovingTool> tools, std::span<const Eig
     if (c.sample == TissueContact::in_jaws) put_right(c, tools[c.tool], end[c.tool]);
   for (TissueContact& c : contacts_) c.force = c.push / (dt * dt);
   for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (const TissueContact& c : contacts_) follow_tool(c, begin[c.tool], end[c.tool], dt);
+    for (const TissueContact& c : contacts_) follow_tool(c, tools[c.tool], begin[c.tool], end[c.tool], dt);
+}
+
+// Where the tool in this pose holds a contact's point.
+Eigen::Vector3d TissueContacts::held_at(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& pose) {
+  return c.sample == TissueContact::in_jaws ? pose * c.offset : pose * (tool.parts[c.sample].pose * c.offset);
 }
 
 // The position of one contact's point: first the normal push against the gap, then friction against the slip.
 void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d mobile = mobility(c.anchor);
   if (mobile.maxCoeff() <= 0) return;
-  const Eigen::Vector3d x = position(c.anchor), miss = pose * c.offset - x, pushed = c.push;
+  const Eigen::Vector3d x = position(c.anchor), miss = held_at(c, tool, pose) - x, pushed = c.push;
   if (c.sample == TissueContact::in_jaws) {
     for (int axis = 0; axis < 3; ++axis)
       if (mobile[axis] > 0) c.push[axis] += miss[axis] / mobile[axis];
@@ -263,7 +278,7 @@ void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const E
     const Eigen::Vector3d& n = c.normal;
     const double along = n.dot(mobile.cwiseProduct(n));
     if (along <= 0) return;
-    const double gap = tool.samples[c.sample].radius - n.dot(x - tool.centre(pose, c.sample));
+    const double gap = tool.radius(c.sample) - n.dot(x - nearest_point(tool.parts[c.sample].axis(pose), x));
     const double pressing = std::max(0.0, pushed.dot(n) + gap / along);
     const Eigen::Vector3d slip = miss - miss.dot(n) * n;
     const double across = std::max(0.5 * (mobile.sum() - along), 1e-3 * along);
@@ -277,11 +292,11 @@ void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const E
 }
 
 // Its velocity: that of the tool, along the normal alone where it slides.
-void TissueContacts::follow_tool(const TissueContact& c, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt) {
+void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt) {
   const bool in_jaws = c.sample == TissueContact::in_jaws;
   if (!in_jaws && c.force.dot(c.normal) <= 0) return;
   const Eigen::Vector3d mobile = mobility(c.anchor);
-  const Eigen::Vector3d missing = (end * c.offset - begin * c.offset) / dt - velocity(c.anchor);
+  const Eigen::Vector3d missing = (held_at(c, tool, end) - held_at(c, tool, begin)) / dt - velocity(c.anchor);
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
   if (in_jaws || c.sticking) {
     for (int axis = 0; axis < 3; ++axis)
@@ -295,7 +310,7 @@ void TissueContacts::follow_tool(const TissueContact& c, const Eigen::Isometry3d
 
 void TissueContacts::end_tick(std::span<const MovingTool> tools) {
   for (TissueContact& c : contacts_)
-    if (c.sample != TissueContact::in_jaws && !c.sticking) c.offset = tools[c.tool].now.inverse() * position(c.anchor);
+    if (c.sample != TissueContact::in_jaws && !c.sticking) c.offset = tools[c.tool].to_part(c.sample, position(c.anchor));
 }
 
 }  // namespace palpate

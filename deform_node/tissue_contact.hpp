@@ -18,18 +18,18 @@ struct TissueContact {
   static constexpr std::int32_t in_jaws = -1;
 
   std::int32_t tool = 0;
-  std::int32_t sample = 0;  ///< which sphere of the tool, or in_jaws: held on all sides until the jaws open
+  std::int32_t sample = 0;  ///< which part of the tool, or in_jaws: held on all sides until the jaws open
   std::int32_t face = 0;    ///< 1: anchored within a facet; 0: at the node anchor.nodes[0]
   std::int32_t sticking = 1;
   Anchor anchor;
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< [m] where the anchor sticks to the tool, tip frame
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< [m] where the anchor sticks to the tool: the part's frame, in jaws the tip's
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue: a load within each step
   Eigen::Vector3d push = Eigen::Vector3d::Zero();     ///< [kg m] force times the step squared, while a step is put right
 };
 
 /// Contacts of tools with a dynamic body. Their forces are loads within each step; after it the touched points are put
-/// onto the tools' spheres (never pulled towards them), and what the jaws hold is put where the jaws are, by a projection
+/// onto the tools' parts (never pulled towards them), and what the jaws hold is put where the jaws are, by a projection
 /// along M^-1. What that took goes into the forces, so that at rest they are those of the static problem and nothing is
 /// left to put right. No stiffness of contact limits the step.
 class TissueContacts {
@@ -40,7 +40,7 @@ class TissueContacts {
 
   std::span<const TissueContact> list() const { return contacts_; }
 
-  /// Once a tick: which points the tools' spheres touch. Contacts that go on keep where they stick.
+  /// Once a tick: which points the tools' parts touch. Contacts that go on keep where they stick.
   void find(std::span<const MovingTool> tools);
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
@@ -64,7 +64,7 @@ class TissueContacts {
   Eigen::Vector3d position(const Anchor& anchor) const;
   Eigen::Vector3d inverse_mass(int node) const;
   bool anchored(const TissueContact& c) const;
-  void find_sphere(std::span<const MovingTool> tools, int tool, int sample);
+  void find_part(std::span<const MovingTool> tools, int tool, int sample);
   bool add_crossing(const MovingTool& tool, int index, int sample);
   void add_nodes(const MovingTool& tool, int index, int sample, std::span<const int> near);
   void add_face(const MovingTool& tool, int index, int sample, std::span<const int> near);
@@ -72,8 +72,9 @@ class TissueContacts {
   Eigen::Vector3d velocity(const Anchor& anchor) const;
   Eigen::Vector3d mobility(const Anchor& anchor) const;
   void load_tissue();
+  static Eigen::Vector3d held_at(const TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& pose);
   void put_right(TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& pose);
-  void follow_tool(const TissueContact& contact, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt);
+  void follow_tool(const TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt);
   void move(const Anchor& anchor, const Eigen::Vector3d& push, const Eigen::Vector3d& impulse);
 
   const ElasticMesh& mesh_;

@@ -15,7 +15,7 @@ namespace {
 
 class ScriptedDevice : public Device {
  public:
-  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) {}
+  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) { check_grip(trajectory_, tool); }
   DeviceSample read(double seconds) override { return {trajectory_.at(seconds), 0}; }
   bool finished(double seconds) const override { return seconds > trajectory_.duration(); }
 

@@ -25,13 +25,14 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
     : haptic_(haptic),
       devices_(devices),
       presence_(presence),
-      publisher_(bus, haptic.tools(), run),
+      publisher_(bus, haptic, run),
       bus_devices_(bus, devices),
       local_feed_(bus, haptic, run),
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
       samples_(haptic.tools()),
       dofs_(haptic.tools()),
       ring_(ring_slots) {
+  ring_.for_each_slot([&](StepRecord& slot) { prepare_record(haptic, slot); });
   keyframe_.dt = haptic.dt();
   keyframe_.code_path = std::move(code_path);
   keyframe_.state.resize(haptic.state_size());
@@ -131,6 +132,7 @@ void HapticLoop::publish_loop() {
     report_status(now_ns());
   }
   drain();
+  publisher_.finish();
 }
 
 void HapticLoop::drain() {

@@ -3,25 +3,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
+
+#include "common/tool/instrument.hpp"
+#include "haptic_node/quasi_static_body.hpp"
 
 namespace palpate {
 
 HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives) : dt_(1.0 / scene.rates.haptic_hz) {
   for (const Tool& tool : scene.tools) {
+    const bool forceps = tool.kind == "forceps";
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
     tool_names_.push_back(tool.name);
-    samples_.push_back(sample_tool(tool.radius, tool.shaft_radius, tool.shaft_length));
+    parts_.push_back(tool_parts(tool));
+    shaft_length_.push_back(tool.shaft_length);
+    tool_compliance_.push_back(tool.compliance);
     safety_.emplace_back(tool.max_force, tool.max_force_rate, dt_);
-    jaws_.push_back(tool.jaws);
+    jaws_.push_back(forceps ? std::nullopt : tool.jaws);
+    hands_.emplace_back();
+    if (forceps) hands_.back().emplace(static_cast<int>(hands_.size()) - 1, tool, dt_);
   }
-  for (const auto& samples : samples_) moving_.push_back({.samples = samples});
+  parts_before_ = parts_;
+  for (std::size_t t = 0; t < parts_.size(); ++t) moving_.push_back({.parts_before = parts_before_[t], .parts = parts_[t]});
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    dynamic_.push_back(is_dynamic(scene.bodies[b]));
-    bodies_.push_back(dynamic_[b] ? nullptr : std::make_unique<TouchBody>(archives[b], scene, static_cast<int>(b)));
-    body_names_.push_back(scene.bodies[b].name);
+    const Body& body = scene.bodies[b];
+    const int index = static_cast<int>(b);
+    dynamic_.push_back(is_dynamic(body));
+    body_names_.push_back(body.name);
+    bodies_.emplace_back();
+    modal_.push_back(nullptr);
+    if (body.shell) {
+      auto modal = std::make_unique<ModalBody>(archives[b], scene, index);
+      modal_.back() = modal.get();
+      modal_bodies_.push_back({index, static_cast<std::size_t>(modal->modes())});
+      bodies_.back() = std::move(modal);
+    } else if (!dynamic_[b] && !body.catheter) {
+      bodies_.back() = std::make_unique<QuasiStaticBody>(archives[b], scene, index);
+    }
   }
+  build_catheters(scene);
   if (std::ranges::count(dynamic_, 1) > 0)
     for (const Trocar& trocar : trocars_) local_.push_back(std::make_unique<LocalBody>(trocar, scene.contact.friction, dt_));
   loads_.resize(moving_.size());
@@ -33,23 +55,35 @@ HapticStep::~HapticStep() = default;
 
 void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
   if (!sense(dofs)) throw std::runtime_error("a tool's first pose is not a number");
-  for (MovingTool& m : moving_) m.before = m.now;
+  for (int t = 0; t < tools(); ++t) {
+    moving_[t].before = moving_[t].now;
+    if (!hands_[t]) continue;
+    hands_[t]->start(dofs[t].grip);
+    set_opening(hands_[t]->opening(), parts_[t]);
+    std::ranges::copy(parts_[t], parts_before_[t].begin());
+  }
   if (resuming) return;
   for (int t = 0; t < tools(); ++t)
-    for (int s = 0; s < static_cast<int>(samples_[t].size()); ++s)
+    for (int p = 0; p < moving_[t].size(); ++p)
       for (int b = 0; b < bodies(); ++b) {
         if (!bodies_[b]) continue;
-        const double depth = bodies_[b]->penetration(moving_[t].centre(moving_[t].now, s), samples_[t][s].radius);
+        const double depth = bodies_[b]->penetration(moving_[t].axis(p), moving_[t].radius(p));
         if (depth > 0)
           throw std::runtime_error(fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it", tool_names_[t],
-                                               body_names_[b], s == 0 ? "tip" : "shaft", 1e3 * depth));
+                                               body_names_[b], part_name(t, p), 1e3 * depth));
       }
 }
 
+// What a person calls a part of a tool.
+const char* HapticStep::part_name(int tool, int part) const {
+  if (hands_[tool]) return part == forceps_shaft ? "shaft" : "jaw";
+  return part == 0 ? "tip" : "shaft";
+}
+
 void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
-  const bool fits = tool < moving_.size() && held.body < bodies_.size() && bodies_[held.body] && held.sample < samples_[tool].size();
+  const bool fits = tool < moving_.size() && held.body < bodies_.size() && bodies_[held.body] && held.sample < parts_[tool].size();
   if (!fits) throw std::runtime_error("a peer keeps a contact of a tool or body that this scene does not have");
-  TouchContact c{.tool = static_cast<int>(tool), .sample = static_cast<int>(held.sample)};
+  TouchContact c{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)};
   const int nodes = static_cast<int>(bodies_[held.body]->surface().positions().size());
   for (int v = 0; v < 3; ++v) {
     if (static_cast<int>(held.nodes[v]) >= nodes) throw std::runtime_error("a peer keeps a contact on a node that the body lacks");
@@ -95,8 +129,12 @@ void HapticStep::work_jaws(std::span<const ToolDofs> dofs) {
 void HapticStep::step(std::span<const ToolDofs> dofs) {
   bool healthy = sense(dofs);
   work_jaws(dofs);
+  work_forceps(dofs);
   std::uint32_t softened = 0;
   for (int t = 0; t < tools(); ++t) output_[t] = {};
+  for (auto& body : bodies_)
+    if (body) body->update_surface(moving_);
+  healthy &= move_catheters();
   for (auto& body : bodies_) {
     if (!body) continue;
     body->collide(moving_);
@@ -116,7 +154,12 @@ void HapticStep::step(std::span<const ToolDofs> dofs) {
     output_[t].torque += load.torque;
     if (local_[t]->stale()) output_[t].flags = stale_model;
   }
-  for (int t = 0; t < tools(); ++t) output_[t].flags |= softened | safety_[t].apply(output_[t].force, output_[t].torque, healthy);
+  for (int t = 0; t < tools(); ++t) {
+    Output& out = output_[t];
+    out.flags |= softened | safety_[t].apply(out.force, out.torque, healthy);
+    out.trocar = trocar_reaction(trocars_[t], dofs[t], shaft_length_[t], out.force, out.torque).trocar;
+  }
+  keep_tasks();
   ++step_;
 }
 
@@ -132,33 +175,49 @@ void HapticStep::trip() {
   for (SafetyChain& s : safety_) s.trip();
 }
 
+// What is kept beside tools, bodies and local models, in a fixed order.
+template <class Visit>
+void HapticStep::visit_extras(Visit&& visit) {
+  visit(&step_, sizeof step_);
+  for (Task& task : tasks_) visit(&task, sizeof task);
+  for (int& contacts : wall_contacts_) visit(&contacts, sizeof contacts);
+}
+
 std::size_t HapticStep::state_size() const {
-  std::size_t size = moving_.size() * (16 * sizeof(double) + sizeof(SafetyChain::State));
+  std::size_t size = moving_.size() * (16 * sizeof(double) + sizeof(SafetyChain::State)) + jaws_closed_.size();
+  for (const auto& hand : hands_)
+    if (hand) size += sizeof(ForcepsHand::State);
   for (const auto& body : bodies_)
     if (body) size += body->state_size();
+  for (const auto& catheter : catheters_)
+    if (catheter) size += catheter->state_size();
   for (const auto& local : local_) size += local->state_size();
-  return size + jaws_closed_.size() + (has_moving_tissue() ? sizeof step_ : 0);
+  return size + sizeof step_ + tasks_.size() * (sizeof(Task) + sizeof(int));
 }
 
 void HapticStep::save(std::span<std::uint8_t> to) {
   std::uint8_t* p = to.data();
+  const auto put = [&p](const void* from, std::size_t size) {
+    std::memcpy(p, from, size);
+    p += size;
+  };
   for (int t = 0; t < tools(); ++t) {
-    std::memcpy(p, moving_[t].now.data(), 16 * sizeof(double));
-    p += 16 * sizeof(double);
-    std::memcpy(p, &safety_[t].state(), sizeof(SafetyChain::State));
-    p += sizeof(SafetyChain::State);
+    put(moving_[t].now.data(), 16 * sizeof(double));
+    put(&safety_[t].state(), sizeof(SafetyChain::State));
     *p++ = jaws_closed_[t];
+    if (hands_[t]) put(&hands_[t]->state(), sizeof(ForcepsHand::State));
   }
-  for (auto& body : bodies_) {
-    if (!body) continue;
-    body->save(p);
-    p += body->state_size();
-  }
-  for (auto& local : local_) {
-    local->save(p);
-    p += local->state_size();
-  }
-  if (has_moving_tissue()) std::memcpy(p, &step_, sizeof step_);
+  const auto save_all = [&p](auto& items) {
+    for (auto& item : items) {
+      if (!item) continue;
+      item->save(p);
+      p += item->state_size();
+    }
+  };
+  save_all(bodies_);
+  save_all(catheters_);
+  save_all(local_);
+  visit_extras(put);
   forget_factors();
 }
 
@@ -170,26 +229,39 @@ void HapticStep::forget_factors() {
 void HapticStep::restore(std::span<const std::uint8_t> from) {
   if (from.size() != state_size()) throw std::runtime_error("the recorded state is of another scene (its size differs)");
   const std::uint8_t* p = from.data();
+  const auto get = [&p](void* to, std::size_t size) {
+    std::memcpy(to, p, size);
+    p += size;
+  };
   for (int t = 0; t < tools(); ++t) {
-    std::memcpy(moving_[t].now.data(), p, 16 * sizeof(double));
+    get(moving_[t].now.data(), 16 * sizeof(double));
     moving_[t].before = moving_[t].now;
-    p += 16 * sizeof(double);
     SafetyChain::State state;
-    std::memcpy(&state, p, sizeof state);
+    get(&state, sizeof state);
     safety_[t].set_state(state);
-    p += sizeof state;
     jaws_closed_[t] = *p++;
+    if (!hands_[t]) continue;
+    ForcepsHand::State hand;
+    get(&hand, sizeof hand);
+    hands_[t]->set_state(hand);
+    set_opening(hand.grip.opening, parts_[t]);
+    std::ranges::copy(parts_[t], parts_before_[t].begin());
   }
   for (auto& body : bodies_) {
     if (!body) continue;
     body->restore(p, moving_);
     p += body->state_size();
   }
+  for (auto& catheter : catheters_) {
+    if (!catheter) continue;
+    catheter->restore(p);
+    p += catheter->state_size();
+  }
   for (auto& local : local_) {
     local->restore(p);
     p += local->state_size();
   }
-  if (has_moving_tissue()) std::memcpy(&step_, p, sizeof step_);
+  visit_extras(get);
 }
 
 }  // namespace palpate

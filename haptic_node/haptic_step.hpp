@@ -8,15 +8,25 @@
 #include "common/bus/messages.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/archive.hpp"
+#include "common/catheter/catheter_body.hpp"
 #include "common/tool/kinematics.hpp"
+#include "haptic_node/forceps_hand.hpp"
 #include "haptic_node/local_body.hpp"
+#include "haptic_node/modal_body.hpp"
 #include "haptic_node/safety.hpp"
+#include "haptic_node/task.hpp"
 #include "haptic_node/touch_body.hpp"
 
 namespace palpate {
 
+/// A body that crosses the bus by its reduced state: modes, or particles.
+struct ReducedBody {
+  int body = 0;          ///< position in the scene's body list
+  std::size_t size = 0;  ///< modes; particles
+};
+
 /// One tick of the haptic loop as a function of the tools' degrees of freedom and of its own state:
-/// sense, collide, hold, force. It allocates nothing, takes no lock and does no I/O after construction, and gives
+/// sense, collide, hold, force. Jaws close, catheters move against the walls as they stand, then tools meet the bodies. It allocates nothing, takes no lock and does no I/O after construction, and gives
 /// the same bits for the same inputs on the same code path.
 class HapticStep {
  public:
@@ -51,8 +61,19 @@ class HapticStep {
   std::uint32_t flags(int tool) const { return output_[tool].flags; }
   const Eigen::Vector3d& press(int tool) const { return output_[tool].press; }
   const Eigen::Isometry3d& pose(int tool) const { return moving_[tool].now; }
+  double opening(int tool) const { return hands_[tool] ? hands_[tool]->opening() : 0.0; }    ///< [rad] between a forceps' jaws
+  double grip_torque(int tool) const { return hands_[tool] ? hands_[tool]->torque() : 0.0; }  ///< [N m] on the handle, opens the jaws
+  const Eigen::Vector3d& trocar_force(int tool) const { return output_[tool].trocar; }       ///< [N] of the trocar on the shaft
   bool is_touch_body(int b) const { return bodies_[b] != nullptr; }
-  const TouchBody& body(int b) const { return *bodies_[b]; }  ///< a quasi-static one
+  const TouchBody& body(int b) const { return *bodies_[b]; }  ///< a quasi-static or modal one
+
+  /// Bodies that move with inertia and whose state this node owns.
+  std::span<const ReducedBody> modal_bodies() const { return modal_bodies_; }
+  std::span<const ReducedBody> catheters() const { return catheter_bodies_; }
+  bool is_modal(int b) const { return modal_[b] != nullptr; }
+  const ModalBody& modal(int b) const { return *modal_[b]; }
+  const CatheterBody& catheter(int b) const { return *catheters_[b]; }
+  std::span<const Task> tasks() const { return tasks_; }  ///< one a catheter, in the order of catheters()
   void trip();  ///< fault from outside: the force ramps to zero
 
   /// Changing state as bytes, to start a replay from. save() leaves the factor forgotten, so that the run goes on
@@ -65,22 +86,41 @@ class HapticStep {
  private:
   struct Output {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero(), press = Eigen::Vector3d::Zero();
+    Eigen::Vector3d trocar = Eigen::Vector3d::Zero();
     std::uint32_t flags = 0;
   };
   bool sense(std::span<const ToolDofs> dofs);
+  const char* part_name(int tool, int part) const;
+  void build_catheters(const Scene& scene);
   void work_jaws(std::span<const ToolDofs> dofs);
+  void work_forceps(std::span<const ToolDofs> dofs);
+  bool move_catheters();
+  void keep_tasks();
+  template <class Visit>
+  void visit_extras(Visit&& visit);
 
   double dt_;
   std::vector<Trocar> trocars_;
   std::vector<std::string> tool_names_, body_names_;
-  std::vector<std::vector<SampleSphere>> samples_;
+  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
+  std::vector<double> shaft_length_, tool_compliance_;
   std::vector<MovingTool> moving_;
-  std::vector<std::unique_ptr<TouchBody>> bodies_;  ///< null where the body is dynamic
+  std::vector<std::unique_ptr<TouchBody>> bodies_;  ///< null where the body is dynamic or a catheter
+  std::vector<ModalBody*> modal_;                   ///< those of bodies_ that are; null else
+  std::vector<std::unique_ptr<CatheterBody>> catheters_;  ///< null where the body is none
+  std::vector<ModalBody*> ducts_;                   ///< per body: what a catheter is led into, null for none
+  std::vector<ReducedBody> modal_bodies_, catheter_bodies_;
+  std::vector<CatheterTool> catheter_tools_;
+  std::vector<Eigen::Isometry3d> jaw_poses_;
+  std::vector<Task> tasks_;
+  std::vector<int> wall_contacts_;                  ///< per catheter, in the last step
+  std::vector<std::uint8_t> held_before_;
   std::vector<std::uint8_t> dynamic_;
   std::vector<std::unique_ptr<LocalBody>> local_;   ///< one per tool; none without a dynamic body
   std::uint64_t step_ = 0;
   std::vector<SafetyChain> safety_;
-  std::vector<std::optional<Jaws>> jaws_;      ///< per tool
+  std::vector<std::optional<ForcepsHand>> hands_;  ///< per tool; of those that are forceps
+  std::vector<std::optional<Jaws>> jaws_;          ///< per tool; of probes
   std::vector<std::uint8_t> jaws_closed_;
   std::vector<ToolLoad> loads_;
   std::vector<Output> output_;

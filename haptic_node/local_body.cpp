@@ -5,7 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "common/contact/triangle.hpp"
+#include "common/contact/segment.hpp"
 
 namespace palpate {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
-constexpr double own_reach = 1.25;  // of a sphere's radius: a contact this near to its centre is its own
+constexpr double own_reach = 1.25;  // of a part's radius: a contact this near to its axis is its own
 
 Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) { return Eigen::Map<const Vector3d>(a.data()); }
 
@@ -47,11 +47,11 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   if (m.seq == 0) return load;
   const int held = hold(tool, load);
   extrapolate(std::min(age, extrapolated));
-  for (int s = 0; s < static_cast<int>(tool.samples.size()); ++s) {
+  for (int p = 0; p < tool.size(); ++p) {
     Touched touched;
-    const double radius = tool.samples[s].radius;
-    const Vector3d centre = tool.centre(tool.now, s);
-    if (!holds(centre, radius, s, held) && touch(centre, radius, touched)) add(touched.at, touched.force, tool, load);
+    const double radius = tool.radius(p);
+    const Segment axis = tool.axis(p);
+    if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
   }
   stale_ = state_.weight < 1 && !load.force.isZero(0);
   load.force *= state_.weight;
@@ -97,24 +97,25 @@ void LocalBody::extrapolate(double seconds) {
   }
 }
 
-// How deep a sphere has come into the near surface, judged at the surface point nearest to its centre; on which side of
-// the surface the centre lies, by the triangle that faces it most among those that share that point.
-bool LocalBody::touch(const Vector3d& centre, double radius, Touched& touched) const {
+// How deep a part has come into the near surface, judged where its axis and the surface are nearest; on which side of
+// the surface the axis lies, by the triangle that faces it most among those that share that point.
+bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) const {
   const LocalModel& m = state_.model;
   double nearest = radius * radius, facing = 0;
   int found = -1;
-  ClosestPoint at{};
+  ClosestOfTriangle at;
+  const Vector3d low = axis.start.cwiseMin(axis.end), high = axis.start.cwiseMax(axis.end);
   for (int t = 0; t < m.triangles; ++t) {
-    if (((centre - box_[t][1]).cwiseMax(box_[t][0] - centre)).maxCoeff() > radius) continue;
+    if (((low - box_[t][1]).cwiseMax(box_[t][0] - high)).maxCoeff() > radius) continue;
     const auto& [a, b, c] = m.triangle[t];
     const Triangle corners{position_[a], position_[b], position_[c]};
-    const ClosestPoint point = closest_point(centre, corners);
+    const ClosestOfTriangle point = closest_points(axis, corners);
     const double tie = 1e-9 * radius * radius;
     if (point.squared_distance > nearest + tie) continue;
     const Vector3d cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const double size = cross.norm();
     if (!(size > 0)) continue;
-    const double above = (centre - corners[0]).dot(cross) / size;
+    const double above = (axis.at(point.share) - corners[0]).dot(cross) / size;
     const bool nearer = found < 0 || point.squared_distance < nearest - tie;
     if (!nearer && std::abs(above) <= std::abs(facing)) continue;
     nearest = std::min(nearest, point.squared_distance);
@@ -133,17 +134,17 @@ bool LocalBody::touch(const Vector3d& centre, double radius, Touched& touched) c
   const double distance = std::sqrt(at.squared_distance), side = facing >= 0 ? 1 : -1;
   const Vector3d corner = position_[nodes[0]];
   const Vector3d outward = (position_[nodes[1]] - corner).cross(position_[nodes[2]] - corner).normalized();
-  const Vector3d into = distance > 1e-6 * radius ? Vector3d(side * (touched.at - centre) / distance) : Vector3d(-outward);
+  const Vector3d into = distance > 1e-6 * radius ? Vector3d(side * (touched.at - axis.at(at.share)) / distance) : Vector3d(-outward);
   const double along = into.dot(stiffness * into), depth = radius - side * distance;
   touched.force = depth * along * into;
   return depth > 0 && along > 0;
 }
 
-// A sphere that held tissue in the model, or the tip with tissue between its jaws, is felt by that alone, not twice.
-bool LocalBody::holds(const Vector3d& centre, double radius, int sphere, int held) const {
+// A part that held tissue in the model, or the tip with tissue between its jaws, is felt by that alone, not twice.
+bool LocalBody::holds(const Segment& axis, double radius, int part, int held) const {
   const double reach = own_reach * radius;
   return std::any_of(held_.begin(), held_.begin() + held, [&](const Held& h) {
-    return (h.grasped && sphere == 0) || (h.at - centre).squaredNorm() < reach * reach;
+    return (h.grasped && part == 0) || (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
   });
 }
 

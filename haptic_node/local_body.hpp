@@ -8,7 +8,7 @@ namespace palpate {
 
 /// Moving tissue as one tool feels it: the force of all dynamic bodies, from the newest local contact model that the
 /// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
-/// by the stiffness in it; a sphere of the tool that held nothing is felt by how deep it has come into the near surface.
+/// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface.
 /// Age counts in haptic steps, so that a replay gives the same bits. Never allocates.
 class LocalBody {
  public:
@@ -23,7 +23,7 @@ class LocalBody {
   void consume(const LocalModel& model);
   const LocalModel& model() const { return state_.model; }
 
-  /// Force and torque on the tool in haptic step `step`. Its spheres are those of `tool`, the tip first.
+  /// Force and torque on the tool in haptic step `step`. Its parts are those of `tool`, a probe's tip first.
   ToolLoad load(const MovingTool& tool, std::uint64_t step);
   /// True if the last load was less than it should be, because the model is too old or has only just come back.
   bool stale() const { return stale_; }
@@ -50,8 +50,8 @@ class LocalBody {
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
   void extrapolate(double seconds);
-  bool touch(const Eigen::Vector3d& centre, double radius, Touched& touched) const;
-  bool holds(const Eigen::Vector3d& centre, double radius, int sphere, int held) const;
+  bool touch(const Segment& axis, double radius, Touched& touched) const;
+  bool holds(const Segment& axis, double radius, int part, int held) const;
 
   Trocar trocar_;
   double friction_, dt_;

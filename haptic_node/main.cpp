@@ -57,6 +57,29 @@ void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bu
   }
 }
 
+/// How the tasks of a scene ended, one entry a catheter.
+nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
+  nlohmann::json tasks = nlohmann::json::array();
+  for (std::size_t i = 0; i < haptic.catheters().size(); ++i) {
+    const Task& task = haptic.tasks()[i];
+    const std::string& body = scene.bodies[haptic.catheters()[i].body].name;
+    tasks.push_back({{"body", body},
+                     {"inserted_m", task.inserted},
+                     {"deepest_m", task.deepest},
+                     {"inserting_s", task.inserting_s()},
+                     {"force_max_n", task.largest_force},
+                     {"wall_contacts", task.wall_contacts},
+                     {"grasps", task.grasps},
+                     {"drops", task.drops},
+                     {"held_s", task.held_s}});
+    spdlog::info("task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} N, {} wall contacts, "
+                 "{} grasps, {} drops, held for {:.1f} s",
+                 body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.largest_force, task.wall_contacts, task.grasps, task.drops,
+                 task.held_s);
+  }
+  return tasks;
+}
+
 nlohmann::json summary_of(const LoopReport& r) {
   const auto us = [](const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); };
   return {{"node", "haptic"},
@@ -108,9 +131,15 @@ void run(const NodeOptions& o) {
     bus->wait(20ms);
   }
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
+  for (const ReducedBody& b : haptic.catheters())
+    spdlog::info("body '{}': {} particles, {}", scene.bodies[b.body].name, b.size,
+                 scene.bodies[b.body].catheter->integrator == "implicit"
+                     ? std::string("implicit, one step a tick")
+                     : fmt::format("semi-implicit, {} substeps a tick", haptic.catheter(b.body).substeps()));
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
   const LoopReport& report = loop.run(o.seconds);
-  const nlohmann::json summary = summary_of(report);
+  nlohmann::json summary = summary_of(report);
+  if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);
   if (o.supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
                summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(), summary["step_us_p999"].get<double>(),

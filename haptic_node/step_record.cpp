@@ -1,9 +1,41 @@
 #include "haptic_node/step_record.hpp"
 
+#include <algorithm>
+
 namespace palpate {
 namespace {
 
 std::array<double, 3> plain(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+void prepare_record(const HapticStep& haptic, StepRecord& r) {
+  std::size_t modes = 0, particles = 0;
+  for (const ReducedBody& b : haptic.modal_bodies()) modes += b.size;
+  for (const ReducedBody& b : haptic.catheters()) particles += b.size;
+  r.coordinates.resize(modes);
+  r.particles.resize(3 * particles);
+  r.tasks.resize(haptic.catheters().size());
+  if (modes > 0) r.on_shell.reserve(StepRecord::max_shell_forces);
+}
+
+namespace {
+
+void fill_shapes(const HapticStep& haptic, StepRecord& r) {
+  double* coordinates = r.coordinates.data();
+  r.on_shell.clear();
+  for (const ReducedBody& b : haptic.modal_bodies()) {
+    haptic.modal(b.body).show(coordinates, [&](int node, const Eigen::Vector3d& f) {
+      if (r.on_shell.size() == r.on_shell.capacity()) return;
+      r.on_shell.push_back({static_cast<std::uint32_t>(b.body),
+                            {static_cast<std::uint32_t>(node), {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}}});
+    });
+    coordinates += b.size;
+  }
+  double* particles = r.particles.data();
+  for (const ReducedBody& b : haptic.catheters())
+    for (const Eigen::Vector3d& p : haptic.catheter(b.body).positions()) particles = std::copy_n(p.data(), 3, particles);
+}
 
 }  // namespace
 
@@ -16,10 +48,13 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
   for (int t = 0; t < r.tools; ++t) {
     const bool moving = haptic.has_moving_tissue();
     r.of_tool[t] = {.dofs = samples[t].dofs,
+                    .opening = haptic.opening(t),
                     .device_seq = samples[t].seq,
                     .force = plain(haptic.force(t)),
                     .torque = plain(haptic.torque(t)),
                     .press = plain(haptic.press(t)),
+                    .trocar = plain(haptic.trocar_force(t)),
+                    .grip_torque = haptic.grip_torque(t),
                     .flags = haptic.flags(t),
                     .model_run = moving ? haptic.local(t).model().run : 0,
                     .model_seq = moving ? haptic.local(t).model().seq : 0};
@@ -36,16 +71,21 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
       to.offset = plain(c.offset);
       to.normal = plain(c.normal);
       to.force = plain(c.force);
-      to.sample = static_cast<std::uint32_t>(c.sample);
+      to.sample = static_cast<std::uint32_t>(c.part);
       to.sticking = c.touch == Touch::sticking;
       r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool);
     }
+    if (haptic.is_modal(b)) continue;  // its shape follows from its own state
     law.for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
       if (r.forces == StepRecord::max_forces) return;
       r.nodal[r.forces] = {static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(node), plain(f)};
       r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law.contacts()[contact].tool);
     });
   }
+  std::ranges::copy(haptic.tasks(), r.tasks.begin());
+  r.has_shapes = !haptic.modal_bodies().empty() || !haptic.catheters().empty();
+  r.has_shapes &= step % StepRecord::shape_interval == 0;
+  if (r.has_shapes) fill_shapes(haptic, r);
 }
 
 }  // namespace palpate

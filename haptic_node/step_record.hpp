@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// What one haptic step hands to the publisher: plain memory, filled in place in the ring.
+/// What one haptic step hands to the publisher: filled in place in the ring, in memory that prepare_record() took.
 struct StepRecord {
   static constexpr int max_tools = 8;
   static constexpr int max_contacts = TouchBody::max_contacts;
@@ -17,8 +17,10 @@ struct StepRecord {
 
   struct OfTool {
     ToolDofs dofs;
+    double opening;
     std::uint64_t device_seq;
-    std::array<double, 3> force, torque, press;
+    std::array<double, 3> force, torque, press, trocar;
+    double grip_torque;
     std::uint32_t flags;
     std::uint64_t model_run, model_seq;  ///< local contact model in use
   };
@@ -31,7 +33,22 @@ struct StepRecord {
   std::array<std::uint8_t, max_contacts> contact_tool;
   std::array<NodalForce, max_forces> nodal;
   std::array<std::uint8_t, max_forces> nodal_tool;
+
+  // Bodies whose state this node owns, in the order of ReducedBodies. Shapes every shape_interval steps.
+  static constexpr std::uint64_t shape_interval = 4;
+  static constexpr int max_shell_forces = 3 * (max_contacts + ModalBody::max_wall_forces);
+  struct OnShell {
+    std::uint32_t body;
+    ShellForce force;
+  };
+  bool has_shapes = false;
+  std::vector<double> coordinates, particles;  ///< of all modal bodies; of all catheters
+  std::vector<OnShell> on_shell;
+  std::vector<Task> tasks;                     ///< one a catheter
 };
+
+/// Makes room in a slot of the ring for the bodies of a scene.
+void prepare_record(const HapticStep& haptic, StepRecord& record);
 
 /// One tool's input of a step.
 struct DeviceSample {

@@ -1,13 +1,12 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/contact/tool_contacts.hpp"
-#include "common/models/nonlinear.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/compliance.hpp"
+#include "common/tool/forceps.hpp"
 
 namespace palpate {
 
@@ -18,50 +17,62 @@ struct ToolLoad {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the tool about its tip, likewise
 };
 
-/// One quasi-static body under the hand: its tensors, the surface near the tools and the contacts.
+/// One body under the hand whose contacts this node solves: a compliance among its surface nodes, the surface and the
+/// contacts. What moves the surface is the derived class's.
 class TouchBody {
  public:
   static constexpr int max_contacts = 96;
 
-  TouchBody(const Archive& archive, const Scene& scene, int body);
+  virtual ~TouchBody() = default;
 
-  /// collide: brings the surface near the tools up to date and finds what they touch.
-  void collide(std::span<const MovingTool> tools);
+  /// Brings the surface up to date, near the tools at least.
+  virtual void update_surface(std::span<const MovingTool> tools) = 0;
+  /// collide: finds what the tools touch.
+  void collide(std::span<const MovingTool> tools) { contacts_.collide(tools); }
   /// hold: prescribes the contacts' displacements and solves for their forces.
-  LawOutcome hold(std::span<const MovingTool> tools);
+  virtual LawOutcome hold(std::span<const MovingTool> tools);
   /// force: sums what acts on each tool (one entry per tool).
-  void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const;
+  virtual void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const;
 
   const TouchSurface& surface() const { return contacts_.surface(); }
   const ContactLaw& law() const { return law_; }
   /// Takes up a contact that a peer kept for this tool.
-  void adopt(const TouchContact& contact) { law_.add(contact, std::span(contact.force.data(), 3)); }
-  /// Jaws that close hold the nodes between them as displacement constraints until let_go().
+  void adopt(const TouchContact& contact) { contacts_.adopt(contact); }
+  /// Jaws of a probe that close hold the nodes between them as displacement constraints until let_go().
   void grasp(int tool, const Eigen::Isometry3d& pose, const Jaws& jaws) {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });
   }
+  /// The same for a forceps' jaws at this opening [rad]; true if there is something between them.
+  bool grasp(int tool, const Eigen::Isometry3d& pose, const ForcepsShape& shape, double opening);
   void let_go(int tool) { contacts_.let_go(tool); }
+  double grasp_load(int tool) const;  ///< [N] size of the sum of the forces by which the tool's jaws hold the body
+  /// [m] by which tissue reaches out from its surface nodes: half the thickness of a wall.
+  virtual double wall_radius() const { return 0; }
   void forget_factor() { law_.forget_factor(); }
-  /// Depth [m] to which a sphere reaches into the rest shape; 0 if it does not touch it.
-  double penetration(const Eigen::Vector3d& centre, double radius) const;
+  /// Depth [m] to which a part of a tool reaches into the rest shape; 0 if it does not touch it.
+  virtual double penetration(const Segment& axis, double radius) const;
 
-  std::size_t state_size() const { return contacts_.state_size(); }
-  void save(unsigned char* to) const { contacts_.save(to); }
+  virtual std::size_t state_size() const { return contacts_.state_size(); }
+  virtual void save(unsigned char* to) const { contacts_.save(to); }
   /// Throws std::runtime_error on a state that does not fit this body and these tools.
-  void restore(const unsigned char* from, std::span<const MovingTool> tools) { contacts_.restore(from, tools); }
+  virtual void restore(const unsigned char* from, std::span<const MovingTool> tools) { contacts_.restore(from, tools); }
 
- private:
-  void update_surface(std::span<const MovingTool> tools);
-  void superpose(int tool, std::vector<double>& displacement);
+ protected:
+  TouchBody(const SurfaceMap& map, Compliance<double> compliance, const Scene& scene, ToolContacts::Options options = {});
+
+  const SurfaceMap& map() const { return map_; }
+  const Compliance<double>& compliance() const { return compliance_; }
+  ToolContacts& contacts() { return contacts_; }
+  /// Where the contact law takes a node to be without contact forces: displacement [m] from rest.
+  void move_rest(int node, const Eigen::Vector3d& displacement) { unloaded_[node] = map_.position[node] + displacement; }
   Eigen::Vector3d press_of(int tool) const;
 
+ private:
   const SurfaceMap map_;
-  Compliance<double> compliance_;
+  const Compliance<double> compliance_;
+  std::vector<Eigen::Vector3d> unloaded_;  ///< [m] per node
   ContactLaw law_;
   ToolContacts contacts_;
-  std::optional<QuasiNonlinear> nonlinear_;
-  std::vector<const double*> columns_;
-  std::vector<double> coefficients_, displacement_, of_tool_, whole_;
 };
 
 }  // namespace palpate

@@ -7,12 +7,14 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/bus/fields.hpp"
 #include "common/bus/log_reader.hpp"
 #include "common/kernels/kernels.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/find_archive.hpp"
 #include "common/kernels/code_path.hpp"
 #include "haptic_node/haptic_step.hpp"
+#include "haptic_node/publisher.hpp"
 #include "haptic_node/recorded_models.hpp"
 #include "idl/topics.hpp"
 
@@ -29,6 +31,7 @@ struct RecordedStep {
   std::map<std::uint32_t, ToolDofs> dofs;
   std::map<std::uint32_t, ModelName> model;  ///< of tools that used one
   std::map<std::uint32_t, ForceState> force;
+  std::map<std::uint32_t, TaskRecord> task;  ///< by body
 };
 
 struct RecordedRun {
@@ -49,6 +52,7 @@ Recorded read_log(LogReader& log) {
   ForceState force;
   HapticKeyframe keyframe;
   LocalContactModel model;
+  TaskRecord task;
   while (log.next(event)) {
     if (event.read(topics::tool_state, tool)) {
       RecordedStep& step = runs[tool.run].steps[tool.step];
@@ -56,6 +60,8 @@ Recorded read_log(LogReader& log) {
       if (tool.local_model_seq != 0) step.model[tool.tool] = {tool.local_model_run, tool.local_model_seq};
     } else if (event.read(topics::force_state, force))
       runs[force.run].steps[force.step].force[force.tool] = force;
+    else if (event.read(topics::task_record, task))
+      runs[task.run].steps[task.step].task[task.body] = task;
     else if (event.read(topics::haptic_keyframe, keyframe))
       runs[keyframe.run].keyframes[keyframe.step] = keyframe;
     else if (event.read(topics::local_contact_model, model))
@@ -118,6 +124,7 @@ class RunVerifier {
       haptic.step(dofs);
       ++report_.steps;
       compare(haptic, step, recorded->second);
+      compare_tasks(haptic, step, recorded->second);
     }
     return step;
   }
@@ -141,13 +148,30 @@ class RunVerifier {
         report_.gaps.push_back(fmt::format("cannot verify the force of tool {} at step {}: it is not in the log", t, step));
         continue;
       }
-      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque)) {
+      const bool grip_agrees = haptic.grip_torque(t) == force->second.grip;
+      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque) && grip_agrees) {
         ++report_.forces;
         continue;
       }
       const auto& f = force->second.force;
       report_.mismatch = fmt::format("step {}, tool {}: recorded force ({:a}, {:a}, {:a}) N, computed ({:a}, {:a}, {:a}) N", step, t, f[0], f[1],
                                      f[2], haptic.force(t)[0], haptic.force(t)[1], haptic.force(t)[2]);
+    }
+  }
+
+  void compare_tasks(const HapticStep& haptic, std::uint64_t step, const RecordedStep& recorded) {
+    for (std::size_t i = 0; i < haptic.catheters().size() && report_.mismatch.empty(); ++i) {
+      const auto found = recorded.task.find(static_cast<std::uint32_t>(haptic.catheters()[i].body));
+      if (found == recorded.task.end()) continue;
+      TaskRecord computed = found->second;
+      describe(haptic.tasks()[i], computed);
+      if (same(computed, found->second)) {
+        ++report_.tasks;
+        continue;
+      }
+      report_.mismatch = fmt::format("step {}, body {}: recorded task with {:a} m inserted, {} contacts and {} drops, computed {:a} m, {} and {}", step,
+                                     found->first, found->second.inserted, found->second.wall_contacts, found->second.drops, computed.inserted,
+                                     computed.wall_contacts, computed.drops);
     }
   }
 

@@ -88,12 +88,24 @@ inline constexpr Topic<DeformKeyframe> deform_keyframe{
     "palpate/deform_keyframe", "DeformKeyframe", {true, 4, false},
     "1 Hz", "deform", "-",
     "state of moving tissue, from which a replay starts"};
+inline constexpr Topic<ModalState> modal_state{
+    "palpate/modal_state", "ModalState", {true, 16, false},
+    "250 Hz", "haptic", "deform, render",
+    "modal coordinates of one thin wall and the forces on it"};
+inline constexpr Topic<CatheterState> catheter_state{
+    "palpate/catheter_state", "CatheterState", {true, 16, false},
+    "250 Hz", "haptic", "deform, render",
+    "particles of one catheter"};
+inline constexpr Topic<TaskRecord> task_record{
+    "palpate/task_record", "TaskRecord", {true, 1, true},
+    "10 Hz and at the end", "haptic", "render",
+    "how the task with one catheter goes"};
 // clang-format on
 
 inline constexpr auto all =
     std::tuple{tool_state,  device_state,    contact_state, held_contacts,       force_state,
                surface_state, node_status,   haptic_keyframe, scene,
-               topology_change, local_contact_model, deform_step, deform_keyframe};
+               topology_change, local_contact_model, deform_step, deform_keyframe, modal_state, catheter_state, task_record};
 
 /// Calls f(topic) for every row.
 template <class F>

@@ -12,8 +12,15 @@
 /// What one picture shows, as plain values without any OpenGL. Lengths in metres, world frame.
 namespace palpate {
 
-/// How a mesh reflects light; only the outer side is drawn. Lining: the smooth, moist wall of a cavity.
-enum class Finish { tissue, bone, lining };
+/// How a mesh reflects light; only the outer side is drawn. Bone and lining (the smooth, moist wall of a cavity) are backdrop:
+/// they stand still. Duct and mucosa: outer and inner side of a thin-walled tube. Plastic: a catheter with marks. For these
+/// three `rest` is along the straightened tube: z is the distance along it, of a catheter minus that from its tip.
+enum class Finish { tissue, bone, lining, duct, mucosa, plastic };
+
+/// Whether meshes of this finish stand still behind the others.
+constexpr bool in_backdrop(Finish finish) {
+  return finish == Finish::bone || finish == Finish::lining;
+}
 
 /// A triangle mesh to draw. The spans belong to the caller and must live until Renderer::draw returns.
 struct MeshView {
@@ -29,14 +36,16 @@ struct MeshView {
   bool moving = true;                             ///< false: uploaded once per shape
 };
 
-/// A rigid instrument: a spherical tip on a shaft, which opens into two jaws.
+/// A rigid instrument: a probe, whose spherical tip on a shaft opens into two jaws, or a forceps.
 struct InstrumentView {
   Eigen::Isometry3d tip =
-      Eigen::Isometry3d::Identity();  ///< origin at the tip's centre, z from handle to tip
-  double tip_radius = 0.004;
+      Eigen::Isometry3d::Identity();  ///< z from handle to tip; origin at the tip's centre, of a forceps at the hinge
+  double tip_radius = 0.004;    ///< of a probe
   double shaft_radius = 0.0025;
-  double shaft_length = 0.3;  ///< from the tip's centre back along the shaft
-  double jaw_opening = 0;     ///< [rad] between the jaws; 0: closed, a round tip
+  double shaft_length = 0.3;  ///< from the origin back along the shaft
+  double jaw_opening = 0;     ///< [rad] between the jaws
+  double jaw_length = 0;      ///< of a forceps, from the hinge; 0: a probe
+  double jaw_radius = 0.001;  ///< of a forceps' jaw about its middle line
 };
 
 /// Colour scale of MeshView::scalar; drawn at the right edge.

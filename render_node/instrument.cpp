@@ -81,6 +81,7 @@ void close_jaw(InstrumentPart& part, const std::vector<OutlinePoint>& outline, i
 }  // namespace
 
 InstrumentShape make_instrument(const InstrumentView& view) {
+  if (view.jaw_length > 0) return make_forceps(view);
   InstrumentShape shape;
   shape.hinge = std::min(5.0 * std::max(view.tip_radius, view.shaft_radius), 0.8 * view.shaft_length);
   const auto tip = tip_outline(view.tip_radius, view.shaft_radius, shape.hinge);

@@ -12,15 +12,19 @@ struct InstrumentPart {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// An instrument in three parts. The jaws together are the round tip; each turns about the tip frame's x axis
-/// at z = -hinge, the upper one (y > 0) by +opening/2 towards +y, the lower one the other way.
+/// An instrument in three parts. Each jaw turns about the tip frame's x axis at z = -hinge, the upper one (y > 0) by
+/// +opening/2 towards +y, the lower one the other way. A probe's jaws together are the round tip; a forceps' hinge is the tip
+/// frame's origin.
 struct InstrumentShape {
   std::array<InstrumentPart, 3> parts;  ///< shaft, upper jaw, lower jaw
   double hinge = 0;                     ///< [m] behind the tip's centre
 };
 
-/// Depends on the view's three lengths only.
+/// Depends on the view's lengths only.
 InstrumentShape make_instrument(const InstrumentView& view);
+
+/// A forceps: shaft, fork and pin, and two tapered jaws with teeth. Each part is made of closed surfaces.
+InstrumentShape make_forceps(const InstrumentView& view);
 
 /// Where part `part` of the instrument stands: from the tip frame of the closed instrument to the world.
 Eigen::Isometry3d part_pose(const InstrumentView& view, const InstrumentShape& shape, int part);

@@ -19,9 +19,15 @@ double magnitude(const ForceState& f) {
 
 std::string describe(const std::string& tool, const ForceState& f) {
   std::string words = fmt::format("{}  {:.2f} N", tool, magnitude(f));
+  if (f.grip != 0) words += fmt::format("  grip {:.0f} N mm", 1e3 * f.grip);
   if (f.flags & fault) return words + "  fault: force off";
   if (f.flags & (force_limited | slew_limited)) words += "  limited";
   return words;
+}
+
+void describe(const TaskRecord& task, std::vector<std::string>& lines) {
+  lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s));
+  lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops, task.largest_force));
 }
 
 }  // namespace
@@ -35,7 +41,9 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
       renderer_(renderer),
       tools_(bus.reader(topics::tool_state)),
       forces_(bus.reader(topics::force_state)),
-      latest_force_(scene.tools.size()) {}
+      latest_force_(scene.tools.size()) {
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return body.catheter.has_value(); })) tasks_ = bus.reader(topics::task_record);
+}
 
 void RenderLoop::take() {
   news_ = source_.update();
@@ -49,6 +57,11 @@ void RenderLoop::take() {
   while (const auto force = forces_->take()) {
     const bool good = force->tool < latest_force_.size() && presence_.accepts(force->run);
     if (good) latest_force_[force->tool] = *force;
+    report_.refused += !good;
+  }
+  while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
+    const bool good = task->body < scene_.bodies.size() && scene_.bodies[task->body].catheter && presence_.accepts(task->run);
+    if (good) latest_task_[task->body] = *task;
     report_.refused += !good;
   }
 }
@@ -66,6 +79,7 @@ void RenderLoop::write_overlay() {
   lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
   lines.push_back(fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
                               1e-3 * shown_latency_.p99));
+  for (const auto& [body, task] : latest_task_) describe(task, lines);
   double strongest = 0, full = 1;
   for (std::size_t i = 0; i < latest_force_.size(); ++i) {
     lines.push_back(describe(scene_.tools[i].name, latest_force_[i]));

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -60,7 +61,9 @@ class RenderLoop {
   TopologyFeed* topology_ = nullptr;
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Reader<ForceState>> forces_;
-  std::vector<ForceState> latest_force_;  ///< by tool
+  std::unique_ptr<Reader<TaskRecord>> tasks_;  ///< null: no catheter
+  std::vector<ForceState> latest_force_;       ///< by tool
+  std::map<std::uint32_t, TaskRecord> latest_task_;  ///< by catheter
   bool news_ = false;
   Image image_;
   Histogram recent_latency_;  ///< since the last status

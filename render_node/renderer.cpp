@@ -18,7 +18,9 @@ namespace palpate {
 namespace {
 
 const std::string head = "#version 450 core\n";
-constexpr std::array<float, 4> steel{1, 1, 1, 0.045f};  // w: bare steel behind the tip [m]
+constexpr float bare_steel = 0.045f;  // behind a probe's tip [m]
+constexpr float bare_fork = 5;        // behind a forceps' hinge [radii of the shaft]
+constexpr float satin = 0.35;         // polish of a forceps: flat faces show their shape by shading
 
 }  // namespace
 
@@ -28,11 +30,11 @@ struct Renderer::Impl {
 
   void check(const Frame& frame) const;
   void draw_instruments(const Frame& frame);
-  void draw_tissue(const Frame& frame);
+  void draw_soft(const Frame& frame);
   void draw_backdrop(const Frame& frame);
   bool backdrop_changed(const Frame& frame, const SceneBlock& block);
   void draw_overlay(const Frame& frame);
-  GLuint tissue_program(bool by_scalar, std::size_t tools);
+  GLuint soft_program(Finish finish, bool by_scalar, std::size_t tools);
   GpuMesh& upload(const MeshView& mesh);
   void rebuild_font();
 
@@ -40,12 +42,12 @@ struct Renderer::Impl {
   GlFunctions& gl = context.gl;
   RenderTarget target;
   GLuint bone, lining, metal, cavity, flat;
-  std::map<std::pair<bool, std::size_t>, GLuint> tissue;  ///< by (coloured by scalar, number of instruments)
+  std::map<std::tuple<Finish, bool, std::size_t>, GLuint> soft;  ///< by (finish, coloured by scalar, number of instruments)
   GLuint block = 0, empty_array = 0, glyph_texture = 0;
   std::optional<FontAtlas> font;
   int font_size = 0;
   std::map<int, GpuMesh> meshes;
-  using InstrumentKey = std::tuple<double, double, double>;
+  using InstrumentKey = std::array<double, 5>;
   struct Instrument {
     InstrumentShape shape;
     std::vector<GpuMesh> parts;
@@ -108,22 +110,30 @@ GpuMesh& Renderer::Impl::upload(const MeshView& mesh) {
   return gpu;
 }
 
-GLuint Renderer::Impl::tissue_program(bool by_scalar, std::size_t tools) {
-  GLuint& program = tissue[{by_scalar, tools}];
+GLuint Renderer::Impl::soft_program(Finish finish, bool by_scalar, std::size_t tools) {
+  if (by_scalar) finish = Finish::tissue;
+  GLuint& program = soft[{finish, by_scalar, tools}];
   if (program) return program;
   const std::string start = fmt::format("{}{}#define TOOLS {}\n{}", head,
                                         by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
                             shaders::noise;
-  program = context.link_program("tissue", start + shaders::tissue_vert,
-                                 start + shaders::light + shaders::colours + shaders::tissue_frag);
+  const std::string lit = start + shaders::light;
+  if (finish == Finish::tissue)
+    program = context.link_program("tissue", start + shaders::tissue_vert, lit + shaders::colours + shaders::tissue_frag);
+  else if (finish == Finish::duct)
+    program = context.link_program("duct", start + shaders::wall_vert, lit + shaders::duct_frag);
+  else if (finish == Finish::mucosa)
+    program = context.link_program("mucosa", start + shaders::wall_vert, lit + shaders::mucosa_frag);
+  else
+    program = context.link_program("plastic", start + shaders::wall_vert, lit + shaders::plastic_frag);
   return program;
 }
 
-void Renderer::Impl::draw_tissue(const Frame& frame) {
+void Renderer::Impl::draw_soft(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
   for (const MeshView& mesh : frame.meshes) {
-    if (mesh.finish != Finish::tissue) continue;
-    const GLuint program = tissue_program(!mesh.scalar.empty(), frame.instruments.size());
+    if (in_backdrop(mesh.finish)) continue;
+    const GLuint program = soft_program(mesh.finish, !mesh.scalar.empty(), frame.instruments.size());
     const auto& c = mesh.colour;
     gl.ProgramUniform4f(program, 4, float(c[0]), float(c[1]), float(c[2]), 1);
     gl.UseProgram(program);
@@ -136,7 +146,7 @@ void Renderer::Impl::draw_backdrop(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
   const Eigen::Matrix4f identity = Eigen::Matrix4f::Identity();
   for (const MeshView& mesh : frame.meshes) {
-    if (mesh.finish == Finish::tissue) continue;
+    if (!in_backdrop(mesh.finish)) continue;
     const GLuint program = mesh.finish == Finish::bone ? bone : lining;
     const auto& c = mesh.colour;
     gl.ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, identity.data());
@@ -153,9 +163,10 @@ void Renderer::Impl::draw_backdrop(const Frame& frame) {
 void Renderer::Impl::draw_instruments(const Frame& frame) {
   gl.UseProgram(metal);
   gl.Enable(GL_CULL_FACE);
-  gl.ProgramUniform4f(metal, 4, steel[0], steel[1], steel[2], steel[3]);
   for (const InstrumentView& tool : frame.instruments) {
-    Instrument& made = instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length}];
+    const bool forceps = tool.jaw_length > 0;
+    gl.ProgramUniform4f(metal, 4, forceps ? satin : 1, 0, 0, forceps ? bare_fork * float(tool.shaft_radius) : bare_steel);
+    Instrument& made = instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
     if (made.parts.empty()) {
       made.shape = make_instrument(tool);
       for (const InstrumentPart& part : made.shape.parts) {
@@ -181,7 +192,7 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
 bool Renderer::Impl::backdrop_changed(const Frame& frame, const SceneBlock& block) {
   std::vector<std::uint64_t> now;
   for (const MeshView& mesh : frame.meshes)
-    if (mesh.finish != Finish::tissue) now.insert(now.end(), {static_cast<std::uint64_t>(mesh.id), mesh.shape});
+    if (in_backdrop(mesh.finish)) now.insert(now.end(), {static_cast<std::uint64_t>(mesh.id), mesh.shape});
   std::array<Eigen::Vector4f, 6> view{block.eye,     block.right, block.up,
                                       block.forward, block.light, block.viewport};
   view[2].w() = 0;  // the legend's range does not matter here
@@ -247,7 +258,7 @@ void Renderer::draw(const Frame& frame, Image& image) {
   }
   r.target.begin();
   r.draw_instruments(frame);
-  r.draw_tissue(frame);
+  r.draw_soft(frame);
   r.target.resolve();
   r.draw_overlay(frame);
   r.target.read(image);

@@ -37,14 +37,16 @@ Eigen::Matrix4d view_matrix(const Vector3d& eye, const Vector3d& right, const Ve
 
 /// The shadow of a shaft is the plane through it and the light; the tip ends it with a disc.
 SceneBlock::Tool tool_block(const InstrumentView& tool, const Vector3d& light) {
-  const Vector3d tip = tool.tip.translation();
-  const Vector3d shaft = tool.tip.linear() * Vector3d(0, 0, -tool.shaft_length);
+  const double ahead = 0.75 * tool.jaw_length;  // open jaws cast about the shadow of a narrow end there
+  const Vector3d tip = tool.tip * Vector3d(0, 0, ahead);
+  const double tip_radius = tool.jaw_length > 0 ? 1.4 * tool.jaw_radius : tool.tip_radius;
+  const Vector3d shaft = tool.tip.linear() * Vector3d(0, 0, -tool.shaft_length - ahead);
   const Vector3d to_tip = tip - light, to_end = to_tip + shaft;
   const Vector3d across = to_tip.cross(to_end).normalized();
   Vector3d along = (to_end - to_end.dot(to_tip) / to_tip.squaredNorm() * to_tip).normalized();
   // n . to_tip = n . to_end = 1 in the plane: n is normal to the shaft, scaled by the shaft's distance.
   const Vector3d foot = to_tip - to_tip.dot(shaft) / shaft.squaredNorm() * shaft;
-  return {with_w(tip, tool.tip_radius), with_w(shaft, tool.shaft_radius),
+  return {with_w(tip, tip_radius), with_w(shaft, tool.shaft_radius),
           with_w(across, 1 / shaft.squaredNorm()), with_w(along, 0),
           with_w(foot / std::max(foot.squaredNorm(), 1e-12), 0)};
 }

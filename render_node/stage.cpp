@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/mesh/normals.hpp"
 #include "render_node/backdrop.hpp"
+#include "render_node/straighten.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t most_triangles = 16000;  // of one body after refinement: what 60 frames a second allow
-constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54},
-    lining_colour{0.46, 0.20, 0.165};  // linear RGB
+// Of one body after refinement: what 60 frames a second allow. A wall has them twice; a catheter comes smooth.
+constexpr std::size_t most_triangles_of_organ = 16000, most_triangles_of_wall = 6000, most_triangles_of_catheter = 0;
+// Linear RGB.
+constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165}, duct_colour{0.60, 0.29, 0.23},
+    mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3f> out;
@@ -28,14 +32,28 @@ double round_up(double value) {
   return 10 * decade;
 }
 
+/// A catheter's rest shape seen along it: z is minus the distance from the tip.
+std::vector<Eigen::Vector3f> from_tip(const SurfaceMap& map, const Catheter& catheter) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(catheter.tip - catheter.tail, Eigen::Vector3d::UnitZ());
+  std::vector<Eigen::Vector3f> out;
+  for (const Eigen::Vector3d& p : map.position) out.push_back((turn * (p - catheter.tip)).cast<float>());
+  return out;
+}
+
 }  // namespace
 
 Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop)
     : render_(scene.render.value_or(Render{})) {
   if (!scene.render) render_.camera = fit_camera(surfaces);
-  for (const SurfaceMap& map : surfaces) {
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    const SurfaceMap& map = surfaces[b];
+    const Body& from = scene.bodies.at(b);
     Soft body;
     body.coarse = map.position.size();
+    body.most_triangles = from.shell ? most_triangles_of_wall : from.catheter ? most_triangles_of_catheter : most_triangles_of_organ;
+    body.finish = from.shell ? Finish::duct : from.catheter ? Finish::plastic : Finish::tissue;
+    const bool given = render_.tissue_colour != Render{}.tissue_colour;
+    body.colour = from.catheter ? plastic_colour : from.shell && !given ? duct_colour : render_.tissue_colour;
     body.rest = to_float(map.position);
     refine(body, map.triangles);
     body.position = body.rest;
@@ -43,6 +61,8 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
     body.normal.resize(body.refinement.vertices());
     body.refinement.apply(body.position, body.normal);
+    if (from.shell) add_wall(body, map, from.shell->thickness);
+    if (from.catheter) body.texture = from_tip(map, *from.catheter);
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
@@ -53,6 +73,10 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     instrument.view.tip_radius = tool.radius;
     instrument.view.shaft_radius = tool.shaft_radius;
     instrument.view.shaft_length = tool.shaft_length;
+    if (tool.kind == "forceps" && tool.jaws) {
+      instrument.view.jaw_length = tool.jaws->length;
+      instrument.view.jaw_radius = tool.jaws->radius;
+    }
     tools_.push_back(instrument);
   }
 }
@@ -60,15 +84,30 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
 // A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
 void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) const {
   body.rest.resize(body.coarse);
-  const int levels = refinement_levels(triangles.size(), most_triangles);
+  const int levels = refinement_levels(triangles.size(), body.most_triangles);
   body.refinement = Refinement(triangles, static_cast<int>(body.coarse), levels, body.rest);
   std::vector<Eigen::Vector3f> normal(body.coarse);
   vertex_normals(body.rest, triangles, normal);
   body.rest.resize(body.refinement.vertices());
   normal.resize(body.refinement.vertices());
   body.refinement.apply(body.rest, normal);
-  if (render_.colour == "displacement") body.displacement.assign(body.rest.size(), 0.0f);
+  if (render_.colour == "displacement" && body.finish != Finish::plastic) body.displacement.assign(body.rest.size(), 0.0f);
   ++body.shape;
+}
+
+void Stage::add_wall(Soft& body, const SurfaceMap& map, double thickness) const {
+  body.wall = ThickWall(body.refinement.triangles(), body.refinement.vertices(), thickness);
+  body.wall.place(body.position, body.normal);
+  const std::vector<Eigen::Vector3f> coarse = straighten(map);
+  body.texture.resize(body.refinement.vertices());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> coordinate(body.refinement.vertices());
+    for (std::size_t v = 0; v < coarse.size(); ++v) coordinate[v] = coarse[v][axis];
+    body.refinement.apply(coordinate);
+    for (std::size_t v = 0; v < coordinate.size(); ++v) body.texture[v][axis] = coordinate[v];
+  }
+  for (const int v : body.wall.inner().from) body.inner_texture.push_back(body.texture[v]);
+  if (!body.displacement.empty()) body.inner_displacement.resize(body.inner_texture.size());
 }
 
 void Stage::set_triangles(int index, std::span<const std::array<int, 3>> triangles) {
@@ -94,12 +133,14 @@ void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position,
   std::copy(position.begin(), position.end(), body.position.begin());
   std::copy(normal.begin(), normal.end(), body.normal.begin());
   body.refinement.apply(body.position, body.normal);
+  if (body.finish == Finish::duct) body.wall.place(body.position, body.normal);
   if (body.displacement.empty()) return;
   float most = 0;
   for (std::size_t i = 0; i < body.rest.size(); ++i) {
     body.displacement[i] = (body.position[i] - body.rest[i]).norm();
     most = std::max(most, body.displacement[i]);
   }
+  for (std::size_t i = 0; i < body.inner_displacement.size(); ++i) body.inner_displacement[i] = body.displacement[body.wall.inner().from[i]];
   if (most > legend_max_) legend_max_ = round_up(most);
 }
 
@@ -107,7 +148,8 @@ bool Stage::set_tool(const ToolState& s) {
   if (s.tool >= tools_.size()) return false;
   Instrument& tool = tools_[s.tool];
   tool.view.tip = tip_pose(tool.trocar, {s.yaw, s.pitch, s.depth, s.roll, s.grip});
-  tool.view.jaw_opening = std::clamp(s.grip, 0.0, 1.2);
+  const bool forceps = tool.view.jaw_length > 0;
+  tool.view.jaw_opening = std::clamp(forceps ? s.opening : s.grip, 0.0, forceps ? std::numbers::pi : 1.2);
   tool.seen = true;
   return true;
 }
@@ -116,20 +158,39 @@ void Stage::set_overlay(std::vector<std::string> lines, std::optional<Gauge> gau
   overlay_ = {std::move(lines), gauge};
 }
 
+void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {
+  MeshView view{.id = id,
+                .shape = body.shape,
+                .finish = body.finish,
+                .colour = body.colour,
+                .rest = body.texture.empty() ? body.rest : body.texture,
+                .position = body.position,
+                .normal = body.normal,
+                .scalar = body.displacement,
+                .triangles = body.refinement.triangles()};
+  if (body.finish != Finish::duct) {
+    frame.meshes.push_back(view);
+    return;
+  }
+  const ThickWall::Side &outer = body.wall.outer(), &inner = body.wall.inner();
+  view.position = outer.position;
+  frame.meshes.push_back(view);
+  view.id = inner_id;
+  view.finish = Finish::mucosa;
+  view.colour = mucosa_colour;
+  view.rest = body.inner_texture;
+  view.position = inner.position;
+  view.normal = inner.normal;
+  view.scalar = body.inner_displacement;
+  view.triangles = inner.triangles;
+  frame.meshes.push_back(view);
+}
+
 Frame Stage::frame() const {
   Frame frame;
   frame.camera = render_.camera;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Soft& body = bodies_[b];
-    frame.meshes.push_back({.id = static_cast<int>(b),
-                            .shape = body.shape,
-                            .colour = render_.tissue_colour,
-                            .rest = body.rest,
-                            .position = body.position,
-                            .normal = body.normal,
-                            .scalar = body.displacement,
-                            .triangles = body.refinement.triangles()});
-  }
+  const int bodies = static_cast<int>(bodies_.size());
+  for (int b = 0; b < bodies; ++b) add_views(bodies_[b], b, bodies + b, frame);
   for (std::size_t i = 0; i < backdrop_.size(); ++i) {
     const Rigid& part = backdrop_[i];
     frame.meshes.push_back({.id = -1 - static_cast<int>(i),

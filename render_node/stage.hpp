@@ -9,10 +9,12 @@
 #include "common/tool/kinematics.hpp"
 #include "render_node/draw_list.hpp"
 #include "render_node/refine.hpp"
+#include "render_node/thick_wall.hpp"
 
 namespace palpate {
 
-/// What is to be seen, as last heard: bodies, tools, backdrop and the overlay's words. Copies are snapshots.
+/// What is to be seen, as last heard: bodies, tools, backdrop and the overlay's words. Modal shells are walls with two sides,
+/// catheters smooth tubes. Copies are snapshots.
 class Stage {
  public:
   /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty.
@@ -34,13 +36,22 @@ class Stage {
   void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour);
   struct Soft;
   void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
+  void add_wall(Soft& body, const SurfaceMap& map, double thickness) const;
+  static void add_views(const Soft& body, int id, int inner_id, Frame& frame);
 
   struct Soft {
     Refinement refinement;
     std::uint64_t shape = 0;  ///< counts changes of the triangles
     std::size_t coarse;
+    std::size_t most_triangles;  ///< after refinement
+    Finish finish = Finish::tissue;
+    std::array<double, 3> colour;
     std::vector<Eigen::Vector3f> rest, position, normal;
-    std::vector<float> displacement;  ///< [m], empty unless coloured by it
+    std::vector<Eigen::Vector3f> texture;  ///< coordinates that the texture sticks to; empty: rest
+    std::vector<float> displacement;       ///< [m], empty unless coloured by it
+    ThickWall wall;                        ///< of a modal shell
+    std::vector<Eigen::Vector3f> inner_texture;
+    std::vector<float> inner_displacement;
   };
   struct Rigid {
     std::vector<Eigen::Vector3f> position, normal;

@@ -26,8 +26,8 @@ for program in "$bin"/bench_*; do
   "$program" "${quick[@]}" | keep
 done
 
-# The running systems: the liver for a while, the hepatectomy to its end.
-for scene in liver hepatectomy; do
+# The running systems: the liver for a while, the others to their end.
+for scene in liver hepatectomy catheter_insertion; do
   echo "# palpate run $scene" >&2
   limit=()
   [ "$scene" = liver ] && limit=(--seconds "$seconds")

@@ -3,7 +3,7 @@
 set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache pkg-config git
-  libeigen3-dev libsuitesparse-dev libopenblas0-pthread libopenblas-pthread-dev
+  libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-pthread libopenblas-pthread-dev
   cyclonedds-dev cyclonedds-tools liblcm-dev zlib1g-dev libxxhash-dev
   libgmsh-dev libhdf5-dev hdf5-tools libosmesa6-dev libpng-dev libfreetype-dev fonts-dejavu-core ffmpeg
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev

@@ -5,8 +5,6 @@
 #include <stdexcept>
 
 #include "common/contact/tool_contacts.hpp"
-#include "common/contact/touch_surface.hpp"
-#include "common/contact/triangle.hpp"
 #include "common/fem/assembly.hpp"
 #include "common/fem/fixation.hpp"
 #include "common/fem/selection.hpp"
@@ -15,25 +13,15 @@
 #include "common/models/nonlinear.hpp"
 #include "common/tensors/find_archive.hpp"
 #include "common/tensors/precompute.hpp"
-#include "common/tool/instrument.hpp"
-#include "common/tool/trajectory.hpp"
+#include "tools/check_duct.hpp"
 #include "tools/check_dynamic.hpp"
+#include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/footprint.hpp"
+#include "tools/words.hpp"
 
 namespace palpate {
 namespace {
-
-std::string human(std::size_t bytes) {
-  const double b = static_cast<double>(bytes);
-  if (b < 1e6) return fmt::format("{:.1f} kB", b * 1e-3);
-  return b < 1e9 ? fmt::format("{:.1f} MB", b * 1e-6) : fmt::format("{:.2f} GB", b * 1e-9);
-}
-
-std::string describe(const Selector& where, const char* list) {
-  if (!where.group.empty()) return fmt::format("group '{}'", where.group);
-  return where.box ? "a box" : fmt::format("a list of {}", list);
-}
 
 void print_fixation(const Body& body, const TetMesh& mesh) {
   for (const FixedRegion& fixed : body.fixed) {
@@ -86,8 +74,24 @@ void print_archive(const Scene& scene, const Body& body) {
   }
 }
 
-/// Loads and validates a body's mesh and everything that refers to it.
+void print_memory(const std::vector<MemoryPart>& parts) {
+  for (const MemoryPart& part : parts)
+    fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
+}
+
+/// Loads and validates a body's mesh and everything that refers to it. A catheter has no surface before it
+/// moves.
 SurfaceMap check_body(const Scene& scene, const Body& body) {
+  if (body.catheter) {
+    check_catheter(scene, body);
+    return {};
+  }
+  if (body.shell) {
+    const SurfaceMap surface = check_shell_body(scene, body);
+    print_archive(scene, body);
+    print_memory(shell_memory(scene, body, surface));
+    return surface;
+  }
   const TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
   const DofMap dofs = apply_fixation(mesh, body.fixed, fmt::format("body '{}'", body.name));
   const MaterialField materials = material_field(body, mesh);
@@ -104,43 +108,9 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   if (is_dynamic(body)) print_dynamic(body, mesh, moving);
 
   print_archive(scene, body);
-  const auto memory = is_dynamic(body) ? dynamic_memory(scene, body, moving)
-                                       : body_memory(scene, body, surface, materials.of_element.size());
-  for (const MemoryPart& part : memory)
-    fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
+  print_memory(is_dynamic(body) ? dynamic_memory(scene, body, moving)
+                                : body_memory(scene, body, surface, materials.of_element.size()));
   return surface;
-}
-
-/// Throws if a tool's sphere meets the body's surface or lies inside it.
-void check_start(const Tool& tool, const Eigen::Isometry3d& pose, const Body& body, const SurfaceMap& map) {
-  const TouchSurface surface(map, 2 * mean_edge(map));
-  for (const SampleSphere& sample : sample_tool(tool.radius, tool.shaft_radius, tool.shaft_length)) {
-    const Eigen::Vector3d centre = pose * Eigen::Vector3d(0, 0, -sample.behind);
-    bool meets = surface.encloses(centre);
-    for (int t = 0; t < surface.triangle_count() && !meets; ++t)
-      meets = closest_point(centre, surface.corners(t)).squared_distance < sample.radius * sample.radius;
-    if (meets)
-      throw std::runtime_error(fmt::format("{}: tool '{}' starts in contact with body '{}' or inside it",
-                                           tool.trajectory.string(), tool.name, body.name));
-  }
-}
-
-void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceMap>& surfaces) {
-  fmt::print("tool '{}': tip radius {} m", tool.name, tool.radius);
-  if (tool.cautery) fmt::print(", cautery of radius {} m", tool.cautery->radius);
-  if (tool.jaws)
-    fmt::print(", jaws {} x {} m that close below {} rad", tool.jaws->length, tool.jaws->width,
-               tool.jaws->closed_below);
-  fmt::print(", device {}", tool.device);
-  if (tool.device != "scripted") {
-    fmt::print("{}\n", tool.trajectory.empty() ? "" : " " + tool.trajectory.string());
-    return;
-  }
-  const Trajectory trajectory = load_trajectory(tool.trajectory);
-  fmt::print(", {} s of {}\n", trajectory.duration(), tool.trajectory.filename().string());
-  const Trocar trocar = make_trocar(tool.pivot, tool.axis, tool.up);
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-    check_start(tool, tip_pose(trocar, trajectory.at(0)), scene.bodies[b], surfaces[b]);
 }
 
 void print_sections(const Scene& scene) {
@@ -162,14 +132,19 @@ void print_sections(const Scene& scene) {
 void print_left_out(const Scene& scene) {
   fmt::print("left out:\n");
   for (const Body& body : scene.bodies) {
-    if (body.materials.empty()) fmt::print("  body '{}': one material, nothing per element\n", body.name);
-    if (!is_dynamic(body) && !body.nonlinear)
+    if (body.materials.empty() && !body.catheter)
+      fmt::print("  body '{}': one material, nothing per element\n", body.name);
+    if (body.model == "quasi_static" && !body.nonlinear)
       fmt::print("  body '{}': no quasi non-linear correction\n", body.name);
     if (is_dynamic(body) && !body.tearing) fmt::print("  body '{}': does not tear by itself\n", body.name);
     if (is_dynamic(body)) fmt::print("  body '{}': no archive in the haptic node\n", body.name);
   }
   if (std::ranges::none_of(scene.bodies, is_dynamic))
     fmt::print("  no dynamic body: no masses, no cutting, no topology topic\n");
+  if (std::ranges::none_of(scene.bodies, [](const Body& b) { return b.shell.has_value(); }))
+    fmt::print("  no shell: no modes\n");
+  if (std::ranges::none_of(scene.bodies, [](const Body& b) { return b.catheter.has_value(); }))
+    fmt::print("  no catheter: no particles and no task record\n");
   const auto works = [](const Tool& tool) { return tool.cautery || tool.jaws; };
   if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
@@ -182,6 +157,23 @@ void print_left_out(const Scene& scene) {
     fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
 }
 
+void print_warnings(const Scene& scene, const std::vector<SurfaceMap>& surfaces) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.catheter)
+      add(catheter_warnings(scene, body));
+    else
+      add(body_warnings(scene, body, surfaces[b]));
+    if (body.shell) add(shell_warnings(body, surfaces[b]));
+  }
+  add(cutting_warnings(scene));
+  for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);
+}
+
 void check(const Scene& scene) {
   fmt::print("{}{}scene {}\n", scene.title, scene.title.empty() ? "" : "\n", scene.file.string());
   std::vector<SurfaceMap> surfaces;
@@ -189,10 +181,7 @@ void check(const Scene& scene) {
   for (const Tool& tool : scene.tools) check_tool(scene, tool, surfaces);
   print_sections(scene);
   print_left_out(scene);
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-    for (const std::string& sentence : body_warnings(scene, scene.bodies[b], surfaces[b]))
-      fmt::print("warning: {}\n", sentence);
-  for (const std::string& sentence : cutting_warnings(scene)) fmt::print("warning: {}\n", sentence);
+  print_warnings(scene, surfaces);
   fmt::print("hash {}\n", scene_hash(scene));
 }
 

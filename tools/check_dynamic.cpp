@@ -177,7 +177,7 @@ std::vector<std::string> cutting_warnings(const Scene& scene) {
     if (tool.cautery && pedal_time(trajectory) == 0)
       warnings.push_back(
           fmt::format("tool '{}' has a cautery, and the pedal of its trajectory is never down", tool.name));
-    if (tool.jaws && !ever_closes(trajectory, tool.jaws->closed_below))
+    if (tool.kind == "probe" && tool.jaws && !ever_closes(trajectory, tool.jaws->closed_below))
       warnings.push_back(
           fmt::format("tool '{}' has jaws, and the grip of its trajectory never falls below {} rad",
                       tool.name, tool.jaws->closed_below));

@@ -58,21 +58,19 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
   std::vector<std::string> warnings;
   const double h = mean_edge(surface);
   for (const Tool& tool : scene.tools) {
-    if (tool.radius < h)
-      warnings.push_back(
-          fmt::format("tool '{}' has a radius of {:.3g} m, less than the mean edge {:.3g} m of body "
-                      "'{}': the force is the mesh's, not the tissue's",
-                      tool.name, tool.radius, h, body.name));
-    else if (tool.radius < 2 * h)
-      warnings.push_back(
-          fmt::format("tool '{}' has a radius of {:.3g} m, less than twice the mean edge {:.3g} m of "
-                      "body '{}': the force still depends on the mesh",
-                      tool.name, tool.radius, h, body.name));
+    const bool forceps = tool.kind == "forceps";
+    const double radius = forceps ? tool.jaws->radius : tool.radius;
+    const auto warn = [&](const char* than, const char* so) {
+      warnings.push_back(fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
+                                     forceps ? "jaws with a radius" : "a radius", radius, than, h, body.name, so));
+    };
+    if (radius < h) warn("", "the force is the mesh's, not the tissue's");
+    else if (radius < 2 * h) warn("twice ", "the force still depends on the mesh");
   }
   std::vector<Material> materials{body.material};
   for (const MaterialRegion& region : body.materials) materials.push_back(region.material);
   for (const Material& material : materials) {
-    if (material.poisson > 0.45)
+    if (material.poisson > 0.45 && !body.shell)
       warnings.push_back(
           fmt::format("body '{}' has a Poisson's ratio of {}: linear tetrahedra lock there and answer "
                       "too stiffly",

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "common/bus/print.hpp"
 #include "tools/commands.hpp"
 #include "tools/log_summary.hpp"
 
@@ -46,6 +47,8 @@ Json json_of(const LogSummary& s, const std::string& file) {
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
     json["damage"].push_back({{"offset", d.offset}, {"bytes", d.bytes}, {"tail", d.tail}});
+  json["tasks"] = Json::array();
+  for (const TaskRecord& task : s.tasks) json["tasks"].push_back(Json::parse(to_json(task)));
   json["topics"] = Json::object();
   for (const auto& [name, topic] : s.topics) json["topics"][name] = json_of(topic);
   return json;
@@ -72,6 +75,10 @@ void print_table(const LogSummary& s) {
   }
 }
 
+void print_tasks(const LogSummary& s) {
+  for (const TaskRecord& task : s.tasks) fmt::print("\ntask of catheter {} in run {:016x}\n{}", task.body, task.run, task_text(task));
+}
+
 void print_text(const LogSummary& s, const std::string& file) {
   fmt::print("{}: {:.2f} s, {:.1f} MB\n", file, s.seconds, 1e-6 * static_cast<double>(s.bytes));
   if (s.has_header)
@@ -87,6 +94,7 @@ void print_text(const LogSummary& s, const std::string& file) {
   if (!s.damage_text.empty()) fmt::print("{}\n", s.damage_text);
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
   print_table(s);
+  print_tasks(s);
 }
 
 }  // namespace

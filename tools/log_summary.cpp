@@ -62,8 +62,19 @@ class Summariser {
     learn(message);
   }
 
+  void keep(const TaskRecord& task) {
+    const auto same_stream = [&](const TaskRecord& known) { return known.body == task.body && known.run == task.run; };
+    const auto known = std::ranges::find_if(summary_.tasks, same_stream);
+    if (known == summary_.tasks.end()) {
+      summary_.tasks.push_back(task);
+    } else if (task.seq >= known->seq) {
+      *known = task;
+    }
+  }
+
   template <class M>
   void learn(const M& message) {
+    if constexpr (std::same_as<M, TaskRecord>) keep(message);
     if constexpr (std::same_as<M, SceneText>) {
       if (summary_.title.empty()) summary_.title = title_of(message.text);
     }

@@ -32,6 +32,7 @@ struct LogSummary {
   std::uint64_t bytes = 0;
   std::uint64_t unknown = 0;                   ///< events of topics that this program does not know
   std::map<std::string, TopicSummary> topics;  ///< those with samples
+  std::vector<TaskRecord> tasks;  ///< the last one of each catheter and run, in order of appearance
   std::vector<LogDamage> damage;
   std::string damage_text;
   std::optional<LogFooter> footer;  ///< absent if the recorder was killed or the end is lost

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <numbers>
 
 #include "common/scene/scene.hpp"
 #include "common/tensors/ensure_archive.hpp"
@@ -34,8 +35,19 @@ void describe_moving_part(const Archive& archive) {
                hybrid.gap.size(), hybrid.largest_gap);
 }
 
+void describe_modes(const Archive& archive) {
+  if (!archive.modal) return;
+  const auto& omega = archive.modal->omega;
+  fmt::print("  {} modes of {:.4g} to {:.4g} Hz\n", omega.size(), omega.front() / (2 * std::numbers::pi),
+             omega.back() / (2 * std::numbers::pi));
+}
+
 void precompute_body(const Scene& scene, const Body& body) {
   const auto state = ensure_archive(scene, body, show_stage);
+  if (state.file.empty()) {
+    fmt::print("body '{}': a catheter needs no archive\n", body.name);
+    return;
+  }
   if (!state.refused.empty()) fmt::print(stderr, "rebuilt, because {}\n", state.refused);
   if (state.up_to_date)
     fmt::print("body '{}': up to date: {}\n", body.name, state.file.string());
@@ -45,6 +57,7 @@ void precompute_body(const Scene& scene, const Body& body) {
   const auto archive = read_archive(state.file, ArchivePart::header, {});
   describe(archive, state);
   describe_moving_part(archive);
+  describe_modes(archive);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ void verify(const std::string& file) {
     throw std::runtime_error(fmt::format("{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified",
                                          file, report.forces, report.steps, report.gaps.size()));
   fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces, report.steps, report.code_path);
+  if (report.tasks > 0) fmt::print("{}: verified: {} records of the task are equal bit for bit\n", file, report.tasks);
   const TissueReport tissue = verify_tissue(file);  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
   if (!tissue.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));

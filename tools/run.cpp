@@ -133,6 +133,12 @@ void print_summary(const nlohmann::json& s) {
     fmt::print("haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest force {:.2f} N\n",
                number(haptic, "rate_hz"), number(haptic, "step_us_p50"), number(haptic, "step_us_p99"), number(haptic, "step_us_p999"),
                haptic.value("missed", 0), haptic.value("ticks", 0), number(haptic, "force_max_n"));
+  if (haptic.is_object() && haptic.contains("tasks"))
+    for (const auto& task : haptic["tasks"])
+      fmt::print("task     {:8.1f} mm of '{}' inserted, {:.1f} mm at the deepest, {:.1f} s after it went in   largest force {:.2f} N   {} wall contacts, "
+                 "{} grasps, {} drops\n",
+                 1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"), number(task, "inserting_s"),
+                 number(task, "force_max_n"), task.value("wall_contacts", 0), task.value("grasps", 0), task.value("drops", 0));
   if (s.contains("render_node") && s["render_node"].is_object())
     fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n", number(s["render_node"], "rate_hz"),
                1e-3 * number(s["render_node"], "latency_us_p50"), 1e-3 * number(s["render_node"], "latency_us_p99"),

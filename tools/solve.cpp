@@ -105,11 +105,21 @@ void summarise(const SolutionTable& table, const SolveArguments& arguments) {
              largest_force);
 }
 
+/// A shell's rotations are condensed into its archive, and only there.
+void check_model(const Body& body, const std::string& method) {
+  if (body.catheter)
+    throw std::runtime_error(fmt::format("body '{}' is a catheter, which has no static state to solve for", body.name));
+  if (body.shell && method == "direct")
+    throw std::runtime_error(
+        fmt::format("body '{}' is a shell, and the direct method is for tetrahedra: take --method tensors", body.name));
+}
+
 void solve(const SolveArguments& arguments) {
   if (arguments.holds.empty() && arguments.touches.empty())
     throw std::runtime_error("nothing is held: give --hold or --touch");
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
+  check_model(body, arguments.method);
   const auto table = arguments.method == "direct" ? solve_by_direct(body, arguments)
                                                   : solve_by_tensors(scene, body, arguments);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);

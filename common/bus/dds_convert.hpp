@@ -57,6 +57,9 @@ static_assert(sizeof(ConsumedStep) == sizeof(palpate_ConsumedStep));
 PALPATE_SAME_PLACE(ConsumedStep, tool);
 PALPATE_SAME_PLACE(ConsumedStep, run);
 PALPATE_SAME_PLACE(ConsumedStep, step);
+static_assert(sizeof(ShellForce) == sizeof(palpate_ShellForce));
+PALPATE_SAME_PLACE(ShellForce, node);
+PALPATE_SAME_PLACE(ShellForce, force);
 #undef PALPATE_SAME_PLACE
 
 /// Copies the text into a bounded string; what does not fit is cut before the character that it would split.

@@ -32,17 +32,17 @@
 #define PALPATE_MESSAGES(X) \
   X(ToolState)              \
   X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) \
-  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe)
+  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord)
 
 namespace palpate {
 
 PALPATE_FIELDS(NodalForce, body, node, force)
 PALPATE_FIELDS(HeldContact, body, nodes, weights, offset, normal, force, sample, sticking)
-PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch, depth, roll, grip, pedal,
+PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch, depth, roll, grip, opening, pedal,
                local_model_run, local_model_seq)
 PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, pedal)
 PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts)
-PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, flags)
+PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, flags)
 PALPATE_FIELDS(SurfaceState, body, run, seq, step, sense_ns, publish_ns, position, normal)
 PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_hash, version, rate_hz, ticks,
                missed, latency_p50_us, latency_p99_us, text)
@@ -57,6 +57,11 @@ PALPATE_FIELDS(LocalContactModel, tool, run, seq, tick, tool_run, tool_step, sen
 PALPATE_FIELDS(ConsumedStep, tool, run, step)
 PALPATE_FIELDS(DeformStep, run, seq, tick, consumed, hash)
 PALPATE_FIELDS(DeformKeyframe, run, seq, tick, dt, code_path, state)
+PALPATE_FIELDS(ShellForce, node, force)
+PALPATE_FIELDS(ModalState, body, run, seq, step, sense_ns, coordinates, forces)
+PALPATE_FIELDS(CatheterState, body, run, seq, step, sense_ns, position)
+PALPATE_FIELDS(TaskRecord, body, run, seq, step, sense_ns, inserted, deepest, inserting_s, largest_force, wall_contacts,
+               grasps, drops, held_s)
 
 /// True for the structs listed above.
 template <class M>

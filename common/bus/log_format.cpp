@@ -8,7 +8,8 @@ namespace palpate {
 
 std::string schema_text() {
   std::string text = schema_line<NodalForce>() + schema_line<HeldContact>() + schema_line<LocalContact>() +
-                     schema_line<LocalNode>() + schema_line<LocalTriangle>() + schema_line<ConsumedStep>();
+                     schema_line<LocalNode>() + schema_line<LocalTriangle>() + schema_line<ConsumedStep>() +
+                     schema_line<ShellForce>();
 #define PALPATE_SCHEMA(M) text += schema_line<M>();
   PALPATE_MESSAGES(PALPATE_SCHEMA)
 #undef PALPATE_SCHEMA

@@ -19,7 +19,8 @@ struct ToolState {
   double yaw = 0, pitch = 0;     ///< [rad] about the trocar
   double depth = 0;              ///< [m] tip beyond the trocar along the shaft
   double roll = 0;               ///< [rad] about the shaft
-  double grip = 0;               ///< [rad] jaw opening
+  double grip = 0;               ///< [rad] jaw opening as the hand asks for it
+  double opening = 0;            ///< [rad] between a forceps' jaws, which stop at what they touch; 0 for other tools
   double pedal = 0;              ///< [1] 1 while the tool's pedal is down
   std::uint64_t local_model_run = 0;  ///< run and seq of the LocalContactModel that this step used for this tool;
   std::uint64_t local_model_seq = 0;  ///< 0: none
@@ -45,10 +46,10 @@ struct HeldContact {
   std::uint32_t body = 0;
   std::array<std::uint32_t, 3> nodes{};  ///< surface node indices of the touched triangle
   std::array<double, 3> weights{};       ///< barycentric coordinates of the anchor
-  std::array<double, 3> offset{};        ///< [m] anchor in the tool's tip frame
+  std::array<double, 3> offset{};        ///< [m] where it touches, in the frame of the tool's part `sample`
   std::array<double, 3> normal{};        ///< unit, world, from the tool into the tissue
   std::array<double, 3> force{};         ///< [N] on the tissue, world, linear
-  std::uint32_t sample = 0;              ///< which sample sphere of the tool
+  std::uint32_t sample = 0;              ///< which part of the tool
   std::uint32_t sticking = 0;            ///< 1 sticks, 0 slides
 };
 
@@ -73,6 +74,8 @@ struct ForceState {
   std::int64_t sense_ns = 0;
   std::array<double, 3> force{};   ///< [N]
   std::array<double, 3> torque{};  ///< [N m]
+  double grip = 0;                 ///< [N m] on the handle, opening the jaws
+  std::array<double, 3> trocar{};  ///< [N] of the trocar on the shaft
   std::uint32_t flags = 0;         ///< bits of ForceFlag
 };
 /// `stale_model`: the force of moving tissue fades or is gone, because its local contact model comes too late.
@@ -202,6 +205,51 @@ struct DeformKeyframe {
   double dt = 0;           ///< [s] nominal period of a tick
   std::string code_path;   ///< vector width and software version
   std::vector<std::uint8_t> state;
+};
+
+/// Force of tools and catheters on a modal body at one surface node.
+struct ShellForce {
+  std::uint32_t node = 0;        ///< surface node index of that body's archive
+  std::array<float, 3> force{};  ///< [N] on the tissue, world frame
+};
+
+/// A thin wall that moves by its modes: its displacement is u = Phi coordinates + C f with f the forces, Phi its mode
+/// shapes and C its static compliance.
+struct ModalState {
+  std::uint32_t body = 0;  ///< key
+  std::uint64_t run = 0;   ///< start of the haptic loop
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;
+  std::int64_t sense_ns = 0;
+  std::vector<double> coordinates;  ///< [kg^1/2 m] per mode: X - Omega^-2 Phi^T f
+  std::vector<ShellForce> forces;   ///< f, at most one per node
+};
+
+/// Where a catheter is.
+struct CatheterState {
+  std::uint32_t body = 0;  ///< key
+  std::uint64_t run = 0;   ///< start of the haptic loop
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;
+  std::int64_t sense_ns = 0;
+  std::vector<double> position;  ///< [m] x,y,z per particle, world, from tail to tip
+};
+
+/// How the task of leading a catheter into a duct goes: what a trainer tells the trainee.
+struct TaskRecord {
+  std::uint32_t body = 0;  ///< key: the catheter
+  std::uint64_t run = 0;   ///< start of the haptic loop
+  std::uint64_t seq = 0;
+  std::uint64_t step = 0;
+  std::int64_t sense_ns = 0;
+  double inserted = 0;       ///< [m] of the catheter inside the duct now
+  double deepest = 0;        ///< [m] most that was inside so far
+  double inserting_s = 0;    ///< [s] from the first entry to the deepest place
+  double largest_force = 0;  ///< [N] on any tool so far
+  std::uint64_t wall_contacts = 0;  ///< touches of the wall that have begun
+  std::uint64_t grasps = 0;  ///< how often jaws took the catheter
+  std::uint64_t drops = 0;   ///< how often it slipped out of the jaws
+  double held_s = 0;         ///< [s] that jaws have held it
 };
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 #include "common/bus/fields.hpp"
 
 /// What a sample from outside must fulfil before a node sees it: finite numbers, bounded lengths, sizes that
-/// fit each other, indices into its own sequences, unit normals of local contacts. Other indices are checked against the scene by the node that uses them.
+/// fit each other, indices into its own sequences, unit normals of local contacts, a task record that can be. Other indices are checked against the scene by the node that uses them.
 namespace palpate {
 
 /// Bounds on lengths, the same as in idl/palpate.idl.
@@ -18,6 +18,9 @@ struct Limits {
   static constexpr std::size_t local_nodes = 192;
   static constexpr std::size_t local_triangles = 128;
   static constexpr std::size_t consumed_steps = 64;
+  static constexpr std::size_t modes = 1024;        ///< of one modal body
+  static constexpr std::size_t shell_forces = 4096;
+  static constexpr std::size_t particles = 1024;    ///< of one catheter
 };
 
 namespace detail {
@@ -79,6 +82,15 @@ inline bool sizes_fit(const LocalContactModel& m) {
 }
 inline bool sizes_fit(const DeformStep& m) {
   return m.consumed.size() <= Limits::consumed_steps;
+}
+inline bool sizes_fit(const ModalState& m) {
+  return m.coordinates.size() <= Limits::modes && m.forces.size() <= Limits::shell_forces;
+}
+inline bool sizes_fit(const CatheterState& m) {
+  return m.position.size() % 3 == 0 && m.position.size() <= 3 * Limits::particles;
+}
+inline bool sizes_fit(const TaskRecord& m) {
+  return m.inserted >= 0 && m.deepest >= m.inserted && m.inserting_s >= 0 && m.largest_force >= 0 && m.held_s >= 0;
 }
 inline bool sizes_fit(const SceneText& m) {
   return m.text.size() <= Limits::text_bytes;

@@ -65,7 +65,7 @@ void ContactLaw::add_points(const TouchContact& contact, int points) {
   std::array<Anchor, 3> anchors;
   const Expansion e = expand(contact, points, anchors);
   const int first = held_.size();
-  for (int k = 0; k < e.points; ++k) held_.add(anchors[k]);
+  for (int k = 0; k < e.points; ++k) held_.add(anchors[k], contact.softness);
   std::fill_n(forces_.begin() + 3 * first, 3 * e.points, 0.0);
   contacts_.push_back(contact);
   expansions_.push_back(e);
@@ -115,6 +115,16 @@ Eigen::Vector3d ContactLaw::displacement(int contact) const {
   return u;
 }
 
+// Where the anchor is now: what holds it has given way by a part of the displacement.
+void ContactLaw::place(int c) {
+  TouchContact& contact = contacts_[c];
+  contact.position = anchor_position(contact.anchor, rest_) + displacement(c);
+  if (contact.softness == 0) return;
+  const int first = first_point(c);
+  for (int k = 0; k < expansions_[c].points; ++k)
+    contact.position -= contact.softness * expansions_[c].share[k] * ConstVec(forces_.data() + 3 * (first + k));
+}
+
 // One linear solve for the present states. Friction of sliding contacts is taken from the last known normal force.
 int ContactLaw::solve_held() {
   int p = 0;
@@ -155,7 +165,7 @@ int ContactLaw::solve_held() {
 
 bool ContactLaw::change_state(int c, double smallest_force) {
   TouchContact& contact = contacts_[c];
-  contact.position = anchor_position(contact.anchor, rest_) + displacement(c);
+  place(c);
   if (contact.grasped) return false;
   if (contact.touch == Touch::open) {
     if (contact.normal.dot(contact.position) - contact.plane >= -gap_tolerance) return false;
@@ -180,7 +190,7 @@ bool ContactLaw::change_state(int c, double smallest_force) {
   }
   // Sliding: friction acts along the slip, that is from the tissue's point towards the tool's. If the slip has turned
   // round the contact sticks again, once in a step.
-  Eigen::Vector3d slip = contact.target - contact.position;
+  Eigen::Vector3d slip = contact.target - contact.held_at();
   slip -= slip.dot(contact.normal) * contact.normal;
   if (restuck_[c] || slip.dot(contact.slip) >= -gap_tolerance) return false;
   restuck_[c] = true;
@@ -218,7 +228,7 @@ void ContactLaw::relax() {
     TouchContact& contact = contacts_[c];
     contact.force.setZero();
     for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
-    contact.position = anchor_position(contact.anchor, rest_) + displacement(static_cast<int>(c));
+    place(static_cast<int>(c));
     if (contact.grasped) continue;
     const double pressing = contact.force.dot(contact.normal);
     const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;

@@ -15,23 +15,28 @@ enum class Touch : std::uint8_t {
   sticking,  ///< all three displacements are held
 };
 
-/// One contact between a sphere of a tool and a point of the surface. It pushes and never pulls, unless jaws hold it.
+/// One contact between a part of a tool and a point of the surface. It pushes and never pulls, unless jaws hold it.
 struct TouchContact {
   int tool = 0;
-  int sample = 0;     ///< which sphere of the tool
+  int part = 0;       ///< which part of the tool
   bool face = false;  ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
   bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
+  double softness = 0;   ///< [m/N] by which what holds the anchor gives way to the force
   Anchor anchor;
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] touching point of the sphere, tip frame
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] touching point in the part's own frame; of what jaws hold, in the tip frame
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(); ///< unit, world, from the tool into the tissue
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();    ///< unit or zero: direction of friction on the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N] on the tissue, world; conjugate to the anchor's motion
   // Set before each solve:
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m] world: where a sticking anchor is held
   double plane = 0;                                  ///< [m] least value of normal . position of the anchor
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();      ///< [m] world: where the force acts on the tool
   // Set by solve:
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m] world: the deformed anchor
+
+  /// [m] world: where the tool, had it not given way, would hold the anchor now.
+  Eigen::Vector3d held_at() const { return position + softness * force; }
 };
 
 struct LawOutcome {
@@ -42,7 +47,8 @@ struct LawOutcome {
 };
 
 /// Unilateral contact with Coulomb friction between tools and one body:
-/// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal.
+/// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal. The gap is that to the tool where its force has
+/// pushed it back: (J C J^T + c I) f = gap.
 /// Solved by an active set that starts from the last step's and changes in a fixed order, at most max_passes times;
 /// where that does not settle, a bounded relaxation goes on from there.
 class ContactLaw {
@@ -99,6 +105,7 @@ class ContactLaw {
   int first_point(int contact) const;
   int solve_held();
   Eigen::Vector3d displacement(int contact) const;
+  void place(int contact);
   bool change_states(bool one_only, double smallest_force);
   bool change_state(int contact, double smallest_force);
   void relax();

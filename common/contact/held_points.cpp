@@ -46,7 +46,7 @@ Eigen::Matrix3d HeldPoints::block(int i, int j) const {
   return b;
 }
 
-void HeldPoints::add(const Anchor& anchor) {
+void HeldPoints::add(const Anchor& anchor, double softness) {
   const int p = size();
   anchors_.push_back(anchor);
   const int touchable = compliance_.column_nodes();
@@ -70,6 +70,7 @@ void HeldPoints::add(const Anchor& anchor) {
         column(3 * q + r)[3 * p + c] = b(r, c);
       }
   }
+  for (int c = 0; c < 3; ++c) column(3 * p + c)[3 * p + c] += softness;
 }
 
 void HeldPoints::remove(int point) {

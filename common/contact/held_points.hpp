@@ -19,7 +19,8 @@ enum class Hold : unsigned char {
 
 /// The compliance among a few surface points, and the Cholesky factor of what is held of it.
 ///
-/// Displacements of the points are u = A f, A = J C J^T (3n x 3n), with J the barycentric rows. Fully held points
+/// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J the barycentric rows and c each point's own
+/// softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points
 /// come first in the factor and stay there while they are held, so that a new contact costs one append and a lost
 /// one a rank-three update; rows held along a normal are appended anew each time since normals turn.
 /// Nothing is allocated after construction.
@@ -36,7 +37,8 @@ class HeldPoints {
   int capacity() const { return capacity_; }
   const Anchor& anchor(int point) const { return anchors_[point]; }
 
-  void add(const Anchor& anchor);  ///< becomes the last point
+  /// Becomes the last point. `softness` [m/N] >= 0 of what holds it.
+  void add(const Anchor& anchor, double softness = 0);
   void remove(int point);          ///< the points after it move down by one
   void clear();
   /// Forgets the factor, so that the next solve() depends on nothing but the points and the arguments.

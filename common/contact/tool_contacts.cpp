@@ -4,29 +4,20 @@
 #include <cmath>
 #include <optional>
 
+#include "common/tool/instrument.hpp"
+
 namespace palpate {
 namespace {
 
 constexpr double least_facing = 0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
-constexpr double margin_share = 0.1;  // of a sphere's radius or a mean edge: what is this near is watched before it is touched
-
-// Direction from a sphere's centre to a surface point, kept on the tool's side: a point that has come to lie behind
-// the centre is led round to the front.
-Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& side) {
-  const Eigen::Vector3d d = point - centre;
-  const double ahead = d.dot(side);
-  if (ahead > 0) return d.normalized();
-  const Eigen::Vector3d lateral = d - ahead * side;
-  const double left = radius * radius - lateral.squaredNorm();
-  return left > 0 ? Eigen::Vector3d((lateral + std::sqrt(left) * side) / radius) : side;
-}
+constexpr double margin_share = 0.1;  // of a part's radius or a mean edge: what is this near is watched before it is touched
 
 }  // namespace
 
-std::size_t spheres_of(const Scene& scene) {
-  std::size_t spheres = 0;
-  for (const Tool& t : scene.tools) spheres += sample_tool(t.radius, t.shaft_radius, t.shaft_length).size();
-  return spheres;
+std::size_t parts_of(const Scene& scene) {
+  std::size_t parts = 0;
+  for (const Tool& t : scene.tools) parts += tool_parts(t).size();
+  return parts;
 }
 
 double mean_edge(const SurfaceMap& map) {
@@ -36,9 +27,10 @@ double mean_edge(const SurfaceMap& map) {
   return sum / (3.0 * map.triangles.size());
 }
 
-ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t spheres)
+ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts, Options options)
     : law_(law),
       surface_(map, bucket_size),
+      options_(std::move(options)),
       touchable_(map.touchable),
       nodes_(map.size()),
       body_edge_(palpate::mean_edge(map)),
@@ -48,39 +40,64 @@ ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw
     for (int v = 0; v < 3; ++v) edges += (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm();
     mean_edge_.push_back(edges / 3);
   }
-  near_.reserve(spheres * map.triangles.size());
-  near_end_.reserve(spheres);
+  near_.reserve(parts * map.triangles.size());
+  near_end_.reserve(parts);
+  candidates_.reserve(map.triangles.size());
+  crossings_.resize(most_swept + 1);
 }
 
 double ToolContacts::margin(double radius) const { return margin_share * std::min(radius, body_edge_); }
 
-double ToolContacts::reach(const MovingTool& moving, int sample) const {
-  const double motion = (moving.centre(moving.now, sample) - moving.centre(moving.before, sample)).norm();
-  return moving.samples[sample].radius + margin(moving.samples[sample].radius) + motion;
+double ToolContacts::reach(const MovingTool& moving, int part) const {
+  const Segment before = moving.axis_before(part), now = moving.axis(part);
+  const double motion = std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  return radius(moving, part) + margin(radius(moving, part)) + motion;
 }
 
 // Into the tissue, by the deformed surface's own normal at the anchor: the side from which a tool may touch it.
-Eigen::Vector3d ToolContacts::inward(const TouchContact& c) const {
+Eigen::Vector3d ToolContacts::inward(const TouchContact& c, bool segment) const {
+  if (segment) return c.face ? -outward(c.anchor.nodes) : -outward(c.anchor.nodes[0]);
   if (!c.face) return -surface_.vertex_normal(c.anchor.nodes[0]);
   const auto& x = surface_.positions();
   const auto& n = c.anchor.nodes;
   return -(x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]).normalized();
 }
 
+// How far from an end of a part what has just come within it may have entered through that end.
+double ToolContacts::thrust(const MovingTool& moving, int part) const {
+  const Segment before = moving.axis_before(part), now = moving.axis(part);
+  const double length = moving.parts[part].length;
+  return length > 0 ? 2 * radius(moving, part) + std::abs((now.start - before.start).dot(now.end - now.start)) / length : 0.0;
+}
+
+Touching ToolContacts::touch_of(const TouchContact& c, const MovingTool& moving, const Segment& axis, const Eigen::Vector3d& into) const {
+  const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
+  const double size = radius(moving, c.part), most = thrust(moving, c.part);
+  const Touching touch = touching(axis, size, anchor, into, most);
+  // A segment that has passed over the anchor within this step, across the surface's own direction, does not come round it.
+  const bool passed = moving.parts[c.part].length > 0 && touch.normal.dot(c.normal) < 0;
+  return passed ? touching(axis, size, anchor, c.normal, most) : touch;
+}
+
 void ToolContacts::aim(TouchContact& c, const MovingTool& moving) const {
-  const Eigen::Vector3d centre = moving.centre(moving.now, c.sample), into = inward(c);
-  const double radius = moving.samples[c.sample].radius;
-  c.target = moving.now * c.offset;
-  if (c.grasped) return;
-  const Eigen::Vector3d outward_of_tool = (c.target - centre).normalized();
-  if (c.touch == Touch::sticking && outward_of_tool.dot(into) > least_facing) {
-    c.normal = outward_of_tool;
-  } else {
-    if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
-    c.normal = direction_to(anchor_position(c.anchor, surface_.positions()), centre, radius, into);
-    if (c.touch == Touch::open) c.target = centre + radius * c.normal;
+  if (c.grasped) {
+    c.at = c.target = moving.now * c.offset;
+    return;
   }
-  c.plane = c.normal.dot(centre) + radius;
+  const Segment axis = moving.axis(c.part);
+  const Eigen::Vector3d into = inward(c, moving.parts[c.part].length > 0);
+  const double size = radius(moving, c.part);
+  c.target = moving.to_world(c.part, c.offset);
+  Touching touch{nearest_point(axis, c.target), Eigen::Vector3d::Zero()};
+  touch.normal = (c.target - touch.centre).normalized();
+  if (c.touch != Touch::sticking || touch.normal.dot(into) <= least_facing) {
+    if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
+    touch = touch_of(c, moving, axis, into);
+    if (c.touch == Touch::open) c.target = touch.centre + size * touch.normal;
+  }
+  c.normal = touch.normal;
+  c.plane = c.normal.dot(touch.centre) + size;
+  c.at = touch.centre + size * c.normal;
 }
 
 void ToolContacts::aim(std::span<const MovingTool> tools) {
@@ -92,28 +109,40 @@ void ToolContacts::settle(std::span<const MovingTool> tools) {
     TouchContact& c = law_.contacts()[i];
     if (c.grasped) continue;
     const MovingTool& moving = tools[c.tool];
-    const double radius = moving.samples[c.sample].radius;
-    const Eigen::Vector3d centre = moving.centre(moving.now, c.sample);
+    const Segment axis = moving.axis(c.part);
+    const double size = radius(moving, c.part);
     if (c.touch == Touch::open) {
-      const bool gone = (anchor_position(c.anchor, surface_.positions()) - centre).norm() > reach(moving, c.sample) + margin(radius);
+      const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
+      const bool gone = (anchor - nearest_point(axis, anchor)).norm() > reach(moving, c.part) + margin(size);
       if (c.face || gone) law_.remove(i);
       continue;
     }
-    if (c.touch == Touch::sliding) {
-      c.offset = moving.now.inverse() * Eigen::Vector3d(centre + radius * (c.position - centre).normalized());
-    } else {
-      c.offset = moving.now.inverse() * c.target;
+    if (moving.parts[c.part].length > 0 && inside_out(c)) {
+      law_.remove(i);
+      continue;
     }
+    Eigen::Vector3d touched = c.target;
+    if (c.touch == Touch::sliding) {
+      const Eigen::Vector3d held = c.held_at(), centre = nearest_point(axis, held);
+      touched = centre + size * (held - centre).normalized();
+    }
+    c.offset = moving.to_part(c.part, touched);
   }
 }
 
-void ToolContacts::take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face) {
-  if (law_.full()) return;
-  TouchContact c{.tool = tool, .face = face, .grasped = true, .touch = Touch::sticking};
+void ToolContacts::adopt(TouchContact contact) {
+  contact.softness = softness(contact.tool);
+  law_.add(contact, std::span<const double>(contact.force.data(), 3));
+}
+
+bool ToolContacts::take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face) {
+  if (law_.full()) return false;
+  TouchContact c{.tool = tool, .face = face, .grasped = true, .touch = Touch::sticking, .softness = softness(tool)};
   c.anchor = anchor;
   c.offset = pose.inverse() * anchor_position(anchor, surface_.positions());
   c.normal = pose.linear().col(2);
   law_.add(c);
+  return true;
 }
 
 // The surface point nearest to the jaws' middle, where triangles are larger than they are.

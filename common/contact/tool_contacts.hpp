@@ -1,9 +1,11 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/contact/contact_law.hpp"
+#include "common/contact/segment.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/jaws.hpp"
@@ -11,40 +13,63 @@
 
 namespace palpate {
 
-/// Finds which points of a moving surface the tools' spheres touch, and keeps the contacts of a ContactLaw in step with
-/// them. Where triangles are smaller than a sphere their vertices carry the contact; where they are larger it touches at
-/// one point of a triangle. Nothing is allocated after construction.
+/// Finds which points of a moving surface the parts of tools touch, and keeps the contacts of a ContactLaw in step with
+/// them. Where triangles are smaller than a part's radius their vertices carry the contact; where they are larger a sphere
+/// touches at one point of a triangle, and a segment at one point of each triangle along it (BHS01 sec. VII). Nothing is
+/// allocated after construction.
 class ToolContacts {
  public:
-  /// `spheres`: of all tools. The law outlives this object.
-  ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t spheres);
+  /// What a body's tools have in common with one another, and what is each tool's own.
+  struct Options {
+    double offset = 0;             ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
+    std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
+  };
+
+  /// `parts`: of all tools. The law outlives this object.
+  ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts, Options options);
+  ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts)
+      : ToolContacts(map, bucket_size, law, parts, Options{}) {}
 
   const TouchSurface& surface() const { return surface_; }
-  /// Triangles near a point; ascending, valid until the next search.
-  std::span<const int> near(const Eigen::Vector3d& centre, double radius) const { return surface_.find(centre, centre, radius); }
 
   /// Marks the nodes that are near the tools or carry a contact; the owner then works out where they are.
   std::span<const int> mark(std::span<const MovingTool> tools);
+  /// Marks all other nodes too, after mark(): of a body that moves as a whole.
+  std::span<const int> mark_all();
   /// Moves the marked nodes: three entries [m] per node.
   void move_marked(std::span<const double> displacement) { surface_.move_marked(displacement); }
   /// Finds what the tools touch and adds it to the law.
   void collide(std::span<const MovingTool> tools);
   /// Sets the contacts' targets before the law is solved.
   void aim(std::span<const MovingTool> tools);
-  /// After the solve: sliding contacts move on along the sphere, those that have opened and gone are dropped.
+  /// After the solve: sliding contacts move on along their parts, those that have opened and gone are dropped.
   void settle(std::span<const MovingTool> tools);
+  /// Takes up a contact that was kept elsewhere; its offset must be in its part's frame.
+  void adopt(TouchContact contact);
 
   /// Jaws that close take the nodes between them, or the surface point nearest to their middle where triangles are
   /// larger than they are; true if there is something between them. `length` ahead of the tip, `width` across [m].
   /// Nodes for which `allowed` (int to bool) is false are left out.
   template <class Allowed>
   bool grasp(int tool, const Eigen::Isometry3d& pose, double length, double width, Allowed&& allowed) {
+    const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(p, length, width); };
+    return take_nodes(tool, pose, between, allowed) || grasp_nearest(tool, pose, length);
+  }
+  /// The nodes between jaws of another shape: those for which `between` (point in the tip frame [m] to bool) and `allowed`
+  /// are true; true if there are any.
+  template <class Between, class Allowed>
+  bool take_nodes(int tool, const Eigen::Isometry3d& pose, Between&& between, Allowed&& allowed) {
     const std::size_t first = law_.contacts().size();
     for (int node = 0; node < touchable_; ++node)
-      if (allowed(node) && between_jaws(pose.inverse() * surface_.positions()[node], length, width))
+      if (allowed(node) && between(Eigen::Vector3d(pose.inverse() * surface_.positions()[node])))
         take_in_jaws(tool, pose, {{node, node, node}, Eigen::Vector3d::UnitX()}, false);
-    return law_.contacts().size() > first || grasp_nearest(tool, pose, length);
+    return law_.contacts().size() > first;
   }
+  /// A point of the surface that is held between jaws from now on; it stays where it is in the tip frame. False if there is
+  /// no room for another contact.
+  bool take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face);
+  /// The surface point nearest to the jaws' middle; false if it is farther than half their length.
+  bool grasp_nearest(int tool, const Eigen::Isometry3d& pose, double length);
   void let_go(int tool);
 
   /// Surface and contacts as bytes, for replay.
@@ -54,33 +79,67 @@ class ToolContacts {
   void restore(const unsigned char* from, std::span<const MovingTool> tools);
 
  private:
-  void take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face);
-  bool grasp_nearest(int tool, const Eigen::Isometry3d& pose, double length);
-  void collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near);
-  bool add_crossing(const MovingTool& moving, int tool, int sample);
-  void add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
-  void add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near);
-  bool taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const;
+  static constexpr int most_swept = 512;  ///< points of a segment, less one, that are swept
+
+  struct Candidate {
+    int triangle;
+    double share, squared_distance;
+  };
+  /// Where a point passes the surface for the first time in a step.
+  struct Crossing {
+    int triangle = -1;
+    double time = 2;
+    Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+
+    void meet(int t, const std::optional<SweptHit>& hit) {
+      if (hit && hit->from_outside && hit->time < time) *this = {t, hit->time, hit->weights};
+    }
+  };
+
+  void collide_part(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  bool add_crossings(const MovingTool& moving, int tool, int part);
+  bool add_crossing(const MovingTool& moving, int tool, int part);
+  bool add_at(const Crossing& crossing, const MovingTool& moving, int tool, int part, double place);
+  void add_vertices(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  void add_face(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  void add_faces(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  void keep_faces(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  void find_faces(const MovingTool& moving, int tool, int part, std::span<const int> near);
+  const TouchContact* held_near(const MovingTool& moving, int tool, int part, double place, double within) const;
+  bool place_taken(const MovingTool& moving, int tool, int part, double place, double within) const;
+  bool triangle_taken(int tool, const std::array<int, 3>& nodes, int besides) const;
   void follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near);
-  Eigen::Vector3d inward(const TouchContact& contact) const;
+  Eigen::Vector3d inward(const TouchContact& contact, bool segment) const;
+  Eigen::Vector3d outward(int node) const;
+  Eigen::Vector3d outward(const std::array<int, 3>& triangle) const;
+  Eigen::Vector3d rest_outward(const TouchContact& contact) const;
+  bool inside_out(const TouchContact& contact) const;
+  Eigen::Vector3d came_from(int node, const Segment& before, const Eigen::Vector3d& into) const;
+  bool pushed_through(int node, const TouchContact& by, double size) const;
   void aim(TouchContact& contact, const MovingTool& moving) const;
   double margin(double radius) const;
-  double reach(const MovingTool& moving, int sample) const;
-  const TouchContact* held_by(int tool, int sample) const;
+  double radius(const MovingTool& moving, int part) const { return moving.radius(part) + options_.offset; }
+  double reach(const MovingTool& moving, int part) const;
+  double thrust(const MovingTool& moving, int part) const;
+  Touching touch_of(const TouchContact& contact, const MovingTool& moving, const Segment& axis, const Eigen::Vector3d& into) const;
+  double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
 
   ContactLaw& law_;
   TouchSurface surface_;
+  Options options_;
   int touchable_, nodes_;
   double body_edge_;               ///< [m] mean edge of the surface at rest
   std::vector<double> mean_edge_;  ///< [m] per triangle, at rest
   std::vector<int> vertex_stamp_;
   int vertex_clock_ = 0;
-  std::vector<int> near_;              ///< triangles near each sphere, sphere by sphere
-  std::vector<std::size_t> near_end_;  ///< where each sphere's end in near_
+  std::vector<int> near_;              ///< triangles near each part, part by part
+  std::vector<std::size_t> near_end_;  ///< where each part's end in near_
+  std::vector<Candidate> candidates_;  ///< triangles that a segment may touch
+  std::vector<Crossing> crossings_;    ///< of points along a segment
 };
 
-/// Spheres of all tools of a scene.
-std::size_t spheres_of(const Scene& scene);
+/// Parts of all tools of a scene.
+std::size_t parts_of(const Scene& scene);
 
 /// [m] mean edge of a surface at rest.
 double mean_edge(const SurfaceMap& map);

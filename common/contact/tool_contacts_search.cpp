@@ -1,10 +1,16 @@
 // How ToolContacts finds what the tools touch.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/contact/tool_contacts.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr double side_within = 2;  // radii along a segment within which a contact says on which side of the tissue it is
+
+}  // namespace
 
 std::span<const int> ToolContacts::mark(std::span<const MovingTool> tools) {
   surface_.begin_update();
@@ -14,8 +20,8 @@ std::span<const int> ToolContacts::mark(std::span<const MovingTool> tools) {
   near_.clear();
   near_end_.clear();
   for (const MovingTool& tool : tools)
-    for (int s = 0; s < static_cast<int>(tool.samples.size()); ++s) {
-      const std::span<const int> found = surface_.find(tool.centre(tool.before, s), tool.centre(tool.now, s), reach(tool, s) + body_edge_);
+    for (int p = 0; p < tool.size(); ++p) {
+      const std::span<const int> found = surface_.find(tool.axis_before(p), tool.axis(p), reach(tool, p) + body_edge_);
       surface_.mark_triangles(found);
       near_.insert(near_.end(), found.begin(), found.end());
       near_end_.push_back(near_.size());
@@ -23,92 +29,108 @@ std::span<const int> ToolContacts::mark(std::span<const MovingTool> tools) {
   return surface_.marked();
 }
 
+std::span<const int> ToolContacts::mark_all() {
+  for (int node = 0; node < touchable_; ++node) surface_.mark_node(node);
+  return surface_.marked();
+}
+
 void ToolContacts::collide(std::span<const MovingTool> tools) {
-  std::size_t begin = 0, sphere = 0;
+  std::size_t begin = 0, at = 0;
   for (int t = 0; t < static_cast<int>(tools.size()); ++t)
-    for (int s = 0; s < static_cast<int>(tools[t].samples.size()); ++s) {
-      const std::size_t end = near_end_[sphere++];
-      collide_sample(tools, t, s, std::span(near_).subspan(begin, end - begin));
+    for (int p = 0; p < tools[t].size(); ++p) {
+      const std::size_t end = near_end_[at++];
+      collide_part(tools[t], t, p, std::span(near_).subspan(begin, end - begin));
       begin = end;
     }
 }
 
-const TouchContact* ToolContacts::held_by(int tool, int sample) const {
-  for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.sample == sample && !c.grasped && c.touch != Touch::open) return &c;
-  return nullptr;
+void ToolContacts::collide_part(const MovingTool& moving, int tool, int part, std::span<const int> near) {
+  const bool sphere = moving.parts[part].length == 0;
+  const bool crossed = sphere ? add_crossing(moving, tool, part) : add_crossings(moving, tool, part);
+  if (near.empty() || (sphere && crossed)) return;
+  add_vertices(moving, tool, part, near);
+  sphere ? add_face(moving, tool, part, near) : add_faces(moving, tool, part, near);
 }
 
-void ToolContacts::collide_sample(std::span<const MovingTool> tools, int tool, int sample, std::span<const int> near) {
-  const MovingTool& moving = tools[tool];
-  const Eigen::Vector3d now = moving.centre(moving.now, sample);
-  const double within = reach(moving, sample);
-  if (add_crossing(moving, tool, sample) || near.empty()) return;
-  const double radius = moving.samples[sample].radius;
-  add_vertices(now, radius, within, tool, sample, near);
-  add_face(now, radius, within, tool, sample, near);
-}
-
-// The sphere's centre has passed through the surface within this step: the contact is made where it passed.
-bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int sample) {
-  const Eigen::Vector3d before = moving.centre(moving.before, sample), now = moving.centre(moving.now, sample);
-  double earliest = std::numeric_limits<double>::infinity();
-  int struck = -1;
-  Eigen::Vector3d weights = Eigen::Vector3d::Zero();
-  for (int t : surface_.find(before, now, 0)) {
-    const auto hit = sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t));
-    if (!hit || !hit->from_outside || hit->time >= earliest) continue;
-    earliest = hit->time;
-    struck = t;
-    weights = hit->weights;
+// The contact of a part that carries force and lies nearest to a place along it [m], if one does so within a distance [m].
+// Of a sphere the oldest.
+const TouchContact* ToolContacts::held_near(const MovingTool& moving, int tool, int part, double place, double within) const {
+  const TouchContact* nearest = nullptr;
+  for (const TouchContact& c : law_.contacts()) {
+    if (c.tool != tool || c.part != part || c.grasped || c.touch == Touch::open) continue;
+    const double away = std::abs(std::clamp(c.offset.z(), 0.0, moving.parts[part].length) - place);
+    if (away > within || (nearest && away >= within)) continue;
+    nearest = &c;
+    within = away;
   }
-  if (struck < 0 || law_.full()) return false;
-  const Eigen::Vector3d into = -surface_.triangle_normal(struck).normalized();
-  const TouchContact* held = held_by(tool, sample);
+  return nearest;
+}
+
+// A sphere's centre has passed through the surface within this step: the contact is made where it passed.
+bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int part) {
+  const Eigen::Vector3d before = moving.axis_before(part).start, now = moving.axis(part).start;
+  Crossing first;
+  for (int t : surface_.find(before, now, 0)) first.meet(t, sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t)));
+  return first.triangle >= 0 && add_at(first, moving, tool, part, 0);
+}
+
+// `place` [m]: along the part's axis.
+bool ToolContacts::add_at(const Crossing& crossing, const MovingTool& moving, int tool, int part, double place) {
+  if (law_.full()) return false;
+  const Eigen::Vector3d into = -surface_.triangle_normal(crossing.triangle).normalized();
+  const TouchContact* held = held_near(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]));
   if (held && held->normal.dot(into) > 0) return false;
-  TouchContact c{.tool = tool, .sample = sample, .face = true};
-  c.anchor = {surface_.triangle(struck), weights};
+  TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
+  c.anchor = {surface_.triangle(crossing.triangle), crossing.weights};
+  c.offset = {0, 0, place};
   c.normal = into;
   law_.add(c);
   return true;
 }
 
-// Where triangles are smaller than the sphere, their vertices carry the contact: the force then belongs to the patch
-// under the sphere and not to the mesh.
-void ToolContacts::add_vertices(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample,
-                             std::span<const int> near) {
+// Where triangles are smaller than the part's radius, their vertices carry the contact: the force then belongs to the patch
+// under the part and not to the mesh.
+void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, std::span<const int> near) {
+  const Segment axis = moving.axis(part);
+  const double size = radius(moving, part), within = reach(moving, part), length = moving.parts[part].length;
   ++vertex_clock_;
-  const TouchContact* held = held_by(tool, sample);
-  const bool has_side = held != nullptr;
-  const Eigen::Vector3d side = held ? held->normal : Eigen::Vector3d::Zero();  // copied: adding moves the contacts
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && (c.sample == sample || c.grasped) && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
+    if (c.tool == tool && (c.part == part || c.grasped) && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
   for (int t : near)
     for (int node : surface_.triangle(t)) {
       const bool seen = node >= touchable_ || vertex_stamp_[node] == vertex_clock_;
-      if (seen || mean_edge_[t] > radius || law_.full()) continue;
+      if (seen || mean_edge_[t] > size || law_.full()) continue;
       vertex_stamp_[node] = vertex_clock_;
-      const Eigen::Vector3d away = centre - surface_.positions()[node];
+      const Eigen::Vector3d& x = surface_.positions()[node];
+      const double share = nearest_share(axis, x);
+      const Eigen::Vector3d away = axis.at(share) - x;
       if (away.squaredNorm() > within * within) continue;
-      const Eigen::Vector3d outward = surface_.vertex_normal(node);
-      const bool in_front = away.dot(outward) > 0;
-      if (!in_front && !(has_side && outward.dot(side) < 0)) continue;
-      TouchContact c{.tool = tool, .sample = sample};
+      const Eigen::Vector3d out = length > 0 ? outward(node) : surface_.vertex_normal(node);
+      Eigen::Vector3d normal = length > 0 ? came_from(node, moving.axis_before(part), -out) : Eigen::Vector3d(-out);
+      const bool in_front = away.dot(out) > 0 && (length == 0 || away.dot(surface_.rest_normal(node)) > 0);
+      if (!in_front) {  // behind the surface: pushed through it from the side of the part's other contacts
+        const TouchContact* held = held_near(moving, tool, part, share * length, side_within * size);
+        if (!held || (length > 0 ? !pushed_through(node, *held, size) : out.dot(held->normal) >= 0)) continue;
+        normal = held->normal;
+      }
+      TouchContact c{.tool = tool, .part = part, .softness = softness(tool)};
       c.anchor = {{node, node, node}, Eigen::Vector3d::UnitX()};
-      c.normal = in_front ? Eigen::Vector3d(-outward) : side;
+      c.normal = normal;
       law_.add(c);
     }
 }
 
-// Where triangles are larger than the sphere, it touches between their vertices, at the surface point nearest to its
+// Where triangles are larger than a sphere, it touches between their vertices, at the surface point nearest to its
 // centre (TVCG99 sec. 5, sub-triangular precision). One point a sphere: a second one in the same dent would depend on
 // the first.
-void ToolContacts::add_face(const Eigen::Vector3d& centre, double radius, double within, int tool, int sample, std::span<const int> near) {
+void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::span<const int> near) {
+  const Eigen::Vector3d centre = moving.axis(part).start;
+  const double size = radius(moving, part), within = reach(moving, part);
   int face = -1;
   bool vertices_carry = false;
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (c.tool != tool || c.sample != sample || c.grasped) continue;
+    if (c.tool != tool || c.part != part || c.grasped) continue;
     if (c.face) face = i;
     vertices_carry |= !c.face && c.touch != Touch::open;
   }
@@ -123,7 +145,7 @@ void ToolContacts::add_face(const Eigen::Vector3d& centre, double radius, double
   int nearest = -1;
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();
   for (int t : near) {
-    if (mean_edge_[t] <= radius || taken_by_other(tool, sample, surface_.triangle(t))) continue;
+    if (mean_edge_[t] <= size || triangle_taken(tool, surface_.triangle(t), -1)) continue;
     const Triangle corners = surface_.corners(t);
     const ClosestPoint p = closest_point(centre, corners);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
@@ -133,16 +155,18 @@ void ToolContacts::add_face(const Eigen::Vector3d& centre, double radius, double
     weights = p.weights;
   }
   if (nearest < 0) return;
-  TouchContact c{.tool = tool, .sample = sample, .face = true};
+  TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
   c.anchor = {surface_.triangle(nearest), weights};
   c.normal = -surface_.triangle_normal(nearest).normalized();
   law_.add(c);
 }
 
-// A triangle cannot follow several spheres of a shaft at once: the first to touch it has it.
-bool ToolContacts::taken_by_other(int tool, int sample, const std::array<int, 3>& nodes) const {
-  for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.sample != sample && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
+// A triangle cannot follow several parts of a tool at once: the first to touch it has it.
+bool ToolContacts::triangle_taken(int tool, const std::array<int, 3>& nodes, int besides) const {
+  for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
+    const TouchContact& c = law_.contacts()[i];
+    if (i != besides && c.tool == tool && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
+  }
   return false;
 }
 
@@ -158,7 +182,7 @@ void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<
     const auto& nodes = surface_.triangle(t);
     bool across = own.weights.minCoeff() <= 0 && nodes != now.nodes;
     for (int v = 0; v < 3; ++v) across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
-    if (!across || taken_by_other(law_.contacts()[contact].tool, law_.contacts()[contact].sample, nodes)) continue;
+    if (!across || triangle_taken(law_.contacts()[contact].tool, nodes, contact)) continue;
     const ClosestPoint p = closest_point(centre, surface_.corners(t));
     if (p.squared_distance >= least) continue;
     least = p.squared_distance;

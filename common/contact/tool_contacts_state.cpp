@@ -10,7 +10,7 @@ namespace {
 
 // A contact as plain bytes for the state that replay starts from.
 struct StoredContact {
-  int tool, sample, nodes[3];
+  int tool, part, nodes[3];
   unsigned char face, grasped, touch;
   double weights[3], offset[3], normal[3], slip[3], force[3], point_force[9];
   int points;
@@ -35,7 +35,7 @@ void ToolContacts::save(unsigned char* to) const {
     const std::span<const double> forces = law_.point_forces(i);
     StoredContact s{};
     s.tool = c.tool;
-    s.sample = c.sample;
+    s.part = c.part;
     std::copy(c.anchor.nodes.begin(), c.anchor.nodes.end(), s.nodes);
     s.face = c.face;
     s.grasped = c.grasped;
@@ -64,17 +64,18 @@ void ToolContacts::restore(const unsigned char* from, std::span<const MovingTool
     StoredContact s;
     std::memcpy(&s, from, sizeof s);
     const bool tool_known = s.tool >= 0 && s.tool < static_cast<int>(tools.size());
-    if (!tool_known || s.sample < 0 || s.sample >= static_cast<int>(tools[s.tool].samples.size()) || s.touch > 2 ||
+    if (!tool_known || s.part < 0 || s.part >= tools[s.tool].size() || s.touch > 2 ||
         (s.points != 1 && s.points != 3))
       throw std::runtime_error("the state holds a contact that this scene cannot have");
     for (int node : s.nodes)
       if (node < 0 || node >= nodes_) throw std::runtime_error("the state names a surface node that the body lacks");
-    TouchContact c{.tool = s.tool, .sample = s.sample, .face = s.face != 0, .grasped = s.grasped != 0, .touch = static_cast<Touch>(s.touch)};
+    TouchContact c{.tool = s.tool, .part = s.part, .face = s.face != 0, .grasped = s.grasped != 0, .touch = static_cast<Touch>(s.touch)};
     c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
     c.offset = get(s.offset);
     c.normal = get(s.normal);
     c.slip = get(s.slip);
     c.force = get(s.force);
+    c.softness = softness(c.tool);
     law_.add(c, std::span(s.point_force).first(3 * s.points));
   }
 }

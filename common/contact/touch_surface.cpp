@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace palpate {
 
@@ -15,7 +17,10 @@ TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
       movable_(map.touchable),
       buckets_(map.position, map.triangles, bucket_size),
       slack_(0.05 * bucket_size),
-      entered_(map.triangles.size(), {Eigen::Vector3d::Constant(1), Eigen::Vector3d::Constant(-1)}) {
+      piece_(2 * bucket_size),
+      low_(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())),
+      high_(-low_),
+      entered_(map.triangles.size()) {
   for (const auto& t : triangles_)
     for (int node : t) ++first_of_node_[node + 1];
   for (int n = 0; n < map.size(); ++n) first_of_node_[n + 1] += first_of_node_[n];
@@ -23,7 +28,15 @@ TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
   std::vector<int> next(first_of_node_.begin(), first_of_node_.end() - 1);
   for (int t = 0; t < triangle_count(); ++t)
     for (int node : triangles_[t]) of_node_[next[node]++] = t;
+  for (int t = 0; t < triangle_count(); ++t) {
+    const Triangle c = corners(t);
+    entered_[t] = {c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])};
+  }
+  for (const Eigen::Vector3d& x : position_) low_ = low_.cwiseMin(x), high_ = high_.cwiseMax(x);
+  for (int n = 0; n < map.size(); ++n) rest_normal_.push_back(vertex_normal(n));
   found_.resize(triangles_.size());
+  found_along_.reserve(triangles_.size());
+  found_stamp_.assign(triangles_.size(), 0);
   marked_.reserve(map.size());
   last_marked_.reserve(map.size());
   stamp_.assign(map.size(), 0);
@@ -51,23 +64,62 @@ Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
   return n.normalized();
 }
 
-std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const {
-  const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
+Eigen::Vector3d TouchSurface::rest_triangle_normal(const std::array<int, 3>& nodes) const {
+  return (rest_[nodes[1]] - rest_[nodes[0]]).cross(rest_[nodes[2]] - rest_[nodes[0]]).normalized();
+}
+
+std::array<Eigen::Vector3d, 2> TouchSurface::swept_box(int t) const {
+  const auto& n = triangles_[t];
+  Eigen::Vector3d low = position_[n[0]].cwiseMin(previous_[n[0]]), high = position_[n[0]].cwiseMax(previous_[n[0]]);
+  for (int v = 1; v < 3; ++v) {
+    low = low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
+    high = high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
+  }
+  return {low, high};
+}
+
+// Triangles whose swept boxes come within `radius` of a box, into found_, in no order; returns how many.
+int TouchSurface::collect(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double radius) const {
+  if (((low_ - high).cwiseMax(low - high_).array() > radius).any()) return 0;  // far from all of it
   const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
-    const auto& n = triangles_[found_[i]];
-    Eigen::Vector3d box_low = position_[n[0]].cwiseMin(previous_[n[0]]), box_high = position_[n[0]].cwiseMax(previous_[n[0]]);
-    for (int v = 1; v < 3; ++v) {
-      box_low = box_low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
-      box_high = box_high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
-    }
+    const auto [box_low, box_high] = swept_box(found_[i]);
     const Eigen::Vector3d apart = (box_low - high).cwiseMax(low - box_high).cwiseMax(0.0);
     if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
   }
+  return kept;
+}
+
+std::span<const int> TouchSurface::find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const {
+  const int kept = collect(a.cwiseMin(b), a.cwiseMax(b), radius);
   std::sort(found_.begin(), found_.begin() + kept);
   return std::span(found_).first(kept);
+}
+
+std::span<const int> TouchSurface::find(const Segment& before, const Segment& now, double radius) const {
+  if (now.start == now.end && before.start == before.end) return find(before.start, now.start, radius);
+  found_along_.clear();
+  ++found_clock_;
+  const double motion = std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  const int pieces = 1 + static_cast<int>(now.length() / piece_);
+  for (int i = 0; i < pieces; ++i) {
+    const double a = static_cast<double>(i) / pieces, b = static_cast<double>(i + 1) / pieces;
+    const Eigen::Vector3d ends[] = {before.at(a), before.at(b), now.at(a), now.at(b)};
+    const int count = collect(ends[0].cwiseMin(ends[1]).cwiseMin(ends[2]).cwiseMin(ends[3]),
+                              ends[0].cwiseMax(ends[1]).cwiseMax(ends[2]).cwiseMax(ends[3]), radius);
+    for (int k = 0; k < count; ++k) {
+      if (found_stamp_[found_[k]] == found_clock_) continue;
+      found_stamp_[found_[k]] = found_clock_;
+      const auto [low, high] = swept_box(found_[k]);
+      const Eigen::Vector3d middle = 0.5 * (low + high);
+      const double farthest = radius + motion + 0.5 * (high - low).norm();
+      if ((nearest_point(now, middle) - middle).squaredNorm() <= farthest * farthest) found_along_.push_back(found_[k]);
+    }
+  }
+  std::sort(found_along_.begin(), found_along_.end());
+  return found_along_;
 }
 
 void TouchSurface::begin_update() {
@@ -114,6 +166,8 @@ void TouchSurface::move_marked(std::span<const double> displacement) {
     const int node = marked_[i];
     previous_[node] = position_[node];
     position_[node] = rest_[node] + Eigen::Map<const Eigen::Vector3d>(displacement.data() + 3 * i);
+    low_ = low_.cwiseMin(position_[node]);
+    high_ = high_.cwiseMax(position_[node]);
   }
   ++triangle_clock_;
   for (int node : marked_) {
@@ -155,6 +209,10 @@ void TouchSurface::restore(const unsigned char* from) {
   // All nodes count as moved in the step before, so that previous positions settle as they did when this was saved.
   marked_.clear();
   for (int n = 0; n < movable_; ++n) marked_.push_back(n);
+  for (int n = 0; n < static_cast<int>(position_.size()); ++n) {
+    low_ = low_.cwiseMin(position_[n]).cwiseMin(previous_[n]);
+    high_ = high_.cwiseMax(position_[n]).cwiseMax(previous_[n]);
+  }
   ++triangle_clock_;
   for (int t = 0; t < triangle_count(); ++t) enter(t);
 }

@@ -8,11 +8,13 @@
 namespace palpate {
 namespace {
 
-const MeshGroup& find_group(const TetMesh& mesh, const std::string& name, const std::string& where) {
-  const auto found = mesh.groups.find(name);
-  if (found != mesh.groups.end()) return found->second;
+using Groups = std::map<std::string, MeshGroup>;
+
+const MeshGroup& find_group(const Groups& groups, const std::string& name, const std::string& where) {
+  const auto found = groups.find(name);
+  if (found != groups.end()) return found->second;
   std::string known;
-  for (const auto& [group, members] : mesh.groups) known += (known.empty() ? "" : ", ") + group;
+  for (const auto& [group, members] : groups) known += (known.empty() ? "" : ", ") + group;
   throw std::runtime_error(fmt::format("{}: the mesh has no group '{}' ({})", where, name,
                                        known.empty() ? "it has no groups" : "it has " + known));
 }
@@ -42,20 +44,24 @@ std::vector<char> used_nodes(const TetMesh& mesh) {
   return used;
 }
 
-std::vector<int> select_nodes(const TetMesh& mesh, const Selector& selector, const std::string& where) {
-  std::vector<int> nodes = selector.indices;
-  check_range(nodes, static_cast<int>(mesh.nodes.size()), "node", where);
+std::vector<int> select_nodes(const std::vector<Eigen::Vector3d>& nodes, const Groups& groups,
+                              const std::vector<char>& used, const Selector& selector, const std::string& where) {
+  std::vector<int> selected = selector.indices;
+  check_range(selected, static_cast<int>(nodes.size()), "node", where);
   if (selector.box)
-    for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
-      if (contains(*selector.box, mesh.nodes[i])) nodes.push_back(i);
+    for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
+      if (contains(*selector.box, nodes[i])) selected.push_back(i);
   if (!selector.group.empty()) {
-    const auto& group = find_group(mesh, selector.group, where).nodes;
-    nodes.insert(nodes.end(), group.begin(), group.end());
+    const auto& group = find_group(groups, selector.group, where).nodes;
+    selected.insert(selected.end(), group.begin(), group.end());
   }
-  sort_unique(nodes);
-  const auto used = used_nodes(mesh);
-  std::erase_if(nodes, [&](int node) { return !used[node]; });
-  return nodes;
+  sort_unique(selected);
+  std::erase_if(selected, [&](int node) { return !used[node]; });
+  return selected;
+}
+
+std::vector<int> select_nodes(const TetMesh& mesh, const Selector& selector, const std::string& where) {
+  return select_nodes(mesh.nodes, mesh.groups, used_nodes(mesh), selector, where);
 }
 
 std::vector<int> select_elements(const TetMesh& mesh, const Selector& selector, const std::string& where) {
@@ -68,7 +74,7 @@ std::vector<int> select_elements(const TetMesh& mesh, const Selector& selector, 
       if (contains(*selector.box, sum / 4)) elements.push_back(e);
     }
   if (!selector.group.empty()) {
-    const auto& group = find_group(mesh, selector.group, where).tetrahedra;
+    const auto& group = find_group(mesh.groups, selector.group, where).tetrahedra;
     elements.insert(elements.end(), group.begin(), group.end());
   }
   sort_unique(elements);

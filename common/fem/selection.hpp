@@ -12,6 +12,10 @@ namespace palpate {
 /// unknown group; an empty result is the caller's to judge.
 std::vector<int> select_nodes(const TetMesh& mesh, const Selector& selector, const std::string& where);
 
+/// The same among any nodes of which `used` says which ones elements use.
+std::vector<int> select_nodes(const std::vector<Eigen::Vector3d>& nodes, const std::map<std::string, MeshGroup>& groups,
+                              const std::vector<char>& used, const Selector& selector, const std::string& where);
+
 /// Tetrahedra that a selector names: by number, by group, or with the centroid inside the box.
 std::vector<int> select_elements(const TetMesh& mesh, const Selector& selector, const std::string& where);
 

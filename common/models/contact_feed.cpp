@@ -5,16 +5,21 @@
 namespace palpate {
 
 ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
-    : presence_(presence), deformer_(deformer), contacts_(bus.reader(topics::contact_state)), held_(bus.writer(topics::held_contacts)) {}
+    : presence_(presence), deformer_(deformer), contacts_(bus.reader(topics::contact_state)), held_(bus.writer(topics::held_contacts)) {
+  if (deformer.has_modal_shells()) modes_ = bus.reader(topics::modal_state);
+  if (deformer.has_catheters()) catheters_ = bus.reader(topics::catheter_state);
+}
+
+template <class M>
+void ContactFeed::take_all(Reader<M>& reader) {
+  while (const auto message = reader.take()) refused_ += !(presence_.accepts(message->run) && deformer_.take(*message));
+}
 
 bool ContactFeed::take() {
-  bool news = false;
-  while (const auto contacts = contacts_->take()) {
-    const bool good = presence_.accepts(contacts->run) && deformer_.take(*contacts);
-    refused_ += !good;
-    news |= good;
-  }
-  return news;
+  take_all(*contacts_);
+  if (modes_) take_all(*modes_);
+  if (catheters_) take_all(*catheters_);
+  return deformer_.fresh();
 }
 
 void ContactFeed::watch_haptic() {

@@ -35,7 +35,7 @@ const Range kPositive = above(0);
 /// Positive definite elasticity that is not incompressible.
 const Range kPoisson = strictly_within(-1, 0.5);
 
-FixedRegion read_fixed(const TableReader& table) {
+FixedRegion read_fixed(const TableReader& table, const std::string& model) {
   FixedRegion fixed;
   fixed.where = read_selector(table, "nodes");
   std::string axes = "xyz";
@@ -47,6 +47,11 @@ FixedRegion read_fixed(const TableReader& table) {
       table.fail_at("axes", fmt::format("axes '{}' must name each of x, y and z once at most", axes));
     fixed.axes[axis] = true;
   }
+  if (table.has("rotations") && model != "modal_shell")
+    table.fail_at(
+        "rotations",
+        fmt::format("rotations means nothing for the model '{}': a shell's nodes alone turn", model));
+  table.flag("rotations", fixed.rotations);
   return fixed;
 }
 
@@ -80,15 +85,20 @@ Body read_body(const TableReader& table) {
   Body body;
   table.text("name", body.name, Need::required);
   check_name(table, body.name);
+  table.choice("model", body.model,
+               {"quasi_static", "tensor_mass", "spring_mass", "hybrid", "modal_shell", "catheter"});
+  const bool meshed = body.model != "catheter";
+  if (!meshed) body.material.poisson = 0.45;
+  table.number("young", body.material.young, kPositive, Need::required);
+  table.number("poisson", body.material.poisson, kPoisson, meshed ? Need::required : Need::optional);
+  table.number("density", body.material.density, kPositive);
+  read_duct(table, body);
+  if (!meshed) return body;
+
   table.existing_file("mesh", body.mesh, Need::required);
   table.number("scale", body.scale, kPositive);
-  table.choice("model", body.model, {"quasi_static", "tensor_mass", "spring_mass", "hybrid"});
-  table.number("young", body.material.young, kPositive, Need::required);
-  table.number("poisson", body.material.poisson, kPoisson, Need::required);
-  table.number("density", body.material.density, kPositive);
-
   for (const TableReader& fixed : table.tables("fixed", "[[body.fixed]]"))
-    body.fixed.push_back(read_fixed(fixed));
+    body.fixed.push_back(read_fixed(fixed, body.model));
   if (body.fixed.empty())
     table.fail(
         fmt::format("body '{}' is not fixed anywhere and would float: give it a [[body.fixed]]", body.name));

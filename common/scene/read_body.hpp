@@ -14,6 +14,16 @@ Selector read_selector(const TableReader& table, std::string_view list_key);
 /// model.
 void read_dynamics(const TableReader& table, Body& body);
 
+/// The same for shell and catheter; fills what a catheter has in place of a mesh.
+void read_duct(const TableReader& table, Body& body);
+
+/// Refuses a catheter that is led into anything but a modal_shell body. `bodies`: the tables of
+/// `scene.bodies`.
+void check_ducts(const std::vector<TableReader>& bodies, const Scene& scene);
+
+/// Reads and validates one [[tool]] table.
+Tool read_tool(const TableReader& table);
+
 /// A name that serves in file names and messages: 1 to 31 letters, digits, '_' or '-'.
 void check_name(const TableReader& table, const std::string& name);
 

@@ -5,7 +5,7 @@
 namespace palpate {
 
 bool is_dynamic(const Body& body) {
-  return body.model != "quasi_static";
+  return body.model == "tensor_mass" || body.model == "spring_mass" || body.model == "hybrid";
 }
 
 namespace {
@@ -52,7 +52,7 @@ void read_dynamics(const TableReader& table, Body& body) {
     if (table.has(key) && !allowed)
       table.fail_at(key, fmt::format("[body.{}] means nothing for the model '{}'", key, body.model));
   }
-  if (is_dynamic(body) && body.nonlinear)
+  if (body.model != "quasi_static" && body.nonlinear)
     table.fail_at(
         "nonlinear",
         fmt::format("[body.nonlinear] corrects the model 'quasi_static' alone, and the model is '{}'",

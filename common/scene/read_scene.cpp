@@ -19,53 +19,6 @@ bool parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.normalized().cross(b.normalized()).norm() < 1e-6;
 }
 
-/// A direction of length one. One that has it to rounding is kept bit for bit, so that a resolved scene reads
-/// back the same.
-void read_direction(const TableReader& table, std::string_view key, Eigen::Vector3d& direction) {
-  table.vector(key, direction);
-  const double length = direction.stableNorm();
-  if (!(length > 0)) table.fail_at(key, fmt::format("{} must not be zero", key));
-  if (std::abs(length - 1) > 1e-14) direction /= length;
-}
-
-Cautery read_cautery(const TableReader& table, double tip_radius) {
-  Cautery cautery{tip_radius};
-  table.number("radius", cautery.radius, kPositive);
-  return cautery;
-}
-
-Jaws read_jaws(const TableReader& table) {
-  Jaws jaws;
-  table.number("length", jaws.length, kPositive);
-  table.number("width", jaws.width, kPositive);
-  table.number("closed_below", jaws.closed_below, kPositive);
-  return jaws;
-}
-
-Tool read_tool(const TableReader& table) {
-  Tool tool;
-  table.text("name", tool.name, Need::required);
-  check_name(table, tool.name);
-  table.vector("pivot", tool.pivot, Need::required);
-  read_direction(table, "axis", tool.axis);
-  if (!table.has("up") && parallel(tool.axis, tool.up)) tool.up = Eigen::Vector3d::UnitZ();
-  read_direction(table, "up", tool.up);
-  if (parallel(tool.axis, tool.up)) table.fail_at("up", "up must not be parallel to the tool's axis");
-  table.number("radius", tool.radius, kPositive);
-  table.number("shaft_radius", tool.shaft_radius, kPositive);
-  table.number("shaft_length", tool.shaft_length, kPositive);
-  table.choice("device", tool.device, {"scripted", "log", "bus"});
-  if (tool.device == "bus" && table.has("trajectory"))
-    table.fail_at("trajectory", "a tool with the device 'bus' is moved by a driver and takes no trajectory");
-  if (tool.device != "bus") table.existing_file("trajectory", tool.trajectory, Need::required);
-  table.number("max_force", tool.max_force, kPositive);
-  table.number("max_force_rate", tool.max_force_rate, kPositive);
-  if (const auto cautery = table.table("cautery", "[tool.cautery]"))
-    tool.cautery = read_cautery(*cautery, tool.radius);
-  if (const auto jaws = table.table("jaws", "[tool.jaws]")) tool.jaws = read_jaws(*jaws);
-  return tool;
-}
-
 Contact read_contact(const TableReader& table) {
   Contact contact;
   table.choice("rule", contact.rule, {"barycentric", "alpha"});
@@ -144,6 +97,7 @@ Scene read_root(const TableReader& root) {
   root.text("title", scene.title);
   read_named(root, "body", "[[body]]", read_body, scene.bodies);
   if (scene.bodies.empty()) root.fail("the scene has no [[body]]");
+  check_ducts(root.tables("body", "[[body]]"), scene);
   read_named(root, "tool", "[[tool]]", read_tool, scene.tools);
   if (const auto table = root.table("contact", "[contact]")) scene.contact = read_contact(*table);
   if (const auto table = root.table("network", "[network]")) scene.network = read_network(*table);

@@ -24,6 +24,7 @@ struct Selector {
 struct FixedRegion {
   Selector where;
   std::array<bool, 3> axes{true, true, true};  ///< which of x, y, z are held
+  bool rotations = true;                       ///< a shell's rotations are held too: clamped, not hinged
 };
 
 struct Material {
@@ -71,11 +72,34 @@ struct Hybrid {
   double scale = 1;               ///< [m per unit of mesh]
 };
 
+/// A thin wall of shell triangles that moves by its lowest modes (BHS01 sec. V-C-1). The mesh is the wall's middle surface.
+struct Shell {
+  double thickness = 0;                        ///< [m]
+  std::string bending = "discrete_kirchhoff";  ///< discrete_kirchhoff | polynomial (BHS01 app. A)
+  int modes = 50;                              ///< kept, the lowest ones
+  double damping_ratio = 0.2;                  ///< [1] of every mode; means nothing with a damping
+  double damping = 0;                          ///< [1/s] B = damping M (BHS01 eq. 21); 0: the ratio holds
+  bool residual = true;                        ///< static share of the modes left out, at touched nodes
+};
+
+/// A flexible catheter of particles (BHS01 sec. V-C-2), straight at rest. Young's modulus and density are the body's.
+struct Catheter {
+  std::string inside;                                 ///< name of the modal_shell body that it is led into; empty: none
+  Eigen::Vector3d tail = Eigen::Vector3d::Zero();     ///< [m] first particle at rest
+  Eigen::Vector3d tip = Eigen::Vector3d::UnitX();     ///< [m] last particle at rest
+  double radius = 0.00125;                            ///< [m]
+  int particles = 60;
+  double sleeve = 0;                                  ///< [m] of a straight fixed sleeve that guides it, from `tail` towards `tip`
+  double damping = 5;                                 ///< [1/s] force -damping m v on a particle
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  std::string integrator = "implicit";                ///< implicit | semi_implicit (BHS01 eq. 28, in substeps)
+};
+
 struct Body {
   std::string name;
-  std::filesystem::path mesh;
+  std::filesystem::path mesh;  ///< empty for a catheter
   double scale = 1;  ///< [m per mesh unit]
-  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid
+  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid | modal_shell | catheter
   Material material;
   std::vector<FixedRegion> fixed;
   std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
@@ -84,9 +108,11 @@ struct Body {
   Dynamic dynamic;                        ///< defaults where the section is absent
   std::optional<Tearing> tearing;
   std::optional<Hybrid> hybrid;           ///< set exactly for the model hybrid
+  std::optional<Shell> shell;             ///< set exactly for the model modal_shell
+  std::optional<Catheter> catheter;       ///< set exactly for the model catheter
 };
 
-/// Whether some of the body moves with inertia and can be cut: every model but quasi_static.
+/// Whether the deformation node owns the body's state, and it can be cut: tensor_mass, spring_mass and hybrid.
 bool is_dynamic(const Body& body);
 
 /// An electric scalpel: removes the dynamic tissue that the tip touches while the pedal is down.
@@ -98,11 +124,17 @@ struct Cautery {
 struct Jaws {
   double length = 0.012;      ///< [m] along the shaft
   double width = 0.006;       ///< [m] across the plane they open in
-  double closed_below = 0.1;  ///< [rad] of grip
+  double closed_below = 0.1;  ///< [rad] of grip; a forceps has no use for it: its jaws close until they touch
+  // Of a forceps alone:
+  double radius = 0.001;          ///< [m] of each jaw about its segment
+  double most_open = 1.0;         ///< [rad] between the jaws
+  double grip_stiffness = 0.5;    ///< [N m/rad] of the handle's linkage: closing torque per angle beyond the touch
+  double friction = 0.8;          ///< [1] between jaws and what they hold; beyond it the hold slips
 };
 
 struct Tool {
   std::string name;
+  std::string kind = "probe";  ///< probe: spheres along tip and shaft | forceps: segments of shaft and two jaws
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m] trocar point, world frame
   Eigen::Vector3d axis = -Eigen::Vector3d::UnitZ(); ///< unit, direction of the shaft (handle to tip) in the zero pose
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();    ///< unit, perpendicular part used: the tool's y axis in the zero pose
@@ -111,6 +143,7 @@ struct Tool {
   double shaft_length = 0.3;    ///< [m] from the tip back along the shaft
   std::string device = "scripted";         ///< scripted | log | bus
   std::filesystem::path trajectory;        ///< for scripted: CSV; for log: an LCM event log
+  double compliance = 1e-4;     ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
   double max_force = 10;        ///< [N] limit of the safety chain
   double max_force_rate = 5000; ///< [N/s] slew limit
   std::optional<Cautery> cautery;

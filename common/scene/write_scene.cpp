@@ -71,7 +71,7 @@ void write(Writer& out, const Material& material) {
   out.write("density", material.density);
 }
 
-void write(Writer& out, const FixedRegion& fixed) {
+void write(Writer& out, const FixedRegion& fixed, bool shell) {
   out.table("[[body.fixed]]");
   write(out, fixed.where, "nodes");
   std::string axes;
@@ -79,6 +79,7 @@ void write(Writer& out, const FixedRegion& fixed) {
     if (fixed.axes[axis]) axes += "xyz"[axis];
   }
   out.write("axes", axes);
+  if (shell) out.write("rotations", fixed.rotations);
 }
 
 void write(Writer& out, const Nonlinear& nonlinear) {
@@ -119,14 +120,39 @@ void write(Writer& out, const Hybrid& hybrid) {
   }
 }
 
+void write(Writer& out, const Shell& shell) {
+  out.table("[body.shell]");
+  out.write("thickness", shell.thickness);
+  out.write("bending", shell.bending);
+  out.write("modes", shell.modes);
+  if (shell.damping > 0)
+    out.write("damping", shell.damping);
+  else
+    out.write("damping_ratio", shell.damping_ratio);
+  out.write("residual", shell.residual);
+}
+
+void write(Writer& out, const Catheter& catheter) {
+  out.table("[body.catheter]");
+  out.write("inside", catheter.inside);
+  out.write("tail", catheter.tail);
+  out.write("tip", catheter.tip);
+  out.write("radius", catheter.radius);
+  out.write("particles", catheter.particles);
+  out.write("sleeve", catheter.sleeve);
+  out.write("damping", catheter.damping);
+  out.write("gravity", catheter.gravity);
+  out.write("integrator", catheter.integrator);
+}
+
 void write(Writer& out, const Body& body) {
   out.table("[[body]]");
   out.write("name", body.name);
   out.write("mesh", body.mesh);
-  out.write("scale", body.scale);
+  if (!body.catheter) out.write("scale", body.scale);
   out.write("model", body.model);
   write(out, body.material);
-  for (const FixedRegion& fixed : body.fixed) write(out, fixed);
+  for (const FixedRegion& fixed : body.fixed) write(out, fixed, body.shell.has_value());
   for (const MaterialRegion& region : body.materials) {
     out.table("[[body.material]]");
     write(out, region.where, "elements");
@@ -140,30 +166,45 @@ void write(Writer& out, const Body& body) {
   if (is_dynamic(body)) write(out, body.dynamic);
   if (body.tearing) write(out, *body.tearing);
   if (body.hybrid) write(out, *body.hybrid);
+  if (body.shell) write(out, *body.shell);
+  if (body.catheter) write(out, *body.catheter);
+}
+
+void write(Writer& out, const Jaws& jaws, bool forceps) {
+  out.table("[tool.jaws]");
+  out.write("length", jaws.length);
+  if (forceps) {
+    out.write("radius", jaws.radius);
+    out.write("most_open", jaws.most_open);
+    out.write("grip_stiffness", jaws.grip_stiffness);
+    out.write("friction", jaws.friction);
+  } else {
+    out.write("width", jaws.width);
+    out.write("closed_below", jaws.closed_below);
+  }
 }
 
 void write(Writer& out, const Tool& tool) {
+  const bool forceps = tool.kind == "forceps";
   out.table("[[tool]]");
   out.write("name", tool.name);
+  out.write("kind", tool.kind);
   out.write("pivot", tool.pivot);
   out.write("axis", tool.axis);
   out.write("up", tool.up);
-  out.write("radius", tool.radius);
+  if (!forceps) out.write("radius", tool.radius);
   out.write("shaft_radius", tool.shaft_radius);
   out.write("shaft_length", tool.shaft_length);
   out.write("device", tool.device);
   out.write("trajectory", tool.trajectory);
+  out.write("compliance", tool.compliance);
   out.write("max_force", tool.max_force);
   out.write("max_force_rate", tool.max_force_rate);
   if (tool.cautery) {
     out.table("[tool.cautery]");
     out.write("radius", tool.cautery->radius);
   }
-  if (!tool.jaws) return;
-  out.table("[tool.jaws]");
-  out.write("length", tool.jaws->length);
-  out.write("width", tool.jaws->width);
-  out.write("closed_below", tool.jaws->closed_below);
+  if (tool.jaws) write(out, *tool.jaws, forceps);
 }
 
 void write(Writer& out, const Network& network) {

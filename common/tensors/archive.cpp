@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/tensors/archive_dynamic.hpp"
+#include "common/tensors/archive_modal.hpp"
 #include "common/tensors/atomic_file.hpp"
 #include "common/tensors/hdf5_file.hpp"
 #include "common/tensors/rows.hpp"
@@ -22,7 +23,8 @@ std::size_t payload_bytes(const Archive& archive) {
   const std::size_t integers = 4 * surface.position.size() + 3 * surface.triangles.size() +
                                2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
                                archive.material_of_element.size();
-  return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive);
+  return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive) +
+         modal_payload_bytes(archive);
 }
 
 void write_header(Hdf5Writer& file, const Archive& archive) {
@@ -103,7 +105,8 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
   const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
   bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
                     surface.touchable <= surface.size() && !archive.young.empty() &&
-                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part);
+                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
+                    modal_part_fits(archive, part);
   if (part != ArchivePart::header)
     consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
@@ -129,6 +132,7 @@ void write_archive(const Archive& archive, const std::filesystem::path& file) {
   write_material(writer, archive);
   write_compliance(writer, archive);
   write_dynamic_part(writer, archive);
+  write_modal_part(writer, archive);
   writer.close();
   atomic.commit();
 }
@@ -155,6 +159,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   if (part != ArchivePart::header) archive.touchable_compliance = reader.doubles("touchable/compliance");
   if (part == ArchivePart::surface) archive.other_compliance = reader.doubles("other/compliance");
   read_dynamic_part(reader, part, archive);
+  read_modal_part(reader, part, archive);
   check_sizes(reader, archive, part);
   return archive;
 }

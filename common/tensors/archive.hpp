@@ -24,12 +24,24 @@ struct SurfaceMap {
   int size() const { return static_cast<int>(position.size()); }
 };
 
+/// Lowest modes of a shell about its rest shape, K phi = omega^2 M phi with phi^T M phi = 1, rotations condensed
+/// (BHS01 eq. 16, 19).
+struct ModalTensors {
+  double thickness = 0;       ///< [m]
+  std::vector<double> omega;  ///< [rad/s] ascending
+  std::vector<double> shape;  ///< [kg^-1/2] column-major, 3 * surface nodes x modes; rows of fixed axes are zero
+  std::vector<double> mass;   ///< [kg] lumped, per surface node
+
+  int modes() const { return static_cast<int>(omega.size()); }
+  bool operator==(const ModalTensors&) const = default;
+};
+
 /// Tensors of one body as stored in the HDF5 archive. Compliance only: T^f_k = C_kk^-1 and
 /// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it. Bodies that move with inertia have their
 /// tetrahedra in place of a compliance; hybrid ones have both, each for its part.
 struct Archive {
   std::string body;
-  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid
+  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid | modal_shell | catheter
   std::string content_hash;            ///< over mesh, material, fixation, touchable set and format version
   std::string software;                ///< version that computed it
   int mesh_nodes = 0;                  ///< nodes in the mesh file
@@ -49,10 +61,11 @@ struct Archive {
   double specimen_force_slope = 0;   ///< [N/m]
   double specimen_radial_slope = 0;  ///< [1]
   std::optional<HybridTensors> hybrid;
+  std::optional<ModalTensors> modal;  ///< of a shell, beside the static compliance of its nodes
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 2;
+constexpr int kArchiveFormat = 3;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.
@@ -64,8 +77,8 @@ std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const
 /// std::runtime_error on failure (a full disk, say), leaving nothing.
 void write_archive(const Archive& archive, const std::filesystem::path& file);
 
-/// Which part of an archive to read: the header with maps, tetrahedra and material, C_tt as well (all that the haptic
-/// node needs), or everything. What is not asked for is not read.
+/// Which part of an archive to read: the header with maps, tetrahedra, material and frequencies, C_tt and mode shapes as
+/// well (all that the haptic node needs), or everything. What is not asked for is not read.
 enum class ArchivePart { header, touchable, surface };
 
 /// Throws std::runtime_error("FILE: reason") if the file is truncated, foreign, of another format version, or

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -80,6 +81,24 @@ Compliance<Scalar>::Compliance(const Archive& archive, Rows rows)
   expand_triangle(archive.touchable_compliance, columns, data_.get(), stride_);
   if (rows == Rows::surface)
     expand_rectangle(archive.other_compliance, places(archive.other_dofs), columns, data_.get(), stride_);
+}
+
+template <class Scalar>
+void Compliance<Scalar>::clear() {
+  std::memset(static_cast<void*>(data_.get()), 0, bytes());
+}
+
+template <class Scalar>
+void Compliance<Scalar>::add_modes(std::span<const double> shape, std::span<const double> weight) {
+  const auto modes = static_cast<Eigen::Index>(weight.size());
+  if (modes == 0 || shape.size() % weight.size() != 0 || shape.size() / weight.size() < 3 * static_cast<std::size_t>(row_nodes_))
+    throw std::invalid_argument("the mode shapes do not fit the compliance");
+  const Eigen::Map<const Eigen::MatrixXd> all(shape.data(), static_cast<Eigen::Index>(shape.size()) / modes, modes);
+  const Eigen::Map<const Eigen::VectorXd> weights(weight.data(), modes);
+  const auto rows = all.topRows(3 * row_nodes_), columns = all.topRows(3 * column_nodes_);
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>, 0, Eigen::OuterStride<>> entries(
+      data_.get(), 3 * row_nodes_, 3 * column_nodes_, Eigen::OuterStride<>(stride_));
+  entries += (rows * (weights.asDiagonal() * columns.transpose())).template cast<Scalar>();
 }
 
 template class Compliance<double>;

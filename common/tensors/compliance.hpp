@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <span>
 
 #include "common/tensors/archive.hpp"
 
@@ -21,6 +22,12 @@ class Compliance {
   int column_nodes() const { return column_nodes_; }
   std::ptrdiff_t stride() const { return stride_; }
   const Scalar* column(int node, int axis) const { return data_.get() + stride_ * (3 * node + axis); }
+
+  void clear();  ///< every entry becomes zero
+  /// Adds sum_m weight_m phi_m phi_m^T, phi_m being column m of `shape`: column-major, 3 entries a surface node of the
+  /// archive, whose fixed axes hold zeros.
+  void add_modes(std::span<const double> shape, std::span<const double> weight);
+
   std::size_t bytes() const { return sizeof(Scalar) * stride_ * 3 * column_nodes_; }
 
   /// What a compliance of that size will take.

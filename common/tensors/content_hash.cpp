@@ -81,9 +81,33 @@ void add_dynamic(Hasher& hash, const Body& body) {
   hash.add(body.hybrid->scale);
 }
 
+/// What the archive of a shell holds beyond that of a quasi-static body.
+void add_shell(Hasher& hash, const Body& body) {
+  hash.add(body.model);
+  hash.add(body.material.density);
+  for (const auto& region : body.fixed) hash.add(std::int64_t{region.rotations});
+  if (!body.shell) return;
+  hash.add(body.shell->thickness);
+  hash.add(body.shell->bending);
+  hash.add(std::int64_t{body.shell->modes});
+}
+
+std::string catheter_hash(const Body& body) {
+  Hasher hash;
+  hash.add(std::int64_t{kArchiveFormat});
+  hash.add(body.model);
+  if (!body.catheter) return hash.text();
+  for (const auto* end : {&body.catheter->tail, &body.catheter->tip})
+    for (int axis = 0; axis < 3; ++axis) hash.add((*end)[axis]);
+  hash.add(body.catheter->radius);
+  hash.add(std::int64_t{body.catheter->particles});
+  return hash.text();
+}
+
 }  // namespace
 
 std::string content_hash(const Body& body) {
+  if (body.model == "catheter") return catheter_hash(body);
   Hasher hash;
   hash.add(std::int64_t{kArchiveFormat});
   hash.add_file(body.mesh);
@@ -107,7 +131,8 @@ std::string content_hash(const Body& body) {
     hash.add_file(body.nonlinear->specimen_mesh);
     hash.add(body.nonlinear->specimen_scale);
   }
-  if (body.model != "quasi_static") add_dynamic(hash, body);
+  if (body.model == "modal_shell") add_shell(hash, body);
+  else if (body.model != "quasi_static") add_dynamic(hash, body);
   return hash.text();
 }
 

@@ -10,7 +10,6 @@
 #include "common/tensors/precompute_dynamic.hpp"
 
 namespace palpate {
-namespace {
 
 std::vector<Dof> free_dofs(const SurfaceMap& surface, int begin, int end) {
   std::vector<Dof> dofs;
@@ -19,8 +18,6 @@ std::vector<Dof> free_dofs(const SurfaceMap& surface, int begin, int end) {
       if (!surface.fixed[node][axis]) dofs.push_back({node, axis});
   return dofs;
 }
-
-}  // namespace
 
 Archive start_archive(const Body& body, const TetMesh& mesh, const MaterialField& materials) {
   Archive archive;

@@ -10,6 +10,9 @@ namespace palpate {
 SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs,
                             const std::vector<int>& also = {});
 
+/// The free dofs of surface nodes begin .. end - 1, ascending.
+std::vector<Dof> free_dofs(const SurfaceMap& surface, int begin, int end);
+
 /// What precompute() did.
 struct PrecomputeCost {
   double flops = 0;

@@ -1,16 +1,21 @@
 #pragma once
+#include <optional>
 #include <vector>
+
+#include "common/scene/scene.hpp"
+#include "common/tool/forceps.hpp"
+#include "common/tool/tool_part.hpp"
 
 namespace palpate {
 
-/// A sphere of the tool's surface for collision, centred on the shaft's axis.
-struct SampleSphere {
-  double behind = 0;  ///< [m] distance of its centre behind the tip's centre
-  double radius = 0;  ///< [m]
-};
-
-/// The tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of them.
+/// Spheres of a probe: the tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of them.
 inline constexpr int max_shaft_samples = 47;
-std::vector<SampleSphere> sample_tool(double tip_radius, double shaft_radius, double shaft_length);
+std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length);
+
+/// The shape of a tool of kind forceps; none for other kinds.
+std::optional<ForcepsShape> forceps_shape(const Tool& tool);
+
+/// The parts of a tool of any kind for collision. `opening` [rad] between the jaws of a forceps; a probe has none.
+std::vector<ToolPart> tool_parts(const Tool& tool, double opening = 0);
 
 }  // namespace palpate

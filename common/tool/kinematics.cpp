@@ -1,5 +1,6 @@
 #include "common/tool/kinematics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -54,6 +55,19 @@ Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, co
   const Eigen::Vector3d moment = torque + (dofs.depth * shaft.col(2)).cross(force);  // about the pivot
   return {trocar.frame.col(1).dot(moment), shaft.col(0).dot(moment), shaft.col(2).dot(force),
           shaft.col(2).dot(torque)};
+}
+
+LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length, const Eigen::Vector3d& force,
+                            const Eigen::Vector3d& torque) {
+  const Eigen::Vector3d along = (trocar.frame * swing(dofs)).col(2);
+  const Eigen::Vector3d moment = torque + dofs.depth * along.cross(force);  // about the pivot
+  const double handle = shaft_length - dofs.depth;                          // [m] behind the pivot
+  LeverForces lever;
+  const Eigen::Vector3d across = -along.cross(moment) / std::max(handle, least_lever);
+  lever.hand = across - along.dot(force) * along;
+  lever.trocar = -(force - along.dot(force) * along) - across;
+  lever.twist = handle * along.cross(across) - moment;
+  return lever;
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/scene/csv.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate {
 
@@ -74,6 +75,16 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
     dofs.push_back({.yaw = v[1], .pitch = v[2], .depth = v[3], .roll = v[4], .grip = v[5], .pedal = pedal});
   }
   return {std::move(time), dofs};
+}
+
+void check_grip(const Trajectory& trajectory, const Tool& tool) {
+  if (tool.kind != "forceps") return;
+  for (double time : trajectory.times()) {  // between the rows nothing overshoots
+    const double grip = trajectory.at(time).grip;
+    if (grip >= 0 && grip <= tool.jaws->most_open) continue;
+    throw std::runtime_error(fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
+                                         tool.trajectory.string(), grip, time, tool.name, tool.jaws->most_open));
+  }
 }
 
 }  // namespace palpate

@@ -7,6 +7,8 @@
 
 namespace palpate {
 
+struct Tool;
+
 /// A tool's motion over time. Between the given rows the dofs follow monotone cubics (Fritsch and Carlson
 /// 1980): continuous speed, no overshoot, so that a tool which rests between two equal rows stays at rest.
 /// The pedal is a switch: it stays where the last row put it.
@@ -16,6 +18,7 @@ class Trajectory {
   Trajectory(std::vector<double> time, const std::vector<ToolDofs>& dofs);
 
   double duration() const { return time_.back(); }  ///< [s] from time 0 to the last row
+  const std::vector<double>& times() const { return time_; }  ///< [s] of the rows
 
   /// Before the first row that row's dofs, after the last one that one's. Allocates nothing.
   ToolDofs at(double time) const;
@@ -34,5 +37,9 @@ class Trajectory {
 /// `pedal` (0 or 1) may follow, and strictly increasing times; lines that begin with '#' and empty lines are
 /// skipped. Throws std::runtime_error("FILE:LINE: sentence").
 Trajectory load_trajectory(const std::filesystem::path& file);
+
+/// Refuses a forceps' trajectory whose grip leaves what the jaws allow, 0 .. most_open. Throws
+/// std::runtime_error("FILE: sentence").
+void check_grip(const Trajectory& trajectory, const Tool& tool);
 
 }  // namespace palpate

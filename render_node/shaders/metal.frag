@@ -2,7 +2,7 @@
 in vec3 world;
 in vec3 facing;
 in vec3 sticky;   // tip frame: z along the shaft, handle to tip [m]
-layout(location = 4) uniform vec4 colour;  // w: length of the bare steel behind the tip [m]
+layout(location = 4) uniform vec4 colour;  // x: polish, 1 mirrors most, 0 is satin; w: length of the bare steel behind the tip [m]
 layout(location = 5) uniform vec4 shaft;   // xyz: unit direction of the shaft
 out vec4 pixel;
 void main() {
@@ -27,7 +27,8 @@ void main() {
   float above = smoothstep(0.45, 0.80, dot(mirror, normalize(scene.up.xyz + 0.3 * scene.right.xyz)));
   room += vec3(1.15, 1.12, 1.10) * above;
   float edge = fifth(1.0 - nv);
-  vec3 steel = (0.85 * room + vec3(0.18) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
+  float satin = 1.0 - colour.x;
+  vec3 steel = ((0.85 - 0.5 * satin) * room + vec3(0.18 + 0.75 * satin * nl) * nl * brush + vec3(1.0, 0.98, 0.95) * shine) * ring;
   vec3 sleeve = vec3(0.010) * nl + vec3(0.10) * pow(nh, 24.0) + room * (0.015 + 0.2 * edge);
   pixel = vec4(display(mix(sleeve, steel, bare) * min(lit.strength, 1.15)), 1.0);
 }

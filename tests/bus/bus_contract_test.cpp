@@ -75,6 +75,11 @@ TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
   expect_round_trip(topics::local_contact_model, local_model_sample(32, 128));
   expect_round_trip(topics::deform_step, deform_step_sample());
   expect_round_trip(topics::deform_keyframe, deform_keyframe_sample());
+  expect_round_trip(topics::modal_state, modal_sample());
+  expect_round_trip(topics::modal_state, modal_sample(1024, 4096));
+  expect_round_trip(topics::catheter_state, catheter_sample());
+  expect_round_trip(topics::catheter_state, catheter_sample(1024));
+  expect_round_trip(topics::task_record, task_sample());
 }
 
 TEST_P(BusContract, ALateReaderGetsEveryChangeOfTopologyInOrder) {
@@ -112,6 +117,34 @@ TEST_P(BusContract, LocalContactModelsThatCannotBeAreRefused) {
   EXPECT_TRUE(refused([](auto& m) { m.triangles.resize(129, m.triangles[0]); }));
   EXPECT_TRUE(refused([](auto& m) { m.seq = 0; }));
   EXPECT_FALSE(refused([](auto& m) { m.contacts.resize(32, m.contacts[0]); }));
+}
+
+TEST_P(BusContract, ReducedStatesAndTaskRecordsThatCannotBeAreRefused) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](const auto& topic, auto message, auto&& change) {
+    auto writer = a->writer(topic);
+    EXPECT_TRUE(writer->write(message));
+    change(message);
+    return !writer->write(message);
+  };
+  const auto modal = [&](auto&& change) { return refused(topics::modal_state, modal_sample(), change); };
+  EXPECT_TRUE(modal([&](auto& m) { m.coordinates[1] = nan; }));
+  EXPECT_TRUE(modal([&](auto& m) { m.forces[2].force[0] = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(modal([](auto& m) { m.coordinates.resize(1025); }));
+  EXPECT_TRUE(modal([](auto& m) { m.forces.resize(4097); }));
+  EXPECT_FALSE(modal([](auto& m) { m.coordinates.resize(1024); }));
+
+  const auto catheter = [&](auto&& change) { return refused(topics::catheter_state, catheter_sample(), change); };
+  EXPECT_TRUE(catheter([&](auto& m) { m.position[4] = nan; }));
+  EXPECT_TRUE(catheter([](auto& m) { m.position.pop_back(); }));
+  EXPECT_TRUE(catheter([](auto& m) { m.position.resize(3 * 1025); }));
+  EXPECT_FALSE(catheter([](auto& m) { m.position.resize(3 * 1024); }));
+
+  const auto task = [&](auto&& change) { return refused(topics::task_record, task_sample(), change); };
+  EXPECT_TRUE(task([&](auto& m) { m.largest_force = nan; }));
+  EXPECT_TRUE(task([](auto& m) { m.inserted = m.deepest + 0.001; }));
+  EXPECT_TRUE(task([](auto& m) { m.held_s = -1; }));
+  EXPECT_FALSE(task([](auto& m) { m.inserted = 0; }));
 }
 
 TEST_P(BusContract, AReaderOfTheLatestSkipsOlderSamplesOfTheSameKeyOnly) {

@@ -29,6 +29,10 @@ void for_each_message(F&& f) {
   f(local_model_sample(0, 0));
   f(deform_step_sample());
   f(deform_keyframe_sample());
+  f(modal_sample());
+  f(modal_sample(0, 0));
+  f(catheter_sample());
+  f(task_sample());
 }
 
 TEST(Codec, DecodingGivesBackEveryMessage) {
@@ -105,10 +109,16 @@ TEST(Print, JsonReadsBackWithEveryValue) {
   EXPECT_EQ(contact["contacts"][1]["nodes"][2].get<int>(), 3);
 }
 
+TEST(Print, ATaskRecordIsTwoLinesForTheTrainee) {
+  EXPECT_EQ(task_text(task_sample()),
+            "inserted 10.0 mm, deepest 20.0 mm after 3.50 s, held for 9.50 s\n"
+            "largest force 0.250 N, wall contacts 6, grasps 7, drops 8\n");
+}
+
 TEST(Print, CsvHasAsManyCellsAsColumns) {
   EXPECT_EQ(csv_header<ForceState>(),
-            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,flags");
-  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,5");
+            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,trocar_2,flags");
+  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.04,7,-8,9,5");
   NodeStatus status;
   status.node = "a \"b\", c";
   EXPECT_EQ(csv_row(status).substr(0, 13), "\"a \"\"b\"\", c\",");

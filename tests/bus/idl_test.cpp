@@ -90,7 +90,7 @@ TEST(Idl, KeysAreTheFirstFieldsThatNameAToolABodyOrANode) {
       const std::string& field = idl_fields[i].name;
       const bool expected = i == 0 && (field == "tool" || field == "body" || field == "node") &&
                             name != "NodalForce" && name != "HeldContact" && name != "LocalContact" &&
-                            name != "LocalNode" && name != "ConsumedStep";
+                            name != "LocalNode" && name != "ConsumedStep" && name != "ShellForce";
       EXPECT_EQ(idl_fields[i].key, expected) << name << "." << field;
     }
 }

@@ -113,5 +113,33 @@ TEST_F(PlayedLog, IsSummarisedWithRatesGapsAndLatencies) {
   EXPECT_EQ(summary.footer->lost, 0u);
 }
 
+TEST_F(PlayedLog, TheSummaryHasTheLastTaskRecordOfEachCatheterAndRun) {
+  const fs::path file = file_.string() + ".task";
+  {
+    LogWriter writer(file);
+    LogHeader header;
+    header.schema = schema_text();
+    writer.write(header_channel, 1, header);
+    for (const std::uint64_t seq : {1u, 3u, 2u}) {  // the second came late
+      TaskRecord task = task_sample();
+      task.seq = seq;
+      task.deepest = 0.01 * static_cast<double>(1 + seq);
+      writer.write(topics::task_record.name, 10 + static_cast<std::int64_t>(seq), task);
+    }
+    TaskRecord other = task_sample();
+    other.run = 77;
+    writer.write(topics::task_record.name, 20, other);
+    writer.finish();
+  }
+  const LogSummary summary = summarise_log(file);
+  ASSERT_EQ(summary.tasks.size(), 2u);
+  EXPECT_EQ(summary.tasks[0].seq, 3u);
+  EXPECT_DOUBLE_EQ(summary.tasks[0].deepest, 0.04);
+  EXPECT_EQ(summary.tasks[1].run, 77u);
+  EXPECT_EQ(summary.topics.at("palpate/task_record").samples, 4u);
+  EXPECT_TRUE(summarise_log(file_).tasks.empty());
+  fs::remove(file);
+}
+
 }  // namespace
 }  // namespace palpate

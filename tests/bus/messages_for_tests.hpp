@@ -5,7 +5,7 @@
 namespace palpate::testing {
 
 inline ToolState tool_sample(std::uint64_t seq = 7, std::uint32_t tool = 3) {
-  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5, 1, 15, 16};
+  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5, 0.6, 1, 15, 16};
 }
 
 inline ContactState contact_sample(int contacts = 2) {
@@ -48,7 +48,7 @@ inline SceneText scene_sample() {
 }
 
 inline ForceState force_sample() {
-  return {2, 3, 4, 5, 6, {0.5, -1, 2}, {0.01, 0.02, -0.03}, 5};
+  return {2, 3, 4, 5, 6, {0.5, -1, 2}, {0.01, 0.02, -0.03}, 0.04, {7, -8, 9}, 5};
 }
 
 inline DeviceState device_sample() {
@@ -77,6 +77,25 @@ inline DeformStep deform_step_sample() {
 
 inline DeformKeyframe deform_keyframe_sample() {
   return {1, 2, 3, 0.001, "avx2 0.1.0", {0, 1, 2, 254, 255}};
+}
+
+inline ModalState modal_sample(std::uint32_t modes = 4, std::uint32_t forces = 3) {
+  ModalState m;
+  m.body = 1, m.run = 2, m.seq = 3, m.step = 4, m.sense_ns = 5;
+  for (std::uint32_t i = 0; i < modes; ++i) m.coordinates.push_back(1e-4 * i - 0.5);
+  for (std::uint32_t i = 0; i < forces; ++i) m.forces.push_back({10 + i, {0.5f * static_cast<float>(i), -2.5f, 3.25f}});
+  return m;
+}
+
+inline CatheterState catheter_sample(int particles = 5) {
+  CatheterState m;
+  m.body = 1, m.run = 2, m.seq = 3, m.step = 4, m.sense_ns = 5;
+  for (int i = 0; i < 3 * particles; ++i) m.position.push_back(0.001 * i + 0.1);
+  return m;
+}
+
+inline TaskRecord task_sample() {
+  return {1, 2, 3, 4, 5, 0.01, 0.02, 3.5, 0.25, 6, 7, 8, 9.5};
 }
 
 }  // namespace palpate::testing

@@ -136,5 +136,57 @@ TEST_F(ContactLawTest, ManyContactsAtOnePlaceStayFiniteAndBounded) {
   EXPECT_LT(total.norm(), 5.0);  // one contact 2 mm deep takes about 0.25 N
 }
 
+TEST_F(ContactLawTest, WhatASoftToolHoldsGivesWayByItsComplianceTimesTheForce) {
+  constexpr double softness = 3e-3;
+  for (const double friction : {0.0, 5.0}) {
+    ContactLaw soft = law(friction);
+    for (const int node : {40, 66, 70}) {
+      TouchContact c = press(vertex(node), 1e-3, {2e-4, -1e-4, 0});
+      c.softness = softness;
+      soft.add(c);
+    }
+    ASSERT_TRUE(soft.solve().converged);
+    for (const TouchContact& c : soft.contacts()) {
+      ASSERT_GT(c.force.dot(c.normal), 0);
+      if (friction > 0) {
+        EXPECT_EQ(c.touch, Touch::sticking);
+        EXPECT_LT((c.position - (c.target - softness * c.force)).norm(), 1e-12);
+      }
+      EXPECT_NEAR(c.normal.dot(c.position), c.plane - softness * c.force.dot(c.normal), 1e-12);
+      EXPECT_LT((c.held_at() - c.position - softness * c.force).norm(), 1e-15);
+    }
+  }
+}
+
+TEST_F(ContactLawTest, ASlidingContactOfASoftToolRubsByMuTimesItsPressure) {
+  ContactLaw soft = law(0.3);
+  TouchContact c = press(vertex(66), 1e-3, {8e-3, 0, 0});
+  c.softness = 3e-3;
+  soft.add(c);
+  soft.solve();
+  const TouchContact& slid = soft.contacts()[0];
+  EXPECT_EQ(slid.touch, Touch::sliding);
+  EXPECT_NEAR(slid.force.x(), 0.3 * -slid.force.z(), 2e-3 * -slid.force.z());
+  EXPECT_NEAR(-slid.position.z(), 1e-3 - 3e-3 * -slid.force.z(), 1e-9);
+}
+
+TEST_F(ContactLawTest, UnderTheAlphaRuleASoftToolGivesWayToo) {
+  ContactLaw rigid = law(1.0, ContactLaw::Rule::alpha), soft = law(1.0, ContactLaw::Rule::alpha);
+  TouchContact c = press({{70, 71, 83}, Vector3d(0.5, 0.2, 0.3)}, 1e-3);
+  rigid.add(c);
+  c.softness = 3e-3;
+  soft.add(c);
+  rigid.solve();
+  soft.solve();
+  EXPECT_LT(-soft.contacts()[0].force.z(), 0.9 * -rigid.contacts()[0].force.z());
+  // The tissue's own displacement is that of the forces on its nodes.
+  double z = 0;
+  const Anchor& anchor = c.anchor;
+  soft.for_each_nodal_force([&](int, int node, const Vector3d& f) {
+    for (int v = 0; v < 3; ++v) z += anchor.weights[v] * compliance_.column(node, 2)[3 * anchor.nodes[v] + 2] * f.z();
+  });
+  EXPECT_NEAR(soft.contacts()[0].position.z(), z, 1e-12);
+}
+
 }  // namespace
 }  // namespace palpate

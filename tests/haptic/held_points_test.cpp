@@ -120,5 +120,24 @@ TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces)
   EXPECT_LT(f.cwiseAbs().maxCoeff(), 2.1 / HeldPoints::pivot_share * alone.cwiseAbs().maxCoeff());
 }
 
+TEST_F(HeldPointsTest, ASoftHoldGivesThePointsTargetLessSoftnessTimesForce) {
+  const double softness[] = {0, 2e-3, 7e-3, 1e-3};
+  HeldPoints held(compliance_, 8);
+  std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
+  held.add(vertex(80), 5e-3);
+  for (int p = 0; p < 4; ++p) held.add(anchors[p], softness[p]);
+  held.remove(0);  // the others keep their own
+  const std::vector<Hold> hold{Hold::all, Hold::normal, Hold::all, Hold::normal};
+  std::vector<Vector3d> normal(4, Vector3d(0.6, 0, 0.8)), target;
+  for (int p = 0; p < 4; ++p) target.push_back(1e-3 * Vector3d::Random());
+  VectorXd f = VectorXd::Zero(12);
+  held.solve(hold, normal, target, f.data());
+  const VectorXd tissue = compliance_of(anchors, compliance_) * f;
+  for (int p = 0; p < 4; ++p) {
+    const Vector3d miss = tissue.segment<3>(3 * p) - (target[p] - softness[p] * f.segment<3>(3 * p));
+    EXPECT_LT(hold[p] == Hold::all ? miss.norm() : std::abs(miss.dot(normal[p])), 1e-12) << p;
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -62,7 +62,7 @@ class VerifyMoving : public ::testing::Test {
     const auto text = bus->writer(topics::scene);
     text->write({.run = run_id, .seq = 1, .scene_hash = "hash", .text = to_toml(scene), .version = "test", .code_path = code_path()});
     HapticStep haptic(scene, std::vector<Archive>(1));
-    Publisher publisher(*bus, haptic.tools(), run_id);
+    Publisher publisher(*bus, haptic, run_id);
     const auto tip = [](int tool, int i) { return Vector3d(0.02 * tool, 0, 0.008 - 0.003 * std::sin(0.01 * i + tool)); };
     const auto dofs_at = [&](int i) { return std::array{tip_at(scene.tools[0], tip(0, i)), tip_at(scene.tools[1], tip(1, i))}; };
     haptic.start(dofs_at(0));

@@ -12,7 +12,7 @@ class SceneFolder {
     char name[] = "/tmp/palpate_scene_XXXXXX";
     path_ = mkdtemp(name);
     for (const char* file :
-         {"liver.msh", "force.csv", "radial.csv", "specimen.msh", "coarse.msh", "move.csv", "session.lcmlog", "ribs.stl"})
+         {"liver.msh", "tube.stl", "force.csv", "radial.csv", "specimen.msh", "coarse.msh", "move.csv", "session.lcmlog", "ribs.stl"})
       write(file, "some bytes\n");
   }
   ~SceneFolder() { std::filesystem::remove_all(path_); }
@@ -140,6 +140,42 @@ poisson = 0.4
 fixed = [{ group = "edge" }]
 dynamic = { gravity = [0, 0, -1.5] }
 
+[[body]]
+name = "cystic_duct"
+mesh = "tube.stl"
+model = "modal_shell"
+young = 2e5
+poisson = 0.45
+touchable = { nodes = [1, 2] }
+
+[[body.fixed]]
+nodes = [0, 5]
+axes = "xy"
+rotations = false
+
+[body.shell]
+thickness = 0.001
+bending = "polynomial"
+modes = 40
+damping = 3
+residual = false
+
+[[body]]
+name = "wire"
+model = "catheter"
+young = 3e7
+
+[body.catheter]
+inside = "cystic_duct"
+tail = [-0.14, 0, 0.01]
+tip = [-0.02, 0, 0.01]
+radius = 0.0013
+particles = 61
+sleeve = 0.03
+damping = 4
+gravity = [0, 0, -9.5]
+integrator = "semi_implicit"
+
 [[tool]]
 name = "probe"
 pivot = [0.1, 0.2, 0.3]
@@ -171,6 +207,20 @@ name = "ghost"
 pivot = [0, 0, 0.3]
 device = "log"
 trajectory = "session.lcmlog"
+
+[[tool]]
+name = "grasper"
+kind = "forceps"
+pivot = [0, 0.1, 0.3]
+device = "bus"
+compliance = 0.0002
+
+[tool.jaws]
+length = 0.015
+radius = 0.0012
+most_open = 0.9
+grip_stiffness = 0.4
+friction = 0.6
 
 [contact]
 rule = "alpha"

@@ -17,7 +17,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   const Scene scene = load_scene(folder.write("scene.toml", kFullScene));
   EXPECT_EQ(scene.file, folder / "scene.toml");
   EXPECT_EQ(scene.title, "All \"keys\" at once");
-  ASSERT_EQ(scene.bodies.size(), 6u);
+  ASSERT_EQ(scene.bodies.size(), 8u);
   const Body& body = scene.bodies[0];
   EXPECT_EQ(body.name, "liver");
   EXPECT_EQ(body.mesh, folder / "liver.msh");
@@ -43,7 +43,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(body.touchable->indices, (std::vector<int>{10, 11}));
   EXPECT_EQ(scene.bodies[1].touchable->box->max, Eigen::Vector3d(1, 1, 0));
   EXPECT_EQ(scene.bodies[2].touchable->group, "top");
-  ASSERT_EQ(scene.tools.size(), 3u);
+  ASSERT_EQ(scene.tools.size(), 4u);
   const Tool& tool = scene.tools[0];
   EXPECT_NEAR((tool.axis - Eigen::Vector3d(1, 2, -3) / std::sqrt(14.0)).norm(), 0, 1e-15);
   EXPECT_EQ(tool.radius, 0.006);
@@ -91,6 +91,57 @@ TEST_F(SceneFile, KeysOfMovingTissueArriveWhereTheyBelong) {
   EXPECT_EQ(scene.tools[0].jaws->width, 0.005);
   EXPECT_EQ(scene.tools[0].jaws->closed_below, 0.2);
   EXPECT_FALSE(scene.tools[1].cautery || scene.tools[1].jaws);
+}
+
+TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
+  const Scene scene = parse(kFullScene);
+  const Body &duct = scene.bodies[6], &wire = scene.bodies[7];
+  EXPECT_FALSE(is_dynamic(duct) || is_dynamic(wire));
+  EXPECT_EQ(duct.mesh, folder / "tube.stl");
+  EXPECT_EQ(duct.fixed[0].axes, (std::array<bool, 3>{true, true, false}));
+  EXPECT_FALSE(duct.fixed[0].rotations);
+  EXPECT_EQ(duct.touchable->indices, (std::vector<int>{1, 2}));
+  EXPECT_EQ(duct.shell->thickness, 0.001);
+  EXPECT_EQ(duct.shell->bending, "polynomial");
+  EXPECT_EQ(duct.shell->modes, 40);
+  EXPECT_EQ(duct.shell->damping, 3);
+  EXPECT_FALSE(duct.shell->residual);
+  EXPECT_FALSE(duct.catheter || wire.shell);
+  EXPECT_TRUE(wire.mesh.empty() && wire.fixed.empty());
+  EXPECT_EQ(wire.material.young, 3e7);
+  EXPECT_EQ(wire.material.poisson, 0.45);
+  EXPECT_EQ(wire.catheter->inside, "cystic_duct");
+  EXPECT_EQ(wire.catheter->tail, Eigen::Vector3d(-0.14, 0, 0.01));
+  EXPECT_EQ(wire.catheter->tip, Eigen::Vector3d(-0.02, 0, 0.01));
+  EXPECT_EQ(wire.catheter->radius, 0.0013);
+  EXPECT_EQ(wire.catheter->particles, 61);
+  EXPECT_EQ(wire.catheter->sleeve, 0.03);
+  EXPECT_EQ(wire.catheter->damping, 4);
+  EXPECT_EQ(wire.catheter->gravity, Eigen::Vector3d(0, 0, -9.5));
+  EXPECT_EQ(wire.catheter->integrator, "semi_implicit");
+  const Tool& tool = scene.tools[3];
+  EXPECT_EQ(tool.kind, "forceps");
+  EXPECT_EQ(tool.compliance, 0.0002);
+  EXPECT_EQ(tool.jaws->length, 0.015);
+  EXPECT_EQ(tool.jaws->radius, 0.0012);
+  EXPECT_EQ(tool.jaws->most_open, 0.9);
+  EXPECT_EQ(tool.jaws->grip_stiffness, 0.4);
+  EXPECT_EQ(tool.jaws->friction, 0.6);
+  EXPECT_EQ(scene.tools[0].kind, "probe");
+}
+
+TEST_F(SceneFile, AShellHasOneLawOfDampingAndIsClampedWhereItIsFixed) {
+  const std::string shell =
+      "[[body]]\nname = \"a\"\nmesh = \"tube.stl\"\nmodel = \"modal_shell\"\nyoung = 1\npoisson = 0\n"
+      "fixed = [{ group = \"a\" }]\n";
+  const Body plain = parse(shell + "shell = { thickness = 0.002 }\n").bodies[0];
+  EXPECT_TRUE(plain.fixed[0].rotations && plain.shell->residual);
+  EXPECT_EQ(plain.shell->damping_ratio, 0.2);
+  EXPECT_EQ(plain.shell->damping, 0);
+  EXPECT_EQ(plain.shell->modes, 50);
+  const Scene undamped = parse(shell + "shell = { thickness = 0.002, damping_ratio = 0 }\n");
+  EXPECT_EQ(undamped.bodies[0].shell->damping_ratio, 0);
+  EXPECT_EQ(parse(to_toml(undamped)).bodies[0].shell->damping_ratio, 0);
 }
 
 TEST_F(SceneFile, ACauteryCutsWithTheTipUnlessItsRadiusIsGiven) {
@@ -172,6 +223,15 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { s.bodies[5].model = "tensor_mass"; }));
   EXPECT_TRUE(changed([](Scene& s) { s.tools[0].cautery->radius = 0.003; }));
   EXPECT_TRUE(changed([](Scene& s) { s.tools[0].jaws.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->modes = 50; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->damping = 2; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->residual = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].fixed[0].rotations = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[7].catheter->particles = 60; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[7].catheter->inside.clear(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].kind = "probe"; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].compliance = 1e-4; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].jaws->friction = 0.8; }));
   EXPECT_FALSE(changed([](Scene& s) { s.bodies[4].hybrid->mesh = "/elsewhere/coarse.msh"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));

@@ -86,10 +86,10 @@ TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
   const TemporaryFolder folder;
   Hdf5Writer later(folder / "a.h5");
   later.attribute("format", "palpate compliance archive");
-  later.attribute("format_version", std::int64_t{3});
+  later.attribute("format_version", std::int64_t{4});
   later.close();
   EXPECT_EQ(refusal(folder / "a.h5"),
-            (folder / "a.h5").string() + ": format version 3, this program reads 2");
+            (folder / "a.h5").string() + ": format version 4, this program reads 3");
 }
 
 TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {

@@ -109,6 +109,23 @@ inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1)
   return archive;
 }
 
+/// The same with the modes of a shell.
+inline Archive make_modal_archive(int touchable, int others, int modes, unsigned seed = 1) {
+  auto archive = make_archive(touchable, others, seed);
+  archive.model = "modal_shell";
+  archive.density = {1050};
+  archive.material_of_element.clear();
+  auto& modal = archive.modal.emplace();
+  modal.thickness = 8e-4;
+  for (int i = 0; i < modes; ++i) modal.omega.push_back(50 + 3 * i);
+  for (int i = 0; i < touchable + others; ++i) modal.mass.push_back(1e-6 * (1 + i));
+  std::mt19937 random(~seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  modal.shape.resize(std::size_t{3} * (touchable + others) * modes);
+  std::generate(modal.shape.begin(), modal.shape.end(), [&] { return uniform(random); });
+  return archive;
+}
+
 inline bool same_dofs(const std::vector<Dof>& a, const std::vector<Dof>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Dof& x, const Dof& y) { return x.node == y.node && x.axis == y.axis; });
@@ -116,7 +133,7 @@ inline bool same_dofs(const std::vector<Dof>& a, const std::vector<Dof>& b) {
 
 inline bool same(const Archive& a, const Archive& b) {
   return a.body == b.body && a.model == b.model && a.density == b.density && a.tetrahedra == b.tetrahedra &&
-         a.hybrid == b.hybrid && a.content_hash == b.content_hash && a.software == b.software &&
+         a.hybrid == b.hybrid && a.modal == b.modal && a.content_hash == b.content_hash && a.software == b.software &&
          a.mesh_nodes == b.mesh_nodes && a.young == b.young && a.poisson == b.poisson &&
          a.material_of_element == b.material_of_element && a.surface.position == b.surface.position &&
          a.surface.node_number == b.surface.node_number && a.surface.fixed == b.surface.fixed &&

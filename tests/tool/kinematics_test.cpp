@@ -97,5 +97,47 @@ TEST_F(Kinematics, ParallelOrZeroDirectionsAreRefused) {
   EXPECT_THROW(make_trocar(zero, x, zero), std::runtime_error);
 }
 
+TEST(TrocarReaction, ForcesAndMomentsBalanceInEveryPose) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> angle(-1.2, 1.2), depth(0.02, 0.28), unit(-1, 1);
+  const auto vector = [&] { return Eigen::Vector3d(unit(random), unit(random), unit(random)); };
+  for (int round = 0; round < 500; ++round) {
+    const Trocar trocar = make_trocar(vector(), vector(), vector());
+    const ToolDofs dofs{.yaw = angle(random), .pitch = angle(random), .depth = depth(random), .roll = 3 * angle(random)};
+    const Eigen::Vector3d force = 5 * vector(), torque = 0.1 * vector();
+    const double length = 0.3;
+    const LeverForces lever = trocar_reaction(trocar, dofs, length, force, torque);
+    const Eigen::Isometry3d tip = tip_pose(trocar, dofs);
+    const Eigen::Vector3d along = tip.linear().col(2), handle = tip.translation() - length * along;
+    ASSERT_LT((force + lever.trocar + lever.hand).norm(), 1e-12);
+    const Eigen::Vector3d moments =
+        torque + tip.translation().cross(force) + trocar.pivot.cross(lever.trocar) + handle.cross(lever.hand) + lever.twist;
+    ASSERT_LT(moments.norm(), 1e-12);
+    ASSERT_LT(std::abs(lever.trocar.dot(along)), 1e-12);           // a pivot holds nothing along the shaft
+    ASSERT_LT(lever.twist.cross(along).norm(), 1e-12);             // and the hand's moment is against the roll alone
+    ASSERT_NEAR(lever.twist.dot(along), -torque.dot(along), 1e-12);
+    ASSERT_NEAR(lever.hand.dot(along), -force.dot(along), 1e-12);
+  }
+}
+
+TEST(TrocarReaction, ALeverOfEqualArmsBearsTwiceTheForceAtItsPivot) {
+  const Trocar trocar = make_trocar({0, 0, 0}, -Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+  const LeverForces lever = trocar_reaction(trocar, {.depth = 0.15}, 0.3, {2, 0, 0}, Eigen::Vector3d::Zero());
+  EXPECT_LT((lever.hand - Eigen::Vector3d(2, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((lever.trocar - Eigen::Vector3d(-4, 0, 0)).norm(), 1e-12);
+}
+
+TEST(TrocarReaction, AHandleAtTheTrocarKeepsTheForcesBoundedAndTheBalance) {
+  const Trocar trocar = make_trocar({0, 0, 0}, -Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+  for (const double depth : {0.295, 0.3, 0.31}) {
+    const Eigen::Vector3d force(2, 1, 3), torque(0, 0.01, 0.02);
+    const LeverForces lever = trocar_reaction(trocar, {.depth = depth}, 0.3, force, torque);
+    EXPECT_LT(lever.hand.norm(), 100);
+    EXPECT_LT((force + lever.trocar + lever.hand).norm(), 1e-12);
+    const Eigen::Vector3d tip(0, 0, -depth), handle(0, 0, 0.3 - depth);
+    EXPECT_LT((torque + tip.cross(force) + handle.cross(lever.hand) + lever.twist).norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -3,13 +3,19 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
+#include "common/mesh/shell_file.hpp"
+#include "common/mesh/shell_quality.hpp"
 #include "tools/generate/cylinders.hpp"
+#include "tools/generate/duct.hpp"
+#include "tools/generate/duct_motions.hpp"
 #include "tools/generate/hepatectomy.hpp"
 #include "tools/generate/liver.hpp"
 #include "tools/generate/plate.hpp"
@@ -62,10 +68,28 @@ void save(const TriangleMesh& mesh, const std::filesystem::path& file) {
   std::printf("%s: %zu nodes, %zu triangles\n", file.c_str(), mesh.nodes.size(), mesh.triangles.size());
 }
 
+void save(const ShellMesh& mesh, const std::filesystem::path& file) {
+  check_shell_mesh(mesh, file.string());
+  write_shell_mesh(mesh, file);
+  std::printf("%s: %zu nodes, %zu triangles, lumen of the middle surface %.2f mm\n", file.c_str(), mesh.nodes.size(),
+              mesh.triangles.size(), 2e3 * lumen_radius(mesh));
+}
+
+/// Writes the trajectories that a scene of the duct names; the files must be there already, as for every scene.
+void save_motions(const std::filesystem::path& file) {
+  const Scene scene = load_scene(file);
+  for (const Tool& tool : scene.tools) {
+    std::ofstream out(tool.trajectory, std::ios::binary);
+    out << duct_motion(scene, tool);
+    if (!out.flush()) throw std::runtime_error(tool.trajectory.string() + ": the file cannot be written");
+    std::printf("%s\n", tool.trajectory.c_str());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes the meshes of the example scenes"};
+  CLI::App app{"Makes the meshes of the example scenes and some of their motions"};
   app.require_subcommand(1);
   std::filesystem::path file;
   const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
@@ -93,6 +117,11 @@ int main(int argc, char** argv) {
   add_shape("cylinder_tear", "the cylinder that tears (.msh)", [&] { save(make_cylinder_tear(), file); });
   add_shape("cylinder_hybrid", "the cylinder of two halves (.msh)",
             [&] { save(make_cylinder_hybrid(), file); });
+
+  add_shape("duct", "the cystic duct, a surface (.msh)", [&] { save(make_duct(), file); });
+  shape = app.add_subcommand("motions", "the trajectories of a scene of the duct");
+  shape->add_option("SCENE", file, "scene file, which names them")->required();
+  shape->callback([&] { save_motions(file); });
 
   BlockOptions block;
   shape = add_shape("block", "a block (.msh)", [&] { save(make_top_centred_block(block), file); });

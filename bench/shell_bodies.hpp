@@ -1,0 +1,86 @@
+#pragma once
+#include <chrono>
+#include <functional>
+#include <numbers>
+
+#include "common/mesh/shell_generators.hpp"
+#include "common/shell/shell_system.hpp"
+
+/// Shells of the benchmarks of modes: plates and cylinders with known frequencies, and a soft duct.
+namespace palpate::bench {
+
+/// Whether dof 0..2 (displacement), 3..5 (rotation) of the node at this place [m] is fixed.
+using Fixed = std::function<bool(const Eigen::Vector3d&, int)>;
+
+inline ShellSystem make_body(const ShellMesh& mesh, const ShellMaterial& material, const Fixed& fixed) {
+  ShellDofs dofs(used_shell_nodes(mesh));
+  for (int node = 0; node < dofs.nodes(); ++node)
+    for (int dof = 0; dof < 6; ++dof)
+      if (fixed(mesh.nodes[node], dof)) dofs.fix(node, dof);
+  dofs.number();
+  return make_shell_system(mesh, material, Bending::discrete_kirchhoff, std::move(dofs), "bench");
+}
+
+/// Square of `cells` x `cells` cells of two triangles [m].
+inline ShellMesh plate_mesh(int cells, double side) {
+  ShellMesh mesh;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({i * side / cells, j * side / cells, 0});
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * (cells + 1) + i, b = a + 1, c = b + cells + 1, d = c - 1;
+      const bool even = (i + j) % 2 == 0;
+      mesh.triangles.push_back({a, b, even ? c : d});
+      mesh.triangles.push_back({even ? a : b, c, d});
+    }
+  return mesh;
+}
+
+/// The plate of the NAFEMS tests: 10 x 10 x 0.05 m of steel.
+constexpr ShellMaterial kPlate{200e9, 0.3, 8000, 0.05};
+constexpr double kPlateSide = 10;
+
+inline ShellSystem supported_plate(int cells) {
+  return make_body(plate_mesh(cells, kPlateSide), kPlate, [](const Eigen::Vector3d& x, int dof) {
+    const bool edge_x = x[0] == 0 || x[0] == kPlateSide, edge_y = x[1] == 0 || x[1] == kPlateSide;
+    return dof <= 1 || dof == 5 || (dof == 2 && (edge_x || edge_y)) || (dof == 3 && edge_x) ||
+           (dof == 4 && edge_y);
+  });
+}
+
+inline ShellSystem free_plate(int cells) {
+  return make_body(plate_mesh(cells, kPlateSide), kPlate, [](const Eigen::Vector3d&, int) { return false; });
+}
+
+/// Radius 1 m, length 4 m, 1 cm of steel, the ends held round by diaphragms and free to slide along the axis.
+constexpr ShellMaterial kCylinder{200e9, 0.3, 8000, 0.01};
+constexpr double kCylinderRadius = 1, kCylinderLength = 4;
+
+inline ShellSystem cylinder(int around, int along) {
+  return make_body(make_tube(kCylinderRadius, kCylinderLength, around, along), kCylinder,
+                   [](const Eigen::Vector3d& x, int dof) {
+                     return dof <= 1 && (x[2] < 1e-9 || x[2] > kCylinderLength - 1e-9);
+                   });
+}
+
+/// A duct of soft tissue, 60 mm long, 9 mm wide, 0.8 mm thick, clamped at one end.
+constexpr ShellMaterial kTissue{1e5, 0.45, 1050, 8e-4};
+
+inline ShellSystem duct(int around, int along) {
+  return make_body(make_tube(0.0045, 0.06, around, along), kTissue,
+                   [](const Eigen::Vector3d& x, int) { return x[2] < 1e-9; });
+}
+
+/// Wall-clock time of one call.
+inline double seconds_of(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// The free translation that a tool pushes: radially, on the ring halfway along.
+inline int pushed_dof(const ShellSystem& duct, int around, int along) {
+  return duct.dofs.index(along / 2 * around, 0);
+}
+
+}  // namespace palpate::bench

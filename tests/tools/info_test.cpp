@@ -1,0 +1,42 @@
+#include <nlohmann/json.hpp>
+
+#include "common/bus/log_writer.hpp"
+#include "idl/topics.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace testing;
+
+TEST(Info, TellsHowTheTaskOfALogEnded) {
+  const OwnFolder folder("info");
+  const std::string log = folder / "task.lcmlog";
+  {
+    LogWriter writer(log);
+    LogHeader header;
+    header.schema = schema_text();
+    writer.write(header_channel, 1, header);
+    for (const std::uint64_t seq : {1u, 2u})
+      writer.write(topics::task_record.name, static_cast<std::int64_t>(100'000'000 * seq),
+                   TaskRecord{.body = 1, .run = 0xAB, .seq = seq, .inserted = 0.01, .deepest = 0.011 * static_cast<double>(seq), .inserting_s = 6.5,
+                              .largest_force = 0.75, .wall_contacts = 3, .grasps = 2, .drops = 1, .held_s = 5.25});
+    writer.finish();
+  }
+  const ProgramResult text = run_program(program("palpate") + " info " + log);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("task of catheter 1 in run 00000000000000ab\n"
+                          "inserted 10.0 mm, deepest 22.0 mm after 6.50 s, held for 5.25 s\n"
+                          "largest force 0.750 N, wall contacts 3, grasps 2, drops 1\n"),
+            std::string::npos)
+      << text.out;
+  const ProgramResult json = run_program(program("palpate") + " info --json " + log);
+  EXPECT_EQ(json.status, 0) << json.err;
+  const auto tasks = nlohmann::json::parse(json.out)["tasks"];
+  ASSERT_EQ(tasks.size(), 1u);
+  EXPECT_EQ(tasks[0]["seq"], 2);
+  EXPECT_EQ(tasks[0]["deepest"], 0.022);
+}
+
+}  // namespace
+}  // namespace palpate
