@@ -37,14 +37,14 @@ std::size_t CatheterBody::state_size() const {
 
 void CatheterBody::save(unsigned char* to) const {
   visit_state(*this, [&](const void* from, std::size_t bytes) {
-    std::memcpy(to, from, bytes);
+    if (bytes > 0) std::memcpy(to, from, bytes);
     to += bytes;
   });
 }
 
 void CatheterBody::restore(const unsigned char* from) {
   visit_state(*this, [&](void* to, std::size_t bytes) {
-    std::memcpy(to, from, bytes);
+    if (bytes > 0) std::memcpy(to, from, bytes);
     from += bytes;
   });
   lumen_.refresh();

@@ -21,7 +21,7 @@ struct FeedPlan {
 struct SteadyPlan {
   double place = 0.2;  ///< along the duct, 0 (mouth) .. 1
   double open = 1.2;
-  double push = 0.001;  ///< beyond the touch
+  double push = 0.003;  ///< beyond the touch
   double withdrawn = 0.030;
   double approach_time = 2.0, push_time = 0.8;
   double hold_until = 23.5;
