@@ -50,9 +50,9 @@ def draw(values, file):
             slope, at_zero, _ = line_through(x, y)
             axis.plot(x, slope * x + at_zero, lw=1)
         axis.set_xlabel(label)
-        axis.set_ylim(bottom=0)
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("haptic step, median [µs]")
+    axes[0].set_ylim(0, 1.08 * max(series(values, prefix)[1].max() for prefix, _ in titles if len(series(values, prefix)[1])))
     figure.tight_layout()
     figure.savefig(file)
 

@@ -14,6 +14,7 @@ void CatheterBody::visit_state(Self& self, Visit&& visit) {
   all(self.tension_);
   all(self.lumen_.inside());
   all(self.lumen_.seen());
+  visit(&self.lumen_.turn(), sizeof(int));
   for (auto& grasp : self.grasps_.all()) {
     visit(&grasp.count, sizeof grasp.count);
     visit(&grasp.stiffness, sizeof grasp.stiffness);

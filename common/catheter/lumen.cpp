@@ -35,7 +35,10 @@ Lumen::Lumen(const CatheterWall* wall, std::span<const Vector3d> x, double radiu
   }
   last_ = seen_;
   refresh();
-  for (const Mouth& mouth : mouths_) check_width(mouth, radius);
+  for (const Mouth& mouth : mouths_) {
+    check_width(mouth, radius);
+    reach_ = std::max(reach_, 2 * mouth.cap.radius);
+  }
   for (const Vector3d& p : x) inside_.push_back(winding(p) > 0.5);
 }
 
@@ -103,7 +106,14 @@ double Lumen::winding(const Vector3d& p) const {
   return angle / (4 * std::numbers::pi);
 }
 
+void Lumen::release_lost(std::span<const Vector3d> x) {
+  if (inside_.empty()) return;
+  turn_ = (turn_ + 1) % static_cast<int>(inside_.size());
+  if (inside_[turn_] && wall_->surface().find(x[turn_], x[turn_], reach_).empty()) leave(turn_);
+}
+
 void Lumen::refresh() {
+  turn_ = std::clamp(turn_, 0, std::max(0, static_cast<int>(inside_.size()) - 1));
   for (Mouth& mouth : mouths_) mouth.cap = measure(mouth, seen_);
 }
 

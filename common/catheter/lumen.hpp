@@ -37,6 +37,9 @@ class Lumen {
   /// The last crossing of a mouth on a straight way; from_outside: into the lumen.
   std::optional<SweptHit> crossing(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   void leave(int particle) { inside_[particle] = 0; }
+  /// Particles about which no wall is left within reach are out, however they came there: a wall that is thrown about by
+  /// several times its width may lose them. Looks at one particle a call.
+  void release_lost(std::span<const Eigen::Vector3d> x);
 
   double inserted(std::span<const Eigen::Vector3d> x, double spacing) const;  ///< [m]
   void mark(TouchSurface& surface) const;
@@ -45,6 +48,8 @@ class Lumen {
   std::span<Eigen::Vector3d> seen() { return seen_; }
   std::span<const Eigen::Vector3d> seen() const { return seen_; }
   void refresh();  ///< after seen() was restored
+  int& turn() { return turn_; }
+  const int& turn() const { return turn_; }
 
   /// [1] 1 inside the wall closed by its mouths, 0 outside (solid angle over 4 pi).
   double winding(const Eigen::Vector3d& p) const;
@@ -76,6 +81,8 @@ class Lumen {
       edge_mouth_;               ///< per triangle, of the edges opposite to its corners; -1: an inner edge
   std::vector<int> node_mouth_;  ///< per surface node; -1: not on a rim
   std::vector<char> inside_;
+  double reach_ = 0;  ///< [m] within which a particle in the lumen has a wall
+  int turn_ = 0;      ///< particle that release_lost() looks at next
 };
 
 }  // namespace palpate

@@ -190,7 +190,7 @@ TEST(DuctManipulation, ARestoredStateGoesOnBitForBit) {
   EXPECT_EQ(a.task().wall_contacts, b.task().wall_contacts);
 }
 
-/// Two forceps at all rates. One takes the catheter wherever it is and leads or throws it about, mostly towards the duct;
+/// Two forceps at all rates, in hands that give way beyond 2 N. One takes the catheter wherever it is and leads or throws it about, mostly towards the duct;
 /// the other goes where chance sends it, and grasps and lets go.
 class RandomHands {
  public:
@@ -201,6 +201,8 @@ class RandomHands {
       Hand& h = hands_[tool];
       if (h.left-- <= 0) tool == 0 ? lead(h, t) : wander(h);
       h.at += (h.to - h.at) * h.rate;
+      const Vector3d& force = t.haptic->force(tool);
+      if (force.norm() > gives_way) h.at += std::min(1e-3, 2e-4 * (force.norm() - gives_way)) * force.normalized();
       h.grip += (h.grip_to - h.grip) * h.rate;
       t.dofs[tool] = t.at(tool, h.at, h.grip);
     }
@@ -208,6 +210,7 @@ class RandomHands {
   }
 
  private:
+  static constexpr double gives_way = 2;  ///< [N]
   struct Hand {
     Vector3d at, to;
     double grip = wide_open, grip_to = wide_open, rate = 0.01;
