@@ -107,6 +107,8 @@ void HapticLoop::tick(double time) {
   report_.limited += (flags & (force_limited | slew_limited)) != 0;
   report_.regularised += (flags & regularised) != 0;
   report_.faults += (flags & fault) != 0;
+  report_.damped += (flags & passivity_limited) != 0;
+  report_.least_energy = std::min(report_.least_energy, haptic_.energy());
   report_.stale += (flags & stale_model) != 0;
   if (flags & stale_model) shown_stale_.store(true, std::memory_order_relaxed);
   shown_ticks_.store(step_, std::memory_order_relaxed);

@@ -12,7 +12,18 @@
 
 namespace palpate {
 
-HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives) : dt_(1.0 / scene.rates.haptic_hz) {
+namespace {
+
+double most_force(const Scene& scene) {
+  double sum = 0;
+  for (const Tool& tool : scene.tools) sum += tool.max_force;
+  return sum;
+}
+
+}  // namespace
+
+HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives) 
+    : dt_(1.0 / scene.rates.haptic_hz), passivity_(scene.passivity, static_cast<int>(scene.tools.size()), most_force(scene), dt_) {
   for (const Tool& tool : scene.tools) {
     const bool forceps = tool.kind == "forceps";
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
@@ -48,6 +59,9 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     for (const Trocar& trocar : trocars_) local_.push_back(std::make_unique<LocalBody>(trocar, scene.contact.friction, dt_));
   loads_.resize(moving_.size());
   output_.resize(moving_.size());
+  motion_.resize(moving_.size());
+  asked_.resize(moving_.size());
+  handle_.assign(moving_.size(), 0.0);
   jaws_closed_.assign(moving_.size(), 0);
 }
 
@@ -59,6 +73,7 @@ void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
     moving_[t].before = moving_[t].now;
     if (!hands_[t]) continue;
     hands_[t]->start(dofs[t].grip);
+    handle_[t] = hands_[t]->state().grip.commanded;
     set_opening(hands_[t]->opening(), parts_[t]);
     std::ranges::copy(parts_[t], parts_before_[t].begin());
   }
@@ -130,6 +145,7 @@ void HapticStep::step(std::span<const ToolDofs> dofs) {
   bool healthy = sense(dofs);
   work_jaws(dofs);
   work_forceps(dofs);
+  count_energy();
   std::uint32_t softened = 0;
   for (int t = 0; t < tools(); ++t) output_[t] = {};
   for (auto& body : bodies_)
@@ -154,13 +170,40 @@ void HapticStep::step(std::span<const ToolDofs> dofs) {
     output_[t].torque += load.torque;
     if (local_[t]->stale()) output_[t].flags = stale_model;
   }
-  for (int t = 0; t < tools(); ++t) {
-    Output& out = output_[t];
-    out.flags |= softened | safety_[t].apply(out.force, out.torque, healthy);
-    out.trocar = trocar_reaction(trocars_[t], dofs[t], shaft_length_[t], out.force, out.torque).trocar;
-  }
+  limit_forces(dofs, healthy, softened);
   keep_tasks();
   ++step_;
+}
+
+// The last output was held while the tools moved to where they are.
+void HapticStep::count_energy() {
+  for (int t = 0; t < tools(); ++t) {
+    const double handle = hands_[t] ? hands_[t]->state().grip.commanded : 0.0;
+    motion_[t] = motion_between(moving_[t].before, moving_[t].now, handle - handle_[t]);
+    handle_[t] = handle;
+  }
+  passivity_.observe(motion_);
+}
+
+// From what the tissue asks for to what the hand gets. Damping comes after the force limit, so that it knows what it damps, and
+// before the slew limit and a second force limit, which have the last word; the energy counts what they leave.
+void HapticStep::limit_forces(std::span<const ToolDofs> dofs, bool healthy, std::uint32_t flags) {
+  for (int t = 0; t < tools(); ++t) {
+    asked_[t] = {output_[t].force, output_[t].torque, hands_[t] ? hands_[t]->torque() : 0.0};
+    output_[t].flags |= flags | safety_[t].limit(asked_[t].force, asked_[t].torque);
+  }
+  passivity_.control(asked_);
+  for (int t = 0; t < tools(); ++t) {
+    Output& out = output_[t];
+    PortForce& given = asked_[t];
+    if (passivity_.limited(t)) out.flags |= passivity_limited;
+    out.flags |= safety_[t].apply(given.force, given.torque, healthy);
+    out.force = given.force;
+    out.torque = given.torque;
+    out.grip = given.grip;
+    passivity_.hold(t, given);
+    out.trocar = trocar_reaction(trocars_[t], dofs[t], shaft_length_[t], out.force, out.torque).trocar;
+  }
 }
 
 bool HapticStep::consume(const LocalContactModel& message) {
@@ -181,6 +224,7 @@ void HapticStep::visit_extras(Visit&& visit) {
   visit(&step_, sizeof step_);
   for (Task& task : tasks_) visit(&task, sizeof task);
   for (int& contacts : wall_contacts_) visit(&contacts, sizeof contacts);
+  for (double& handle : handle_) visit(&handle, sizeof handle);
 }
 
 std::size_t HapticStep::state_size() const {
@@ -192,7 +236,7 @@ std::size_t HapticStep::state_size() const {
   for (const auto& catheter : catheters_)
     if (catheter) size += catheter->state_size();
   for (const auto& local : local_) size += local->state_size();
-  return size + sizeof step_ + tasks_.size() * (sizeof(Task) + sizeof(int));
+  return size + passivity_.state_size() + handle_.size() * sizeof(double) + sizeof step_ + tasks_.size() * (sizeof(Task) + sizeof(int));
 }
 
 void HapticStep::save(std::span<std::uint8_t> to) {
@@ -217,6 +261,8 @@ void HapticStep::save(std::span<std::uint8_t> to) {
   save_all(bodies_);
   save_all(catheters_);
   save_all(local_);
+  passivity_.save(p);
+  p += passivity_.state_size();
   visit_extras(put);
   forget_factors();
 }
@@ -261,6 +307,8 @@ void HapticStep::restore(std::span<const std::uint8_t> from) {
     local->restore(p);
     p += local->state_size();
   }
+  passivity_.restore(p);
+  p += passivity_.state_size();
   visit_extras(get);
 }
 

@@ -13,6 +13,7 @@
 #include "haptic_node/forceps_hand.hpp"
 #include "haptic_node/local_body.hpp"
 #include "haptic_node/modal_body.hpp"
+#include "haptic_node/passivity.hpp"
 #include "haptic_node/safety.hpp"
 #include "haptic_node/task.hpp"
 #include "haptic_node/touch_body.hpp"
@@ -62,7 +63,7 @@ class HapticStep {
   const Eigen::Vector3d& press(int tool) const { return output_[tool].press; }
   const Eigen::Isometry3d& pose(int tool) const { return moving_[tool].now; }
   double opening(int tool) const { return hands_[tool] ? hands_[tool]->opening() : 0.0; }    ///< [rad] between a forceps' jaws
-  double grip_torque(int tool) const { return hands_[tool] ? hands_[tool]->torque() : 0.0; }  ///< [N m] on the handle, opens the jaws
+  double grip_torque(int tool) const { return output_[tool].grip; }  ///< [N m] on the handle, opens the jaws
   const Eigen::Vector3d& trocar_force(int tool) const { return output_[tool].trocar; }       ///< [N] of the trocar on the shaft
   bool is_touch_body(int b) const { return bodies_[b] != nullptr; }
   const TouchBody& body(int b) const { return *bodies_[b]; }  ///< a quasi-static or modal one
@@ -74,6 +75,8 @@ class HapticStep {
   const ModalBody& modal(int b) const { return *modal_[b]; }
   const CatheterBody& catheter(int b) const { return *catheters_[b]; }
   std::span<const Task> tasks() const { return tasks_; }  ///< one a catheter, in the order of catheters()
+  /// [J] that all tools together have put into what they touch, by the forces that the hands really got.
+  double energy() const { return passivity_.energy(); }
   void trip();  ///< fault from outside: the force ramps to zero
 
   /// Changing state as bytes, to start a replay from. save() leaves the factor forgotten, so that the run goes on
@@ -87,8 +90,11 @@ class HapticStep {
   struct Output {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero(), press = Eigen::Vector3d::Zero();
     Eigen::Vector3d trocar = Eigen::Vector3d::Zero();
+    double grip = 0;
     std::uint32_t flags = 0;
   };
+  void count_energy();
+  void limit_forces(std::span<const ToolDofs> dofs, bool healthy, std::uint32_t flags);
   bool sense(std::span<const ToolDofs> dofs);
   const char* part_name(int tool, int part) const;
   void build_catheters(const Scene& scene);
@@ -118,12 +124,16 @@ class HapticStep {
   std::vector<std::uint8_t> dynamic_;
   std::vector<std::unique_ptr<LocalBody>> local_;   ///< one per tool; none without a dynamic body
   std::uint64_t step_ = 0;
+  PassivityGuard passivity_;
   std::vector<SafetyChain> safety_;
   std::vector<std::optional<ForcepsHand>> hands_;  ///< per tool; of those that are forceps
   std::vector<std::optional<Jaws>> jaws_;          ///< per tool; of probes
   std::vector<std::uint8_t> jaws_closed_;
   std::vector<ToolLoad> loads_;
   std::vector<Output> output_;
+  std::vector<PortMotion> motion_;  ///< per tool, of this step
+  std::vector<PortForce> asked_;
+  std::vector<double> handle_;      ///< [rad] per tool: the handle in the last step
 };
 
 }  // namespace palpate

@@ -101,7 +101,9 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"limited_steps", r.limited},
           {"regularised_steps", r.regularised},
           {"fault_steps", r.faults},
-          {"stale_model_steps", r.stale}};
+          {"stale_model_steps", r.stale},
+          {"passivity_limited_steps", r.damped},
+          {"energy_min_j", r.least_energy}};
 }
 
 void run(const NodeOptions& o) {
@@ -140,6 +142,9 @@ void run(const NodeOptions& o) {
   const LoopReport& report = loop.run(o.seconds);
   nlohmann::json summary = summary_of(report);
   if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);
+  if (report.damped > 0)
+    spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most", report.damped,
+                 -1e3 * report.least_energy);
   if (o.supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
                summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(), summary["step_us_p999"].get<double>(),

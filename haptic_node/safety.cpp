@@ -1,6 +1,7 @@
 #include "haptic_node/safety.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/bus/messages.hpp"
 
@@ -8,6 +9,14 @@ namespace palpate {
 
 SafetyChain::SafetyChain(double max_force, double max_force_rate, double dt)
     : max_force_(max_force), max_change_(max_force_rate * dt), dt_(dt) {}
+
+std::uint32_t SafetyChain::limit(Eigen::Vector3d& force, Eigen::Vector3d& torque) const {
+  const double size = force.norm();
+  if (!(size > max_force_) || !std::isfinite(size)) return 0;
+  force *= max_force_ / size;
+  torque *= max_force_ / size;
+  return force_limited;
+}
 
 std::uint32_t SafetyChain::apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy) {
   Eigen::Map<Eigen::Vector3d> last(state_.force), last_torque(state_.torque);
@@ -32,12 +41,7 @@ std::uint32_t SafetyChain::apply(Eigen::Vector3d& force, Eigen::Vector3d& torque
     torque = last_torque;
     return fault;
   }
-  const double size = force.norm();
-  if (size > max_force_) {
-    force *= max_force_ / size;
-    torque *= max_force_ / size;
-    flags |= force_limited;
-  }
+  flags |= limit(force, torque);
   const double change = (force - last).norm();
   if (change > max_change_) {
     const double share = max_change_ / change;

@@ -13,6 +13,9 @@ class SafetyChain {
   /// Limits: force [N], rate of change of the force [N/s]; dt [s] is the step.
   SafetyChain(double max_force, double max_force_rate, double dt);
 
+  /// The force limit alone, for what must know it before the slew limit. Returns force_limited or 0; what is not finite is left.
+  std::uint32_t limit(Eigen::Vector3d& force, Eigen::Vector3d& torque) const;
+
   /// Turns what the tissue asks for into what the hand gets; torque is scaled as the force is.
   /// `healthy` false reports a fault of this step. Returns ForceFlag bits.
   std::uint32_t apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy);

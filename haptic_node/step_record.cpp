@@ -43,6 +43,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
                  StepRecord& r) {
   r.step = step;
   r.sense_ns = sense_ns;
+  r.energy = haptic.energy();
   r.tools = haptic.tools();
   r.contacts = r.forces = 0;
   for (int t = 0; t < r.tools; ++t) {

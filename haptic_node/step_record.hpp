@@ -27,6 +27,7 @@ struct StepRecord {
 
   std::uint64_t step;
   std::int64_t sense_ns;
+  double energy;  ///< [J] put in by all tools
   int tools, contacts, forces;
   std::array<OfTool, max_tools> of_tool;
   std::array<HeldContact, max_contacts> contact;

@@ -149,13 +149,16 @@ class RunVerifier {
         continue;
       }
       const bool grip_agrees = haptic.grip_torque(t) == force->second.grip;
-      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque) && grip_agrees) {
+      const bool energy_agrees = haptic.energy() == force->second.energy;
+      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque) && grip_agrees &&
+          energy_agrees) {
         ++report_.forces;
         continue;
       }
       const auto& f = force->second.force;
-      report_.mismatch = fmt::format("step {}, tool {}: recorded force ({:a}, {:a}, {:a}) N, computed ({:a}, {:a}, {:a}) N", step, t, f[0], f[1],
-                                     f[2], haptic.force(t)[0], haptic.force(t)[1], haptic.force(t)[2]);
+      report_.mismatch = fmt::format("step {}, tool {}: recorded force ({:a}, {:a}, {:a}) N, computed ({:a}, {:a}, {:a}) N; energy {:a} and {:a} J",
+                                       step, t, f[0], f[1], f[2], haptic.force(t)[0], haptic.force(t)[1], haptic.force(t)[2],
+                                       force->second.energy, haptic.energy());
     }
   }
 

@@ -15,6 +15,7 @@
 #include "common/tensors/precompute.hpp"
 #include "tools/check_duct.hpp"
 #include "tools/check_dynamic.hpp"
+#include "tools/check_offline.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/footprint.hpp"
@@ -104,6 +105,7 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
              surface.triangles.size(), mean_edge(surface), surface.touchable);
   print_fixation(body, mesh);
   print_material(body);
+  print_offline(body, mesh);
   print_nonlinear(body);
   if (is_dynamic(body)) print_dynamic(body, mesh, moving);
 
@@ -168,6 +170,7 @@ void print_warnings(const Scene& scene, const std::vector<SurfaceMap>& surfaces)
       add(catheter_warnings(scene, body));
     else
       add(body_warnings(scene, body, surfaces[b]));
+    add(locking_warnings(body));
     if (body.shell) add(shell_warnings(body, surfaces[b]));
   }
   add(cutting_warnings(scene));

@@ -8,6 +8,8 @@ namespace palpate {
 void add_check_command(CLI::App& app);
 void add_precompute_command(CLI::App& app);
 void add_solve_command(CLI::App& app);
+void add_stability_command(CLI::App& app);
+void add_study_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_record_command(CLI::App& app);
 void add_info_command(CLI::App& app);

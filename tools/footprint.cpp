@@ -67,15 +67,6 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
     if (radius < h) warn("", "the force is the mesh's, not the tissue's");
     else if (radius < 2 * h) warn("twice ", "the force still depends on the mesh");
   }
-  std::vector<Material> materials{body.material};
-  for (const MaterialRegion& region : body.materials) materials.push_back(region.material);
-  for (const Material& material : materials) {
-    if (material.poisson > 0.45 && !body.shell)
-      warnings.push_back(
-          fmt::format("body '{}' has a Poisson's ratio of {}: linear tetrahedra lock there and answer "
-                      "too stiffly",
-                      body.name, material.poisson));
-  }
   Eigen::Vector3d low = surface.position[0], high = low;
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double across = (high - low).norm();

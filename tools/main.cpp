@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
   palpate::add_info_command(app);
   palpate::add_replay_command(app);
   palpate::add_solve_command(app);
+  palpate::add_stability_command(app);
+  palpate::add_study_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "common/fem/direct.hpp"
+#include "common/fem/fine_problem.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/scene/scene.hpp"
@@ -55,8 +55,11 @@ SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments)
   table.position = mesh.nodes;
   table.tetrahedra = mesh.tetrahedra;
   const auto triangles = extract_surface(mesh).triangles;
-  const auto solution = solve_direct(problem, constraints_of(arguments, static_cast<int>(mesh.nodes.size()),
-                                                             mesh.nodes, table.node, triangles));
+  const auto constraints =
+      constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
+  const auto solution = is_finer(body.offline)
+                            ? solve_direct(make_fine_problem(body, mesh, *body.offline), constraints)
+                            : solve_direct(problem, constraints);
   table.displacement = solution.displacement;
   table.force = solution.force;
   return table;

@@ -42,7 +42,7 @@ PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch
                local_model_run, local_model_seq)
 PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, pedal)
 PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts)
-PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, flags)
+PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, energy, flags)
 PALPATE_FIELDS(SurfaceState, body, run, seq, step, sense_ns, publish_ns, position, normal)
 PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_hash, version, rate_hz, ticks,
                missed, latency_p50_us, latency_p99_us, text)

@@ -76,10 +76,12 @@ struct ForceState {
   std::array<double, 3> torque{};  ///< [N m]
   double grip = 0;                 ///< [N m] on the handle, opening the jaws
   std::array<double, 3> trocar{};  ///< [N] of the trocar on the shaft
+  double energy = 0;               ///< [J] that all tools together have put into the tissue; negative: taken out
   std::uint32_t flags = 0;         ///< bits of ForceFlag
 };
 /// `stale_model`: the force of moving tissue fades or is gone, because its local contact model comes too late.
-enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8, stale_model = 16 };
+/// `passivity_limited`: damped, since the tools would take more energy out of the tissue than they put in.
+enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8, stale_model = 16, passivity_limited = 32 };
 
 /// Visible surface of one body.
 struct SurfaceState {

@@ -74,6 +74,7 @@ void CatheterBody::step(std::span<const CatheterTool> tools, std::span<const Eig
   before_ = x_;
   for (int i = 0; i < substeps_; ++i) substep(i);
   lumen_.follow_particles(before_, x_);
+  lumen_.follow_chain(x_);
   lumen_.release_lost(x_);
   solve_.end();
   grasps_.end();

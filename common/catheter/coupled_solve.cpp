@@ -255,8 +255,9 @@ bool CoupledSolve::revise(int pass) {
       again = true;
     }
     if (!t.active || t.friction == 0 || pass >= kFrictionPasses) continue;
+    const double limit = t.friction * stiffness_[i] * std::max(0.0, overlap);
     const bool fresh = t.grip == 0;
-    if (fresh) t.grip = t.friction * stiffness_[i] * overlap;
+    t.grip = fresh ? limit : std::min(t.grip, limit);
     const Vector3d slip = point_motion(t, d_.data()) - wall_[i] - now_.share * t.carried;
     const double sliding = std::max((across(t.normal) * slip).norm(), kCreep * now_.h);
     if (!fresh && t.sticking * sliding < 1.2 * t.grip) continue;

@@ -112,6 +112,22 @@ void Lumen::release_lost(std::span<const Vector3d> x) {
   if (inside_[turn_] && wall_->surface().find(x[turn_], x[turn_], reach_).empty()) leave(turn_);
 }
 
+void Lumen::follow_chain(std::span<const Vector3d> x) {
+  for (std::size_t i = 0; i + 1 < inside_.size(); ++i) {
+    const auto hit = crossing(x[i], x[i + 1]);
+    const bool belongs = hit ? hit->from_outside : inside_[i] != 0;
+    if (belongs == (inside_[i + 1] != 0)) continue;
+    if (hit || !cuts_wall(x[i], x[i + 1])) inside_[i + 1] = belongs;
+  }
+}
+
+bool Lumen::cuts_wall(const Vector3d& from, const Vector3d& to) const {
+  const TouchSurface& surface = wall_->surface();
+  return std::ranges::any_of(surface.find(from, to, 0), [&](int t) {
+    return sweep_point(from, to, surface.corners(t), surface.corners(t)).has_value();
+  });
+}
+
 void Lumen::refresh() {
   turn_ = std::clamp(turn_, 0, std::max(0, static_cast<int>(inside_.size()) - 1));
   for (Mouth& mouth : mouths_) mouth.cap = measure(mouth, seen_);

@@ -27,6 +27,10 @@ class Lumen {
   /// Follows the particles past resting mouths.
   void follow_particles(std::span<const Eigen::Vector3d> before, std::span<const Eigen::Vector3d> now);
 
+  /// Neighbours are on one side unless a mouth, or the wall itself, lies between them: what was missed while the wall was
+  /// thrown about is put right, from tail to tip.
+  void follow_chain(std::span<const Eigen::Vector3d> x);
+
   /// Mouth on whose rim a point of a triangle lies, -1 for all others.
   int rim_at(int triangle, const Eigen::Vector3d& weights) const;
   /// Whether p, nearest to this mouth's rim at q, has left the lumen there: before the mouth and beside it.
@@ -64,6 +68,7 @@ class Lumen {
     int first = 0;           ///< in seen_
     Cap cap;
   };
+  bool cuts_wall(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   void orient(Mouth& mouth);
   Cap measure(const Mouth& mouth, std::span<const Eigen::Vector3d> nodes) const;
   void check_width(const Mouth& mouth, double radius) const;

@@ -132,9 +132,11 @@ CatheterTouch WallTouches::touch_at(int particle, const Near& near, const Vector
   touch.point = particle == last ? ChainPoint{last - 1, 1} : ChainPoint{particle, 0};
   touch.normal = normal;
   touch.anchor = {wall_->surface().triangle(near.triangle), near.weights};
-  touch.overlap =
-      std::min(reach_ - distance, kLedBack * reach_) - normal.dot(wall_->residual_motion(touch.anchor));
-  touch.compliance = kCompliance;
+  // Beyond `most` a stiffer spring continues the soft one: its tangent there, and the overlap that gives its force.
+  const double most = kLedBack * reach_, deeper = std::clamp(reach_ - distance - most, 0.0, most);
+  const double overlap = deeper > 0 ? most / kStiffening + deeper : reach_ - distance;
+  touch.overlap = overlap - normal.dot(wall_->residual_motion(touch.anchor));
+  touch.compliance = deeper > 0 ? kCompliance / kStiffening : kCompliance;
   touch.friction = friction_;
   touch.grip = friction_ * past_force(particle, normal);
   touch.on_wall = true;

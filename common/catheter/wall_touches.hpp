@@ -19,6 +19,7 @@ class WallTouches {
   static constexpr double kCompliance = 2e-5;  ///< [m/N] of a particle's contact
   static constexpr double kLedBack =
       0.3;  ///< of the reach: by how much a particle found deeper is led back in a tick
+  static constexpr double kStiffening = 20;  ///< [1] the contact is so much stiffer beyond that depth
 
   WallTouches(int particles, const CatheterWall* wall, double radius, double friction);
 

@@ -76,9 +76,7 @@ NodeGraph node_graph(const TetMesh& mesh) {
   return graph;
 }
 
-SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
-                                const NodeGraph& graph) {
-  const auto blocks = assemble_blocks(mesh, materials, graph);
+SparseMatrix lower_triangle(const std::vector<Eigen::Matrix3d>& blocks, const DofMap& dofs, const NodeGraph& graph) {
   SparseMatrix stiffness(dofs.size(), dofs.size());
   stiffness.reserve(static_cast<std::int64_t>(9 * blocks.size()));
   for (int column = 0; column < dofs.size(); ++column) {
@@ -92,6 +90,11 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materi
   }
   stiffness.finalize();
   return stiffness;
+}
+
+SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
+                                const NodeGraph& graph) {
+  return lower_triangle(assemble_blocks(mesh, materials, graph), dofs, graph);
 }
 
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs) {

@@ -33,6 +33,10 @@ struct NodeGraph {
 
 NodeGraph node_graph(const TetMesh& mesh);
 
+/// Lower triangle over the free dofs of a matrix given by one 3 x 3 block (rows the greater node) per entry of the
+/// graph, with exact zeros of the pattern kept.
+SparseMatrix lower_triangle(const std::vector<Eigen::Matrix3d>& blocks, const DofMap& dofs, const NodeGraph& graph);
+
 /// Lower triangle of the stiffness matrix over the free dofs [N/m], with exact zeros of the pattern kept.
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
                                 const NodeGraph& graph);

@@ -9,10 +9,11 @@
 
 namespace palpate {
 
-DofMap::DofMap(const TetMesh& mesh) : index_(3 * mesh.nodes.size(), kUnused) {
-  for (const auto& tet : mesh.tetrahedra)
-    for (int node : tet)
-      for (int axis = 0; axis < 3; ++axis) index_[3 * node + axis] = 0;
+DofMap::DofMap(const TetMesh& mesh) : DofMap(used_nodes(mesh)) {}
+
+DofMap::DofMap(const std::vector<char>& used) : index_(3 * used.size(), kUnused) {
+  for (std::size_t i = 0; i < index_.size(); ++i)
+    if (used[i / 3]) index_[i] = 0;
   number();
 }
 

@@ -16,6 +16,8 @@ class DofMap {
 
   /// Every used node free. Fix with fix(), then number().
   explicit DofMap(const TetMesh& mesh);
+  /// The same for any nodes of which `used` says which ones elements use.
+  explicit DofMap(const std::vector<char>& used);
   void fix(int node, int axis) { index_[3 * node + axis] = kFixed; }
   void number();
 

@@ -79,6 +79,14 @@ Nonlinear read_nonlinear(const TableReader& table) {
   return nonlinear;
 }
 
+Offline read_offline(const TableReader& table) {
+  Offline offline;
+  table.integer("refine", offline.refine, 0, 2);
+  table.choice("element", offline.element, {"p1", "p2"});
+  table.choice("formulation", offline.formulation, {"displacement", "locking_free"});
+  return offline;
+}
+
 }  // namespace
 
 Body read_body(const TableReader& table) {
@@ -109,6 +117,12 @@ Body read_body(const TableReader& table) {
   if (const auto touchable = table.table("touchable", "[body.touchable]"))
     body.touchable = read_selector(*touchable, "nodes");
   read_dynamics(table, body);
+  if (const auto offline = table.table("offline", "[body.offline]")) {
+    if (body.model != "quasi_static")
+      table.fail_at("offline", fmt::format("[body.offline] serves the model 'quasi_static' alone, and '{}' has the model '{}'",
+                                           body.name, body.model));
+    body.offline = read_offline(*offline);
+  }
   return body;
 }
 

@@ -60,6 +60,7 @@ void refuse_keys(const TableReader& table, const Body& body) {
   for (const char* key : {"mesh", "scale"}) refuse(key, key);
   refuse("fixed", "[[body.fixed]]");
   refuse("touchable", "[body.touchable]");
+  refuse("offline", "[body.offline]");
 }
 
 }  // namespace

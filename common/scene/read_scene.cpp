@@ -27,6 +27,13 @@ Contact read_contact(const TableReader& table) {
   return contact;
 }
 
+Passivity read_passivity(const TableReader& table) {
+  Passivity passivity;
+  table.flag("controller", passivity.controller);
+  table.number("reserve", passivity.reserve, at_least(0));
+  return passivity;
+}
+
 Network read_network(const TableReader& table) {
   Network network;
   table.integer("domain", network.domain, 0, 230);
@@ -100,6 +107,7 @@ Scene read_root(const TableReader& root) {
   check_ducts(root.tables("body", "[[body]]"), scene);
   read_named(root, "tool", "[[tool]]", read_tool, scene.tools);
   if (const auto table = root.table("contact", "[contact]")) scene.contact = read_contact(*table);
+  if (const auto table = root.table("passivity", "[passivity]")) scene.passivity = read_passivity(*table);
   if (const auto table = root.table("network", "[network]")) scene.network = read_network(*table);
   if (const auto table = root.table("rates", "[rates]")) scene.rates = read_rates(*table);
   if (const auto table = root.table("record", "[record]")) scene.record = read_record(*table);

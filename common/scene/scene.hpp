@@ -95,6 +95,14 @@ struct Catheter {
   std::string integrator = "implicit";                ///< implicit | semi_implicit (BHS01 eq. 28, in substeps)
 };
 
+/// What `precompute` takes the tensors from, where that is better than the body's own mesh. Run time sees the same
+/// surface and the same number of tensors.
+struct Offline {
+  int refine = 0;                            ///< times that every tetrahedron is split into eight
+  std::string element = "p1";                ///< p1 | p2: linear or quadratic displacement
+  std::string formulation = "displacement";  ///< displacement | locking_free
+};
+
 struct Body {
   std::string name;
   std::filesystem::path mesh;  ///< empty for a catheter
@@ -105,6 +113,7 @@ struct Body {
   std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
   std::optional<Nonlinear> nonlinear;
   std::optional<Selector> touchable;      ///< absent: every free surface node
+  std::optional<Offline> offline;         ///< absent: the mesh itself with linear elements; of quasi_static bodies alone
   Dynamic dynamic;                        ///< defaults where the section is absent
   std::optional<Tearing> tearing;
   std::optional<Hybrid> hybrid;           ///< set exactly for the model hybrid
@@ -156,6 +165,12 @@ struct Contact {
   double bucket_size = 0;            ///< [m] 0: twice the mean edge length of the surface
 };
 
+/// Watch over the energy that all tools together take from the tissue.
+struct Passivity {
+  bool controller = true;   ///< damps the tools that take out more than they put in and the reserve; false: observed only
+  double reserve = 0.01;    ///< [J] that may be taken out beyond what was put in
+};
+
 struct Network {
   int domain = 0;
   std::string interface;            ///< empty: loopback
@@ -197,6 +212,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Tool> tools;
   Contact contact;
+  Passivity passivity;
   Network network;
   Rates rates;
   std::optional<Record> record;

@@ -32,6 +32,7 @@ std::string scene_hash(const Scene& scene) {
   agreed.bodies = scene.bodies;
   agreed.tools = scene.tools;
   agreed.contact = scene.contact;
+  agreed.passivity = scene.passivity;
   agreed.rates = scene.rates;
   // Where files lie and what moves a tool is each machine's own affair. Meshes go into the archive's hash.
   for (Body& body : agreed.bodies) {

@@ -9,15 +9,16 @@ namespace palpate {
 
 std::span<const TableSchema> scene_schema() {
   static const std::vector<TableSchema> schema = {
-      {"scene", {"title", "body", "tool", "contact", "network", "rates", "record", "render"}},
+      {"scene", {"title", "body", "tool", "contact", "passivity", "network", "rates", "record", "render"}},
       {"[[body]]",
        {"name", "mesh", "scale", "model", "young", "poisson", "density", "fixed", "material", "nonlinear",
-        "touchable", "dynamic", "tearing", "hybrid", "shell", "catheter"}},
+        "touchable", "offline", "dynamic", "tearing", "hybrid", "shell", "catheter"}},
       {"[[body.fixed]]", {"nodes", "box", "group", "axes", "rotations"}},
       {"[[body.material]]", {"elements", "box", "group", "young", "poisson", "density"}},
       {"[body.nonlinear]",
        {"force_curve", "radial_curve", "radius", "height", "degree", "specimen_mesh", "specimen_scale"}},
       {"[body.touchable]", {"nodes", "box", "group"}},
+      {"[body.offline]", {"refine", "element", "formulation"}},
       {"[body.dynamic]", {"integrator", "precision", "step", "damping", "gravity", "corotational"}},
       {"[body.tearing]", {"criterion", "threshold"}},
       {"[body.hybrid]", {"region", "mesh", "scale"}},
@@ -32,6 +33,7 @@ std::span<const TableSchema> scene_schema() {
       {"[tool.jaws]",
        {"length", "width", "closed_below", "radius", "most_open", "grip_stiffness", "friction"}},
       {"[contact]", {"rule", "friction", "bucket_size"}},
+      {"[passivity]", {"controller", "reserve"}},
       {"[network]", {"domain", "interface", "peers"}},
       {"[rates]", {"haptic_hz", "visual_hz"}},
       {"[record]", {"file"}},

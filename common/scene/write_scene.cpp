@@ -94,6 +94,13 @@ void write(Writer& out, const Nonlinear& nonlinear) {
   out.write("specimen_scale", nonlinear.specimen_scale);
 }
 
+void write(Writer& out, const Offline& offline) {
+  out.table("[body.offline]");
+  out.write("refine", offline.refine);
+  out.write("element", offline.element);
+  out.write("formulation", offline.formulation);
+}
+
 void write(Writer& out, const Dynamic& dynamic) {
   out.table("[body.dynamic]");
   out.write("integrator", dynamic.integrator);
@@ -163,6 +170,7 @@ void write(Writer& out, const Body& body) {
     out.table("[body.touchable]");
     write(out, *body.touchable, "nodes");
   }
+  if (body.offline) write(out, *body.offline);
   if (is_dynamic(body)) write(out, body.dynamic);
   if (body.tearing) write(out, *body.tearing);
   if (body.hybrid) write(out, *body.hybrid);
@@ -243,6 +251,9 @@ std::string to_toml(const Scene& scene) {
   out.write("rule", scene.contact.rule);
   out.write("friction", scene.contact.friction);
   out.write("bucket_size", scene.contact.bucket_size);
+  out.table("[passivity]");
+  out.write("controller", scene.passivity.controller);
+  out.write("reserve", scene.passivity.reserve);
   write(out, scene.network);
   out.table("[rates]");
   out.write("haptic_hz", scene.rates.haptic_hz);

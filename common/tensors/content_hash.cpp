@@ -131,6 +131,12 @@ std::string content_hash(const Body& body) {
     hash.add_file(body.nonlinear->specimen_mesh);
     hash.add(body.nonlinear->specimen_scale);
   }
+  hash.add(std::int64_t{body.offline.has_value()});
+  if (body.offline) {
+    hash.add(std::int64_t{body.offline->refine});
+    hash.add(body.offline->element);
+    hash.add(body.offline->formulation);
+  }
   if (body.model == "modal_shell") add_shell(hash, body);
   else if (body.model != "quasi_static") add_dynamic(hash, body);
   return hash.text();

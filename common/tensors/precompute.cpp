@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "common/fem/fine_problem.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/tensors/precompute_dynamic.hpp"
@@ -47,8 +48,11 @@ Archive precompute(const Body& body, const TetMesh& mesh, const TetMesh* specime
   watch.lap("surface");
 
   const auto split = surface.node_number.begin() + surface.touchable;
-  auto compliance = surface_compliance(mesh, materials, dofs, {surface.node_number.begin(), split},
-                                       {split, surface.node_number.end()}, progress, route);
+  const std::vector<int> touchable(surface.node_number.begin(), split), other(split, surface.node_number.end());
+  auto compliance =
+      is_finer(body.offline)
+          ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name), touchable, other, progress)
+          : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
   archive.touchable_compliance = std::move(compliance.touchable);
   archive.other_compliance = std::move(compliance.other);
   if (cost) *cost = {compliance.flops, compliance.condensed};

@@ -21,7 +21,9 @@ struct PrecomputeCost {
 
 /// The archive of a body of any model on one mesh; of a quasi-static one this is
 /// the compliance of its surface: assembly, elimination of fixed dofs, one sparse factorisation, dense
-/// inverse or block solves (TVCG99 sec. 4-1, by elimination where the paper iterates). `specimen`: the mesh
+/// inverse or block solves (TVCG99 sec. 4-1, by elimination where the paper iterates); with a [body.offline] that asks
+/// for more than linear elements on the mesh, that of the finer discretisation between weighted mean displacements
+/// (FineProblem), whatever the route. `specimen`: the mesh
 /// of Nonlinear::specimen_mesh, null without one. The content hash is left empty: it belongs to the files the
 /// body names, see ensure_archive(). Throws std::runtime_error on an unfixed body, empty selections, or too
 /// little memory.

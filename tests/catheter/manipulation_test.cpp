@@ -127,8 +127,8 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
   testing::Test::RecordProperty("grasps", left.grasps() + right.grasps());
   testing::Test::RecordProperty("drops", left.drops() + right.drops());
   testing::Test::RecordProperty("held_back", limited);
-  EXPECT_LT(energy, 0.5);
-  EXPECT_LT(wall_energy, 0.5);
+  EXPECT_LT(energy, 0.1);
+  EXPECT_LT(wall_energy, 0.2);
   EXPECT_GT(deepest, 0.01);
   EXPECT_GT(left.grasps() + right.grasps(), ticks() / 2000);
   EXPECT_GT(left.drops() + right.drops(), 0);

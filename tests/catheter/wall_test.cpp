@@ -148,7 +148,7 @@ TEST(CatheterInASoftDuct, PushesTheWallOutAndActsAsItIsActedUpon) {
   const Chain chain(s.shape, s.young, s.density);
   Feeder feeder(body);
   double pushed = 0;
-  int touches = 0, oblique = 0;  // oblique: more across the wall than friction alone explains
+  int touches = 0;
   std::vector<double> y_before, y_after;
   Vector3d momentum = Vector3d::Zero();
   feeder.feed(0.05, 700, [&] {
@@ -167,15 +167,15 @@ TEST(CatheterInASoftDuct, PushesTheWallOutAndActsAsItIsActedUpon) {
               .normalized();
       if (f.anchor.weights.minCoeff() <= 0) continue;  // on an edge the force has another direction
       ++touches;
-      EXPECT_GT(f.force.dot(out), 0);
-      oblique += f.force.dot(out) < 0.9 * (f.force - f.force.dot(out) * out).norm();
+      const double push = f.force.dot(out);
+      EXPECT_GT(push, 0);
+      EXPECT_LE((f.force - push * out).norm(), 1.25 * s.friction * push);  // Coulomb's cone, to what a tick settles it
     }
     ASSERT_EQ(misplaced(body, wall), 0);
     wall.advance(body.wall_forces(), [&](TouchSurface& surface) { body.mark(surface); });
     pushed = std::max(pushed, wall.energy());
   });
   EXPECT_GT(touches, 100);
-  EXPECT_LE(oblique, touches / 100);
   EXPECT_GT(pushed, 1e-8);
   EXPECT_GT(body.inserted(), 0.02);
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "common/models/modal_shape.hpp"
 #include "tests/haptic/duct_scene.hpp"
 #include "tests/tool/count_allocations.hpp"
 
@@ -18,15 +19,37 @@ using testing::DuctScene;
 
 constexpr double wide_open = 0.8;
 
+/// The wall as the deformation node shows it: all nodes, those too that the haptic step has no need of.
+class ShownWall {
+ public:
+  explicit ShownWall(const Archive& archive) : rest_(archive.surface.position), shape_(archive) { state_.coordinates.resize(shape_.modes()); }
+  const std::vector<Vector3d>& of(const ModalBody& duct) {
+    state_.forces.clear();
+    duct.show(state_.coordinates.data(), [&](int node, const Vector3d& f) {
+      state_.forces.push_back({static_cast<std::uint32_t>(node), {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}});
+    });
+    shape_.displace(state_, displacement_);
+    nodes_ = rest_;
+    for (std::size_t n = 0; n < nodes_.size(); ++n) nodes_[n] += displacement_[n].cast<double>();
+    return nodes_;
+  }
+
+ private:
+  const std::vector<Vector3d> rest_;
+  ModalShape shape_;
+  ModalState state_;
+  std::vector<Eigen::Vector3f> displacement_;
+  std::vector<Vector3d> nodes_;
+};
+
 /// Solid angle of the tube, mouths closed by fans, around p over 4 pi: 1 inside, 0 outside.
-double winding(const ModalBody& duct, const Vector3d& p) {
+double winding(const ModalBody& duct, const std::vector<Vector3d>& x, const Vector3d& p) {
   double sum = 0;
   const auto add = [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     const Vector3d u = a - p, v = b - p, w = c - p;
     const double lu = u.norm(), lv = v.norm(), lw = w.norm();
     sum += 2 * std::atan2(u.dot(v.cross(w)), lu * lv * lw + u.dot(v) * lw + v.dot(w) * lu + w.dot(u) * lv);
   };
-  const auto& x = duct.surface().positions();
   for (int t = 0; t < duct.surface().triangle_count(); ++t) {
     const auto& n = duct.surface().triangle(t);
     add(x[n[0]], x[n[1]], x[n[2]]);
@@ -37,6 +60,18 @@ double winding(const ModalBody& duct, const Vector3d& p) {
     for (std::size_t i = 0; i < loop.size(); ++i) add(x[loop[(i + 1) % loop.size()]], x[loop[i]], centre);
   }
   return sum / (4 * std::numbers::pi);
+}
+
+/// [m] from p to the fans that close the mouths.
+double from_mouths(const ModalBody& duct, const std::vector<Vector3d>& x, const Vector3d& p) {
+  double squared = 1;
+  for (const auto& loop : duct.mouths()) {
+    Vector3d centre = Vector3d::Zero();
+    for (int n : loop) centre += x[n] / static_cast<double>(loop.size());
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      squared = std::min(squared, closest_point(p, {centre, x[loop[i]], x[loop[(i + 1) % loop.size()]]}).squared_distance);
+  }
+  return std::sqrt(squared);
 }
 
 /// A catheter before the mouth of a duct and a forceps on either.
@@ -190,7 +225,7 @@ TEST(DuctManipulation, ARestoredStateGoesOnBitForBit) {
   EXPECT_EQ(a.task().wall_contacts, b.task().wall_contacts);
 }
 
-/// Two forceps at all rates, in hands that give way beyond 2 N. One takes the catheter wherever it is and leads or throws it about, mostly towards the duct;
+/// Two forceps at all rates, in hands with the mass, damping and stiffness of a person's. One takes the catheter wherever it is and leads or throws it about, mostly towards the duct;
 /// the other goes where chance sends it, and grasps and lets go.
 class RandomHands {
  public:
@@ -200,9 +235,9 @@ class RandomHands {
     for (int tool = 0; tool < 2; ++tool) {
       Hand& h = hands_[tool];
       if (h.left-- <= 0) tool == 0 ? lead(h, t) : wander(h);
-      h.at += (h.to - h.at) * h.rate;
-      const Vector3d& force = t.haptic->force(tool);
-      if (force.norm() > gives_way) h.at += std::min(1e-3, 2e-4 * (force.norm() - gives_way)) * force.normalized();
+      h.goal += (h.to - h.goal) * h.rate;
+      h.velocity += dt / mass * (stiffness * (h.goal - h.at) - damping * h.velocity + t.haptic->force(tool));
+      h.at += dt * h.velocity;
       h.grip += (h.grip_to - h.grip) * h.rate;
       t.dofs[tool] = t.at(tool, h.at, h.grip);
     }
@@ -210,16 +245,16 @@ class RandomHands {
   }
 
  private:
-  static constexpr double gives_way = 2;  ///< [N]
+  static constexpr double dt = 1e-3, mass = 0.2, damping = 15, stiffness = 400;  ///< [s], [kg], [N s/m], [N/m]
   struct Hand {
-    Vector3d at, to;
+    Vector3d at, to, goal = at, velocity = Vector3d::Zero();
     double grip = wide_open, grip_to = wide_open, rate = 0.01;
     int left = 0, phase = 0;
   };
   double within(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   void at_any_rate(Hand& h) {
     h.rate = std::exp(within(std::log(2e-3), std::log(0.5)));
-    h.left = static_cast<int>(3 / h.rate) + 5;
+    h.left = static_cast<int>(3 / h.rate) + 150;
   }
 
   void lead(Hand& h, const Theatre& t) {
@@ -236,7 +271,7 @@ class RandomHands {
       case 2:
         h.to += within(0, 1) < 0.8 ? Vector3d(within(-1e-3, 1e-3), within(-1e-3, 1e-3), within(0, 0.025))
                                    : Vector3d(within(-0.02, 0.02), within(-0.02, 0.02), within(-0.03, 0.03));
-        h.to = h.to.cwiseMax(Vector3d(-0.01, 0.004, -0.05)).cwiseMin(Vector3d(0.01, 0.03, -0.004));  // before the duct
+        h.to = h.to.cwiseMax(Vector3d(-0.02, 0.004, -0.05)).cwiseMin(Vector3d(0.02, 0.03, -0.004));  // before the duct
         break;
       default:
         h.grip_to = wide_open;
@@ -256,10 +291,12 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   const bool whole = std::getenv("PALPATE_LONG_TESTS") != nullptr;
   const int steps = whole ? 3'600'000 : 30'000;
   Theatre t(20);
-  for (Tool& tool : t.duct.scene.tools) tool.jaws->grip_stiffness = 0.02;  // they hold a newton or two
+  for (Tool& tool : t.duct.scene.tools) tool.jaws->grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
+  t.duct.scene.bodies[1].catheter->damping = 100;  // skin and blood hold it: a flick does not send it across the room
   t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);
   t.haptic->start(t.dofs);
   t.feed();
+  ShownWall wall(t.duct.archives[0]);
   RandomHands hands(7);
   double largest_energy = 0, largest_force = 0;
   int wrong = 0, inside_checks = 0;
@@ -270,8 +307,10 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
     largest_energy = std::max(largest_energy, t.catheter().energy() + t.wall().energy());
     largest_force = std::max({largest_force, t.haptic->force(0).norm(), t.haptic->force(1).norm()});
     if (i % 50 != 0) continue;
+    const std::vector<Vector3d>& nodes = wall.of(t.wall());
     for (int p = 0; p < t.catheter().size(); ++p) {
-      const bool inside = winding(t.wall(), t.catheter().positions()[p]) > 0.5;
+      if (from_mouths(t.wall(), nodes, t.catheter().positions()[p]) < t.catheter().radius()) continue;  // half in, half out
+      const bool inside = winding(t.wall(), nodes, t.catheter().positions()[p]) > 0.5;
       inside_checks += inside;
       wrong += inside != (t.catheter().inside()[p] != 0);
     }
@@ -280,7 +319,8 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   RecordProperty("largest_force_N", std::to_string(largest_force));
   std::printf("%d s: largest energy %.3g J, largest force %.3g N, %d grasps, %d drops, %d particle checks inside, %d on the wrong side\n", steps / 1000,
               largest_energy, largest_force, static_cast<int>(t.task().grasps), static_cast<int>(t.task().drops), inside_checks, wrong);
-  EXPECT_LT(largest_energy, 2);
+  EXPECT_LT(largest_energy, 0.1);
+  EXPECT_LT(largest_force, 50);
   EXPECT_GT(t.task().grasps, static_cast<std::uint64_t>(steps / 10000));
   EXPECT_GT(t.task().drops, 0u);
   EXPECT_GT(inside_checks, 0);

@@ -75,6 +75,11 @@ specimen_scale = 0.1
 [body.touchable]
 nodes = [10, 11]
 
+[body.offline]
+refine = 1
+element = "p2"
+formulation = "locking_free"
+
 [[body]]
 name = "plate"
 mesh = "liver.msh"
@@ -226,6 +231,10 @@ friction = 0.6
 rule = "alpha"
 friction = 0.1
 bucket_size = 0.01
+
+[passivity]
+controller = false
+reserve = 0.02
 
 [network]
 domain = 7

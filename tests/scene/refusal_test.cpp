@@ -208,6 +208,9 @@ const Refusal kRefusals[] = {
     {"grip_stiffness = 0.4", "grip_stiffness = 0", "0\nfriction",
      "grip_stiffness must be greater than 0, and is 0"},
     {"friction = 0.6", "friction = -1", "-1\n\n[contact]", "friction must be at least 0, and is -1"},
+    {"refine = 1", "refine = 3", "3\nelement", "refine must be at least 0 and at most 2, and is 3"},
+    {"element = \"p2\"", "element = \"p3\"", "\"p3", "element 'p3' is unknown; known: p1, p2"},
+    {"reserve = 0.02", "reserve = -1", "-1\n\n[network]", "reserve must be at least 0, and is -1"},
     {"name = \"liver\"", "name = \"\"", "\"\"", "name must not be empty"},
     {"name = \"liver\"", "name = \"a/b\"", "\"a/b", "name 'a/b' must be 1 to 31 letters, digits, '_' or '-'"},
     {"name = \"plate\"", "name = \"liver\"", "\"liver\"\nmesh = \"liver.msh\"\nyoung",
@@ -345,7 +348,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
       std::string text = kFullScene;
       if (table.name == "scene") {
         text = line;
-        if (key == "tool" || key == "contact" || key == "network" || key == "rates" || key == "record" ||
+        if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" || key == "record" ||
             key == "render")
           text += body;
         if (key == "title") text += body;
@@ -374,7 +377,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           text = body + tool + line;
         } else if (key == "fixed") {
           text = plain + line;
-        } else if (key == "material" || key == "nonlinear" || key == "touchable") {
+        } else if (key == "material" || key == "nonlinear" || key == "touchable" || key == "offline") {
           text = held + line;
         } else if (key == "dynamic" || key == "tearing" || key == "hybrid") {
           text = held + "model = \"hybrid\"\n" + line;

@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include "common/fem/fine_problem.hpp"
+#include "common/fem/stopwatch.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr Index kBlock = 128;
+
+/// Columns of W over the free fine dofs, one per free axis of the given run-time nodes.
+SparseMatrix loads_of(const FineProblem& problem, const std::vector<int>& nodes) {
+  std::vector<Eigen::Triplet<double, std::int64_t>> entries;
+  std::int64_t column = 0;
+  for (int node : nodes)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!problem.run_time_dofs.is_free(node, axis)) continue;
+      for (SparseMatrix::InnerIterator it(problem.hats, node); it; ++it) {
+        const int row = problem.dofs.index(static_cast<int>(it.row()), axis);
+        if (row >= 0) entries.emplace_back(row, column, it.value());
+      }
+      ++column;
+    }
+  SparseMatrix loads(problem.dofs.size(), column);
+  loads.setFromTriplets(entries.begin(), entries.end());
+  return loads;
+}
+
+/// Says about ten times how far the right-hand sides are.
+class Tenths {
+ public:
+  Tenths(Stopwatch& watch, Index total) : watch_(watch), total_(total) {}
+  void at(Index done) {
+    if (10 * done / total_ == 10 * last_ / total_ && done < total_) return;
+    last_ = done;
+    watch_.lap(fmt::format("right-hand sides, {} of {}", done, total_));
+  }
+
+ private:
+  Stopwatch& watch_;
+  Index total_, last_ = 0;
+};
+
+}  // namespace
+
+SurfaceCompliance surface_compliance(const FineProblem& problem, const std::vector<int>& touchable,
+                                     const std::vector<int>& other, const Progress& progress) {
+  const auto touch = loads_of(problem, touchable), rest = loads_of(problem, other);
+  const Index t = touch.cols(), o = rest.cols();
+  const auto rows = static_cast<std::size_t>(t);
+  const std::size_t packed = rows * (rows + 1) / 2, others = static_cast<std::size_t>(o) * rows;
+  // Right-hand sides, their solution and what CHOLMOD keeps of them.
+  const std::size_t blocks = 5 * sizeof(double) * static_cast<std::size_t>(touch.rows() * std::min(kBlock, t));
+  const FineFactor factor(problem, sizeof(double) * (packed + others) + blocks, progress);
+
+  SurfaceCompliance result;
+  result.touchable.resize(packed);
+  result.other.resize(others);
+  Stopwatch watch(progress);
+  Tenths tenths(watch, t);
+  for (Index begin = 0; begin < t; begin += kBlock) {
+    const Index count = std::min(kBlock, t - begin);
+    const MatrixXd moved = factor.solve(MatrixXd(touch.middleCols(begin, count)));
+    const MatrixXd column = touch.transpose() * moved, rest_column = rest.transpose() * moved;
+    for (Index c = 0; c < count; ++c) {
+      for (Index i = begin + c; i < t; ++i) result.touchable[i * (i + 1) / 2 + begin + c] = column(i, c);
+      for (Index i = 0; i < o; ++i) result.other[i * t + begin + c] = rest_column(i, c);
+    }
+    tenths.at(begin + count);
+  }
+  result.flops = factor.flops() + 4 * factor.nonzeros() * static_cast<double>(t);
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,279 @@
+#include "haptic_node/passivity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "haptic_node/haptic_step.hpp"
+#include "tests/haptic/closed_loop.hpp"
+#include "tests/haptic/local_models_for_tests.hpp"
+#include "tests/tool/count_allocations.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using testing::BlockScene;
+using testing::tip_at;
+
+constexpr double dt = 1e-3;
+
+/// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
+struct Port {
+  explicit Port(bool controller = true, double reserve = 0.01) : guard({.controller = controller, .reserve = reserve}, 1, 20, dt) {}
+
+  PortForce tick(const Vector3d& to, const PortForce& asked) {
+    const PortMotion motion{.shift = to - at};
+    at = to;
+    guard.observe({&motion, 1});
+    least = std::min(least, guard.energy());
+    PortForce given = asked;
+    guard.control({&given, 1});
+    guard.hold(0, given);
+    limited += guard.limited(0);
+    return given;
+  }
+  Vector3d tick(const Vector3d& to, const Vector3d& force) { return tick(to, PortForce{.force = force}).force; }
+
+  PassivityGuard guard;
+  Vector3d at = Vector3d::Zero();
+  double least = 0;
+  int limited = 0;
+};
+
+TEST(Passivity, ASpringRoundAClosedPathGivesNoMoreThanItsSamplingDoes) {
+  Port port(false);
+  const Eigen::Matrix3d k = Vector3d(100, 250, 400).asDiagonal();
+  double bound = 0;
+  for (int i = 1; i <= 2000; ++i) {
+    const double a = 2 * M_PI * i / 2000;
+    const Vector3d x(0.01 * (std::cos(a) - 1), 0.005 * std::sin(2 * a), 0.008 * std::sin(3 * a));
+    bound += 0.5 * (x - port.at).dot(k * (x - port.at));  // what a held spring force loses over a tick
+    port.tick(x, Vector3d(-k * x));
+  }
+  EXPECT_GT(bound, 0);
+  EXPECT_GE(port.guard.energy(), -bound - 1e-15);
+  EXPECT_NEAR(port.guard.energy(), -bound, 1e-12) << "and exactly that";
+}
+
+TEST(Passivity, EnergyCountsTheForceThatWasHeldOverTheMotion) {
+  Port port;
+  port.tick({0, 0, 0}, Vector3d(0, 0, 2));
+  port.tick({0, 0, -0.001}, Vector3d(0, 0, 50));
+  EXPECT_NEAR(port.guard.energy(), 0.002, 1e-15) << "2 N over 1 mm against it, whatever comes next";
+}
+
+TEST(Passivity, TorqueAndGripCount) {
+  PassivityGuard guard({}, 1, 10, dt);
+  guard.hold(0, {.torque = {0, 0.1, 0}, .grip = 0.2});
+  const Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d now = before;
+  now.rotate(Eigen::AngleAxisd(-0.01, Vector3d::UnitY()));
+  const PortMotion motion = motion_between(before, now, 0.005);
+  guard.observe({&motion, 1});
+  EXPECT_NEAR(guard.energy(), 0.1 * 0.01 - 0.2 * 0.005, 1e-7);
+}
+
+// A force that drives whatever moves, as a model gone wrong would: with the controller the hand gains the reserve at most.
+TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
+  for (const double reserve : {0.001, 0.01, 0.1}) {
+    for (const double strength : {0.5, 5.0, 20.0}) {
+      for (const bool controller : {true, false}) {
+        Port port(controller, reserve);
+        testing::Hand hand{.mass = 0.55, .damping = 6.5, .stiffness = 135};
+        hand.at = {0.001, 0, 0};
+        Vector3d force = Vector3d::Zero(), before = hand.at;
+        port.at = hand.at;
+        for (int i = 0; i < 4000; ++i) {
+          hand.move(Vector3d::Zero(), force, dt);
+          const Vector3d motion = hand.at - before;
+          before = hand.at;
+          force = port.tick(hand.at, Vector3d(strength * motion.stableNormalized()));
+          ASSERT_TRUE(force.allFinite());
+          ASSERT_LE(force.norm(), strength + PassivityGuard::most_damping / dt * hand.speed.norm() * 1.1 + 1e-12);
+        }
+        if (controller) {
+          EXPECT_GE(port.least, -reserve) << reserve << " J, " << strength << " N";
+          EXPECT_GT(port.limited, 0);
+        } else {
+          EXPECT_LT(port.least, -1.1 * reserve) << "else the test shows nothing";
+          EXPECT_EQ(port.limited, 0);
+        }
+      }
+    }
+  }
+}
+
+TEST(Passivity, WhatGoesAgainstTheMotionIsNeverTouched) {
+  Port port(true, 1e-6);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d to = port.at + 1e-4 * Vector3d(any(random), any(random), any(random)), motion = to - port.at;
+    Vector3d asked = 3 * Vector3d(any(random), any(random), any(random));
+    const Vector3d given = port.tick(to, asked);
+    if (asked.dot(motion) <= 0) {
+      ASSERT_EQ(given, asked) << i;
+    } else {
+      ASSERT_LE(given.dot(motion), asked.dot(motion)) << i;
+    }
+    const Vector3d across = (given - asked).cross(motion.normalized());
+    ASSERT_LT(across.norm(), 1e-12) << "damping acts along the motion";
+  }
+  EXPECT_GT(port.limited, 100);
+}
+
+TEST(Passivity, OneToolMayTakeOutWhatAnotherPutIn) {
+  PassivityGuard guard({.controller = true, .reserve = 1e-4}, 2, 20, dt);
+  for (int i = 0; i < 1000; ++i) {
+    const std::array motion{PortMotion{.shift = {1e-4, 0, 0}}, PortMotion{.shift = {1e-4, 0, 0}}};
+    guard.observe(motion);
+    std::array asked{PortForce{.force = {-2, 0, 0}}, PortForce{.force = {1.99, 0, 0}}};
+    guard.control(asked);
+    ASSERT_FALSE(guard.limited(1)) << i;
+    for (int t = 0; t < 2; ++t) guard.hold(t, asked[t]);
+  }
+  EXPECT_NEAR(guard.energy(), 999 * 0.01 * 1e-4, 1e-12);
+}
+
+TEST(Passivity, StandingStillAndTinyMotionGiveNoNonsense) {
+  for (const double step : {0.0, 1e-300, 1e-160, 1e-13, 1e-11}) {
+    Port port(true, 1e-30);
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d to(step * (i % 2), 0, 0);
+      const Vector3d given = port.tick(to, Vector3d(10, -4, 3));
+      ASSERT_TRUE(given.allFinite());
+      ASSERT_LE(given.norm(), Vector3d(10, -4, 3).norm() + 1e-12);
+    }
+  }
+  Port port;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  port.guard.hold(0, {.force = {5, 0, 0}});
+  const PortMotion motion{.shift = {0.01, 0, 0}};
+  port.guard.observe({&motion, 1});
+  std::array asked{PortForce{.force = {nan, 0, 0}}};
+  port.guard.control(asked);
+  EXPECT_FALSE(port.guard.limited(0)) << "what is not finite is the safety chain's";
+  EXPECT_NEAR(port.guard.energy(), -0.05, 1e-15);
+}
+
+/// A wall whose force comes late, under the hand that pushes into it.
+struct DelayedWall {
+  double stiffness;
+  int delay;  ///< [ticks]
+
+  struct Result {
+    double least, swing, largest;
+    int limited;
+  };
+  Result run(bool controller) const {
+    Port port(controller);
+    testing::Hand hand{.mass = 0.55, .damping = 6.5, .stiffness = 135};
+    hand.at = {0, 0, 0.01};
+    port.at = hand.at;
+    std::vector<double> late(static_cast<std::size_t>(delay) + 1, 0.0);
+    Vector3d force = Vector3d::Zero();
+    double low = 1, high = -1, largest = 0;
+    for (int i = 0; i < 6000; ++i) {
+      hand.move({0, 0, -0.01}, force, dt);
+      late[i % late.size()] = std::clamp(-stiffness * hand.at.z(), 0.0, 20.0);
+      force = port.tick(hand.at, Vector3d(0, 0, late[(i + 1) % late.size()]));
+      largest = std::max(largest, force.norm());
+      if (i < 5000) continue;
+      low = std::min(low, hand.at.z());
+      high = std::max(high, hand.at.z());
+    }
+    return {port.least, high - low, largest, port.limited};
+  }
+};
+
+TEST(Passivity, ADelayedWallGivesTheHandNoMoreThanTheReserve) {
+  for (const int delay : {0, 5, 20, 50}) {
+    const DelayedWall wall{1500, delay};
+    const auto with = wall.run(true), without = wall.run(false);
+    std::printf("delay %2d ms: without swing %.2f mm, least energy %.2f mJ; with %.2f mm, %.2f mJ, %d of 6000 steps damped\n", delay,
+                1e3 * without.swing, 1e3 * without.least, 1e3 * with.swing, 1e3 * with.least, with.limited);
+    EXPECT_GE(with.least, -0.01) << delay;
+    EXPECT_LE(with.largest, 20 + 1e-9) << delay;
+    if (delay >= 20) {
+      EXPECT_LT(without.least, -0.05) << "else the test shows nothing";
+      EXPECT_LT(with.swing, 0.7 * without.swing) << delay;
+      EXPECT_GT(with.limited, 0);
+    }
+    if (delay == 0) {
+      EXPECT_EQ(with.limited, 0) << "a wall within Colgate's bound is left alone";
+    }
+  }
+}
+
+/// A block under a tool that is pressed in and out: the real step.
+class PassivityInTheStep : public ::testing::Test {
+ protected:
+  static Vector3d tip(int i) { return {0.002 * std::sin(0.011 * i), 0, 0.008 - 0.006 * std::sin(0.03 * i)}; }
+};
+
+TEST_F(PassivityInTheStep, PressesOnTissueAreNotLimitedAndTheEnergyIsTheWorkOfTheForces) {
+  const BlockScene block;
+  HapticStep haptic(block.scene, block.archives);
+  const Tool& tool = block.scene.tools[0];
+  haptic.start(std::array{tip_at(tool, tip(0))});
+  double work = 0;
+  Eigen::Isometry3d before = haptic.pose(0);
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
+  for (int i = 0; i < 3000; ++i) {
+    haptic.step(std::array{tip_at(tool, tip(i))});
+    const Eigen::AngleAxisd turn(haptic.pose(0).linear() * before.linear().transpose());
+    work -= force.dot(haptic.pose(0).translation() - before.translation()) + torque.dot(turn.angle() * turn.axis());
+    ASSERT_NEAR(haptic.energy(), work, 1e-9) << i;
+    ASSERT_EQ(haptic.flags(0) & passivity_limited, 0u) << i;
+    before = haptic.pose(0);
+    force = haptic.force(0);
+    torque = haptic.torque(0);
+  }
+  EXPECT_GT(std::abs(work), 1e-6);
+}
+
+TEST_F(PassivityInTheStep, ASavedStateGoesOnBitForBitWhileDamped) {
+  Scene scene = testing::moving_block_scene(0.008);
+  scene.passivity.reserve = 1e-4;
+  const std::vector<Archive> none(1);
+  HapticStep a(scene, none), b(scene, none);
+  const Tool& tool = scene.tools[0];
+  a.start(std::array{tip_at(tool, {0, 0, 0})});
+  std::vector<std::uint8_t> state(a.state_size());
+  int limited = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // A model that pushes the tool whichever way it goes, for its force is that of a place it has left.
+    LocalContactModel m = testing::empty_model(tool, {0, 0, 0}, i, i + 1);
+    testing::add_contact(m, {0, 0, -0.008}, {0, 0, i % 40 < 20 ? -0.2 : -3.0}, 0);
+    ASSERT_TRUE(a.consume(m));
+    if (i == 1000) {
+      a.save(state);
+      b.restore(state);
+    }
+    const std::array dofs{tip_at(tool, {0, 0, (i % 40 < 20 ? -1 : 1) * 1e-3 * std::abs(std::sin(M_PI * i / 20))})};
+    a.step(dofs);
+    limited += (a.flags(0) & passivity_limited) != 0;
+    ASSERT_GE(a.energy(), -1e-3) << i;
+    if (i < 1000) continue;
+    ASSERT_TRUE(b.consume(m));
+    b.step(dofs);
+    ASSERT_EQ(a.force(0), b.force(0)) << i;
+    ASSERT_EQ(a.energy(), b.energy()) << i;
+    ASSERT_EQ(a.flags(0), b.flags(0)) << i;
+  }
+  EXPECT_GT(limited, 20);
+}
+
+TEST(Passivity, NothingIsAllocated) {
+  Port port(true, 1e-9);
+  const long before = allocations();
+  for (int i = 0; i < 1000; ++i) port.tick({1e-4 * i, 0, 0}, Vector3d(3, 1, 0));
+  EXPECT_EQ(allocations() - before, 0);
+  EXPECT_GT(port.limited, 900);
+}
+
+}  // namespace
+}  // namespace palpate

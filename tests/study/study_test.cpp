@@ -1,0 +1,343 @@
+#include "tools/study/study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "common/mesh/generators.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/shell_file.hpp"
+#include "common/mesh/shell_generators.hpp"
+#include "tools/study/budget.hpp"
+#include "tools/study/modal.hpp"
+#include "tools/study/patches.hpp"
+#include "tools/study/quasi_static.hpp"
+#include "tools/study/solid_case.hpp"
+#include "tools/study/store.hpp"
+
+/// Whole studies of small bodies, in quick mode.
+namespace palpate::study {
+namespace {
+
+using std::filesystem::path;
+
+/// A folder of its own that is gone with the test.
+struct Folder {
+  Folder()
+      : at(path(::testing::TempDir()) /
+           ("study_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+    std::filesystem::remove_all(at);
+    std::filesystem::create_directories(at);
+  }
+  ~Folder() { std::filesystem::remove_all(at); }
+  path at;
+};
+
+Scene write_scene(const path& folder, const std::string& body, const std::string& tool) {
+  const path file = folder / "small.toml";
+  std::ofstream(file) << body << tool;
+  return load_scene(file);
+}
+
+const char* const kProbe = R"(
+[[tool]]
+name = "probe"
+pivot = [0, 0, 0.3]
+axis = [0, 0, -1]
+up = [0, 1, 0]
+radius = 0.012
+trajectory = "still.csv"
+[contact]
+friction = 0.2
+)";
+
+void write_trajectory(const path& folder) {
+  std::ofstream(folder / "still.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.1,0,0\n1,0,0,0.1,0,0\n";
+}
+
+/// 60 x 60 x 30 mm in cells of 10 mm, on its bottom.
+Scene block_scene(const path& folder, const std::string& more = "") {
+  write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3}), folder / "block.msh");
+  write_trajectory(folder);
+  return write_scene(
+      folder,
+      "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\n" +
+          more + "[[body.fixed]]\ngroup = \"bottom\"\n",
+      kProbe);
+}
+
+const Row* find(const Result& result, const std::string& method, const std::string& knob,
+                const std::string& value, const std::string& reference) {
+  for (const Row& r : result.rows)
+    if (r.method == method && r.knob == knob && (value.empty() || r.value == value) &&
+        r.reference == reference)
+      return &r;
+  return nullptr;
+}
+
+std::string text_of(const path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  const SolidCase one(scene, 0, false), two(scene, 0, false);
+  ASSERT_EQ(one.presses().patches.size(), 3u);
+  EXPECT_EQ(one.presses().radius, 0.012);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Patch& patch = one.presses().patches[p];
+    EXPECT_EQ(patch.point, two.presses().patches[p].point);
+    EXPECT_GT(patch.point.z(), 0.001);  // the bottom is fixed
+    EXPECT_NEAR(patch.inward.norm(), 1, 1e-12);
+    EXPECT_LT(patch.inward.dot(patch.point - Eigen::Vector3d(0, 0, 0.015)), 0);
+    for (std::size_t q = 0; q < p; ++q)
+      EXPECT_GT((patch.point - one.presses().patches[q].point).norm(), 0.01);
+  }
+}
+
+TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  const std::string csv = text_of(folder.at / "out/study.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "scene,method,knob,value,step_us_median,step_us_p99,offline_s,memory_bytes,err_u_rel,err_f_rel,"
+            "reference");
+  for (std::size_t at = 0, end; (end = csv.find('\n', at)) != std::string::npos; at = end + 1)
+    EXPECT_EQ(std::count(csv.begin() + at, csv.begin() + end, ','), 10);
+
+  const Row* as_is = find(result, "quasi_static", "scene", "", "fine_linear");
+  ASSERT_TRUE(as_is);
+  EXPECT_GT(as_is->step_us_median, 0);
+  EXPECT_LE(as_is->step_us_median, as_is->step_us_p99);
+  EXPECT_GT(as_is->memory_bytes, 8.0 * 300 * 300);
+  // Fewer tensors, the same answer in less memory.
+  const Row* few = find(result, "quasi_static", "tensors", "", "fine_linear");
+  ASSERT_TRUE(few);
+  EXPECT_NEAR(few->err_f_rel, as_is->err_f_rel, 1e-6);
+  EXPECT_LT(few->memory_bytes, 0.8 * as_is->memory_bytes);
+
+  // The reference knows its own error, and it is less than that of what it judges.
+  const Row* rest = find(result, "reference", "mesh", "coarser", "fine_linear");
+  ASSERT_TRUE(rest);
+  EXPECT_LT(rest->err_f_rel, as_is->err_f_rel);
+  EXPECT_LT(rest->err_u_rel, as_is->err_u_rel);
+
+  // Tensor-mass tissue comes to rest where the tensors are, and springs do not, once the ball has come to the
+  // nodes.
+  int compared = 0;
+  for (const DepthRow& d : result.depths) {
+    if (d.reference != "same_mesh" || d.knob != "model" || d.depth_per_radius < 0.25) continue;
+    ++compared;
+    const double least = std::min(d.err_u_rel, std::abs(d.err_f_rel)),
+                 most = std::max(d.err_u_rel, std::abs(d.err_f_rel));
+    if (d.method == "tensor_mass") {
+      EXPECT_LT(most, 1e-3);
+    } else {
+      EXPECT_GT(least, 0.05);
+    }
+  }
+  EXPECT_EQ(compared, 8);
+}
+
+TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
+  const Folder folder;
+  Scene scene = block_scene(folder.at);
+  scene.bodies[0].material.poisson = 0.499;
+  const auto solid = std::make_shared<SolidCase>(scene, 0, true);
+  const auto method = make_quasi_static(solid);
+  Result as_is, finer;
+  for (const Point& point : method->points())
+    if (point.knob == "scene" || point.value == "refine 1")
+      (point.knob == "scene" ? as_is : finer) = method->evaluate(point);
+  ASSERT_FALSE(as_is.rows.empty() || finer.rows.empty());
+  // Where the ball has come to the nodes.
+  ASSERT_EQ(as_is.depths.size(), finer.depths.size());
+  for (std::size_t i = 0; i < as_is.depths.size(); ++i) {
+    const DepthRow &before = as_is.depths[i], &after = finer.depths[i];
+    if (before.reference != "fine_linear" || before.depth_per_radius < 0.45) continue;
+    std::printf("depth %.2f R: force off by %.1f %%, from the finer mesh %.1f %%\n", before.depth_per_radius,
+                100 * before.err_f_rel, 100 * after.err_f_rel);
+    EXPECT_LT(std::abs(after.err_f_rel), std::abs(before.err_f_rel));
+  }
+}
+
+TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  SolidCase solid(scene, 0, true);
+  const auto& both = solid.nonlinearity(0);
+  ASSERT_TRUE(both.gave_up.empty()) << both.gave_up;
+  ASSERT_EQ(both.linear.size(), both.neo_hookean.size());
+  const auto error = [&](std::size_t d) {
+    return solid.errors().of_field(both.linear[d].displacement, both.neo_hookean[d].displacement);
+  };
+  EXPECT_GT(error(0), 0);
+  EXPECT_GT(error(both.linear.size() - 1), 1.5 * error(0));
+  EXPECT_LT(both.penetration, 2e-3 * solid.presses().radius);
+}
+
+TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  const Store store(folder.at, study_key(scene, true));
+  const Point point{"quasi_static", "scene", "as it is", {}, true};
+  EXPECT_FALSE(store.find(point));
+  Result result;
+  result.rows.push_back(
+      {"small", "quasi_static", "scene", "as it is", 1.5, 2.5, unknown, 4e6, 0.25, 0.125, "fine_linear"});
+  result.courses.push_back({"small", "quasi_static", "scene", "as it is", 0.001, 1, 2, 3, 4});
+  result.notes.push_back({"small", "quasi_static", "scene", "as it is", "with, commas"});
+  store.keep(point, result);
+  const auto found = Store(folder.at, study_key(scene, true)).find(point);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->rows.size(), 1u);
+  EXPECT_EQ(found->rows[0].err_f_rel, 0.125);
+  EXPECT_TRUE(std::isnan(found->rows[0].offline_s));
+  EXPECT_EQ(found->courses[0].reference_displacement_m, 4);
+  EXPECT_EQ(found->notes[0].text, "with; commas");
+  for (const auto& file : std::filesystem::directory_iterator(folder.at / "points"))
+    if (file.path().extension() == ".csv")
+      std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(store.find(point)) << "a torn file counts as none";
+  store.keep(point, result);
+  Scene other = scene;
+  other.bodies[0].material.young *= 2;
+  EXPECT_FALSE(Store(folder.at, study_key(other, true)).find(point));
+}
+
+TEST(Study, AShellsErrorsFallWithItsModesAndResidualFlexibilityTakesThemAwayAtRest) {
+  const Folder folder;
+  write_shell_mesh(make_tube(0.0045, 0.04, 12, 12), folder.at / "tube.msh");
+  write_trajectory(folder.at);
+  const Scene scene = write_scene(folder.at, R"([[body]]
+name = "duct"
+mesh = "tube.msh"
+model = "modal_shell"
+young = 1e5
+poisson = 0.45
+density = 1050
+[[body.fixed]]
+group = "end0"
+[body.shell]
+thickness = 0.0008
+modes = 20
+)",
+                                  "[[tool]]\nname = \"probe\"\npivot = [0, 0.2, 0]\naxis = [0, -1, 0]\nup = "
+                                  "[0, 0, 1]\nradius = 0.003\ntrajectory = \"still.csv\"\n");
+  const StudyOptions options{.quick = true, .budget = 1.0, .budget_text = "1 s"};
+  const Result result = run_study(scene, folder.at / "out", options);
+  const auto row = [&](const std::string& knob, const std::string& modes, const std::string& reference) {
+    const Row* found = find(result, "modal_shell", knob, modes, reference);
+    EXPECT_TRUE(found) << knob << " " << modes << " " << reference;
+    return found ? *found : Row{};
+  };
+  EXPECT_LT(row("modes without residual", "20", "all_modes").err_u_rel,
+            row("modes without residual", "5", "all_modes").err_u_rel);
+  EXPECT_LT(row("modes without residual", "50", "all_modes").err_u_rel,
+            row("modes without residual", "20", "all_modes").err_u_rel);
+  EXPECT_LT(row("modes", "5", "all_modes").err_u_rel, 1e-3);
+  EXPECT_LT(row("modes", "50", "all_modes_in_time").err_f_rel,
+            row("modes", "5", "all_modes_in_time").err_f_rel);
+
+  // With time in plenty the budget buys what is most accurate, and the scene that it writes is that one.
+  const Scene bought = load_scene(folder.at / "out/small_within_1s.toml");
+  Row best;
+  double least = 1e9;
+  for (const Row& still : result.rows)
+    for (const Row& moving : result.rows) {
+      const bool pair = still.knob == moving.knob && still.value == moving.value &&
+                        still.reference == "all_modes" && moving.reference == "all_modes_in_time";
+      const double worst = std::max({still.err_u_rel, still.err_f_rel, moving.err_u_rel, moving.err_f_rel});
+      if (pair && worst < least) best = still, least = worst;
+    }
+  EXPECT_EQ(bought.bodies[0].shell->modes, best.knob == "scene" ? 20 : std::stoi(best.value));
+  EXPECT_TRUE(bought.bodies[0].shell->residual);
+  EXPECT_EQ(bought.bodies[0].mesh, scene.bodies[0].mesh);
+  // Everything is kept: a second run computes nothing.
+  std::vector<std::string> said;
+  StudyOptions again = options;
+  again.say = [&](const std::string& line) { said.push_back(line); };
+  run_study(scene, folder.at / "out", again);
+  ASSERT_FALSE(said.empty());
+  for (std::size_t i = 0; i + 1 < said.size(); ++i)
+    EXPECT_NE(said[i].find("kept"), std::string::npos) << said[i];
+}
+
+TEST(Study, ACathetersErrorFallsWithItsParticles) {
+  const Folder folder;
+  write_trajectory(folder.at);
+  const Scene scene =
+      write_scene(folder.at,
+                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
+                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 40\n",
+                  kProbe);
+  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  const Row *coarse = find(result, "catheter", "particles", "10", "finest_chain"),
+            *own = find(result, "catheter", "scene", "", "finest_chain"),
+            *fine = find(result, "catheter", "particles", "80", "finest_chain");
+  ASSERT_TRUE(coarse && own && fine);
+  EXPECT_LT(own->err_f_rel, coarse->err_f_rel);
+  EXPECT_LT(fine->err_f_rel, own->err_f_rel);
+  EXPECT_LT(own->memory_bytes, fine->memory_bytes);
+}
+
+TEST(Study, MovingTissueComesNearerToItsOwnSmallStepsWithSmallerStepsAndAfterACutToAFreshSolve) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at, "model = \"tensor_mass\"\n");
+  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  std::vector<Row> steps;
+  for (const Row& r : result.rows)
+    if (r.method == "tensor_mass" && r.knob == "step" && r.reference == "small_step") steps.push_back(r);
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_LT(steps[1].err_f_rel, steps[0].err_f_rel);
+  EXPECT_GT(steps[1].step_us_median, steps[0].step_us_median);
+  const Row *cut = find(result, "tensor_mass", "cut", "", "cut_mesh"),
+            *stale = find(result, "quasi_static", "cut", "", "cut_mesh");
+  ASSERT_TRUE(cut && stale);
+  EXPECT_LT(cut->err_u_rel, 1e-3);
+  EXPECT_GT(stale->err_u_rel, 10 * cut->err_u_rel);
+}
+
+TEST(Budget, TakesTheMostAccurateThatFitsAndNothingWhereNothingDoes) {
+  struct Fixed : Method {
+    int of;
+    explicit Fixed(int b) : of(b) {}
+    int body() const override { return of; }
+    std::vector<Point> points() const override {
+      const auto nothing = [](Scene&) {};
+      const std::string m = "m" + std::to_string(of);
+      return {{m, "k", "fast", nothing, true},
+              {m, "k", "slow", nothing, true},
+              {m, "k", "best", {}, true},
+              {m, "k", "other", nothing, false}};
+    }
+    Result evaluate(const Point&) override { return {}; }
+  };
+  Methods methods;
+  methods.push_back(std::make_unique<Fixed>(0));
+  methods.push_back(std::make_unique<Fixed>(1));
+  Result result;
+  for (const char* m : {"m0", "m1"}) {
+    result.rows.push_back({"s", m, "k", "fast", 1, 10, 0, 0, 0.3, 0.2, "fine_linear"});
+    result.rows.push_back({"s", m, "k", "slow", 1, 100, 0, 0, 0.05, 0.1, "fine_linear"});
+    result.rows.push_back({"s", m, "k", "best", 1, 1, 0, 0, 0, 0, "fine_linear"});   // no scene can say it
+    result.rows.push_back({"s", m, "k", "other", 1, 1, 0, 0, 0, 0, "fine_linear"});  // does not serve
+  }
+  const auto values = [&](double budget) {
+    std::vector<std::string> chosen;
+    if (const auto choice = choose(methods, 2, result, budget))
+      for (const Point& p : choice->points) chosen.push_back(p.value);
+    return chosen;
+  };
+  EXPECT_EQ(values(250e-6), (std::vector<std::string>{"slow", "slow"}));
+  EXPECT_EQ(values(50e-6), (std::vector<std::string>{"fast", "fast"}));
+  EXPECT_TRUE(values(15e-6).empty());
+}
+
+}  // namespace
+}  // namespace palpate::study

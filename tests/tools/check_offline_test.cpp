@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include "tools/check_offline.hpp"
+
+namespace palpate {
+namespace {
+
+Body body_of(const char* model, double poisson) {
+  Body body;
+  body.name = "organ";
+  body.model = model;
+  body.material = {1e4, poisson, 1000};
+  return body;
+}
+
+TEST(LockingWarning, NamesTheCureWhereLinearElementsAreTooStiff) {
+  EXPECT_TRUE(locking_warnings(body_of("quasi_static", 0.47)).empty());
+  const auto still = locking_warnings(body_of("quasi_static", 0.49));
+  ASSERT_EQ(still.size(), 1u);
+  EXPECT_NE(still[0].find("locking_free"), std::string::npos);
+  const auto moving = locking_warnings(body_of("tensor_mass", 0.49));
+  ASSERT_EQ(moving.size(), 1u);
+  EXPECT_EQ(moving[0].find("locking_free"), std::string::npos);
+  EXPECT_TRUE(locking_warnings(body_of("spring_mass", 0.49)).empty()) << "springs have a Poisson's ratio of their own";
+}
+
+TEST(LockingWarning, IsSilentOnceTheSceneTakesTheCureAndHearsMaterialRegions) {
+  auto body = body_of("quasi_static", 0.3);
+  body.materials.push_back({{}, {1e4, 0.4999, 1000}});
+  EXPECT_EQ(locking_warnings(body).size(), 1u);
+  body.offline = Offline{1, "p1", "displacement"};
+  EXPECT_EQ(locking_warnings(body).size(), 1u) << "refined linear elements lock as well";
+  body.offline = Offline{1, "p1", "locking_free"};
+  EXPECT_TRUE(locking_warnings(body).empty());
+  body.offline = Offline{0, "p2", "displacement"};
+  EXPECT_TRUE(locking_warnings(body).empty());
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,110 @@
+// Catheters: stiffness, integrators, damping, and very many grasps.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/catheter/catheter_body.hpp"
+#include "tools/stability/case.hpp"
+
+namespace palpate::stability {
+namespace {
+
+using Eigen::Vector3d;
+
+CatheterSettings settings(double young, const std::string& integrator, double damping = 5) {
+  CatheterSettings s;
+  s.shape.tail = {0, 0, -0.12};
+  s.shape.tip = {0, 0, 0};
+  s.shape.particles = 41;
+  s.shape.sleeve = 0.02;
+  s.shape.damping = damping;
+  s.shape.gravity = {0, -9.81, 0};
+  s.shape.integrator = integrator;
+  s.young = young;
+  return s;
+}
+
+/// What happened to a catheter, tick by tick.
+class CatheterWatch {
+ public:
+  void look(const CatheterBody& body) {
+    for (const CatheterToolForce& f : body.tool_forces()) force_ = std::max(force_, f.force.allFinite() ? f.force.norm() : NAN);
+    for (const Vector3d& x : body.positions()) {
+      finite_ &= x.allFinite();
+      reach_ = std::max(reach_, x.norm());
+    }
+  }
+  Result result(double growth) const {
+    Result r{.max_force = force_, .energy_growth = growth, .note = fmt::format("energy is the catheter's own; reach {:.3g} m", reach_)};
+    if (!finite_ || reach_ > 10) r.outcome = Outcome::failed;
+    return r;
+  }
+
+ private:
+  double force_ = 0, reach_ = 0;
+  bool finite_ = true;
+};
+
+/// Takes the middle by a jaw, swings it to and fro, lets go, falls.
+Result swing(const CatheterSettings& s, int ticks) {
+  CatheterBody body(s, nullptr);
+  CatheterWatch watch;
+  double early = 0, late = 0;
+  std::array jaw{Eigen::Isometry3d::Identity()};
+  jaw[0].translation() = body.positions()[30];
+  for (int i = 0; i < ticks; ++i) {
+    if (i == ticks / 4) body.grasp(0, jaw[0], body.nearest(jaw[0].translation()), 0.004, 1e-4);
+    if (i > ticks / 4) jaw[0].translation() += Vector3d(2e-4 * std::cos(0.03 * i), 0, 0);
+    if (i < ticks / 4) jaw[0].translation() = body.positions()[30];
+    if (i == ticks / 2) body.let_go(0);
+    body.step({}, jaw);
+    watch.look(body);
+    (i < 3 * ticks / 4 ? early : late) = std::max(i < 3 * ticks / 4 ? early : late, body.energy());
+  }
+  return watch.result(std::max(0.0, late - early));
+}
+
+Result many_grasps(int grasps) {
+  CatheterBody body(settings(3e7, "implicit"), nullptr);
+  CatheterWatch watch;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::array<Eigen::Isometry3d, 2> jaws{Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
+  for (int g = 0; g < grasps; ++g) {
+    const int tool = g % 2;
+    jaws[tool].translation() = body.positions()[10 + random() % 30] + 1e-3 * Vector3d(any(random), any(random), any(random));
+    body.grasp(tool, jaws[tool], body.nearest(jaws[tool].translation()), 0.004 * (g % 3), 1e-4);
+    for (int i = 0; i < 3; ++i) {
+      jaws[tool].translation() += 2e-4 * Vector3d(any(random), any(random), any(random));
+      body.step({}, jaws);
+      watch.look(body);
+    }
+    if (random() % 4) body.let_go(tool);
+  }
+  return watch.result(0);
+}
+
+}  // namespace
+
+std::vector<Point> catheter_points(const Extent& extent) {
+  std::vector<Point> points;
+  const int ticks = extent.quick ? 400 : 4000;
+  for (const char* integrator : {"implicit", "semi_implicit"}) {
+    for (double e : extent.quick ? std::vector{1e3, 1e12} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12})
+      points.push_back({fmt::format("catheter {}", integrator), "E [Pa]", fmt::format("{:g}", e), [=] { return swing(settings(e, integrator), ticks); }});
+    for (double d : extent.quick ? std::vector{1e5} : std::vector{0.0, 1.0, 1e3, 1e5})
+      points.push_back({fmt::format("catheter {}", integrator), "damping [1/s]", fmt::format("{:g}", d), [=] { return swing(settings(1e6, integrator, d), ticks); }});
+    for (double h : extent.quick ? std::vector{1e-2} : std::vector{1e-7, 1e-5, 1e-3, 1e-2, 1e-1})
+      points.push_back({fmt::format("catheter {}", integrator), "tick [s]", fmt::format("{:g}", h), [=] {
+                          CatheterSettings s = settings(1e6, integrator);
+                          s.step = h;
+                          return swing(s, ticks);
+                        }});
+  }
+  const int grasps = extent.quick ? 1000 : 100000;
+  points.push_back({"grasps", "number", std::to_string(grasps), [=] { return many_grasps(grasps); }, 600});
+  return points;
+}
+
+}  // namespace palpate::stability

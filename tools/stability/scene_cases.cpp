@@ -1,0 +1,102 @@
+// A scene's own bodies and tools at the edge.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/dynamics/make_model.hpp"
+#include "common/tensors/ensure_archive.hpp"
+#include "deform_node/local_model.hpp"
+#include "haptic_node/device.hpp"
+#include "tools/stability/press_bench.hpp"
+
+namespace palpate::stability {
+namespace {
+
+/// How a scene's own scripted motion is bent.
+struct Bend {
+  double speed = 1;   ///< times as fast
+  double deeper = 0;  ///< [m] further along the shaft, once the motion has begun
+  bool controller = true;
+  int delay = 1;      ///< [ticks] of the moving tissue's answers
+};
+
+/// Haptic step and moving tissue side by side, as the nodes run them, without a clock.
+Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend& bend) {
+  HapticStep haptic(scene, archives);
+  std::unique_ptr<DynamicWorld> world;
+  std::unique_ptr<LocalModels> models;
+  if (haptic.has_moving_tissue()) {
+    world = std::make_unique<DynamicWorld>(scene, archives);
+    models = std::make_unique<LocalModels>(*world, archives);
+  }
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int t = 0; t < haptic.tools(); ++t) {
+    if (scene.tools[t].device != "scripted") throw std::runtime_error(fmt::format("tool '{}' is not scripted", scene.tools[t].name));
+    devices.push_back(make_device(scene, t));
+  }
+  std::vector<ToolDofs> dofs(devices.size());
+  const auto read = [&](std::uint64_t i) {
+    const double time = static_cast<double>(i) * haptic.dt() * bend.speed;
+    bool finished = true;
+    for (std::size_t t = 0; t < devices.size(); ++t) {
+      dofs[t] = devices[t]->read(time).dofs;
+      dofs[t].depth += bend.deeper * std::min(1.0, time);
+      finished &= devices[t]->finished(time);
+    }
+    return !finished;
+  };
+  read(0);
+  haptic.start(dofs);
+  Watch watch;
+  std::vector<LocalContactModel> waiting;
+  for (std::uint64_t i = 0; i < 60000 && read(i); ++i) {
+    for (const LocalContactModel& m : waiting) haptic.consume(m);
+    waiting.clear();
+    haptic.step(dofs);
+    watch.look(haptic);
+    if (!world) continue;
+    for (std::size_t t = 0; t < dofs.size(); ++t) {
+      const ToolDofs& d = dofs[t];
+      ToolState s{.tool = static_cast<std::uint32_t>(t), .run = 1, .step = i, .sense_ns = static_cast<std::int64_t>(i), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = d.roll, .grip = d.grip};
+      s.pedal = d.pedal;
+      s.opening = haptic.opening(static_cast<int>(t));
+      world->take(s);
+    }
+    world->tick();
+    models->refresh();
+    for (std::size_t t = 0; t < dofs.size(); ++t) {
+      const ToolDofs& d = dofs[t];
+      LocalContactModel m;
+      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+      m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
+      if (models->describe(static_cast<int>(t), m)) waiting.push_back(m);
+    }
+  }
+  Result r = watch.result();
+  r.note += fmt::format("{}energy at the end {:.4g} J", r.note.empty() ? "" : "; ", haptic.energy());
+  return r;
+}
+
+}  // namespace
+
+std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
+  std::vector<Point> points;
+  const auto add = [&](const std::string& parameter, const std::string& value, const Bend& bend, const std::function<void(Scene&)>& change = {}) {
+    points.push_back({"scene", parameter, value, [=] {
+                        Scene changed = scene;
+                        changed.passivity.controller = bend.controller;
+                        if (change) change(changed);
+                        const std::vector<Archive> archives = load_or_precompute(changed, ArchivePart::surface);
+                        return play(changed, archives, bend);
+                      }, 600});
+  };
+  add("as it is", "controller", {});
+  add("as it is", "observer only", {.controller = false});
+  for (double v : extent.quick ? std::vector{10.0} : std::vector{0.3, 3.0, 10.0, 100.0}) add("speed of the motion [1]", fmt::format("{:g}", v), {.speed = v});
+  for (double d : extent.quick ? std::vector{0.02} : std::vector{1e-12, 0.005, 0.02, 0.1}) add("deeper by [m]", fmt::format("{:g}", d), {.deeper = d});
+  for (double h : extent.quick ? std::vector<double>{} : std::vector{250.0, 4000.0})
+    add("haptic rate [Hz]", fmt::format("{:g}", h), {}, [h](Scene& s) { s.rates.haptic_hz = h; });
+  return points;
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,93 @@
+// Thin walls: thickness, the singular triangle, coplanar patches, material.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/mesh/shell_generators.hpp"
+#include "common/tensors/precompute_shell.hpp"
+#include "tools/stability/press_bench.hpp"
+
+namespace palpate::stability {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double radius = 0.0045, length = 0.04;
+
+Scene duct_scene(double thickness) {
+  Scene scene = block_scene();
+  Body& duct = scene.bodies[0];
+  duct = Body{};
+  duct.name = "duct";
+  duct.model = "modal_shell";
+  duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
+  duct.shell = Shell{.thickness = thickness, .modes = 20};
+  duct.fixed.push_back({.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}});
+  Tool& tool = scene.tools[0];
+  tool.pivot = {0, 0.15, length / 2};
+  tool.axis = -Vector3d::UnitY();
+  tool.up = Vector3d::UnitZ();
+  tool.radius = 0.003;
+  tool.shaft_length = 0.02;
+  return scene;
+}
+
+Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
+  HapticStep haptic(scene, {precompute_shell(scene.bodies[0], mesh)});
+  const auto at = [&](double above) { return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, length / 2})}; };
+  haptic.start(at(0.002));
+  Watch watch;
+  for (int i = 1; i <= 900; ++i) {
+    const double share = i < 300 ? i / 300.0 : i < 600 ? 1.0 : (900 - i) / 300.0;
+    haptic.step(at(0.002 - share * (0.002 + depth)));
+    watch.look(haptic);
+  }
+  return watch.result();
+}
+
+/// A plate in the plane y = 0: every triangle is coplanar with its neighbours.
+ShellMesh plate_mesh(int cells) {
+  ShellMesh mesh;
+  const double h = length / cells;
+  for (int k = 0; k <= cells; ++k)
+    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({h * i - length / 2, 0, h * k});
+  for (int k = 0; k < cells; ++k)
+    for (int i = 0; i < cells; ++i) {
+      const int a = k * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
+      mesh.triangles.push_back({c, d, a});  // the right angle first: the corner order that the polynomial element cannot have
+      mesh.triangles.push_back({b, a, d});
+    }
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<Point> shell_points(const Extent& extent) {
+  std::vector<Point> points;
+  for (double t : extent.quick ? std::vector{1e-5, 0.3} : std::vector{1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.2, 0.3})
+    points.push_back({"shell thickness", "t/R [1]", fmt::format("{:g}", t), [t] {
+                        return press_wall(duct_scene(t * radius), make_tube(radius, length, 12, 12), radius * (1 + t / 2), 0.001);
+                      }, 120});
+  for (const char* bending : {"polynomial", "discrete_kirchhoff"})
+    points.push_back({"singular triangle", "bending", bending, [=] {
+                        Scene scene = duct_scene(0.001);
+                        scene.bodies[0].shell->bending = bending;
+                        return press_wall(scene, plate_mesh(8), 0.0005, 0.001);
+                      }});
+  points.push_back({"coplanar patches", "plate of right triangles", "8 x 8", [] { return press_wall(duct_scene(0.0005), plate_mesh(8), 0.00025, 0.001); }});
+  for (double e : extent.quick ? std::vector{1.0, 1e12} : std::vector{1.0, 1e3, 1e6, 1e9, 1e12})
+    points.push_back({"shell young", "E [Pa]", fmt::format("{:g}", e), [e] {
+                        Scene scene = duct_scene(0.001);
+                        scene.bodies[0].material.young = e;
+                        return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
+                      }, 120});
+  for (double z : extent.quick ? std::vector{0.0} : std::vector{0.0, 0.01, 1.0, 100.0})
+    points.push_back({"shell damping", "ratio [1]", fmt::format("{:g}", z), [z] {
+                        Scene scene = duct_scene(0.001);
+                        scene.bodies[0].shell->damping_ratio = z;
+                        return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
+                      }, 120});
+  return points;
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <stdexcept>
+
+#include "tools/commands.hpp"
+#include "tools/study/growth.hpp"
+#include "tools/study/page.hpp"
+#include "tools/study/study.hpp"
+
+namespace palpate {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  std::string out, budget;
+  bool quick = false, growth = false;
+};
+
+/// "1ms", "250us", "0.5 ms", "0.001s" or plain seconds.
+double seconds_of(const std::string& text) {
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  std::string unit = end == 0 ? "?" : text.substr(end);
+  std::erase(unit, ' ');
+  const double scale = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" || unit.empty() ? 1 : 0;
+  if (!(value * scale > 0))
+    throw std::runtime_error(fmt::format("--budget {}: not a time, such as 1ms or 250us", text));
+  return value * scale;
+}
+
+void say(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+void run(const Arguments& arguments) {
+  study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = say};
+  if (!arguments.budget.empty()) options.budget = seconds_of(arguments.budget);
+  const std::filesystem::path out = arguments.out;
+  const bool several = arguments.scenes.size() > 1 || arguments.growth;  // a folder each, and an index
+  if (arguments.scenes.empty() && !arguments.growth)
+    throw std::runtime_error("study: name a scene, or ask for --growth");
+  for (const std::string& file : arguments.scenes) {
+    const Scene scene = load_scene(file);
+    const auto folder = several ? out / scene.file.stem() : out;
+    study::run_study(scene, folder, options);
+    study::describe_machine(folder);
+    const std::string missing = study::make_page(folder);
+    say(missing.empty() ? fmt::format("{}", (folder / "index.html").string()) : missing);
+  }
+  if (arguments.growth) study::measure_growth(out, arguments.quick, say);
+  if (!several && !arguments.growth) return;
+  const std::string missing = study::make_page(out);
+  say(missing.empty() ? fmt::format("{}", (out / "index.html").string()) : missing);
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app) {
+  auto* command = app.add_subcommand("study", "Error against run time of all that can serve a scene");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE", arguments->scenes, "scene files (TOML)");
+  command
+      ->add_option("-o,--out", arguments->out,
+                   "folder for figures and page; with several scenes one folder each in it")
+      ->required();
+  command->add_option("--budget", arguments->budget,
+                      "names the most accurate configuration whose step takes no longer, such as 1ms, and "
+                      "writes it as a scene");
+  command->add_flag("--growth", arguments->growth,
+                    "how a step's time grows over surface nodes, contacts, edges, modes and particles");
+  command->add_flag("--quick", arguments->quick, "fewer patches, samples and knobs");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,265 @@
+#include "tools/study/dynamic.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include "common/dynamics/make_model.hpp"
+#include "common/mesh/surface.hpp"
+#include "common/tensors/precompute.hpp"
+#include "tools/study/cut_rest.hpp"
+#include "tools/study/haptic_press.hpp"
+#include "tools/study/organ_press.hpp"
+
+namespace palpate::study {
+namespace {
+
+constexpr double rest_damping = 60;  // [1/s] where a rest state is wanted, which does not depend on it
+constexpr double course_seconds = 0.25, ramp_seconds = 0.1;
+
+/// A body's model on its mesh, ready to be pressed.
+struct Ready {
+  Archive archive;
+  double offline = 0;
+  std::vector<int>
+      node;  // of the archive per surface node of the case; the case's nodes come first in any mesh
+};
+
+class Dynamic : public Method {
+ public:
+  Dynamic(std::shared_ptr<SolidCase> solid, std::string model)
+      : solid_(std::move(solid)),
+        model_(std::move(model)),
+        name_(solid_->name(model_)),
+        own_(solid_->body().model == model_) {}
+  int body() const override { return solid_->index(); }
+
+  std::vector<Point> points() const override {
+    std::vector<Point> all;
+    const auto add = [&](const std::string& knob, const std::string& value, bool serves,
+                         std::function<void(Body&)> change) {
+      all.push_back({name_, knob, value,
+                     [=, this](Scene& scene) {
+                       Body& body = scene.bodies[solid_->index()];
+                       become(body);
+                       change(body);
+                     },
+                     serves && is_dynamic(solid_->body())});
+    };
+    const Body& of = solid_->body();
+    add(own_ ? "scene" : "model", own_ ? "as it is" : model_, true, [](Body&) {});
+    const bool turning = of.dynamic.corotational;
+    if (model_ != "spring_mass")
+      add("corotational", turning ? "off" : "on", true,
+          [turning](Body& body) { body.dynamic.corotational = !turning; });
+    if (!own_) return all;
+    const std::string integrator = of.dynamic.integrator == "rk4" ? "semi_implicit" : "rk4";
+    add("integrator", integrator, true,
+        [integrator](Body& body) { body.dynamic.integrator = integrator, body.dynamic.step = 0; });
+    const std::string precision = of.dynamic.precision == "single" ? "double" : "single";
+    add("precision", precision, true, [precision](Body& body) { body.dynamic.precision = precision; });
+    for (const int parts : {1, 2, 4, 8}) {
+      if (solid_->quick() && parts != 1 && parts != 4) continue;
+      const double step = 0.9 * bound() / parts;
+      add("step", fmt::format("{:.4g} s", step), true, [step](Body& body) { body.dynamic.step = step; });
+    }
+    if (model_ == "hybrid")
+      for (const int layers : {-1, 1, 2, 4}) {
+        if (solid_->quick() && layers != 1) continue;
+        const auto part = grown_part(of, solid_->mesh(), layers);
+        if (part.empty() || part.size() == solid_->mesh().tetrahedra.size()) continue;
+        add("dynamic share",
+            fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.size()) /
+                                        static_cast<double>(solid_->mesh().tetrahedra.size())),
+            layers > 0, [part](Body& body) {
+              body.hybrid->regions = {Selector{.indices = part, .box = {}, .group = {}}};
+              body.hybrid->mesh.clear();
+            });
+      }
+    if (model_ != "hybrid") {
+      if (!solid_->quick()) all.push_back({name_, "resolution", "edges x 0.6", {}, false});
+      all.push_back({name_, "cut", "a slot", {}, false});
+    }
+    return all;
+  }
+
+  Result evaluate(const Point& point) override {
+    Scene scene = solid_->scene();
+    become(scene.bodies[body()]);
+    if (point.apply) point.apply(scene = solid_->scene());
+    Row row{solid_->scene().file.stem().string(), point.method, point.knob, point.value};
+    if (point.knob == "cut") return rest_after_cut(*solid_, scene.bodies[body()], row);
+    const Ready ready = point.knob == "resolution" ? prepare_finer(scene) : prepare(scene);
+    row.offline_s = ready.offline;
+    return press(scene, ready, row);
+  }
+
+ private:
+  void become(Body& body) const {
+    body.model = model_;
+    body.offline.reset();
+    body.nonlinear.reset();
+    if (model_ != "hybrid") body.hybrid.reset();
+  }
+
+  Ready prepare(const Scene& scene) const {
+    if (scene.bodies[body()].hybrid && !scene.bodies[body()].hybrid->mesh.empty())
+      throw std::runtime_error("a hybrid whose tensor-mass part has a mesh of its own is not studied");
+    return prepare(scene.bodies[body()], solid_->mesh());
+  }
+
+  Ready prepare(Body body, const TetMesh& mesh) const {
+    body.dynamic.gravity.setZero();
+    Ready ready;
+    const auto begin = std::chrono::steady_clock::now();
+    ready.archive = precompute(body, mesh);
+    ready.offline = seconds_since(begin);
+    std::vector<int> of_mesh(mesh.nodes.size(), -1);
+    for (int n = 0; n < ready.archive.surface.size(); ++n) of_mesh[ready.archive.surface.node_number[n]] = n;
+    for (const int n : solid_->surface().node_number) ready.node.push_back(of_mesh[n]);
+    return ready;
+  }
+
+  Ready prepare_finer(Scene& scene) const {
+    FinerBody finer = finer_body(scene.bodies[body()], solid_->problem(), 0.6);
+    scene.bodies[body()] = finer.body;
+    return prepare(finer.body, finer.mesh);
+  }
+
+  /// [s] largest stable step of the body as the scene has it.
+  double bound() const {
+    if (!bound_) {
+      Scene scene = solid_->scene();
+      become(scene.bodies[body()]);
+      scene.bodies[body()].dynamic.step = 0;
+      const Ready ready = prepare(scene);
+      const Scene alone = solid_->press_scene(scene, 0);
+      bound_ =
+          OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
+              .organ()
+              .largest_step() /
+          0.9;
+    }
+    return *bound_;
+  }
+
+  double tick() const { return 1 / solid_->scene().rates.haptic_hz; }
+
+  Result press(const Scene& scene, const Ready& ready, Row row) {
+    Result result;
+    const Presses& presses = solid_->presses();
+    PressAnswers answers;
+    std::vector<double> seconds;
+    bool stable = true;
+    const int samples = (solid_->quick() ? 400 : 2400) / static_cast<int>(presses.patches.size());
+    for (std::size_t p = 0; p < presses.patches.size(); ++p) {
+      Scene alone = solid_->press_scene(scene, static_cast<int>(p));
+      alone.bodies[0].dynamic.damping = std::max(rest_damping, alone.bodies[0].dynamic.damping);
+      if (alone.bodies[0].dynamic.step > 0)
+        alone.bodies[0].dynamic.step *= 0.98;  // the bound falls a little with the damping
+      OrganPress press(alone, ready.archive, presses.patches[p], presses.radius, tick());
+      row.memory_bytes = static_cast<double>(press.bytes());
+      answers.emplace_back();
+      for (const double depth : presses.depths) {
+        const double from = press.depth();
+        for (int i = 1; i <= 50; ++i) press.tick(from + (depth - from) * i / 50);
+        PressAnswer answer;
+        answer.force = press.settle(solid_->quick() ? 0.5 : 1.0);
+        const auto u = press.displacement();
+        for (const int n : ready.node) answer.displacement.push_back(n < 0 ? Eigen::Vector3d::Zero() : u[n]);
+        stable &= std::isfinite(answer.force);
+        answers.back().push_back(std::move(answer));
+      }
+      const double middle = press.depth();
+      const auto times = time_steps(
+          50, samples, [&](int i) { press.tick(middle + 1e-3 * presses.radius * std::sin(0.05 * i)); });
+      seconds.insert(seconds.end(), times.begin(), times.end());
+    }
+    if (!stable) throw std::runtime_error("the press does not stay finite");
+    const StepTime time = summarise(std::move(seconds));
+    row.step_us_median = 1e6 * time.median;
+    row.step_us_p99 = 1e6 * time.p99;
+    solid_->add_errors(row, answers, result);
+    solid_->errors().add(row, answers, same_mesh(), "same_mesh", result);
+    add_course(scene, ready, row, result);
+    return result;
+  }
+
+  /// The same presses of the same body without inertia, on the mesh that it has.
+  const PressAnswers& same_mesh() {
+    if (!same_mesh_.empty()) return same_mesh_;
+    Scene scene = solid_->scene();
+    Body& still = scene.bodies[body()];
+    still.model = "quasi_static";
+    still.hybrid.reset();
+    still.nonlinear.reset();
+    still.offline.reset();
+    const Archive archive = precompute(still, solid_->mesh());
+    const Presses& presses = solid_->presses();
+    for (std::size_t p = 0; p < presses.patches.size(); ++p) {
+      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p],
+                        presses.radius);
+      same_mesh_.emplace_back();
+      for (const double depth : presses.depths) same_mesh_.back().push_back(press.to(depth));
+    }
+    return same_mesh_;
+  }
+
+  /// Force and displacement of the first patch over time.
+  std::vector<std::array<double, 2>> course(const Scene& scene, const Ready& ready) const {
+    const Presses& presses = solid_->presses();
+    const Scene alone = solid_->press_scene(scene, 0);
+    OrganPress press(alone, ready.archive, presses.patches[0], presses.radius, tick());
+    std::array<int, 3> nodes;
+    for (int v = 0; v < 3; ++v)
+      nodes[v] = ready.node[solid_->surface().triangles[presses.patches[0].triangle][v]];
+    std::vector<std::array<double, 2>> path;
+    for (double t = tick(); t < course_seconds; t += tick()) {
+      const double force = press.tick(course_depth(t, ramp_seconds, presses.radius));
+      path.push_back({force, press.at(nodes)});
+    }
+    return path;
+  }
+
+  /// Against the same model in double precision with RK4 and a sixteenth of its bound.
+  void add_course(Scene scene, const Ready& ready, Row row, Result& result) {
+    const auto ours = course(scene, ready);
+    Body& of = scene.bodies[body()];
+    const std::string key =
+        fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), of.dynamic.corotational, of.model,
+                    ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
+    if (!small_step_.contains(key)) {
+      of.dynamic.integrator = "rk4";
+      of.dynamic.precision = "double";
+      of.dynamic.step = 0;
+      const Scene alone = solid_->press_scene(scene, 0);
+      of.dynamic.step =
+          OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
+              .organ()
+              .largest_step() /
+          16;
+      small_step_[key] = course(scene, ready);
+    }
+    row.reference = "small_step";
+    study::add_course(row, ours, small_step_[key], tick(), result);
+  }
+
+  std::shared_ptr<SolidCase> solid_;
+  std::string model_, name_;
+  bool own_;
+  mutable std::optional<double> bound_;
+  PressAnswers same_mesh_;
+  std::map<std::string, std::vector<std::array<double, 2>>> small_step_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const std::string& model) {
+  return std::make_unique<Dynamic>(std::move(solid), model);
+}
+
+}  // namespace palpate::study

@@ -1,0 +1,42 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "common/scene/scene.hpp"
+#include "common/tensors/archive.hpp"
+
+namespace palpate::study {
+
+/// A place of the surface that is pressed: a point within a triangle, neither a node nor the middle.
+struct Patch {
+  Eigen::Vector3d point;   ///< [m]
+  Eigen::Vector3d inward;  ///< unit, against the triangle's normal
+  int triangle;            ///< of the surface map
+};
+
+/// Presses of physical size, the same for all methods.
+struct Presses {
+  double radius = 0;           ///< [m] of the ball
+  std::string radius_from;     ///< where it comes from, in words
+  std::vector<double> depths;  ///< [m] ascending, from first touch
+  std::vector<Patch> patches;
+
+  double deepest() const { return depths.back(); }
+};
+
+/// Where the ball's centre is for a depth [m].
+inline Eigen::Vector3d centre_at(const Patch& patch, double radius, double depth) {
+  return patch.point + (depth - radius) * patch.inward;
+}
+
+/// The ball is the tip of the scene's first probe; without one its radius is the surface's mean edge. Depths
+/// go up to half the radius. Places: touchable triangles away from fixed nodes where the surface is smooth,
+/// the first the farthest from all fixed nodes and each following one the farthest from those chosen. The
+/// same surface gives the same places. Throws std::runtime_error if no triangle serves.
+Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick);
+
+/// [m^2] share of the surface of each node.
+std::vector<double> node_areas(const SurfaceMap& surface);
+
+}  // namespace palpate::study

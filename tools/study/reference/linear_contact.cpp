@@ -1,0 +1,123 @@
+#include "tools/study/reference/linear_contact.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <stdexcept>
+
+#include "common/fem/condensation.hpp"
+#include "common/mesh/surface.hpp"
+
+namespace palpate::study {
+namespace {
+
+constexpr int most_rounds = 200;
+
+Factorisation factorised(const StaticProblem& problem) {
+  const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs);
+  Factorisation factor(stiffness);
+  factor.factorise(stiffness);
+  return factor;
+}
+
+}  // namespace
+
+LinearContact::LinearContact(StaticProblem problem, const Eigen::Vector3d& centre, double reach)
+    : problem_(std::move(problem)),
+      factor_(factorised(problem_)),
+      surface_(extract_surface(problem_.mesh).nodes) {
+  for (const int n : surface_)
+    if ((problem_.mesh.nodes[n] - centre).norm() < reach) node_.push_back(n);
+  const SurfaceCompliance found =
+      surface_compliance(problem_.mesh, problem_.materials, problem_.dofs, node_, {});
+  std::vector<Eigen::Index> row;
+  for (std::size_t i = 0; i < 3 * node_.size(); ++i)
+    if (problem_.dofs.index(node_[i / 3], static_cast<int>(i % 3)) >= 0)
+      row.push_back(static_cast<Eigen::Index>(i));
+  const auto size = static_cast<Eigen::Index>(3 * node_.size());
+  compliance_ = Eigen::MatrixXd::Zero(size, size);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++at)
+      compliance_(row[i], row[j]) = compliance_(row[j], row[i]) = found.touchable[at];
+}
+
+// Normal forces that keep the active nodes on the planes that stand for the ball; nodes that would be pulled
+// are let go and nodes beyond their plane taken in, until none is left.
+Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball,
+                                                   const std::vector<Eigen::Vector3d>& normal,
+                                                   std::vector<char>& active) const {
+  const std::size_t n = node_.size();
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(3 * n, n);
+  for (std::size_t i = 0; i < n; ++i) spread.block<3, 1>(3 * i, i) = normal[i];
+  const Eigen::MatrixXd along = spread.transpose() * compliance_ * spread;
+  Eigen::VectorXd wanted(n);
+  for (std::size_t i = 0; i < n; ++i)
+    wanted[i] = ball.radius + normal[i].dot(ball.centre - problem_.mesh.nodes[node_[i]]);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<Eigen::Index> held;
+    for (std::size_t i = 0; i < n; ++i)
+      if (active[i]) held.push_back(static_cast<Eigen::Index>(i));
+    force.setZero();
+    const Eigen::MatrixXd among = along(held, held);
+    const Eigen::VectorXd to_meet = wanted(held);
+    if (!held.empty()) {
+      const Eigen::VectorXd found = among.ldlt().solve(to_meet);
+      for (std::size_t i = 0; i < held.size(); ++i) force[held[i]] = found[static_cast<Eigen::Index>(i)];
+    }
+    const Eigen::VectorXd open = along * force - wanted;
+    const double most = force.cwiseAbs().maxCoeff();
+    bool changed = false;
+    // Later rounds change one node at a time, which cannot cycle.
+    for (std::size_t i = 0; i < n && !(changed && round > most_rounds / 4); ++i) {
+      const bool leaves = active[i] && force[i] < -1e-12 * most,
+                 comes = !active[i] && open[i] < -1e-9 * ball.radius;
+      if (!leaves && !comes) continue;
+      active[i] = comes;
+      changed = true;
+    }
+    if (!changed) return force;
+  }
+  throw std::runtime_error("the reference's contact does not settle");
+}
+
+PressState LinearContact::press(const Sphere& ball) const {
+  const std::size_t n = node_.size();
+  std::vector<Eigen::Vector3d> normal(n);
+  std::vector<char> active(n, 0);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * n), nodal = u, force;
+  for (int round = 0;; ++round) {
+    if (round == most_rounds) throw std::runtime_error("the reference's contact normals do not settle");
+    double turned = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector3d now =
+          (problem_.mesh.nodes[node_[i]] + u.segment<3>(3 * i) - ball.centre).normalized();
+      turned = std::max(turned, round == 0 ? 1.0 : active[i] * (now - normal[i]).norm());
+      normal[i] = now;
+    }
+    if (turned < 1e-8) break;
+    force = solve_normal_forces(ball, normal, active);
+    for (std::size_t i = 0; i < n; ++i) nodal.segment<3>(3 * i) = force[i] * normal[i];
+    u = compliance_ * nodal;
+  }
+  PressState state;
+  Eigen::MatrixXd load = Eigen::MatrixXd::Zero(problem_.dofs.size(), 1);
+  for (std::size_t i = 0; i < 3 * n; ++i) {
+    state.force[i % 3] += nodal[i];
+    const int row = problem_.dofs.index(node_[i / 3], static_cast<int>(i % 3));
+    if (row >= 0) load(row, 0) = nodal[i];
+  }
+  const Eigen::MatrixXd answer = factor_.solve(load);
+  state.displacement.assign(problem_.mesh.nodes.size(), Eigen::Vector3d::Zero());
+  for (int dof = 0; dof < problem_.dofs.size(); ++dof)
+    state.displacement[problem_.dofs.dof(dof) / 3][problem_.dofs.dof(dof) % 3] = answer(dof, 0);
+  for (const int s : surface_)
+    state.penetration =
+        std::max(state.penetration,
+                 ball.radius - (problem_.mesh.nodes[s] + state.displacement[s] - ball.centre).norm());
+  if (state.penetration > 1e-3 * ball.radius)
+    throw std::runtime_error("the ball comes to nodes beyond the reach of the reference's contact");
+  return state;
+}
+
+}  // namespace palpate::study

@@ -1,0 +1,62 @@
+#pragma once
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace palpate::study {
+
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
+
+/// One line of study.csv: what one setting of one knob of a method costs and how wrong it is, everything else
+/// being as the scene has it.
+struct Row {
+  std::string scene, method, knob, value;
+  double step_us_median = unknown, step_us_p99 = unknown;  ///< [us] of a run-time step in contact
+  double offline_s = unknown;                              ///< [s] before the run
+  double memory_bytes = unknown;                           ///< that the method holds at run time
+  double err_u_rel = unknown, err_f_rel = unknown;         ///< [1] against the reference
+  std::string reference;                                   ///< empty: refused, see notes.csv
+};
+
+/// One line of depth.csv: one press.
+struct DepthRow {
+  std::string scene, method, knob, value;
+  int patch = 0;
+  double depth_m = 0, depth_per_radius = 0;
+  double force_N = 0, reference_force_N = 0;  ///< along the press
+  double err_u_rel = 0, err_f_rel = 0;
+  std::string reference;
+};
+
+/// One line of course.csv: a moment of a press in motion.
+struct CourseRow {
+  std::string scene, method, knob, value;
+  double time_s = 0;
+  double force_N = 0, reference_force_N = 0;
+  double displacement_m = 0, reference_displacement_m = 0;  ///< of the pressed place, along the press
+};
+
+/// A sentence that belongs to a row, or to the scene as a whole (empty method).
+struct Note {
+  std::string scene, method, knob, value, text;
+};
+
+/// What one point of the sweep gave.
+struct Result {
+  std::vector<Row> rows;
+  std::vector<DepthRow> depths;
+  std::vector<CourseRow> courses;
+  std::vector<Note> notes;
+};
+
+void append(Result& to, const Result& from);
+
+/// Writes study.csv, depth.csv, course.csv and notes.csv into a folder.
+void write_result(const Result& result, const std::filesystem::path& folder);
+/// One file that holds all of it, written beside and renamed: whole or absent.
+void write_fragment(const Result& result, const std::filesystem::path& file);
+/// Throws std::runtime_error on a file that write_fragment() has not written.
+Result read_fragment(const std::filesystem::path& file);
+
+}  // namespace palpate::study

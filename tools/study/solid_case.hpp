@@ -1,0 +1,78 @@
+#pragma once
+#include <map>
+#include <memory>
+
+#include "common/fem/direct.hpp"
+#include "tools/study/press_errors.hpp"
+#include "tools/study/reference/linear_contact.hpp"
+
+namespace palpate::study {
+
+/// One solid body of a scene as all methods press it, and the references for those presses, computed when
+/// first asked for.
+class SolidCase {
+ public:
+  SolidCase(const Scene& scene, int body, bool quick);
+
+  const Scene& scene() const { return scene_; }
+  int index() const { return body_; }
+  const Body& body() const { return scene_.bodies[body_]; }
+  bool quick() const { return quick_; }
+  const TetMesh& mesh() const { return problem_.mesh; }
+  const StaticProblem& problem() const { return problem_; }
+  const SurfaceMap& surface() const { return surface_; }
+  const PressErrors& errors() const { return errors_; }
+  const Presses& presses() const { return errors_.presses(); }
+  std::string name(
+      const std::string& model) const;  ///< of a method: the model, with the body where there are several
+
+  /// A scene of this body alone, as `from` has it, under a frictionless ball that comes to a patch along its
+  /// press.
+  Scene press_scene(const Scene& from, int patch) const;
+
+  /// Linear elasticity on a mesh so fine, around each patch, that it stands for the exact solution.
+  const PressAnswer& fine_linear(int patch, int depth);
+  /// [1] by how much fine_linear() still differs from the next coarser level: an estimate of its own error
+  /// (u, f).
+  std::array<double, 2> fine_linear_rest();
+
+  /// At the surface's nodes, of a field whose first nodes are the mesh's.
+  std::vector<Eigen::Vector3d> at_surface(const std::vector<Eigen::Vector3d>& of_nodes) const;
+  /// How fine a reference's mesh is: edges far away against the body's own and under the ball against its
+  /// radius [1], and by how much they grow per distance between.
+  struct Fineness {
+    double edge, ball, growth;
+  };
+  StaticProblem refined(int patch, const Fineness& fineness) const;
+  double reach() const;  ///< [m] about a patch within which nodes may touch the ball
+
+  /// The same contact with large strain and rotation (neo-Hookean), and with linear elasticity by the same
+  /// solver, on one mesh; fewer depths where the solver gave up, with its reason, and none beyond the first
+  /// two patches (quick: one).
+  struct Nonlinearity {
+    std::vector<PressAnswer> neo_hookean, linear;
+    std::string gave_up;
+    int nodes = 0, iterations = 0;
+    double penetration = 0;  ///< [m] largest depth of a node in the ball
+  };
+  const Nonlinearity& nonlinearity(int patch);
+  const std::vector<PressAnswer>& fine(int patch);
+  PressAnswers neo_hookean();  ///< fine_linear() and what the law changes
+
+  /// Adds the rows of a point against both references; see PressErrors::add().
+  void add_errors(const Row& cost, const PressAnswers& presses, Result& result);
+
+ private:
+  std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness) const;
+
+  const Scene& scene_;
+  int body_;
+  bool quick_;
+  StaticProblem problem_;
+  SurfaceMap surface_;
+  PressErrors errors_;
+  std::map<int, std::vector<PressAnswer>> fine_;
+  std::map<int, Nonlinearity> nonlinearity_;
+};
+
+}  // namespace palpate::study
