@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 #include "common/tool/instrument.hpp"
@@ -20,10 +21,16 @@ double most_force(const Scene& scene) {
   return sum;
 }
 
+double least_slew(const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tool& tool : scene.tools) least = std::min(least, tool.max_force_rate);
+  return least;
+}
+
 }  // namespace
 
 HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives) 
-    : dt_(1.0 / scene.rates.haptic_hz), passivity_(scene.passivity, static_cast<int>(scene.tools.size()), most_force(scene), dt_) {
+    : dt_(1.0 / scene.rates.haptic_hz), passivity_(scene.passivity, static_cast<int>(scene.tools.size()), most_force(scene), least_slew(scene), dt_) {
   for (const Tool& tool : scene.tools) {
     const bool forceps = tool.kind == "forceps";
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));

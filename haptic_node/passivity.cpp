@@ -38,75 +38,138 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
   return {now.translation() - before.translation(), 0.5 * twice, opening};
 }
 
-PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double most_force, double dt)
+PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double most_force, double slew, double dt)
     : controller_(settings.controller),
-      dt_(dt),
-      lowest_(-settings.reserve + std::min(most_force * most_acceleration * dt * dt, settings.reserve / 2)), held_(tools), motion_(tools), limited_(tools, 0) {}
+      reserve_(settings.reserve),
+      slew_(slew * dt),
+      most_per_shift_(most_damping / (dt * dt)),
+      fade_(std::exp(-dt / memory)),
+      held_(tools),
+      motion_(tools),
+      resisting_(tools, 0.0),
+      limited_(tools, 0) {
+  const double shift = std::min(most_acceleration * dt * dt, most_force > 0 ? settings.reserve / (2 * most_force) : 0.0);
+  least_reach_ = {shift, shift / lever, shift / lever};
+  reach_.assign(tools, least_reach_);
+}
 
 void PassivityGuard::observe(std::span<const PortMotion> motion) {
-  std::ranges::copy(motion, motion_.begin());
   for (std::size_t t = 0; t < held_.size(); ++t) {
     const PortForce& f = held_[t];
-    energy_ -= f.force.dot(motion[t].shift) + f.torque.dot(motion[t].turn) + f.grip * motion[t].opening;
+    const PortMotion &m = motion[t], &before = motion_[t];
+    energy_ -= f.force.dot(m.shift) + f.torque.dot(m.turn) + f.grip * m.opening;
+    Reach& r = reach_[t];
+    r.shift = std::max({least_reach_.shift, fade_ * r.shift, (m.shift - before.shift).norm()});
+    r.turn = std::max({least_reach_.turn, fade_ * r.turn, (m.turn - before.turn).norm()});
+    r.opening = std::max({least_reach_.opening, fade_ * r.opening, std::abs(m.opening - before.opening)});
+    // What goes to and fro from tick to tick is no motion to resist: the next one would come back along it.
+    resisting_[t] = m.shift.dot(before.shift) > 0 ? most_per_shift_ * m.shift.norm() : 0.0;
+    motion_[t] = m;
   }
+}
+
+double PassivityGuard::risk(int tool, const PortForce& f) const {
+  const Reach& r = reach_[tool];
+  const double size = f.force.norm();
+  const double next = work(f, motion_[tool]) + size * r.shift + f.torque.norm() * r.turn + std::abs(f.grip) * r.opening;
+  return next > 0 ? next * (1 + size / (2 * slew_)) : next;
+}
+
+PassivityGuard::Outlook PassivityGuard::outlook(std::span<const PortForce> asked) const {
+  Outlook sum;
+  for (std::size_t t = 0; t < asked.size(); ++t) {
+    if (!finite(asked[t])) continue;
+    const double r = risk(static_cast<int>(t), asked[t]);
+    (r > 0 ? sum.risk : sum.income) += std::abs(r);
+  }
+  return sum;
 }
 
 void PassivityGuard::control(std::span<PortForce> asked) {
   std::ranges::fill(limited_, 0);
   if (!controller_) return;
-  double taken = 0, pushed = 0;
+  const double spare = energy_ + reserve_;
+  const Outlook before = outlook(asked);
+  if (before.risk <= spare + before.income) return;
   for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!finite(asked[t])) continue;
-    taken += work(asked[t], motion_[t]);
-    if (work(asked[t], motion_[t]) > 0) pushed += push(asked[t], motion_[t]);
+    if (!finite(asked[t]) || !(risk(static_cast<int>(t), asked[t]) > 0)) continue;
+    limited_[t] = 1;
+    const double along = work(asked[t].force, motion_[t].shift);
+    // What stands against the motion may go on doing so; what pushes is asked to make good what has been taken too much.
+    if (along <= 0) resisting_[t] = std::min(resisting_[t], along < 0 ? -along / motion_[t].shift.norm() : 0.0);
+    else if (spare >= 0) resisting_[t] = 0;
   }
-  const double missing = lowest_ - (energy_ - taken);
-  if (!(missing > 0) || !(pushed > 0)) return;
+  damp_pushes(asked, before.risk - before.income - spare);
+  shrink(asked, spare);
+  resist(asked);
+}
+
+// Takes away what pushes along its motion, as far as energy is missing.
+void PassivityGuard::damp_pushes(std::span<PortForce> asked, double missing) {
+  double pushed = 0;
+  for (std::size_t t = 0; t < asked.size(); ++t)
+    if (limited_[t] && work(asked[t], motion_[t]) > 0) pushed += push(asked[t], motion_[t]);
+  if (!(pushed > 0)) return;
   const double share = std::min(1.0, missing / pushed);
   for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!finite(asked[t]) || !(work(asked[t], motion_[t]) > 0)) continue;
-    limited_[t] = 1;
+    if (!limited_[t] || !(work(asked[t], motion_[t]) > 0)) continue;
     damp(asked[t].force, motion_[t].shift, share);
     damp(asked[t].torque, motion_[t].turn, share);
     if (work(asked[t].grip, motion_[t].opening) > 0) asked[t].grip *= 1 - share;
   }
-  if (missing > pushed) repay(asked, missing - pushed);
 }
 
-void PassivityGuard::repay(std::span<PortForce> asked, double missing) {
-  double square = 0;
-  for (std::size_t t = 0; t < asked.size(); ++t)
-    if (limited_[t]) square += motion_[t].shift.squaredNorm();
-  if (!(square > still * still)) return;
-  const double per_shift = std::min(missing / square, most_damping / (dt_ * dt_));  // [N/m] on the motion of one tick
-  for (std::size_t t = 0; t < asked.size(); ++t)
-    if (limited_[t]) asked[t].force -= per_shift * motion_[t].shift;
+// Makes the forces so small that even a motion that turns round leaves the energy above -reserve.
+void PassivityGuard::shrink(std::span<PortForce> asked, double spare) {
+  const Outlook left = outlook(asked);
+  if (left.risk <= spare + left.income) return;
+  const double share = std::max(0.0, (spare + left.income) / left.risk);
+  for (std::size_t t = 0; t < asked.size(); ++t) {
+    if (!limited_[t] || !(risk(static_cast<int>(t), asked[t]) > 0)) continue;
+    asked[t].force *= share;
+    asked[t].torque *= share;
+    asked[t].grip *= share;
+  }
 }
 
-void PassivityGuard::save(unsigned char* to) const {
-  const auto put = [&to](const double* from, std::size_t count) {
+void PassivityGuard::resist(std::span<PortForce> asked) {
+  for (std::size_t t = 0; t < asked.size(); ++t) {
+    if (!limited_[t] || !(resisting_[t] > 0)) continue;
+    const Eigen::Vector3d along = motion_[t].shift.stableNormalized();
+    const double now = asked[t].force.dot(along);
+    if (now > -resisting_[t]) asked[t].force -= (now + resisting_[t]) * along;
+  }
+}
+
+template <class Visit>
+void PassivityGuard::visit_state(Visit&& visit) {
+  const auto one = [&visit](double& value) { visit(&value, 1); };
+  one(energy_);
+  for (std::size_t t = 0; t < held_.size(); ++t) {
+    visit(held_[t].force.data(), 3);
+    visit(held_[t].torque.data(), 3);
+    one(held_[t].grip);
+    visit(motion_[t].shift.data(), 3);
+    visit(motion_[t].turn.data(), 3);
+    one(motion_[t].opening);
+    one(reach_[t].shift);
+    one(reach_[t].turn);
+    one(reach_[t].opening);
+  }
+}
+
+void PassivityGuard::save(unsigned char* to) {
+  visit_state([&to](const double* from, std::size_t count) {
     std::memcpy(to, from, count * sizeof(double));
     to += count * sizeof(double);
-  };
-  put(&energy_, 1);
-  for (const PortForce& f : held_) {
-    put(f.force.data(), 3);
-    put(f.torque.data(), 3);
-    put(&f.grip, 1);
-  }
+  });
 }
 
 void PassivityGuard::restore(const unsigned char* from) {
-  const auto get = [&from](double* to, std::size_t count) {
+  visit_state([&from](double* to, std::size_t count) {
     std::memcpy(to, from, count * sizeof(double));
     from += count * sizeof(double);
-  };
-  get(&energy_, 1);
-  for (PortForce& f : held_) {
-    get(f.force.data(), 3);
-    get(f.torque.data(), 3);
-    get(&f.grip, 1);
-  }
+  });
 }
 
 }  // namespace palpate

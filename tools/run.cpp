@@ -28,14 +28,17 @@ struct Options {
 
 struct Node {
   ChildProcess process;
+  Clock::time_point begun;
   bool ready = false;
+  double startup = 0;                ///< [s] until it was ready
+  double resident = 0;               ///< [bytes] when it was ready
   nlohmann::json summary = nullptr;  ///< its last line, once it has ended
 };
 
 /// The nodes of one scene on this machine, in the order in which they start; the haptic node comes last.
 class Nodes {
  public:
-  void start(const std::string& role, const std::vector<std::string>& arguments) { nodes_.push_back({ChildProcess(role, arguments)}); }
+  void start(const std::string& role, const std::vector<std::string>& arguments) { nodes_.push_back({ChildProcess(role, arguments), Clock::now()}); }
 
   /// Reads what the nodes print: "ready", and at the end one JSON line each.
   void read() {
@@ -43,7 +46,7 @@ class Nodes {
       n.process.running();
       for (const std::string& line : n.process.take_lines()) {
         if (line == "ready")
-          n.ready = true;
+          note_ready(n);
         else if (line.starts_with('{'))
           n.summary = nlohmann::json::parse(line, nullptr, false);
         else
@@ -84,11 +87,24 @@ class Nodes {
 
   nlohmann::json summary() const {
     nlohmann::json all;
-    for (const Node& n : nodes_) all[n.process.name()] = n.summary;
+    for (const Node& n : nodes_) {
+      nlohmann::json& node = all[n.process.name()] = n.summary;
+      if (!node.is_object()) continue;
+      node["startup_s"] = n.startup;
+      node["resident_bytes"] = n.resident;
+    }
     return all;
   }
 
  private:
+  static void note_ready(Node& node) {
+    node.ready = true;
+    node.startup = std::chrono::duration<double>(Clock::now() - node.begun).count();
+    std::ifstream statm(fmt::format("/proc/{}/statm", node.process.pid()));
+    double pages = 0, resident = 0;
+    if (statm >> pages >> resident) node.resident = resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+  }
+
   std::vector<Node> nodes_;
 };
 

@@ -22,7 +22,7 @@ constexpr double dt = 1e-3;
 
 /// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
 struct Port {
-  explicit Port(bool controller = true, double reserve = 0.01) : guard({.controller = controller, .reserve = reserve}, 1, 20, dt) {}
+  explicit Port(bool controller = true, double reserve = 0.01) : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, dt) {}
 
   PortForce tick(const Vector3d& to, const PortForce& asked) {
     const PortMotion motion{.shift = to - at};
@@ -66,7 +66,7 @@ TEST(Passivity, EnergyCountsTheForceThatWasHeldOverTheMotion) {
 }
 
 TEST(Passivity, TorqueAndGripCount) {
-  PassivityGuard guard({}, 1, 10, dt);
+  PassivityGuard guard({}, 1, 10, 1e5, dt);
   guard.hold(0, {.torque = {0, 0.1, 0}, .grip = 0.2});
   const Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d now = before;
@@ -126,7 +126,7 @@ TEST(Passivity, WhatGoesAgainstTheMotionIsNeverTouched) {
 }
 
 TEST(Passivity, OneToolMayTakeOutWhatAnotherPutIn) {
-  PassivityGuard guard({.controller = true, .reserve = 1e-4}, 2, 20, dt);
+  PassivityGuard guard({.controller = true, .reserve = 1e-4}, 2, 20, 1e5, dt);
   for (int i = 0; i < 1000; ++i) {
     const std::array motion{PortMotion{.shift = {1e-4, 0, 0}}, PortMotion{.shift = {1e-4, 0, 0}}};
     guard.observe(motion);

@@ -295,7 +295,6 @@ TEST(Study, MovingTissueComesNearerToItsOwnSmallStepsWithSmallerStepsAndAfterACu
     if (r.method == "tensor_mass" && r.knob == "step" && r.reference == "small_step") steps.push_back(r);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_LT(steps[1].err_f_rel, steps[0].err_f_rel);
-  EXPECT_GT(steps[1].step_us_median, steps[0].step_us_median);
   const Row *cut = find(result, "tensor_mass", "cut", "", "cut_mesh"),
             *stale = find(result, "quasi_static", "cut", "", "cut_mesh");
   ASSERT_TRUE(cut && stale);

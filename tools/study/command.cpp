@@ -46,6 +46,7 @@ void run(const Arguments& arguments) {
   const bool several = arguments.scenes.size() > 1 || arguments.growth;  // a folder each, and an index
   if (arguments.scenes.empty() && !arguments.growth)
     throw std::runtime_error("study: name a scene, or ask for --growth");
+  if (several) options.references = out / "references";
   for (const std::string& file : arguments.scenes) {
     const Scene scene = load_scene(file);
     const auto folder = several ? out / scene.file.stem() : out;

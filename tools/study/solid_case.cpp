@@ -4,10 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
+#include "common/tensors/content_hash.hpp"
 #include "common/tensors/precompute.hpp"
+#include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
 #include "tools/study/reference/newton.hpp"
 
@@ -20,12 +24,19 @@ using Fineness = SolidCase::Fineness;
 constexpr Fineness fine_mesh{0.6, 1 / 9.0, 0.28}, next_mesh{0.8, 1 / 6.0, 0.4}, neo_mesh{1, 1 / 5.0, 0.4};
 constexpr Fineness quick_fine{0.8, 1 / 6.0, 0.35}, quick_next{1, 1 / 4.0, 0.5}, quick_neo{1, 1 / 4.0, 0.6};
 
+void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
+  numbers.push_back(answer.force);
+  for (const Eigen::Vector3d& u : answer.displacement) numbers.insert(numbers.end(), u.begin(), u.end());
+}
+
 }  // namespace
 
-SolidCase::SolidCase(const Scene& scene, int body, bool quick)
+SolidCase::SolidCase(const Scene& scene, int body, bool quick, ReferenceCache cache, Say say)
     : scene_(scene),
       body_(body),
       quick_(quick),
+      cache_(std::move(cache)),
+      say_(std::move(say)),
       problem_(make_static_problem(this->body(), load_tet_mesh(this->body().mesh, this->body().scale))),
       surface_(make_surface_map(this->body(), problem_.mesh, problem_.dofs)),
       errors_(node_areas(surface_), choose_presses(scene, surface_, quick)) {}
@@ -73,13 +84,51 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness) const {
                        most_nodes);
 }
 
-std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness) const {
+// Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press, the
+// mesh.
+std::string SolidCase::key(int patch, const Fineness& fineness) const {
+  constexpr int definitions = 1;  // changes with every change of how references are solved
+  Body plain = body();
+  plain.model = "quasi_static";
+  plain.hybrid.reset();
+  plain.tearing.reset();
+  plain.nonlinear.reset();
+  plain.offline.reset();
   const Patch& at = presses().patches[patch];
+  std::string text = fmt::format("{} {} {} {} {}", definitions, content_hash(plain), fineness.edge, fineness.ball,
+                                 fineness.growth);
+  for (const double number : {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2],
+                              presses().radius})
+    text += fmt::format(" {}", number);
+  for (const double depth : presses().depths) text += fmt::format(" {}", depth);
+  return text;
+}
+
+std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness) const {
+  const Patch& at = presses().patches[patch];
+  const auto begin = std::chrono::steady_clock::now();
   const LinearContact contact(refined(patch, fineness), at.point, reach());
-  std::vector<PressAnswer> answers;
+  std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
-    answers.push_back({state.force.dot(at.inward), at_surface(state.displacement)});
+    append_answer({state.force.dot(at.inward), at_surface(state.displacement)}, numbers);
+  }
+  say_(fmt::format("  linear reference, place {}: {} nodes, {} may touch the ball: {:.1f} s", patch,
+                   contact.problem().mesh.nodes.size(), contact.candidates(), seconds_since(begin)));
+  return numbers;
+}
+
+std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness) const {
+  const auto numbers = cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness); });
+  const double* at = numbers.data();
+  return read_answers(at, presses().depths.size());
+}
+
+std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t count) const {
+  std::vector<PressAnswer> answers(count);
+  for (PressAnswer& answer : answers) {
+    answer.force = *at++;
+    for (int n = 0; n < surface_.size(); ++n, at += 3) answer.displacement.emplace_back(at[0], at[1], at[2]);
   }
   return answers;
 }
@@ -116,30 +165,55 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
   }
   const auto found = nonlinearity_.find(patch);
   if (found != nonlinearity_.end()) return found->second;
+  const auto numbers = cache_.get("neo-Hookean " + key(patch, quick_ ? quick_neo : neo_mesh),
+                                  [&] { return solve_nonlinear(patch); });
   Nonlinearity& both = nonlinearity_[patch];
+  const double* at = numbers.data();
+  both.nodes = static_cast<int>(*at++);
+  both.iterations = static_cast<int>(*at++);
+  both.penetration = *at++;
+  for (auto* answers : {&both.neo_hookean, &both.linear}) {
+    const double reached = *at++;
+    const auto count = static_cast<std::size_t>(*at++);
+    *answers = read_answers(at, count);
+    if (count < presses().depths.size())
+      both.gave_up = fmt::format("Newton's method does not converge under the ball at a depth beyond {:.3g} m", reached);
+  }
+  return both;
+}
+
+/// Nodes, Newton iterations of the large strains and the deepest node in the ball; then of both laws the last depth reached,
+/// how many presses that are, and these.
+std::vector<double> SolidCase::solve_nonlinear(int patch) const {
+  const auto begin = std::chrono::steady_clock::now();
   const Patch& at = presses().patches[patch];
   const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh);
-  both.nodes = static_cast<int>(problem.mesh.nodes.size());
   const auto ball = [&](double depth) {
     return Sphere{centre_at(at, presses().radius, depth), presses().radius};
   };
+  std::vector<double> numbers{static_cast<double>(problem.mesh.nodes.size()), 0, 0};
   for (const Law law : {Law::neo_hookean, Law::linear}) {
     NewtonSolid solid(problem, law);
-    std::vector<PressAnswer>& answers = law == Law::linear ? both.linear : both.neo_hookean;
-    double before = 0;
+    double before = 0, count = 0;
+    std::vector<double> answers;
     try {
       for (const double depth : presses().depths) {
         const PressState state = solid.press(ball(before), ball(depth));
-        answers.push_back({state.force.dot(at.inward), at_surface(state.displacement)});
-        both.penetration = std::max(both.penetration, state.penetration);
+        append_answer({state.force.dot(at.inward), at_surface(state.displacement)}, answers);
+        numbers[2] = std::max(numbers[2], state.penetration);
         before = depth;
+        ++count;
       }
-    } catch (const std::runtime_error& error) {
-      both.gave_up = fmt::format("{} at a depth beyond {:.3g} m", error.what(), before);
+    } catch (const std::runtime_error&) {  // the depths reached stand
     }
-    if (law == Law::neo_hookean) both.iterations = solid.iterations();
+    if (law == Law::neo_hookean) numbers[1] = solid.iterations();
+    numbers.insert(numbers.end(), {before, count});
+    numbers.insert(numbers.end(), answers.begin(), answers.end());
+    say_(fmt::format("  {} reference, place {}: {} nodes, {} steps of load, {} Newton iterations: {:.1f} s",
+                     law == Law::linear ? "linear law beside the neo-Hookean" : "neo-Hookean", patch,
+                     problem.mesh.nodes.size(), solid.steps(), solid.iterations(), seconds_since(begin)));
   }
-  return both;
+  return numbers;
 }
 
 // The coarser mesh of the neo-Hookean solution has an error of its own, which the linear one on the same mesh shares: what

@@ -1,9 +1,11 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 
 #include "common/fem/direct.hpp"
 #include "tools/study/press_errors.hpp"
+#include "tools/study/reference_cache.hpp"
 #include "tools/study/reference/linear_contact.hpp"
 
 namespace palpate::study {
@@ -12,7 +14,9 @@ namespace palpate::study {
 /// first asked for.
 class SolidCase {
  public:
-  SolidCase(const Scene& scene, int body, bool quick);
+  using Say = std::function<void(const std::string&)>;
+
+  SolidCase(const Scene& scene, int body, bool quick, ReferenceCache cache = {}, Say say = [](const std::string&) {});
 
   const Scene& scene() const { return scene_; }
   int index() const { return body_; }
@@ -64,10 +68,16 @@ class SolidCase {
 
  private:
   std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness) const;
+  std::vector<double> solve_fine(int patch, const Fineness& fineness) const;
+  std::vector<double> solve_nonlinear(int patch) const;
+  std::string key(int patch, const Fineness& fineness) const;
+  std::vector<PressAnswer> read_answers(const double*& at, std::size_t count) const;
 
   const Scene& scene_;
   int body_;
   bool quick_;
+  ReferenceCache cache_;
+  Say say_;
   StaticProblem problem_;
   SurfaceMap surface_;
   PressErrors errors_;

@@ -18,7 +18,8 @@
 namespace palpate::study {
 namespace {
 
-void add_methods(const Scene& scene, int b, bool quick, Methods& methods) {
+void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods& methods) {
+  const bool quick = options.quick;
   const Body& body = scene.bodies[b];
   if (body.catheter) {
     methods.push_back(make_catheter(scene, b, quick));
@@ -28,7 +29,7 @@ void add_methods(const Scene& scene, int b, bool quick, Methods& methods) {
     methods.push_back(make_modal(scene, b, quick));
     return;
   }
-  auto solid = std::make_shared<SolidCase>(scene, b, quick);
+  auto solid = std::make_shared<SolidCase>(scene, b, quick, ReferenceCache(options.references), options.say);
   methods.push_back(make_quasi_static(solid));
   methods.push_back(make_linearity(solid));
   std::vector<std::string> models{"tensor_mass", "spring_mass"};
@@ -75,9 +76,9 @@ void spend(const Scene& scene, const Methods& methods, const Result& result,
 
 }  // namespace
 
-Methods make_methods(const Scene& scene, bool quick) {
+Methods make_methods(const Scene& scene, const StudyOptions& options) {
   Methods methods;
-  for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) add_methods(scene, b, quick, methods);
+  for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) add_methods(scene, b, options, methods);
   return methods;
 }
 
@@ -85,7 +86,9 @@ Result run_study(const Scene& scene, const std::filesystem::path& folder, const 
   std::filesystem::create_directories(folder);
   set_linear_algebra_threads(1);  // offline times then do not depend on who else computes, and nothing spins
   const Store store(folder, study_key(scene, options.quick));
-  const Methods methods = make_methods(scene, options.quick);
+  StudyOptions here = options;
+  if (here.references.empty()) here.references = folder / "references";
+  const Methods methods = make_methods(scene, here);
   std::vector<std::pair<Method*, Point>> all;
   for (const auto& method : methods)
     for (const Point& point : method->points()) all.emplace_back(method.get(), point);

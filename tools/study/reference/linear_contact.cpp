@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "common/fem/condensation.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate::study {
 namespace {
 
 constexpr int most_rounds = 200;
+constexpr std::size_t right_hand_sides = 64;  // solved at once
 
 Factorisation factorised(const StaticProblem& problem) {
   const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs);
@@ -27,18 +27,24 @@ LinearContact::LinearContact(StaticProblem problem, const Eigen::Vector3d& centr
       surface_(extract_surface(problem_.mesh).nodes) {
   for (const int n : surface_)
     if ((problem_.mesh.nodes[n] - centre).norm() < reach) node_.push_back(n);
-  const SurfaceCompliance found =
-      surface_compliance(problem_.mesh, problem_.materials, problem_.dofs, node_, {});
-  std::vector<Eigen::Index> row;
-  for (std::size_t i = 0; i < 3 * node_.size(); ++i)
-    if (problem_.dofs.index(node_[i / 3], static_cast<int>(i % 3)) >= 0)
-      row.push_back(static_cast<Eigen::Index>(i));
   const auto size = static_cast<Eigen::Index>(3 * node_.size());
   compliance_ = Eigen::MatrixXd::Zero(size, size);
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < row.size(); ++i)
-    for (std::size_t j = 0; j <= i; ++j, ++at)
-      compliance_(row[i], row[j]) = compliance_(row[j], row[i]) = found.touchable[at];
+  std::vector<int> row(static_cast<std::size_t>(size));
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    row[i] = problem_.dofs.index(node_[i / 3], static_cast<int>(i % 3));
+    if (row[i] >= 0) free.push_back(i);
+  }
+  for (std::size_t begin = 0; begin < free.size(); begin += right_hand_sides) {
+    const std::size_t count = std::min(right_hand_sides, free.size() - begin);
+    Eigen::MatrixXd unit =
+        Eigen::MatrixXd::Zero(problem_.dofs.size(), static_cast<Eigen::Index>(count));
+    for (std::size_t c = 0; c < count; ++c) unit(row[free[begin + c]], static_cast<Eigen::Index>(c)) = 1;
+    const Eigen::MatrixXd answer = factor_.solve(unit);
+    for (std::size_t c = 0; c < count; ++c)
+      for (const Eigen::Index i : free)
+        compliance_(i, free[begin + c]) = answer(row[i], static_cast<Eigen::Index>(c));
+  }
 }
 
 // Normal forces that keep the active nodes on the planes that stand for the ball; nodes that would be pulled
