@@ -77,6 +77,12 @@ void known_frequencies() {
   frequencies("plate_supported", supported_plate(28), 0, 0, supported);
   frequencies("plate_free", free_plate(28), 100, 6, free);
   frequencies("cylinder", cylinder(64, 40), 1e4, 1, round);
+  frequencies("tapered_membrane", tapered_membrane(28), 0, 0, {44.623, 130.03, 162.70, 246.05, 379.90, 391.44});
+  std::vector<double> bending;
+  for (double root : {1.87510, 4.69409, 7.85476})
+    bending.push_back(root * root / (2 * pi) * std::sqrt(kStrip.young * std::pow(kStrip.thickness, 2) / 12 / kStrip.density) /
+                      std::pow(kStripLength, 2));
+  frequencies("cantilever_strip", cantilever_strip(28), 0, 0, bending);
 }
 
 }  // namespace

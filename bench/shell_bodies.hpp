@@ -52,6 +52,23 @@ inline ShellSystem free_plate(int cells) {
   return make_body(plate_mesh(cells, kPlateSide), kPlate, [](const Eigen::Vector3d&, int) { return false; });
 }
 
+/// NAFEMS FV32: a membrane 10 m long that tapers from 5 to 1 m, its root held, moving in its plane alone.
+inline ShellSystem tapered_membrane(int cells) {
+  ShellMesh mesh = plate_mesh(cells, 1);
+  for (Eigen::Vector3d& x : mesh.nodes) x = {10 * x[0], (x[1] - 0.5) * (5 - 4 * x[0]), 0};
+  return make_body(mesh, kPlate, [](const Eigen::Vector3d& x, int dof) { return dof >= 2 ? dof != 5 : x[0] == 0; });
+}
+
+/// A strip 10 x 0.5 x 0.05 m without lateral contraction, clamped at one end: a beam in bending.
+constexpr ShellMaterial kStrip{200e9, 0, 8000, 0.05};
+constexpr double kStripLength = 10;
+
+inline ShellSystem cantilever_strip(int cells) {
+  ShellMesh mesh = plate_mesh(cells, 1);
+  for (Eigen::Vector3d& x : mesh.nodes) x = {kStripLength * x[0], 0.5 * x[1], 0};
+  return make_body(mesh, kStrip, [](const Eigen::Vector3d& x, int dof) { return dof <= 1 || dof == 5 || x[0] == 0; });
+}
+
 /// Radius 1 m, length 4 m, 1 cm of steel, the ends held round by diaphragms and free to slide along the axis.
 constexpr ShellMaterial kCylinder{200e9, 0.3, 8000, 0.01};
 constexpr double kCylinderRadius = 1, kCylinderLength = 4;

@@ -29,6 +29,12 @@ void damp(Eigen::Vector3d& force, const Eigen::Vector3d& motion, double share) {
   force -= share * force.dot(along) * along;
 }
 
+// A reach after a change of motion was seen. So large a change that no hand makes it is a tool set elsewhere: nothing to expect again.
+double grown(double reach, double fade, double least, double change) {
+  constexpr double most_steps = 30;
+  return std::max({least, fade * reach, change < most_steps * least ? change : 0.0});
+}
+
 }  // namespace
 
 PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double opening) {
@@ -54,14 +60,16 @@ PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double most
 }
 
 void PassivityGuard::observe(std::span<const PortMotion> motion) {
+  // What has cost energy is not forgotten until it is paid.
+  const double fade = energy_ < -reserve_ / 2 ? 1.0 : fade_;
   for (std::size_t t = 0; t < held_.size(); ++t) {
     const PortForce& f = held_[t];
     const PortMotion &m = motion[t], &before = motion_[t];
     energy_ -= f.force.dot(m.shift) + f.torque.dot(m.turn) + f.grip * m.opening;
     Reach& r = reach_[t];
-    r.shift = std::max({least_reach_.shift, fade_ * r.shift, (m.shift - before.shift).norm()});
-    r.turn = std::max({least_reach_.turn, fade_ * r.turn, (m.turn - before.turn).norm()});
-    r.opening = std::max({least_reach_.opening, fade_ * r.opening, std::abs(m.opening - before.opening)});
+    r.shift = grown(r.shift, fade, least_reach_.shift, (m.shift - before.shift).norm());
+    r.turn = grown(r.turn, fade, least_reach_.turn, (m.turn - before.turn).norm());
+    r.opening = grown(r.opening, fade, least_reach_.opening, std::abs(m.opening - before.opening));
     // What goes to and fro from tick to tick is no motion to resist: the next one would come back along it.
     resisting_[t] = m.shift.dot(before.shift) > 0 ? most_per_shift_ * m.shift.norm() : 0.0;
     motion_[t] = m;
@@ -88,20 +96,31 @@ PassivityGuard::Outlook PassivityGuard::outlook(std::span<const PortForce> asked
 void PassivityGuard::control(std::span<PortForce> asked) {
   std::ranges::fill(limited_, 0);
   if (!controller_) return;
-  const double spare = energy_ + reserve_;
+  const double left = energy_ + reserve_, spare = left - for_resisting * reserve_;
   const Outlook before = outlook(asked);
   if (before.risk <= spare + before.income) return;
+  const double affordable = affordable_resistance(left);
   for (std::size_t t = 0; t < asked.size(); ++t) {
     if (!finite(asked[t]) || !(risk(static_cast<int>(t), asked[t]) > 0)) continue;
     limited_[t] = 1;
+    resisting_[t] *= affordable;
     const double along = work(asked[t].force, motion_[t].shift);
-    // What stands against the motion may go on doing so; what pushes is asked to make good what has been taken too much.
-    if (along <= 0) resisting_[t] = std::min(resisting_[t], along < 0 ? -along / motion_[t].shift.norm() : 0.0);
-    else if (spare >= 0) resisting_[t] = 0;
+    // What stands against the motion may go on doing so, and what pushes makes good what has been taken too much.
+    const double against = along < 0 ? -along / motion_[t].shift.norm() : 0.0;
+    if (along <= 0 || left >= 0) resisting_[t] = std::min(resisting_[t], against);
   }
   damp_pushes(asked, before.risk - before.income - spare);
   shrink(asked, spare);
   resist(asked);
+}
+
+// A damper d that is turned round within the reach r gives at most d r^2 / 4. After a jump that no one could foresee it damps fully.
+double PassivityGuard::affordable_resistance(double left) const {
+  if (left < 0) return 1;
+  double worst = 0;
+  for (const Reach& r : reach_) worst += most_per_shift_ * r.shift * r.shift / 4 * (1 + most_per_shift_ * r.shift / (2 * slew_));
+  const double kept = std::min(left, for_resisting * reserve_);
+  return worst > kept ? kept / worst : 1;
 }
 
 // Takes away what pushes along its motion, as far as energy is missing.

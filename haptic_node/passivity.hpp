@@ -34,15 +34,17 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
 /// exactly, however the hand moves in between. Controller: the next motion is unknown, but differs from the last one by no more
 /// than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks that the slew limit needs to let it fall.
 /// If that could bring the energy below -reserve, first the parts that push along their motion are damped, then the whole force
-/// is made smaller. A force that resists is left at least as large as a sampled damper of most_damping / dt, which a hand of
-/// more than half of most_damping cannot get energy from; so a force that was taken away earns its return.
+/// is made smaller. A force that resists is left at least as large as a sampled damper of most_damping / dt, as far as a share of
+/// the reserve that is kept for it allows; so a force that was taken away earns its return. The energy falls below -reserve
+/// only where a motion changes by more than the reach, by that jump times the force.
 /// Never allocates after construction.
 class PassivityGuard {
  public:
   static constexpr double most_damping = 0.02;      ///< [kg] damping times tick: well below twice the mass of a hand on a device
   static constexpr double most_acceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
-  static constexpr double memory = 0.1;             ///< [s] for which a larger change of motion is reckoned with
+  static constexpr double memory = 0.1;             ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
   static constexpr double lever = 0.3;              ///< [m] from reach to angular reach
+  static constexpr double for_resisting = 0.05;     ///< share of the reserve that is kept for resisting while all else is gone
   static constexpr double still = 1e-12;            ///< [m, rad] less is no motion
 
   /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is most_acceleration dt^2,
@@ -76,6 +78,7 @@ class PassivityGuard {
 
   double risk(int tool, const PortForce& f) const;
   Outlook outlook(std::span<const PortForce> asked) const;
+  double affordable_resistance(double left) const;
   void damp_pushes(std::span<PortForce> asked, double missing);
   void shrink(std::span<PortForce> asked, double spare);
   void resist(std::span<PortForce> asked);

@@ -35,7 +35,7 @@ def stiffness(rows, parameter):
     """Largest stable stiffness and bound against one parameter, with and without the controller."""
     found = {}
     for row in rows:
-        match = re.search(r"K_max=([-\d.e+]+) N/m, bound=([-\d.e+]+)", row["note"])
+        match = re.search(r"K_max=([-\d.e+]+) N/m(?: at least)?, bound=([-\d.e+]+)", row["note"])
         if not match or row["parameter"] != parameter:
             continue
         found.setdefault(row["case"], []).append((float(row["value"]), float(match[1]), float(match[2]), float(row["energy_growth"])))
@@ -56,8 +56,8 @@ def plot_stiffness(rows, parameter, log_x):
     points = next(iter(series.values()))
     left.plot([p[0] for p in points], [p[2] for p in points], ":", color="black", label="b / (T/2 + delay)")
     right.axhline(10, color="black", linestyle=":", label="reserve")
-    left.set_ylabel("largest stable stiffness [N/m]")
-    right.set_ylabel("energy given to the hand [mJ]\nat three times that stiffness")
+    left.set_ylabel("largest stable stiffness [N/m]\n(tried up to 1e6)")
+    right.set_ylabel("energy given to the hand [mJ]\nat three times that stiffness, 1e6 N/m at most")
     for axes in (left, right):
         axes.set_yscale("log")
         axes.set_xscale("log" if log_x else ("symlog" if points[0][0] == 0 else "linear"))
@@ -87,6 +87,22 @@ def plot_growth(rows):
     axes.set_ylabel("most energy given to the hand [mJ]")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False, fontsize=8)
+    return figure
+
+
+def plot_taps(rows):
+    """Energy that the hand gains by taps on a duct, over stiffness."""
+    points = sorted((float(r["value"]), 1e3 * float(r["energy_growth"])) for r in rows if r["case"] == "taps on a duct" and r["parameter"] == "E [Pa]")
+    if len(points) < 2:
+        return None
+    figure, axes = plt.subplots(figsize=(6.5, 3.8), constrained_layout=True)
+    axes.plot(*zip(*points), "o-", color="#b8503a")
+    axes.set_xscale("log")
+    axes.set_yscale("symlog", linthresh=1e-3)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("E of the duct [Pa]")
+    axes.set_ylabel("energy given to the hand [mJ]")
+    axes.grid(alpha=0.3)
     return figure
 
 
@@ -148,7 +164,8 @@ def main():
             ("delay_local", plot_stiffness(rows, "delay [ms], with local stiffness", False), "The same, the answer carrying the wall's stiffness"),
             ("rate", plot_stiffness(rows, "rate [Hz]", True), "Over the haptic rate"),
             ("quantisation", plot_stiffness(rows, "quantisation [m]", True), "Over the device's quantisation"),
-            ("growth", plot_growth(rows), "Energy given to the hand")):
+            ("growth", plot_growth(rows), "Energy given to the hand"),
+            ("taps", plot_taps(rows), "Fifty taps on an undamped duct, without the controller")):
         if figure:
             pictures.append(f"<h2>{words}</h2>{embed(figure, folder, name)}")
     counts = ", ".join(f"{sum(r['outcome'] == o for r in rows)} {o}" for o in COLOUR)

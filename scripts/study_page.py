@@ -20,6 +20,7 @@ plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes
                      "figure.dpi": 100})
 COLOURS = ["#1b6ca8", "#c8553d", "#2a9d8f", "#8d6a9f", "#e09f3e", "#5c677d", "#6a994e", "#b5179e"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
+KNOB_MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">", "h"]
 MAIN = ["fine_linear", "all_modes_in_time", "finest_chain"]  # references of the first plot
 MEANING = {
     "fine_linear": "the same frictionless contact, linear elasticity, on a mesh of the same shape that is much finer under the ball",
@@ -74,6 +75,8 @@ def size(text):
 
 
 def label(row):
+    if row["knob"] == "model":
+        return row["value"]
     return "as it is" if row["knob"] == "scene" else f'{row["knob"]}: {row["value"]}'
 
 
@@ -104,12 +107,23 @@ def save(figure, folder, name):
     return folder / f"{name}.png"
 
 
+def knob_markers(rows):
+    """"as it is" is a star; every other knob has its own marker."""
+    knobs = [k for k in dict.fromkeys(kind(r) for r in rows) if k != "as it is"]
+    return {"as it is": "*"} | {k: KNOB_MARKERS[i % len(KNOB_MARKERS)] for i, k in enumerate(knobs)}
+
+
+def kind(row):
+    return "as it is" if row["knob"] in ("scene", "model") else row["knob"]
+
+
 def stairs(axis, points):
     """The front as the boundary of what is reached: nothing measured lies below and left of it. Leaves room for labels."""
     low_x, high_x = axis.get_xlim()
     low_y, high_y = axis.get_ylim()
     axis.set_xlim(low_x / 1.3, high_x * 2.5)
-    axis.set_ylim(low_y / 1.6, high_y * 1.5)
+    more = max(1, math.sqrt(10 * low_y / high_y))  # at least a decade
+    axis.set_ylim(low_y / 1.6 / more, high_y * 1.5 * more)
     x = [points[0][0]] + [p[0] for p in points] + [axis.get_xlim()[1]]
     y = [axis.get_ylim()[1]] + [p[1] for p in points] + [points[-1][1]]
     axis.step(x, y, where="post", color="#444", lw=1, zorder=0, label="Pareto front")
@@ -132,28 +146,59 @@ def plot_pareto(all_rows, folder):
     references = main_references(all_rows)
     if not references:
         return None
-    figure, grid = plt.subplots(len(references), 2, figsize=(10, 4.3 * len(references) + 0.4), squeeze=False)
+    lines = 1 + max(len({kind(r) for r in all_rows}), len({r["method"] for r in all_rows})) // 5
+    figure, grid = plt.subplots(len(references), 2, figsize=(10, 4.3 * len(references) + 0.5 + 0.2 * lines), squeeze=False)
     for axes, reference in zip(grid, references):
         rows = [r for r in all_rows if r["reference"] == reference and known(r, "step_us_p99", "err_u_rel")]
         for axis, key, title in [(axes[0], "err_u_rel", "displacement"), (axes[1], "err_f_rel", "force")]:
-            pareto_panel(axis, [r for r in rows if known(r, key) and number(r[key]) > 0], key)
+            pareto_panel(axis, [r for r in rows if known(r, key) and number(r[key]) > 0], key, all_rows)
             axis.set_title(f"{title}, against {reference}", fontsize=10)
-        axes[0].legend(frameon=True, framealpha=0.85, fontsize=8, loc="best")
-    return save(figure, folder, "pareto")
+    shown = [r for r in all_rows if r["reference"] in references and known(r, "step_us_p99", "err_u_rel")]
+    styles, markers = method_styles(all_rows), knob_markers(all_rows)
+    handles = [plt.Line2D([], [], marker="s", ls="none", color=styles[m][0], label=m) for m in dict.fromkeys(r["method"] for r in shown)]
+    handles += [plt.Line2D([], [], marker=markers[k], ls="none", color="#777", label=k) for k in dict.fromkeys(kind(r) for r in shown)]
+    handles += [plt.Line2D([], [], color="#444", lw=1, label="Pareto front of the medians"), plt.Line2D([], [], color="#999", lw=0.8, label="up to the 99th percentile")]
+    rows_of_legend = (len(handles) + 4) // 5
+    share = (0.22 * rows_of_legend + 0.1) / figure.get_figheight()
+    figure.legend(handles=handles, loc="lower center", ncol=5, frameon=False, fontsize=8)
+    figure.tight_layout(rect=(0, share, 1, 1))
+    figure.savefig(folder / "pareto.png")
+    plt.close(figure)
+    return folder / "pareto.png"
 
 
-def pareto_panel(axis, rows, key):
-    points = [(number(r["step_us_p99"]), 100 * number(r[key])) for r in rows]
-    for method, (colour, marker) in method_styles(rows).items():
-        mine = [p for p, r in zip(points, rows) if r["method"] == method]
-        axis.plot([p[0] for p in mine], [p[1] for p in mine], marker, color=colour, ms=6, alpha=0.75, label=method, ls="none")
-    axis.set(xscale="log", yscale="log", xlabel="99th percentile of a step's time [µs]", ylabel="relative error [%]")
+def pareto_panel(axis, rows, key, all_rows):
+    points = [(number(r["step_us_median"]), 100 * number(r[key])) for r in rows]
+    styles, markers = method_styles(all_rows), knob_markers(all_rows)
+    for (x, y), r in zip(points, rows):
+        colour = styles[r["method"]][0]
+        axis.plot([x, max(x, number(r["step_us_p99"]))], [y, y], "-", color=colour, lw=0.8, alpha=0.35, zorder=1)
+        star = kind(r) == "as it is"
+        axis.plot([x], [y], markers[kind(r)], color=colour, ms=11 if star else 6, alpha=0.8, ls="none", zorder=3 if star else 2)
+    axis.set(xscale="log", yscale="log", xlabel="time of a step [µs]: median, line to the 99th percentile", ylabel="relative error [%]")
     if not points:
         return
     chosen = front(points)
     stairs(axis, [points[i] for i in chosen])
-    for n, i in enumerate(chosen):
-        axis.annotate(label(rows[i]), points[i], textcoords="offset points", xytext=(3, 8 if n % 2 == 0 else -13), fontsize=7.5, color="#222")
+    place_labels(axis, [(points[i], label(rows[i])) for i in chosen], points)
+
+
+def place_labels(axis, labels, points):
+    """Each where it covers neither a point nor another label, if there is such a place among a few."""
+    boxes = [(x - 4, y - 4, x + 4, y + 4) for x, y in (axis.transData.transform(p) for p in points)]
+    area = axis.get_window_extent()
+    for point, text in labels:
+        x, y = axis.transData.transform(point)
+        wide, best = 4.3 * len(text), None
+        for dx, dy in [(6, 7), (6, -15), (-wide - 6, -15), (-wide - 6, 7), (6, 19), (6, -27), (-wide - 6, -27), (6, 31), (6, -39), (16, 45)]:
+            box = (x + dx, y + dy, x + dx + wide, y + dy + 13)
+            hit = sum(box[0] < o[2] and o[0] < box[2] and box[1] < o[3] and o[1] < box[3] for o in boxes)
+            hit += 3 * (box[0] < area.x0 or box[2] > area.x1 or box[1] < area.y0 or box[3] > area.y1)
+            if best is None or hit < best[0]:
+                best = (hit, dx, dy, box)
+        boxes.append(best[3])
+        lead = {"arrowstyle": "-", "lw": 0.5, "color": "#999"} if abs(best[2]) > 16 else None
+        axis.annotate(text, point, textcoords="offset pixels", xytext=best[1:3], fontsize=7.5, color="#222", zorder=4, arrowprops=lead)
 
 
 def mean_range(rows, key):
@@ -196,7 +241,7 @@ def plot_depth(rows, folder):
     handles = axes[0].get_legend_handles_labels()
     rows_of_legend = (len(curves) + 2) // 3
     figure.legend(*handles, loc="lower center", ncol=3, frameon=False, fontsize=8)
-    figure.suptitle("Error over depth: mean over the patches; the band spans them", fontsize=10)
+    figure.suptitle("Error over depth: mean over the patches" + ("; the band spans them" if any(c[3] == "-" for c in curves) else ""), fontsize=10)
     figure.tight_layout(rect=(0, 0.045 * rows_of_legend + 0.01, 1, 1))
     figure.savefig(folder / "depth.png")
     plt.close(figure)
@@ -218,7 +263,7 @@ def plot_force(rows, folder):
     axis.plot(x(mine), [number(r["reference_force_N"]) for r in mine], "--", color="#c8553d", label="linear, fine mesh")
     for i, method in enumerate(dict.fromkeys(r["method"] for r in fine if r["knob"] in ("scene", "model"))):
         at = [r for r in fine if r["method"] == method and r["knob"] in ("scene", "model")]
-        axis.plot(x(at), [number(r["force_N"]) for r in at], MARKERS[i], color=COLOURS[i], ms=5, label=f"{method}, as run")
+        axis.plot(x(at), [number(r["force_N"]) for r in at], MARKERS[i], color=COLOURS[i], ms=5 + 2.5 * i, mfc="none", mew=1.4, label=f"{method}, as run")
     axis.set(xlabel="indentation depth [mm]", ylabel="force on the ball [N]", title="Force of one press (first patch)")
     axis.legend(frameon=False, fontsize=8)
     return save(figure, folder, "force")
@@ -259,6 +304,10 @@ def plot_growth(rows, folder):
         axis.plot(x, median, "o-", color=COLOURS[0], label="median")
         axis.plot(x, p99, "s:", color=COLOURS[1], label="99th percentile")
         power = exponent(x, median)
+        axis.set(xscale="log", yscale="log")
+        low, high = min(median), max(p99)
+        if high < 10 * low:  # a flat line shall look flat
+            axis.set_ylim(low / math.sqrt(20 * low / high), high * math.sqrt(20 * low / high))
         axis.set(xscale="log", yscale="log", xlabel=mine[0]["unit"], ylabel="step [µs]",
                  title=f"{what}: exponent {power:.2f}")
         axis.title.set_size(9)
@@ -295,7 +344,7 @@ def table(head, rows, classes=None):
 def figure_table(rows, reference):
     mine = [r for r in rows if r["reference"] == reference]
     timed = [i for i, r in enumerate(mine) if known(r, "step_us_p99", "err_u_rel", "err_f_rel")]
-    points = [(number(mine[i]["step_us_p99"]), max(number(mine[i]["err_u_rel"]), number(mine[i]["err_f_rel"]))) for i in timed]
+    points = [(number(mine[i]["step_us_median"]), max(number(mine[i]["err_u_rel"]), number(mine[i]["err_f_rel"]))) for i in timed]
     best = {timed[i] for i in front(points)}
     head = ["method", "knob", "value", "step median [µs]", "p99 [µs]", "offline [s]", "memory", "error of displacement", "error of force"]
     cells = [[r["method"], r["knob"], r["value"], figures(r["step_us_median"]), figures(r["step_us_p99"]), figures(r["offline_s"]), size(r["memory_bytes"]),
@@ -309,6 +358,9 @@ def linearity_sentence(rows):
     if any(r["reference"] == "neo_hookean" for r in rows):
         sentences.append("The error of being linear at all is assessed for solid bodies, by presses at rest up to half the ball's radius; "
                          "large motion of whole organs, viscosity and the tissue's own law beyond neo-Hookean are not.")
+    if any(r["knob"] == "correction" for r in rows):
+        sentences.append("The quasi non-linear correction follows measured curves, which are not the references' tissue of the scene's E and ν: the difference "
+                         "from them is mostly that between two tissues, and the row <i>correction: off</i> is the one that the references judge.")
     if any("modal_shell" in r["method"] for r in rows):
         sentences.append("For the thin wall the error of being linear (large rotations, ovalling, buckling) is <b>not assessed</b>: its references are linear shells.")
     if any("catheter" in r["method"] for r in rows):
@@ -332,7 +384,7 @@ def scene_page(folder, rows):
     parts += [f"<p>{picture(path, text)}</p>" for path, text in pictures if path]
     for ref in dict.fromkeys(r["reference"] for r in rows if r["reference"]):
         parts.append(f"<h2>Against {ref}</h2><p class=small>{MEANING.get(ref, '')}. Errors are root mean squares of relative errors; rows on the Pareto front "
-                     "of time and the larger of both errors are shaded.</p>" + figure_table(rows, ref))
+                     "of the median time and the larger of both errors are shaded.</p>" + figure_table(rows, ref))
     if notes:
         parts.append("<h2>Notes</h2>" + table(["method", "knob", "value", "note"], [[n["method"], n["knob"], n["value"], n["text"]] for n in notes])
                      .replace("<td>", "<td class=l>"))
@@ -344,14 +396,14 @@ def page(title, body):
 
 
 def index_page(folder, scenes):
-    head = ["scene", "method", "as run", "p99 [µs]", "memory", "error of displacement", "error of force", "reference", "being linear (displacement, force)"]
+    head = ["scene", "method", "as run", "step median [µs]", "p99 [µs]", "memory", "error of displacement", "error of force", "reference", "being linear (displacement, force)"]
     cells, parts = [], ["<h1>Error against run time</h1>"]
     for sub, rows in scenes:
         law = next((r for r in rows if r["knob"] == "law" and known(r, "err_u_rel")), None)
         linear = f'{percent(law["err_u_rel"])}, {percent(law["err_f_rel"])}' if law else "not assessed"
         for r in rows:
             if r["knob"] == "scene" and r["reference"] in ("fine_linear", "all_modes_in_time", "refined_all_modes", "finest_chain"):
-                cells.append([sub.name, r["method"], label(r), figures(r["step_us_p99"]), size(r["memory_bytes"]), percent(r["err_u_rel"]), percent(r["err_f_rel"]),
+                cells.append([sub.name, r["method"], label(r), figures(r["step_us_median"]), figures(r["step_us_p99"]), size(r["memory_bytes"]), percent(r["err_u_rel"]), percent(r["err_f_rel"]),
                               r["reference"], linear if r["reference"] == "fine_linear" else "not assessed"])
     text = table(head, cells)
     for sub, _ in scenes:

@@ -31,7 +31,7 @@ SHELLS = {"scordelis_lo": "Scordelis-Lo roof", "pinched_cylinder": "pinched cyli
           "clamped_hypar": "clamped hypar", "square_plate_pressure": "square plate, pressure", "square_plate_force": "square plate, force",
           "long_plate_pressure": "plate 2 × 10, pressure", "long_plate_force": "plate 2 × 10, force"}
 VIBRATIONS = {"plate_supported": "plate, simply supported", "plate_free": "plate, free", "cylinder": "cylinder",
-              "tapered_membrane": "NAFEMS FV32, tapered membrane", "cantilever": "cantilever"}
+              "tapered_membrane": "NAFEMS FV32, tapered membrane", "cantilever_strip": "cantilever strip, bending"}
 
 INTRODUCTION = """# Verification
 

@@ -116,15 +116,15 @@ void Lumen::follow_chain(std::span<const Vector3d> x) {
   for (std::size_t i = 0; i + 1 < inside_.size(); ++i) {
     const auto hit = crossing(x[i], x[i + 1]);
     const bool belongs = hit ? hit->from_outside : inside_[i] != 0;
-    if (belongs == (inside_[i + 1] != 0)) continue;
-    if (hit || !cuts_wall(x[i], x[i + 1])) inside_[i + 1] = belongs;
+    if (belongs != (inside_[i + 1] != 0) && !cuts_wall(x[i], x[i + 1], hit ? hit->time : 0)) inside_[i + 1] = belongs;
   }
 }
 
-bool Lumen::cuts_wall(const Vector3d& from, const Vector3d& to) const {
+bool Lumen::cuts_wall(const Vector3d& from, const Vector3d& to, double after) const {
   const TouchSurface& surface = wall_->surface();
   return std::ranges::any_of(surface.find(from, to, 0), [&](int t) {
-    return sweep_point(from, to, surface.corners(t), surface.corners(t)).has_value();
+    const auto hit = sweep_point(from, to, surface.corners(t), surface.corners(t));
+    return hit && hit->time >= after;
   });
 }
 

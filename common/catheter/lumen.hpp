@@ -27,8 +27,8 @@ class Lumen {
   /// Follows the particles past resting mouths.
   void follow_particles(std::span<const Eigen::Vector3d> before, std::span<const Eigen::Vector3d> now);
 
-  /// Neighbours are on one side unless a mouth, or the wall itself, lies between them: what was missed while the wall was
-  /// thrown about is put right, from tail to tip.
+  /// Neighbours are on one side unless a mouth lies between them: what was missed while the wall was thrown about is put
+  /// right, from tail to tip. Where the wall itself lies between them, behind any mouth, nothing is known.
   void follow_chain(std::span<const Eigen::Vector3d> x);
 
   /// Mouth on whose rim a point of a triangle lies, -1 for all others.
@@ -68,7 +68,7 @@ class Lumen {
     int first = 0;           ///< in seen_
     Cap cap;
   };
-  bool cuts_wall(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  bool cuts_wall(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double after) const;  ///< share of the way
   void orient(Mouth& mouth);
   Cap measure(const Mouth& mouth, std::span<const Eigen::Vector3d> nodes) const;
   void check_width(const Mouth& mouth, double radius) const;

@@ -146,4 +146,17 @@ class HandledTool {
   Eigen::Isometry3d pose_before_ = Eigen::Isometry3d::Identity(), pose_ = pose_before_;
 };
 
+inline LawOutcome step(PatchTouch& touch, const HandledTool& tool) {
+  const MovingTool moving = tool.moving();
+  return touch.step({&moving, 1});
+}
+
+/// Lets a tool that stands still settle.
+inline void settle(PatchTouch& touch, HandledTool& tool, int steps = 30) {
+  for (int i = 0; i < steps; ++i) {
+    tool.stay();
+    step(touch, tool);
+  }
+}
+
 }  // namespace palpate::testing

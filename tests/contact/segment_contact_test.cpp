@@ -16,19 +16,8 @@ using Eigen::VectorXd;
 using testing::flat_patch;
 using testing::HandledTool;
 using testing::PatchTouch;
-
-LawOutcome step(PatchTouch& touch, const HandledTool& tool) {
-  const MovingTool moving = tool.moving();
-  return touch.step({&moving, 1});
-}
-
-/// Lets a tool that stands still settle.
-void settle(PatchTouch& touch, HandledTool& tool, int steps = 30) {
-  for (int i = 0; i < steps; ++i) {
-    tool.stay();
-    step(touch, tool);
-  }
-}
+using testing::settle;
+using testing::step;
 
 TEST(SegmentContact, ThePressedSurfaceLiesOutsideADenseRowOfSpheresAndTheirForcesArePressure) {
   // Triangles smaller than the radius: vertices carry. These are the conditions that decide a row of spheres without gaps.

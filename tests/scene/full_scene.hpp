@@ -1,7 +1,10 @@
 #pragma once
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+
+#include "common/scene/scene.hpp"
 
 namespace palpate {
 
@@ -274,5 +277,15 @@ poisson = 0.45
 [[body.fixed]]
 group = "attachment"
 )";
+
+/// The sentence with which a scene's text is refused.
+inline std::string refusal(const std::string& text, const std::filesystem::path& file) {
+  try {
+    parse_scene(text, file);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
 
 }  // namespace palpate

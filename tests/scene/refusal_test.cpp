@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <stdexcept>
+#include <algorithm>
 
-#include "common/scene/scene.hpp"
-#include "common/scene/schema.hpp"
 #include "tests/scene/full_scene.hpp"
 
 namespace palpate {
@@ -30,15 +28,6 @@ std::string position(const std::string& text, const std::string& at) {
   const auto line_start = text.rfind('\n', place) + 1;
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(place), '\n');
   return ":" + std::to_string(line) + ":" + std::to_string(place - line_start + 1) + ": ";
-}
-
-std::string refusal(const std::string& text, const std::filesystem::path& file) {
-  try {
-    parse_scene(text, file);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 const Refusal kRefusals[] = {
@@ -334,74 +323,6 @@ TEST(SceneRefusal, AMissingSceneFileIsNamed) {
       },
       std::runtime_error);
   EXPECT_THROW(load_scene("/tmp"), std::runtime_error);
-}
-
-/// Every key is read: a date, which no key takes, is refused at each, and the sentence names the key.
-TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
-  const SceneFolder folder;
-  const std::string body = kLeastScene,
-                    tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
-  int tried = 0;
-  for (const TableSchema& table : scene_schema()) {
-    for (std::string_view key : table.keys) {
-      const std::string line = std::string(key) + " = 1979-05-27\n";
-      std::string text = kFullScene;
-      if (table.name == "scene") {
-        text = line;
-        if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" || key == "record" ||
-            key == "render")
-          text += body;
-        if (key == "title") text += body;
-      } else {
-        // Put the key into the first table of that name, in the place of the line that has it or of nothing.
-        const std::string header = std::string(table.name) + "\n";
-        auto place = text.find(header);
-        ASSERT_NE(place, text.npos) << header;
-        const std::string plain = "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n";
-        const std::string shell = plain + "model = \"modal_shell\"\n";
-        const std::string held = plain + "fixed = [{ group = \"a\" }]\n";
-        if (key == "camera") {
-          text = body + "[render]\n" + line;
-        } else if (key == "rotations") {
-          text = shell + "shell = { thickness = 1 }\n[[body.fixed]]\nnodes = [1]\n" + line;
-        } else if (key == "shell") {
-          text = held + "model = \"modal_shell\"\n" + line;
-        } else if (key == "catheter") {
-          text = "[[body]]\nname = \"a\"\nmodel = \"catheter\"\nyoung = 1\n" + line;
-        } else if (table.name == "[tool.jaws]" && key != "length" && key != "width" &&
-                   key != "closed_below") {
-          text = body + tool + "kind = \"forceps\"\n[tool.jaws]\n" + line;
-        } else if (key == "damping_ratio") {
-          text = shell + "fixed = [{ group = \"a\" }]\n[body.shell]\nthickness = 1\n" + line;
-        } else if (key == "cautery" || key == "jaws") {
-          text = body + tool + line;
-        } else if (key == "fixed") {
-          text = plain + line;
-        } else if (key == "material" || key == "nonlinear" || key == "touchable" || key == "offline") {
-          text = held + line;
-        } else if (key == "dynamic" || key == "tearing" || key == "hybrid") {
-          text = held + "model = \"hybrid\"\n" + line;
-        } else if (key == "region") {
-          text = held + "model = \"hybrid\"\n[body.hybrid]\n" + line;
-        } else {
-          place += header.size();
-          auto end = text.find("\n[", place);
-          if (end == text.npos) end = text.size();
-          std::string section = "\n" + text.substr(place, end - place);
-          const auto old = section.find("\n" + std::string(key) + " = ");
-          const bool selector = key == "nodes" || key == "box" || key == "group" || key == "elements";
-          if (old != section.npos) section.erase(old + 1, section.find('\n', old + 1) - old);
-          if (selector) section = "\n" + std::string(table.name == "[[body.material]]" ? "young = 1\n" : "");
-          text.replace(place, end - place, section.substr(1) + line);
-        }
-      }
-      const std::string said = refusal(text, folder / "scene.toml");
-      EXPECT_NE(said.find(": " + std::string(key) + " must "), said.npos)
-          << table.name << " " << key << ": " << said;
-      ++tried;
-    }
-  }
-  EXPECT_GT(tried, 110);
 }
 
 }  // namespace

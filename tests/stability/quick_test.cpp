@@ -28,16 +28,16 @@ void check(const std::vector<Point>& points, const Expected& expected) {
   }
 }
 
-/// Under the controller the hand gains no more than the reserve of 10 mJ; where a wall is so stiff that it throws the hand about
-/// from tick to tick (at three times what settles, and 1 GPa) some times that, see docs/stability.md.
+/// Under the controller the hand gains no more than the reserve of 10 mJ, however stiff or late; of a place sensed in steps, the
+/// largest force over one step more.
 TEST(StabilityCases, TheClosedLoopKeepsToTheReserveWhereTheControllerIsOn) {
   int without = 0;
   for (const Point& p : loop_points({.quick = true})) {
     const Row row = run_guarded(p);
     ASSERT_NE(row.outcome, "failed") << p.name << " " << p.parameter << " " << p.value << ": " << row.note;
     if (p.name.find("observer") == std::string::npos) {
-      const bool thrown = p.name.starts_with("loop") || p.value == "1e+09";
-      EXPECT_LE(row.energy_growth, thrown ? 0.1 : 0.01) << p.name << " " << p.parameter << " " << p.value;
+      const double step = p.parameter.starts_with("quantisation") ? std::stod(p.value) : 0.0;
+      EXPECT_LE(row.energy_growth, 0.01 + 20 * step) << p.name << " " << p.parameter << " " << p.value;
     } else {
       without += row.energy_growth > 0.02;
     }

@@ -14,6 +14,7 @@
 #include "tools/study/modal.hpp"
 #include "tools/study/patches.hpp"
 #include "tools/study/quasi_static.hpp"
+#include "tools/study/reference_cache.hpp"
 #include "tools/study/solid_case.hpp"
 #include "tools/study/store.hpp"
 
@@ -164,6 +165,57 @@ TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
                 100 * before.err_f_rel, 100 * after.err_f_rel);
     EXPECT_LT(std::abs(after.err_f_rel), std::abs(before.err_f_rel));
   }
+}
+
+TEST(Study, TensorsFromQuadraticAndLockingFreeElementsArePressed) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  const ReferenceCache cache(folder.at / "references");
+  const auto method = make_quasi_static(std::make_shared<SolidCase>(scene, 0, true, cache));
+  for (const Offline& offline : {Offline{.element = "p2"}, Offline{.refine = 1, .formulation = "locking_free"}}) {
+    const auto apply = [&](Scene& s) { s.bodies[0].offline = offline; };
+    const Result result = method->evaluate({"quasi_static", "offline", offline.element, apply, true});
+    const Row* row = find(result, "quasi_static", "offline", "", "fine_linear");
+    ASSERT_TRUE(row);
+    EXPECT_LT(row->err_u_rel, 1);
+    EXPECT_LT(row->err_f_rel, 1);
+  }
+}
+
+TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  const ReferenceCache cache(folder.at / "references");
+  int solved = 0;
+  const auto say = [&](const std::string&) { ++solved; };
+  SolidCase first(scene, 0, true, cache, say), second(scene, 0, true, cache, say);
+  const double force = first.fine(0)[1].force;
+  EXPECT_EQ(solved, 1);
+  EXPECT_EQ(second.fine(0)[1].force, force);
+  EXPECT_EQ(second.fine(0)[1].displacement, first.fine(0)[1].displacement);
+  EXPECT_EQ(solved, 1);
+  Scene stiffer = scene;
+  stiffer.bodies[0].material.young *= 2;
+  SolidCase other(stiffer, 0, true, cache, say);
+  EXPECT_NEAR(other.fine(0)[1].force, 2 * force, 1e-6 * force);
+  EXPECT_EQ(solved, 2);
+}
+
+TEST(ReferenceCache, ComputesOnceAndAgainWhereTheFileIsDamaged) {
+  const Folder folder;
+  const ReferenceCache cache(folder.at / "kept");
+  int computed = 0;
+  const auto compute = [&] { return std::vector<double>{1, 2, ++computed + 0.5}; };
+  EXPECT_EQ(cache.get("a", compute), (std::vector<double>{1, 2, 1.5}));
+  EXPECT_EQ(cache.get("a", compute), (std::vector<double>{1, 2, 1.5}));
+  EXPECT_EQ(cache.get("b", compute), (std::vector<double>{1, 2, 2.5}));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.at / "kept")) {
+    std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(40);
+    file.put('x');
+  }
+  EXPECT_EQ(cache.get("a", compute), (std::vector<double>{1, 2, 3.5}));
+  EXPECT_EQ(ReferenceCache().get("a", compute), (std::vector<double>{1, 2, 4.5}));
 }
 
 TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {

@@ -6,28 +6,17 @@
 #include "common/tensors/precompute.hpp"
 #include "common/tensors/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
+#include "tests/tensors/spread_holds.hpp"
 
 /// The static state through the archive equals the direct solve.
 namespace palpate {
 namespace {
 
+using testing::spread_holds;
 using Eigen::Vector3d;
 using testing::relative_difference;
 
 constexpr double kTolerance = 1e-8;
-
-/// Displacements of `count` touchable nodes spread over the surface, along their free axes.
-std::vector<Constraint> spread_holds(const Archive& archive, int count) {
-  std::vector<Constraint> holds;
-  for (int i = 0; i < count; ++i) {
-    const int k = static_cast<int>((i + 0.5) * archive.surface.touchable / count);
-    for (int axis = 0; axis < 3; ++axis)
-      if (!archive.surface.fixed[k][axis])
-        holds.push_back(
-            hold(archive.surface.node_number[k], axis, 1e-3 * std::sin(5.0 * i + 2.0 * axis + 1)));
-  }
-  return holds;
-}
 
 /// Displacements over the whole surface; forces where the archive knows them, on free axes.
 void expect_agreement(const Archive& archive, const StaticSolution& direct, const SurfaceSolution& tensors) {

@@ -8,11 +8,13 @@
 #include "common/tensors/precompute.hpp"
 #include "common/tensors/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
+#include "tests/tensors/spread_holds.hpp"
 
 /// Archives computed from a finer discretisation than the run-time mesh.
 namespace palpate {
 namespace {
 
+using testing::spread_holds;
 using Eigen::Vector3d;
 
 const std::vector<Offline> kFiner{{1, "p1", "displacement"}, {1, "p1", "locking_free"}, {0, "p2", "displacement"},
@@ -24,17 +26,6 @@ Eigen::MatrixXd touchable_matrix(const Archive& archive) {
   for (Eigen::Index i = 0; i < t; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) full(i, j) = full(j, i) = archive.touchable_compliance[i * (i + 1) / 2 + j];
   return full;
-}
-
-std::vector<Constraint> spread_holds(const Archive& archive, int count) {
-  std::vector<Constraint> holds;
-  for (int i = 0; i < count; ++i) {
-    const int k = static_cast<int>((i + 0.5) * archive.surface.touchable / count);
-    for (int axis = 0; axis < 3; ++axis)
-      if (!archive.surface.fixed[k][axis])
-        holds.push_back(hold(archive.surface.node_number[k], axis, 1e-3 * std::sin(5.0 * i + 2.0 * axis + 1)));
-  }
-  return holds;
 }
 
 /// The direct solution of the same offline mesh against superposition, displacements and the forces of the holds.

@@ -55,11 +55,12 @@ class TopicSpy {
 /// Programs that `palpate run` has started, with their process numbers.
 std::map<std::string, pid_t> children_of(pid_t parent) {
   std::map<std::string, pid_t> children;
+  const std::string own = text_of(fmt::format("/proc/{}/cmdline", parent));
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string status = text_of(entry.path() / "status");
     if (status.find(fmt::format("\nPPid:\t{}\n", parent)) == std::string::npos) continue;
     const std::string command = text_of(entry.path() / "cmdline");
-    if (command.empty()) continue;  // it has ended
+    if (command.empty() || command == own) continue;  // it has ended, or is not yet another program
     children[fs::path(command.substr(0, command.find('\0'))).filename()] = std::stoi(entry.path().filename());
   }
   return children;

@@ -41,6 +41,7 @@ struct Link {
   double jitter = 0;       ///< [ticks] more, at random
   double loss = 0;         ///< share of answers that are lost
   double quantum = 0;      ///< [m] of the sensed place
+  double slew = 1e5;       ///< [N/s]
   bool local = false;      ///< the answer carries the stiffness, as a local contact model does
   bool controller = true;
 };
@@ -48,6 +49,7 @@ struct Link {
 struct LoopEnd {
   Result result;
   double swing = 0, before = 0;  ///< [m] in the last half second; in half a second a second before
+  double last = 0;               ///< [m] where it is at the end
 };
 
 double quantised(double x, double quantum) { return quantum > 0 ? quantum * std::round(x / quantum) : x; }
@@ -58,9 +60,11 @@ class Swing {
   void add(double time, double at) {
     if (time >= 1.5 && time < 2) early_.add(at);
     if (time >= 2.5) late_.add(at);
+    last_ = at;
   }
   double late() const { return late_.size(); }    ///< [m] in the last half second
   double early() const { return early_.size(); }  ///< [m] a second before
+  double last() const { return last_; }           ///< [m]
 
  private:
   struct Range {
@@ -72,6 +76,7 @@ class Swing {
     double low = 1e9, high = -1e9;
   };
   Range early_, late_;
+  double last_ = 0;
 };
 
 constexpr double tip_radius = 0.008, push = 0.01;
@@ -83,7 +88,7 @@ Scene wall_scene(const Link& link) {
   scene.rates.haptic_hz = link.rate;
   scene.passivity.controller = link.controller;
   scene.tools[0].max_force = 20;
-  scene.tools[0].max_force_rate = 1e5;
+  scene.tools[0].max_force_rate = link.slew;
   return scene;
 }
 
@@ -124,25 +129,31 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
     watch.look(haptic);
     swing.add(static_cast<double>(i) * dt, hand.at);
   }
-  return {watch.result(), swing.late(), swing.early()};
+  return {watch.result(), swing.late(), swing.early(), swing.last()};
 }
 
-bool settles(const LoopEnd& end, const Link& link) { return end.swing < 1e-4 + 3 * link.quantum || end.swing < 0.9 * end.before; }
+/// At rest or on its way there, and held by the wall: not more than 3 mm deeper than the springs of hand and wall have it.
+bool settles(double stiffness, const Link& link) {
+  const LoopEnd end = touch_wall(stiffness, link);
+  const double rest = push * Hand{}.stiffness / (Hand{}.stiffness + stiffness);
+  return (end.swing < 1e-4 + 3 * link.quantum || end.swing < 0.9 * end.before) && -end.last < rest + 0.003;
+}
 
 double bound_of(const Link& link) { return Hand{}.damping / (0.5 / link.rate + (link.delay + link.jitter) / link.rate); }
 
 /// The largest stiffness at which the hand comes to rest, by bisection of its logarithm.
 Result largest_stiffness(const Link& link) {
   double low = 10, high = 1e6;
-  if (settles(touch_wall(high, link), link)) low = high;
+  if (settles(high, link)) low = high;
   for (int i = 0; i < 14 && high / low > 1.02; ++i) {
     const double middle = std::sqrt(low * high);
-    (settles(touch_wall(middle, link), link) ? low : high) = middle;
+    (settles(middle, link) ? low : high) = middle;
   }
   const double bound = bound_of(link);
   const LoopEnd beyond = touch_wall(std::min(3 * low, 1e6), link);
   Result r = beyond.result;
-  r.note = fmt::format("K_max={:.4g} N/m, bound={:.4g} N/m; at three times K_max it swings by {:.3g} mm{}{}", low, bound, 1e3 * beyond.swing,
+  r.note = fmt::format("K_max={:.4g} N/m{}, bound={:.4g} N/m; at {} it swings by {:.3g} mm, {:.3g} mm inside{}{}", low, low < 1e6 ? "" : " at least", bound,
+                       3 * low < 1e6 ? "three times K_max" : "1e6 N/m", 1e3 * beyond.swing, -1e3 * beyond.last,
                        r.note.empty() ? "" : ", ", r.note);
   return r;
 }
@@ -181,7 +192,7 @@ LoopEnd touch_tissue(int delay, bool controller) {
     watch.look(haptic);
     swing.add(1e-3 * static_cast<double>(i), hand.at);
   }
-  return {watch.result(), swing.late(), swing.early()};
+  return {watch.result(), swing.late(), swing.early(), swing.last()};
 }
 
 /// The block of quasi-static tissue, its stiffness by its Young's modulus.
@@ -204,11 +215,11 @@ LoopEnd touch_block(double young, double rate, bool controller) {
     watch.look(haptic);
     swing.add(i / rate, hand.at);
   }
-  return {watch.result(), swing.late(), swing.early()};
+  return {watch.result(), swing.late(), swing.early(), swing.last()};
 }
 
 Result told(LoopEnd end) {
-  end.result.note = fmt::format("swings by {:.3g} mm{}{}", 1e3 * end.swing, end.result.note.empty() ? "" : ", ", end.result.note);
+  end.result.note = fmt::format("swings by {:.3g} mm, {:.3g} mm inside{}{}", 1e3 * end.swing, -1e3 * end.last, end.result.note.empty() ? "" : ", ", end.result.note);
   return end.result;
 }
 
@@ -230,6 +241,8 @@ std::vector<Point> loop_points(const Extent& extent) {
     for (double l : extent.quick ? std::vector<double>{} : std::vector{0.05, 0.3}) wall("loss [1] after 10 ms", fmt::format("{:g}", l), {.delay = 10, .loss = l});
     for (int d : extent.quick ? std::vector{50} : std::vector{0, 5, 20, 50, 100}) {
       points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms]", std::to_string(d), [=] { return told(touch_wall(2000, {.delay = d, .controller = controller})); }});
+      if (!extent.quick || d > 0)
+        points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms], slew limit 5000 N/s", std::to_string(d), [=] { return told(touch_wall(2000, {.delay = d, .slew = 5000, .controller = controller})); }});
       points.push_back({fmt::format("moving tissue, {}", with), "delay [ms]", std::to_string(d), [=] { return told(touch_tissue(d, controller)); }, 120});
     }
     for (double e : extent.quick ? std::vector{5e3, 1e9} : std::vector{1.0, 5e3, 1e5, 1e6, 1e7, 1e9})

@@ -45,6 +45,36 @@ Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, dou
   return watch.result();
 }
 
+/// Fifty taps on an undamped wall, each in and out of contact, the observer alone: what the hand gains comes from the contact's
+/// coming and going between ticks.
+Result tap_wall(double young, double rate, double speed) {
+  Scene scene = duct_scene(0.001);
+  scene.bodies[0].material.young = young;
+  scene.bodies[0].shell->damping_ratio = 0;
+  scene.contact.friction = 0;
+  scene.rates.haptic_hz = rate;
+  scene.passivity.controller = false;
+  scene.tools[0].max_force = 1e6;
+  scene.tools[0].max_force_rate = 1e12;
+  HapticStep haptic(scene, {precompute_shell(scene.bodies[0], make_tube(radius, length, 12, 12))});
+  constexpr double reach = 0.0003;  // [m] to both sides of the wall
+  const auto at = [&](double time) { return std::array{tip_at(scene.tools[0], {0, radius + 0.0035 + reach * std::cos(speed / reach * time), length / 2})}; };
+  haptic.start(at(0));
+  Watch watch;
+  const int steps = static_cast<int>(50 * 2 * M_PI * reach / speed * rate);
+  double most = 0, drop = 0;
+  for (int i = 1; i <= steps; ++i) {
+    haptic.step(at(i / rate));
+    watch.look(haptic);
+    most = std::max(most, haptic.energy());
+    drop = std::max(drop, most - haptic.energy());
+  }
+  Result r = watch.result();
+  r.note = fmt::format("{:.3g} mJ put in by the taps at the end; given back in one go {:.3g} mJ at most{}{}", 1e3 * haptic.energy(), 1e3 * drop,
+                       r.note.empty() ? "" : "; ", r.note);
+  return r;
+}
+
 /// A plate in the plane y = 0: every triangle is coplanar with its neighbours.
 ShellMesh plate_mesh(int cells) {
   ShellMesh mesh;
@@ -81,6 +111,12 @@ std::vector<Point> shell_points(const Extent& extent) {
                         scene.bodies[0].material.young = e;
                         return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
                       }, 120});
+  for (double e : extent.quick ? std::vector{1e5} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8})
+    points.push_back({"taps on a duct", "E [Pa]", fmt::format("{:g}", e), [e] { return tap_wall(e, 1000, 0.05); }, 120});
+  for (double v : extent.quick ? std::vector<double>{} : std::vector{0.005, 0.02, 0.1, 0.3})
+    points.push_back({"taps on a duct", "speed at the wall [m/s]", fmt::format("{:g}", v), [v] { return tap_wall(1e5, 1000, v); }, 120});
+  for (double h : extent.quick ? std::vector<double>{} : std::vector{250.0, 500.0, 2000.0, 4000.0, 16000.0})
+    points.push_back({"taps on a duct", "rate [Hz]", fmt::format("{:g}", h), [h] { return tap_wall(1e5, h, 0.05); }, 120});
   for (double z : extent.quick ? std::vector{0.0} : std::vector{0.0, 0.01, 1.0, 100.0})
     points.push_back({"shell damping", "ratio [1]", fmt::format("{:g}", z), [z] {
                         Scene scene = duct_scene(0.001);

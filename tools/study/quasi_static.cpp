@@ -14,6 +14,8 @@
 namespace palpate::study {
 namespace {
 
+constexpr std::size_t most_tetrahedra = 150000;  // of the mesh that tensors are taken from
+
 /// Touchable nodes nearest to any of the patches, as mesh nodes.
 std::vector<int> nearest_nodes(const SolidCase& solid, int count) {
   const SurfaceMap& surface = solid.surface();
@@ -67,7 +69,7 @@ class QuasiStatic : public Method {
     const std::vector<std::pair<std::string, Offline>> better{
         {"refine 1", {.refine = 1}},
         {"p2", {.element = "p2"}},
-        {"locking_free", {.formulation = "locking_free"}},
+        {"locking_free refine 1", {.refine = 1, .formulation = "locking_free"}},
         {"refine 2", {.refine = 2}}};
     for (const auto& [value, offline] : better) {
       if (solid_->quick() && value != "refine 1") continue;
@@ -79,6 +81,9 @@ class QuasiStatic : public Method {
   }
 
   Result evaluate(const Point& point) override {
+    if (point.value == "refine 2" && 64 * solid_->mesh().tetrahedra.size() > most_tetrahedra)
+      throw std::runtime_error(fmt::format("{} tetrahedra take palpate precompute many minutes; a study goes up to {}",
+                                           64 * solid_->mesh().tetrahedra.size(), most_tetrahedra));
     Scene scene = solid_->scene();
     if (point.apply)
       point.apply(scene);

@@ -27,8 +27,7 @@ double number(const std::string& cell) {
 
 /// Text that is one cell: no comma, quote or line break.
 std::string cell(std::string text) {
-  for (char& c : text)
-    if (c == ',' || c == '"' || c == '\n') c = ';';
+  for (char& c : text) c = c == '"' ? '\'' : c == ',' || c == '\n' ? ';' : c;
   return text;
 }
 

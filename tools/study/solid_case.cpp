@@ -18,11 +18,13 @@
 namespace palpate::study {
 namespace {
 
-constexpr int most_nodes = 60000;  // of a reference's mesh
-
 using Fineness = SolidCase::Fineness;
-constexpr Fineness fine_mesh{0.6, 1 / 9.0, 0.28}, next_mesh{0.8, 1 / 6.0, 0.4}, neo_mesh{1, 1 / 5.0, 0.4};
-constexpr Fineness quick_fine{0.8, 1 / 6.0, 0.35}, quick_next{1, 1 / 4.0, 0.5}, quick_neo{1, 1 / 4.0, 0.6};
+constexpr Fineness fine_mesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
+    neo_mesh{1, 1 / 5.0, 0.4, 6000};
+constexpr Fineness quick_fine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
+    quick_neo{1, 1 / 4.0, 0.6, 6000};
+constexpr double stride = 1.15;
+constexpr int most_strides = 12;
 
 void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   numbers.push_back(answer.force);
@@ -75,19 +77,26 @@ double SolidCase::reach() const {
   return 1.1 * std::sqrt(2 * r * d - d * d);
 }
 
-StaticProblem SolidCase::refined(int patch, const Fineness& fineness) const {
-  const double outer = fineness.edge * mean_edge(problem_.mesh);
-  const double inner = std::min(outer, fineness.ball * presses().radius);
-  return refine_graded(problem_,
-                       size_around(presses().patches[patch].point, presses().patches[patch].inward,
-                                   0.8 * presses().radius, inner, fineness.growth, outer),
-                       most_nodes);
+StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strides) const {
+  const Patch& at = presses().patches[patch];
+  for (;; ++strides) {
+    const double faster = std::pow(stride, strides);
+    const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
+    const double inner = std::min(outer, fineness.ball * presses().radius);
+    const auto size =
+        size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
+    try {
+      return refine_graded(problem_, size, fineness.most_nodes);
+    } catch (const std::runtime_error&) {
+      if (strides == most_strides) throw;
+    }
+  }
 }
 
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press, the
 // mesh.
 std::string SolidCase::key(int patch, const Fineness& fineness) const {
-  constexpr int definitions = 1;  // changes with every change of how references are solved
+  constexpr int definitions = 2;  // changes with every change of how references are solved
   Body plain = body();
   plain.model = "quasi_static";
   plain.hybrid.reset();
@@ -104,10 +113,10 @@ std::string SolidCase::key(int patch, const Fineness& fineness) const {
   return text;
 }
 
-std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness) const {
+std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, int strides) const {
   const Patch& at = presses().patches[patch];
   const auto begin = std::chrono::steady_clock::now();
-  const LinearContact contact(refined(patch, fineness), at.point, reach());
+  const LinearContact contact(refined(patch, fineness, strides), at.point, reach());
   std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
@@ -118,8 +127,8 @@ std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness) c
   return numbers;
 }
 
-std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness) const {
-  const auto numbers = cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness); });
+std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness, int strides) const {
+  const auto numbers = cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness, strides); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
 }
@@ -136,7 +145,7 @@ std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t 
 const std::vector<PressAnswer>& SolidCase::fine(int patch) {
   const auto found = fine_.find(patch);
   if (found != fine_.end()) return found->second;
-  return fine_[patch] = quick_ ? press_fine(patch, quick_fine) : press_fine(patch, fine_mesh);
+  return fine_[patch] = press_fine(patch, quick_ ? quick_fine : fine_mesh, 0);
 }
 
 const PressAnswer& SolidCase::fine_linear(int patch, int depth) {
@@ -148,7 +157,9 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   int count = 0;
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
-    const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh);
+    int strides = 0;  // those of the finer mesh, so that the two remain levels apart
+    refined(static_cast<int>(p), quick_ ? quick_fine : fine_mesh, strides);
+    const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh, strides);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);
       square[1] += std::pow(next[d].force / best[d].force - 1, 2);
@@ -187,7 +198,8 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
 std::vector<double> SolidCase::solve_nonlinear(int patch) const {
   const auto begin = std::chrono::steady_clock::now();
   const Patch& at = presses().patches[patch];
-  const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh);
+  int strides = 0;
+  const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh, strides);
   const auto ball = [&](double depth) {
     return Sphere{centre_at(at, presses().radius, depth), presses().radius};
   };

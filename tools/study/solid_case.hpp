@@ -43,11 +43,13 @@ class SolidCase {
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
   std::vector<Eigen::Vector3d> at_surface(const std::vector<Eigen::Vector3d>& of_nodes) const;
   /// How fine a reference's mesh is: edges far away against the body's own and under the ball against its
-  /// radius [1], and by how much they grow per distance between.
+  /// radius [1], by how much they grow per distance between, and how many nodes it may have. A mesh with more is
+  /// coarser far away and graded faster, in as many strides of 15 % as it takes.
   struct Fineness {
     double edge, ball, growth;
+    int most_nodes;
   };
-  StaticProblem refined(int patch, const Fineness& fineness) const;
+  StaticProblem refined(int patch, const Fineness& fineness, int& strides) const;
   double reach() const;  ///< [m] about a patch within which nodes may touch the ball
 
   /// The same contact with large strain and rotation (neo-Hookean), and with linear elasticity by the same
@@ -67,8 +69,8 @@ class SolidCase {
   void add_errors(const Row& cost, const PressAnswers& presses, Result& result);
 
  private:
-  std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness) const;
-  std::vector<double> solve_fine(int patch, const Fineness& fineness) const;
+  std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness, int strides) const;
+  std::vector<double> solve_fine(int patch, const Fineness& fineness, int strides) const;
   std::vector<double> solve_nonlinear(int patch) const;
   std::string key(int patch, const Fineness& fineness) const;
   std::vector<PressAnswer> read_answers(const double*& at, std::size_t count) const;

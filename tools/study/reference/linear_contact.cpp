@@ -53,9 +53,11 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball,
                                                    const std::vector<Eigen::Vector3d>& normal,
                                                    std::vector<char>& active) const {
   const std::size_t n = node_.size();
-  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(3 * n, n);
-  for (std::size_t i = 0; i < n; ++i) spread.block<3, 1>(3 * i, i) = normal[i];
-  const Eigen::MatrixXd along = spread.transpose() * compliance_ * spread;
+  Eigen::MatrixXd along(n, n);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i <= j; ++i)
+      along(i, j) = along(j, i) =
+          normal[i].dot(Eigen::Vector3d(compliance_.block<3, 3>(3 * i, 3 * j) * normal[j]));
   Eigen::VectorXd wanted(n);
   for (std::size_t i = 0; i < n; ++i)
     wanted[i] = ball.radius + normal[i].dot(ball.centre - problem_.mesh.nodes[node_[i]]);
