@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include "common/dynamics/make_model.hpp"
 #include "common/tensors/ensure_archive.hpp"
@@ -77,6 +79,30 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
   return r;
 }
 
+/// Archives of changed bodies go into a folder that is gone with the object: they serve one point.
+class OwnCache {
+ public:
+  OwnCache() {
+    char name[] = "/tmp/palpate_stability_XXXXXX";
+    if (mkdtemp(name)) folder_ = name;
+    setenv("PALPATE_CACHE", folder_.c_str(), 1);
+  }
+  ~OwnCache() { std::filesystem::remove_all(folder_); }
+  OwnCache(const OwnCache&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Every body's material, its regions included.
+template <class Change>
+void change_materials(Scene& scene, Change&& change) {
+  for (Body& body : scene.bodies) {
+    change(body.material);
+    for (MaterialRegion& region : body.materials) change(region.material);
+  }
+}
+
 }  // namespace
 
 std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
@@ -85,7 +111,11 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
     points.push_back({"scene", parameter, value, [=] {
                         Scene changed = scene;
                         changed.passivity.controller = bend.controller;
-                        if (change) change(changed);
+                        std::optional<OwnCache> cache;
+                        if (change) {
+                          cache.emplace();
+                          change(changed);
+                        }
                         const std::vector<Archive> archives = load_or_precompute(changed, ArchivePart::surface);
                         return play(changed, archives, bend);
                       }, 600});
@@ -96,6 +126,15 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
   for (double d : extent.quick ? std::vector{0.02} : std::vector{1e-12, 0.005, 0.02, 0.1}) add("deeper by [m]", fmt::format("{:g}", d), {.deeper = d});
   for (double h : extent.quick ? std::vector<double>{} : std::vector{250.0, 4000.0})
     add("haptic rate [Hz]", fmt::format("{:g}", h), {}, [h](Scene& s) { s.rates.haptic_hz = h; });
+  for (double f : extent.quick ? std::vector{1e3} : std::vector{1e-3, 1e3, 1e6})
+    add("young, times [1]", fmt::format("{:g}", f), {}, [f](Scene& s) { change_materials(s, [f](Material& m) { m.young *= f; }); });
+  for (double nu : extent.quick ? std::vector{0.49999} : std::vector{0.0, 0.499, 0.49999})
+    add("poisson [1]", fmt::format("{:g}", nu), {}, [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
+  if (std::ranges::any_of(scene.bodies, is_dynamic))
+    for (double step : extent.quick ? std::vector{1e-2} : std::vector{1e-5, 1e-3, 1e-2})
+      add("step of moving tissue [s]", fmt::format("{:g}", step), {}, [step](Scene& s) {
+        for (Body& body : s.bodies) body.dynamic.step = step;
+      });
   return points;
 }
 
