@@ -48,7 +48,8 @@ def table(head, rows):
 
 def frequencies(values):
     titles = {"plate_supported": "square plate, simply supported", "plate_free": "square plate, free",
-              "cylinder": "cylinder between diaphragms"}
+              "cylinder": "cylinder between diaphragms", "tapered_membrane": "NAFEMS FV32, tapered membrane",
+              "cantilever_strip": "cantilever strip, bending"}
     rows = []
     for case, title in titles.items():
         count = sum(1 for name, metric in values if name == case and metric.startswith("expected"))
