@@ -103,14 +103,18 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
   ClumsyHand left(0, seed), right(1, seed + 1);
   std::vector<CatheterTool> parts;
   double energy = 0, wall_energy = 0, deepest = 0, force = 0;
-  int limited = 0;
+  int limited = 0, outside = 0, strayed = 0;
   for (int i = 0; i < ticks(); ++i) {
     parts.clear();
     left.move(body, parts);
     right.move(body, parts);
     const Eigen::Isometry3d jaws[2] = {left.jaw(), right.jaw()};
     body.step(parts, jaws);
-    ASSERT_EQ(i % 50 == 0 ? misplaced(body, wall) : 0, 0) << i;
+    if (i % 50 == 0) {
+      const WrongSide wrong = wrong_side(body, wall);
+      outside += wrong.outside;
+      strayed += wrong.strayed;
+    }
     for (const Vector3d& p : body.positions())
       ASSERT_LT(p.norm(), 0.5) << i;  // false also where it is not finite
     for (const WallForce& f : body.wall_forces()) force = std::max(force, f.force.norm());
@@ -122,11 +126,15 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
     deepest = std::max(deepest, body.inserted());
     limited += body.effort().limited;
   }
+  std::printf("%d s: led in and outside %d, not led in and inside %d, energy %.3g J, wall %.3g J, force %.3g N\n", ticks() / 1000, outside, strayed, energy,
+              wall_energy, force);
   testing::Test::RecordProperty("energy_uJ", static_cast<int>(1e6 * energy));
   testing::Test::RecordProperty("largest_force_mN", static_cast<int>(1e3 * force));
   testing::Test::RecordProperty("grasps", left.grasps() + right.grasps());
   testing::Test::RecordProperty("drops", left.drops() + right.drops());
   testing::Test::RecordProperty("held_back", limited);
+  EXPECT_EQ(outside, 0);
+  EXPECT_LE(strayed, ticks() / 50 * body.size() / 100'000);
   EXPECT_LT(energy, 0.1);
   EXPECT_LT(wall_energy, 0.2);
   EXPECT_GT(deepest, 0.01);

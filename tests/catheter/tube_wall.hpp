@@ -208,6 +208,35 @@ inline bool enclosed(const Eigen::Vector3d& p, const TubeWall& wall) {
   return crossings % 2 == 1;
 }
 
+/// [m] from p to the fans over the mouths.
+inline double from_mouths(const Eigen::Vector3d& p, const TubeWall& wall) {
+  const auto nodes = wall.surface().positions();
+  double squared = 1;
+  for (const auto& loop : wall.mouths()) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const int node : loop) middle += nodes[node] / loop.size();
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      squared = std::min(squared, closest_point(p, {middle, nodes[loop[i]], nodes[loop[(i + 1) % loop.size()]]}).squared_distance);
+  }
+  return std::sqrt(squared);
+}
+
+/// Particles that are on the wrong side of the wall, those apart that are half in and half out of a mouth.
+struct WrongSide {
+  int outside = 0;  ///< led in, and not in the tube
+  int strayed = 0;  ///< not led in, and in the tube
+};
+inline WrongSide wrong_side(const CatheterBody& body, const TubeWall& wall) {
+  WrongSide wrong;
+  for (int i = 0; i < body.size(); ++i) {
+    const Eigen::Vector3d& p = body.positions()[i];
+    const bool led_in = body.inside()[i] != 0;
+    if (led_in == enclosed(p, wall) || from_mouths(p, wall) < body.radius()) continue;
+    ++(led_in ? wrong.outside : wrong.strayed);
+  }
+  return wrong;
+}
+
 /// Particles whose flag differs from where they are.
 inline int misplaced(const CatheterBody& body, const TubeWall& wall) {
   int count = 0;
