@@ -41,7 +41,7 @@ void measure(const std::string& name, int particles, int modes, double inside, i
     iterations += body.effort().iterations;
     passes += body.effort().passes;
     touching += body.wall_contacts();
-    wall.advance(body.wall_forces(), [&](TouchSurface& surface) { body.mark(surface); });
+    wall.advance(body.wall_forces());
   }
   const double all = count + 300;
   bench::report("catheter_step", name, "p50", samples.median() * 1e6, "us");

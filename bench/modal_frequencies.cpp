@@ -42,8 +42,8 @@ void frequencies(const std::string& name, const ShellSystem& system, double shif
 /// sqrt(D / rho t) / (2 pi) of the plate [m^2/s].
 double plate_unit() {
   const double rigidity =
-      kPlate.young * std::pow(kPlate.thickness, 3) / 12 / (1 - kPlate.poisson * kPlate.poisson);
-  return std::sqrt(rigidity / (kPlate.density * kPlate.thickness)) / (2 * pi);
+      kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
+  return std::sqrt(rigidity / (kSteel.density * kSteel.thickness)) / (2 * pi);
 }
 
 /// Frequency [Hz] of m half waves along and n waves around: Sanders' theory, exact for ends held by

@@ -1,14 +1,23 @@
 #!/usr/bin/env bash
-# The long forms of seeded tests, every stability case, and the address, undefined-behaviour and thread sanitizers.
+# nightly.sh [STAGE ...]: long (the long forms of seeded tests), stability (every case), address (with undefined
+# behaviour) and thread (sanitizers, short forms). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-export PALPATE_LONG_TESTS=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-./scripts/test.sh --timeout 1800
-./build/release/bin/palpate stability -o out/stability
-for preset in address thread; do
-  ./scripts/build.sh "$preset"
-  # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
-  OMP_NUM_THREADS=1 ctest --preset "$preset" --timeout 1200 -E HapticMemory
+[ $# -gt 0 ] || set -- long stability address thread
+for stage in "$@"; do
+  echo "# $stage"
+  case "$stage" in
+    long) PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 ;;
+    stability)
+      ./scripts/build.sh release
+      ./build/release/bin/palpate stability -o out/stability ;;
+    address|thread)
+      ./scripts/build.sh "$stage"
+      # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
+      OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
+    -h|--help) sed -n '2,3p' "$0"; exit 0 ;;
+    *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
+  esac
 done

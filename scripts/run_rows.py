@@ -4,7 +4,7 @@ import sys
 
 summary = json.load(open(sys.argv[1]))
 scene = sys.argv[2]
-bench, case = ("run", scene) if scene == "liver" else (scene, "run")
+bench, case = (scene, "run") if scene == "hepatectomy" else ("run", scene)
 haptic, render = summary["haptic_node"], summary["render_node"]
 rows = [
     (bench, case, "haptic_hz", haptic["rate_hz"], "Hz"),

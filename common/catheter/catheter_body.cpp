@@ -90,9 +90,11 @@ void CatheterBody::substep(int index) {
     solve_.solve(base_, right_side_, v_, h, index, substeps_);
     const bool tauter = note_tension(h) && round == 0;
     if (tauter) assemble(h, left);
-    if (!close_passages(round) && !tauter) break;
+    const bool closed = round < kMostRounds && close_passages();
+    if (!closed && !tauter) break;
   }
   keep_together();
+  hold_back();
   const auto motion = solve_.motion();
   for (int i = 0; i < size(); ++i) {
     x_[i] += motion[i];
@@ -128,25 +130,30 @@ bool CatheterBody::note_tension(double h) {
   return grown;
 }
 
-/// Adds touches where particles would pass through the wall. True if the substep is to be solved again; in
-/// the last round the particles stop before the wall instead.
-bool CatheterBody::close_passages(int round) {
+/// Adds touches where particles would pass through the wall. True if the substep is to be solved again.
+bool CatheterBody::close_passages() {
   if (!wall_) return false;
-  const auto motion = solve_.motion();
+  solve_.show(wall_touches_.wall_motion());
   bool found = false;
   for (int i = 0; i < size(); ++i) {
-    if (motion[i].squaredNorm() < wall_touches_.margin() * wall_touches_.margin()) continue;
-    const auto passage = wall_touches_.passage(i, x_[i], motion[i], lumen_);
+    const auto passage = wall_touches_.passage(i, x_[i], solve_.motion()[i], lumen_);
     if (!passage) continue;
-    if (round == kMostRounds) {
-      motion[i] *= 0.9 * passage->time;
-      solve_.effort().limited++;
-      continue;
-    }
     solve_.add(passage->touch);
     found = true;
   }
   return found;
+}
+
+/// Particles that would pass through the wall all the same go no farther than the wall does.
+void CatheterBody::hold_back() {
+  if (!wall_) return;
+  solve_.show(wall_touches_.wall_motion());
+  for (int i = 0; i < size(); ++i) {
+    const auto passage = wall_touches_.passage(i, x_[i], solve_.motion()[i], lumen_);
+    if (!passage) continue;
+    solve_.motion()[i] = passage->before - x_[i];
+    solve_.effort().limited++;
+  }
 }
 
 /// Linear springs know nothing of turning: where neighbours would move by more than half their spacing
@@ -222,11 +229,6 @@ double CatheterBody::energy() const {
   for (int i = 0; i < size(); ++i)
     energy += chain_.mass()[i] * (0.5 * v_[i].squaredNorm() - gravity_.dot(x_[i] - chain_.rest()[i]));
   return energy;
-}
-
-void CatheterBody::mark(TouchSurface& surface) const {
-  lumen_.mark(surface);
-  wall_touches_.mark(x_, v_, step_, surface);
 }
 
 }  // namespace palpate

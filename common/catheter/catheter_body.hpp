@@ -94,9 +94,6 @@ class CatheterBody {
   double energy() const;  ///< [J] kinetic, elastic and of gravity (against the rest position); springs of
                           ///< contacts left out
 
-  /// Marks the surface's nodes that the next step looks at; between begin_update() and move_marked().
-  void mark(TouchSurface& surface) const;
-
   /// Everything that the next step depends on, apart from wall and tools.
   std::size_t state_size() const;
   void save(unsigned char* to) const;
@@ -109,8 +106,9 @@ class CatheterBody {
   void substep(int index);
   void assemble(double h, double left);
   bool note_tension(double h);
-  bool close_passages(int round);
+  bool close_passages();
   void keep_together();
+  void hold_back();
   void collect_forces(std::span<const CatheterTool> tools);
 
   Chain chain_;

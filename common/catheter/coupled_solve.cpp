@@ -49,7 +49,7 @@ CoupledSolve::CoupledSolve(int particles, const CatheterWall* wall, int most_tou
       d_(3 * particles + BandMatrix::kBand),
       change_(d_.size()) {
   touches_.reserve(most_touches);
-  for (auto* values : {&y_, &free_, &inverse_, &answer_, &residual_, &direction_, &image_})
+  for (auto* values : {&y_, &free_, &inverse_, &answer_, &gone_, &residual_, &direction_, &image_})
     values->assign(stride_, 0.0);
 }
 
@@ -57,6 +57,7 @@ void CoupledSolve::begin() {
   touches_.clear();
   effort_ = {};
   if (modes_ == 0) return;
+  std::ranges::fill(gone_, 0.0);
   std::copy_n(duct_->free_motion().data(), modes_, free_.data());
   for (int m = 0; m < modes_; ++m) y_[m] = free_[m] + answer_[m];
 }
@@ -275,6 +276,11 @@ std::span<Vector3d> CoupledSolve::motion() {
   return {reinterpret_cast<Vector3d*>(d_.data()), static_cast<std::size_t>(particles_)};
 }
 
+void CoupledSolve::show(WallMotion& wall) {
+  for (int m = 0; m < modes_; ++m) residual_[m] = gone_[m] + now_.share * y_[m];
+  wall.set(std::span(gone_).first(modes_), std::span(residual_).first(modes_));
+}
+
 void CoupledSolve::advance() {
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     CatheterTouch& t = touches_[i];
@@ -284,6 +290,7 @@ void CoupledSolve::advance() {
   }
   for (int m = 0; m < modes_; ++m) {
     const double answer = y_[m] - free_[m];
+    gone_[m] += now_.share * y_[m];
     free_[m] = y_[m];
     y_[m] += answer;
   }

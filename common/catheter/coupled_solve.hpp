@@ -6,6 +6,7 @@
 #include "common/catheter/band_matrix.hpp"
 #include "common/catheter/touch.hpp"
 #include "common/catheter/wall.hpp"
+#include "common/catheter/wall_motion.hpp"
 
 namespace palpate {
 
@@ -54,6 +55,8 @@ class CoupledSolve {
   std::span<const Eigen::Vector3d> motion() const;
   /// Takes over a motion that was held back, before advance().
   std::span<Eigen::Vector3d> motion();
+  /// Motion of the wall up to the last substep's beginning and up to its end; before advance().
+  void show(WallMotion& wall);
   /// Moves the touches' overlaps on by the substep's motion, and adds its share of the forces.
   void advance();
   /// Ends a tick: keeps the wall's answer as the next tick's first guess.
@@ -99,6 +102,7 @@ class CoupledSolve {
   BandMatrix factor_;
   std::vector<double> d_, change_;                   ///< 3 per particle and kBand scratch
   std::vector<double> y_, free_, inverse_, answer_;  ///< per mode, zero up to stride_
+  std::vector<double> gone_;                         ///< per mode: motion in this tick up to now
   std::vector<double> residual_, direction_, image_;
   Substep now_{};
   SolveEffort effort_;

@@ -232,9 +232,4 @@ double Lumen::inserted(std::span<const Vector3d> x, double spacing) const {
   return length;
 }
 
-void Lumen::mark(TouchSurface& surface) const {
-  for (const Mouth& mouth : mouths_)
-    for (const int node : mouth.nodes) surface.mark_node(node);
-}
-
 }  // namespace palpate

@@ -46,7 +46,6 @@ class Lumen {
   void release_lost(std::span<const Eigen::Vector3d> x);
 
   double inserted(std::span<const Eigen::Vector3d> x, double spacing) const;  ///< [m]
-  void mark(TouchSurface& surface) const;
 
   /// Nodes of the mouths where they were last seen, for the state.
   std::span<Eigen::Vector3d> seen() { return seen_; }

@@ -12,19 +12,18 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kOtherSide = 0.5;  ///< cosine below which two directions are clearly different
+constexpr double kFaster = 1.5;      ///< [1] what a wall may move by in a tick against what is expected
+constexpr double kHeldBefore = 0.1;  ///< [1] of its distance: how close before the wall a particle is held
 constexpr double kInFront = 0.7;    ///< cosine above which a triangle faces a point
 
 }  // namespace
 
 WallTouches::WallTouches(int particles, const CatheterWall* wall, double radius, double friction)
-    : wall_(wall), friction_(friction), past_(particles) {
+    : wall_(wall), wall_motion_(wall), friction_(friction), past_(particles) {
   if (!wall_) return;
   reach_ = radius + wall_->half_thickness();
   margin_ = 0.1 * reach_;
   planes_.reserve(wall_->surface().triangle_count());
-  found_.reserve(wall_->surface().triangle_count());
-  stamp_.assign(wall_->surface().triangle_count(), 0);
-  looked_from_.resize(particles);
 }
 
 /// Nearest point of a triangle with area, and its squared distance: where the foot of the perpendicular lies
@@ -157,13 +156,11 @@ double WallTouches::past_force(int particle, const Vector3d& normal) const {
 void WallTouches::find(std::span<const Vector3d> x, std::span<const Vector3d> v, double h, Lumen& lumen,
                        CoupledSolve& solve) {
   if (!wall_) return;
-  ++clock_;
-  found_.clear();
-  std::copy(x.begin(), x.end(), looked_from_.begin());
+  travel_ = kFaster * wall_motion_.expected();
   for (int i = 0; i < static_cast<int>(x.size()); ++i) {
-    const double within = reach_ + margin_ + h * v[i].norm();
+    const double within = reach_ + margin_ + travel_ + h * v[i].norm();
     Near near, other;
-    if (!find_nearest(x[i], triangles_about(x[i], x[i] + h * v[i]), within, near)) continue;
+    if (!find_nearest(x[i], wall_->surface().find(x[i], x[i] + h * v[i], reach_ + margin_ + travel_), within, near)) continue;
     Vector3d normal;
     double distance;
     const double side = direction(i, x[i], near, lumen, normal, distance);
@@ -174,23 +171,30 @@ void WallTouches::find(std::span<const Vector3d> x, std::span<const Vector3d> v,
 }
 
 std::optional<WallTouches::Passage> WallTouches::passage(int particle, const Vector3d& x,
-                                                         const Vector3d& motion, const Lumen& lumen) const {
+                                                         const Vector3d& motion, const Lumen& lumen) {
   std::optional<Passage> first;
+  if (motion.norm() + travel_ < margin_) return first;
   const TouchSurface& surface = wall_->surface();
-  const auto mouth = lumen.crossing(x, x + motion);
-  for (const int t : surface.find(x, x + motion, 0)) {
-    const Triangle corners = surface.corners(t);
-    const auto hit = sweep_point(x, x + motion, corners, corners);
+  for (const int t : surface.find(x, x + motion, travel_)) {
+    const Triangle now = wall_motion_.now(t);
+    const auto hit = sweep_point(x, x + motion, wall_motion_.before(t), now);
     if (!hit || (first && first->time <= hit->time)) continue;
-    const bool inside =
-        mouth && mouth->time < hit->time ? mouth->from_outside : lumen.inside()[particle] != 0;
-    if (hit->from_outside == inside) continue;  // on its way back to the side where it belongs
     Near near;
     near.triangle = t;
     near.weights = hit->weights;
-    near.q = x + hit->time * motion;
-    const Vector3d normal = (inside ? -1 : 1) * surface.triangle_normal(t).normalized();
-    first = {hit->time, touch_at(particle, near, normal, normal.dot(x - near.q))};
+    const Triangle c = surface.corners(t);
+    near.q = hit->weights[0] * c[0] + hit->weights[1] * c[1] + hit->weights[2] * c[2];
+    const Vector3d then = hit->weights[0] * now[0] + hit->weights[1] * now[1] + hit->weights[2] * now[2];
+    const auto mouth = lumen.crossing(x, x + motion - (then - near.q));
+    const bool inside =
+        mouth && mouth->time < hit->time ? mouth->from_outside : lumen.inside()[particle] != 0;
+    if (hit->from_outside == inside) continue;  // on its way back to the side where it belongs
+    const double side = inside ? -1 : 1;
+    const Vector3d normal = side * surface.triangle_normal(t).normalized();
+    const Vector3d then_normal = side * (now[1] - now[0]).cross(now[2] - now[0]).normalized();
+    const double distance = normal.dot(x - near.q);
+    first = {hit->time, touch_at(particle, near, normal, distance),
+             then + kHeldBefore * std::clamp(distance, 0.0, reach_) * then_normal};
   }
   return first;
 }
@@ -202,29 +206,6 @@ void WallTouches::keep(std::span<const CatheterTouch> touches) {
     auto& past = past_[t.point.segment + (t.point.along == 1)];
     Past& slot = past[0].normal_force <= past[1].normal_force ? past[0] : past[1];
     if (t.normal_force > slot.normal_force) slot = {t.normal, t.normal_force};
-  }
-}
-
-/// Those within reach and two margins, so that they still hold what is near when the particle has moved by a
-/// margin.
-std::span<const int> WallTouches::triangles_about(const Vector3d& x, const Vector3d& ahead) {
-  const auto triangles = wall_->surface().find(x, ahead, reach_ + 2 * margin_);
-  for (const int t : triangles) {
-    if (stamp_[t] == clock_) continue;
-    stamp_[t] = clock_;
-    found_.push_back(t);
-  }
-  return triangles;
-}
-
-void WallTouches::mark(std::span<const Vector3d> x, std::span<const Vector3d> v, double h,
-                       TouchSurface& surface) const {
-  if (!wall_) return;
-  surface.mark_triangles(found_);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vector3d ahead = x[i] + h * v[i];
-    if ((ahead - looked_from_[i]).squaredNorm() <= margin_ * margin_) continue;
-    surface.mark_triangles(surface.find(x[i], ahead, reach_ + 2 * margin_));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/catheter/coupled_solve.hpp"
 #include "common/catheter/lumen.hpp"
+#include "common/catheter/wall_motion.hpp"
 
 namespace palpate {
 
@@ -26,25 +27,20 @@ class WallTouches {
   /// Finds the coming tick's touches, `h` [s] ahead.
   void find(std::span<const Eigen::Vector3d> x, std::span<const Eigen::Vector3d> v, double h, Lumen& lumen,
             CoupledSolve& solve);
-  /// Where a particle would pass through the wall from the side on which it must stay, on its way to x +
-  /// motion.
+  /// Where a particle on its way to x + motion would pass through the wall, which moves by wall_motion(), from
+  /// the side on which it must stay. One that moves little by a wall that does meets what find() has found.
   struct Passage {
-    double time;          ///< in [0, 1]
-    CatheterTouch touch;  ///< that keeps it back
+    double time;             ///< in [0, 1]
+    CatheterTouch touch;     ///< that keeps it back
+    Eigen::Vector3d before;  ///< [m] world: close before the place where it meets the wall, when that has moved
   };
   std::optional<Passage> passage(int particle, const Eigen::Vector3d& x, const Eigen::Vector3d& motion,
-                                 const Lumen& lumen) const;
+                                 const Lumen& lumen);
+  WallMotion& wall_motion() { return wall_motion_; }
   /// Keeps the forces for the next tick's friction.
   void keep(std::span<const CatheterTouch> touches);
 
   double reach() const { return reach_; }  ///< [m]
-  /// Marks the nodes that the next find() looks at, from what the last one has found; x: where the particles
-  /// are now.
-  void mark(std::span<const Eigen::Vector3d> x, std::span<const Eigen::Vector3d> v, double h,
-            TouchSurface& surface) const;
-  double margin() const {
-    return margin_;
-  }  ///< [m] a particle that moves less meets nothing that was not looked at
 
   struct Past {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -66,7 +62,6 @@ class WallTouches {
     Eigen::Vector3d outward = Eigen::Vector3d::Zero();  ///< unit normal of the triangle
     double distance = 0, facing = 0;                    ///< [m]; [m] along the normal, outside positive
   };
-  std::span<const int> triangles_about(const Eigen::Vector3d& x, const Eigen::Vector3d& ahead);
   static ClosestPoint closest(const Eigen::Vector3d& x, const Triangle& c, const Eigen::Vector3d& normal,
                               double square);
   bool find_nearest(const Eigen::Vector3d& x, std::span<const int> triangles, double within, Near& best);
@@ -80,12 +75,11 @@ class WallTouches {
   double past_force(int particle, const Eigen::Vector3d& normal) const;
 
   const CatheterWall* wall_;
+  WallMotion wall_motion_;
   double friction_, reach_ = 0, margin_ = 0;
+  double travel_ = 0;  ///< [m] by which the wall may move in this tick
   std::vector<std::array<Past, 2>> past_;
-  std::vector<Plane> planes_;       ///< about the particle in hand
-  std::vector<int> found_, stamp_;  ///< triangles about any particle at the last find(), each once
-  std::vector<Eigen::Vector3d> looked_from_;
-  int clock_ = 0;
+  std::vector<Plane> planes_;  ///< about the particle in hand
 };
 
 }  // namespace palpate

@@ -58,8 +58,8 @@ class TubeWall : public CatheterWall {
       }
   }
 
-  /// Backward Euler of the modes under the forces; the surface follows: all of it, or what `mark` marks.
-  void advance(std::span<const WallForce> forces, const std::function<void(TouchSurface&)>& mark = {}) {
+  /// Backward Euler of the modes under the forces; the surface follows.
+  void advance(std::span<const WallForce> forces) {
     std::vector<double> row(3 * shape_.modes);
     std::vector<double> y = free_;
     for (const WallForce& f : forces) {
@@ -73,16 +73,13 @@ class TubeWall : public CatheterWall {
       velocity_[m] = y[m] / kStep;
     }
     plan();
-    move(mark);
+    move();
   }
 
   /// Moves the nodes to rest + modes + `given(rest)`, where a motion is given.
-  void move(const std::function<void(TouchSurface&)>& mark = {}) {
+  void move() {
     surface_.begin_update();
-    if (mark)
-      mark(surface_);
-    else
-      for (int n = 0; n < map_.size(); ++n) surface_.mark_node(n);
+    for (int n = 0; n < map_.size(); ++n) surface_.mark_node(n);
     std::vector<double> u;
     for (const int n : surface_.marked())
       for (int axis = 0; axis < 3; ++axis) {
@@ -92,6 +89,14 @@ class TubeWall : public CatheterWall {
         u.push_back(value);
       }
     surface_.move_marked(u);
+  }
+
+  /// Sets a mode's velocity so that the node which it moves most goes at `speed` [m/s].
+  void kick(int mode, double speed) {
+    double most = 0;
+    for (int k = 0; k < 3 * map_.size(); ++k) most = std::max(most, std::abs(mode_[k * static_cast<std::size_t>(shape_.modes) + mode]));
+    velocity_[mode] = speed / most;
+    plan();
   }
 
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> given;

@@ -172,7 +172,7 @@ TEST(CatheterInASoftDuct, PushesTheWallOutAndActsAsItIsActedUpon) {
       EXPECT_LE((f.force - push * out).norm(), 1.25 * s.friction * push);  // Coulomb's cone, to what a tick settles it
     }
     ASSERT_EQ(misplaced(body, wall), 0);
-    wall.advance(body.wall_forces(), [&](TouchSurface& surface) { body.mark(surface); });
+    wall.advance(body.wall_forces());
     pushed = std::max(pushed, wall.energy());
   });
   EXPECT_GT(touches, 100);
@@ -225,7 +225,7 @@ TEST(CatheterInASqueezedDuct, IsTouchedFromBothSides) {
   for (int i = 0; i < 500; ++i) {
     const double share = 0.75 * std::min(1.0, i / 400.0);  // flattened to a quarter of its height
     wall.given = [&](const Vector3d& rest) { return Vector3d(0, -share * rest.y(), 0); };
-    wall.move([&](TouchSurface& surface) { body.mark(surface); });
+    wall.move();
     body.step({}, {});
     for (const Vector3d& p : body.positions()) ASSERT_LT(p.norm(), 0.1);
   }
@@ -235,6 +235,36 @@ TEST(CatheterInASqueezedDuct, IsTouchedFromBothSides) {
   EXPECT_NEAR(up, down, 0.01 * up);
   for (const Vector3d& p : body.positions()) EXPECT_LT(std::abs(p.y()), 2e-4);
 }
+
+/// A duct that is thrown to and fro at 6 m/s, by several times the wall's reach in a tick, over a catheter that lies
+/// beside it or in it.
+void throw_over(double beside) {
+  TubeWall wall({.length = 0.06, .modes = 12, .frequency = 100});
+  constexpr int kSideways = 11;  // it moves the tube's middle along x
+  CatheterSettings s = plain_catheter(0.04, 21);
+  s.shape.tail = {beside, 0, 0.01};
+  s.shape.tip = {beside, 0, 0.05};
+  s.shape.damping = 20;
+  CatheterBody body(s, &wall);
+  int touched = 0;
+  double most = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 50 == 0) wall.kick(kSideways, i % 100 ? -6 : 6);
+    body.step({}, {});
+    touched = std::max(touched, body.wall_contacts());
+    const auto before = wall.surface().positions();
+    const std::vector<Vector3d> was(before.begin(), before.end());
+    wall.advance(body.wall_forces());
+    for (std::size_t n = 0; n < was.size(); ++n) most = std::max(most, (wall.surface().positions()[n] - was[n]).norm());
+    const WrongSide wrong = wrong_side(body, wall);
+    ASSERT_EQ(wrong.outside + wrong.strayed, 0) << i;
+  }
+  EXPECT_GT(touched, 0);
+  EXPECT_GT(most, 2 * (body.radius() + wall.half_thickness()));
+}
+
+TEST(CatheterAtASwingingDuct, StaysOutside) { throw_over(0.008); }
+TEST(CatheterAtASwingingDuct, StaysInside) { throw_over(0); }
 
 TEST(CatheterInASoftDuct, TakesNoMemoryInAStep) {
   TubeWall wall({.length = 0.05, .bend = 30, .modes = 30, .residual = 0.01});
