@@ -73,6 +73,25 @@ inline SolidAnswer straight_beam(int n, const Offline& offline, int axis) {
   return mean_along_load(beam, offline);
 }
 
+/// Its rotation [rad] by Saint-Venant under a unit torque at the end: L / (G J).
+inline double twist_target() {
+  double sum = 0;
+  for (int k = 1; k < 40; k += 2) sum += std::tanh(k * std::numbers::pi) / std::pow(k, 5);  // the section is 2 : 1
+  const double torsion = 0.2 * 1e-3 / 3 * (1 - 96 / std::pow(std::numbers::pi, 5) * sum);
+  return 6 * 2 * 1.3 / (1e7 * torsion);
+}
+
+/// The same beam under a unit torque, spread over its end in proportion to the distance from the axis: mean rotation there,
+/// conjugate to the torque. Target 0.03411; the source prints 0.03208.
+inline SolidAnswer straight_beam_twist(int n, const Offline& offline) {
+  SolidCase beam{make_block(Vector3d::Zero(), {6, 0.2, 0.1}, {15 * n, n, n}), {1e7, 0.3, 1}, {hold_face("x0")}, {}, 1};
+  static constexpr double polar = 0.02 * (0.04 + 0.01) / 12;
+  beam.traction = [](const Vector3d& x, const Vector3d&) -> Vector3d {
+    return x.x() > 6 - 1e-9 ? Vector3d(0, (0.05 - x.z()) / polar, (x.y() - 0.1) / polar) : Vector3d(Vector3d::Zero());
+  };
+  return mean_along_load(beam, offline);
+}
+
 /// Their curved beam: radii 4.12 and 4.32, a quarter circle, 0.1 thick, E = 1e7, nu = 0.25, unit end load along the
 /// radius or across the plane. Targets 0.08734 and 0.5022.
 inline SolidAnswer curved_beam(int n, const Offline& offline, bool in_plane) {

@@ -44,7 +44,7 @@ double fine_disc(int cells, double poisson) {
   body.fixed.push_back(testing::fix_group("x0", {true, false, false}));
   body.fixed.push_back(testing::fix_group("y0", {false, true, false}));
   const auto problem = make_fine_problem(body, mesh, {0, "p2", "locking_free"});
-  const auto load = testing::disc_loads(problem.space, 0.25);
+  const auto load = bench::disc_loads(problem.space, 0.5, -0.25);
   return 4 * testing::disc_work(load, solve_fine_loads(problem, load));
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/solid_cases.hpp"
+#include "bench/solid_patch.hpp"
 
 /// Published solids on coarse meshes; docs/verification.md has the fine ones.
 namespace palpate {
@@ -16,6 +17,23 @@ TEST(PublishedSolids, StraightBeamOfMacNealAndHarder) {
   EXPECT_NEAR(straight_beam(2, kP2, 2).value, 0.4321, 0.01 * 0.4321);
   EXPECT_NEAR(straight_beam(2, kFree, 1).value, 0.1081, 0.03 * 0.1081);
   EXPECT_LT(straight_beam(2, kP1, 1).value, 0.5 * 0.1081) << "linear elements lock in bending";
+}
+
+TEST(PublishedSolids, TwistedBeamComesToSaintVenantLessWhatItsClampedRootHolds) {
+  EXPECT_NEAR(twist_target(), 0.0341, 0.0001);
+  const double coarse = straight_beam_twist(2, kP2).value / twist_target() - 1, fine = straight_beam_twist(4, kP2).value / twist_target() - 1;
+  EXPECT_LT(std::abs(coarse), 0.06);
+  EXPECT_LT(std::abs(fine), 0.01);
+  EXPECT_LT(straight_beam_twist(2, kP1).value, 0.5 * twist_target()) << "linear elements lock in torsion";
+}
+
+TEST(PublishedSolids, PatchOfMacNealAndHarderIsExactToRoundingInEveryFormulation) {
+  for (const auto& offline : {kP1, kP2, kFree, kFreeLinear})
+    for (unsigned seed : {1, 2, 3}) {
+      const auto errors = solid_patch(offline, 0.25, seed);
+      EXPECT_LT(errors.displacement, 100) << offline.element << " " << offline.formulation;
+      EXPECT_LT(errors.stress, 1000) << offline.element << " " << offline.formulation;
+    }
 }
 
 TEST(PublishedSolids, CurvedBeamOfMacNealAndHarder) {

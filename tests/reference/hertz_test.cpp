@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "common/mesh/generators.hpp"
+#include "common/tensors/precompute.hpp"
+#include "haptic_node/haptic_step.hpp"
+
+/// A frictionless tip of radius R pressed into the middle of a block, nu = 0.3, by the haptic step, against
+/// Hertz. The tip's axis stands at several places between the nodes: how many nodes carry the contact depends
+/// on it. The figures are on docs/verification.md.
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double tip_radius = 0.01, young = 5000, poisson = 0.3;
+constexpr std::array<std::array<double, 2>, 4> places{
+    {{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
+
+/// Grid coordinates from 0 outwards: steps of h to `fine`, then growing by 1.5 to exactly `end`.
+std::vector<double> graded(double h, double fine, double end) {
+  std::vector<double> x{0};
+  while (x.back() < fine - 1e-12) x.push_back(x.back() + h);
+  const std::size_t first = x.size();
+  for (double step = h; x.back() < end;) x.push_back(x.back() + (step *= 1.5));
+  const double from = x[first - 1], stretch = (end - from) / (x.back() - from);
+  for (std::size_t i = first; i < x.size(); ++i) x[i] = from + stretch * (x[i] - from);
+  return x;
+}
+
+TetMesh block(double h, double extent) {
+  const auto half = graded(h, 1.25 * tip_radius, extent);
+  std::vector<double> across, down;
+  for (auto x = half.rbegin(); x != half.rend(); ++x) down.push_back(-*x);
+  across = down;
+  across.insert(across.end(), half.begin() + 1, half.end());
+  return make_graded_block(across, across, down);
+}
+
+/// A block on its base with elements of size h under the tip, ready to be pressed at any place. `extent`: its
+/// height and half-width.
+class Block {
+ public:
+  Block(double h, const std::optional<Offline>& offline, double extent = 8 * tip_radius) : h_(h) {
+    Body body;
+    body.name = "block";
+    body.material = {.young = young, .poisson = poisson, .density = 1000};
+    body.fixed.push_back({.where = {.group = "bottom"}});
+    const double reach = 1.2 * tip_radius;
+    body.touchable = Selector{.box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1e-6}}};
+    body.offline = offline;
+    archives_.push_back(precompute(body, block(h, extent)));
+    scene_.bodies.push_back(body);
+    scene_.contact.friction = 0;
+  }
+
+  /// Force [N] on the tip at a depth [m].
+  double press(const std::array<double, 2>& place, double depth) {
+    Tool tool;
+    tool.name = "ball";
+    tool.pivot = Vector3d(h_ * place[0], h_ * place[1], 0.2);
+    tool.radius = tip_radius;
+    tool.max_force = 1e3;
+    tool.max_force_rate = 1e9;
+    scene_.tools = {tool};
+    const auto tip = [&](double z) {
+      const Vector3d centre(tool.pivot.x(), tool.pivot.y(), z);
+      return std::array{dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), centre, 0)};
+    };
+    HapticStep haptic(scene_, archives_);
+    haptic.start(tip(1.05 * tip_radius));
+    constexpr int steps = 200;
+    for (int i = 0; i <= steps + 20; ++i)
+      haptic.step(tip(1.05 * tip_radius - (depth + 0.05 * tip_radius) * std::min(1.0, double(i) / steps)));
+    return haptic.force(0).z();
+  }
+
+ private:
+  double h_;
+  Scene scene_;
+  std::vector<Archive> archives_;
+};
+
+double hertz(double depth) {
+  return 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(tip_radius) * std::pow(depth, 1.5);
+}
+
+/// F / Hertz at every place.
+struct Pressed {
+  std::array<double, places.size()> ratio{};
+
+  double mean() const {
+    double sum = 0;
+    for (double r : ratio) sum += r / ratio.size();
+    return sum;
+  }
+  double worst() const {
+    double worst = 0;
+    for (double r : ratio) worst = std::max(worst, std::abs(r - 1));
+    return worst;
+  }
+};
+
+/// Presses at every place and enters the ratios as a property of the running test.
+Pressed press_everywhere(Block& block, double depth, const std::string& name) {
+  Pressed pressed;
+  std::string text;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    pressed.ratio[i] = block.press(places[i], depth) / hertz(depth);
+    text += fmt::format("{:.4f} ", pressed.ratio[i]);
+  }
+  ::testing::Test::RecordProperty(name, text);
+  std::printf("%s: F / Hertz %s\n", name.c_str(), text.c_str());
+  return pressed;
+}
+
+bool long_form() {
+  return std::getenv("PALPATE_LONG_TESTS") != nullptr;
+}
+
+TEST(HertzReference, ATipFollowsHertzWithinTenPercentFromTwoElementsToItsRadius) {
+  Pressed last;
+  for (int per_radius : {2, 4, 8}) {
+    if (per_radius == 8 && !long_form()) continue;
+    Block block(tip_radius / per_radius, std::nullopt);
+    const auto pressed = press_everywhere(block, 0.5 * tip_radius, fmt::format("p1_h{}", per_radius));
+    EXPECT_LT(pressed.worst(), 0.1) << "R = " << per_radius << " h";
+    if (per_radius > 2) {
+      EXPECT_NEAR(pressed.mean(), last.mean(), 0.05) << "halving h to R / " << per_radius;
+    }
+    last = pressed;
+    const auto shallow =
+        press_everywhere(block, 0.25 * tip_radius, fmt::format("p1_shallow_h{}", per_radius));
+    EXPECT_LT(shallow.worst(), per_radius == 2 ? 0.25 : 0.12) << "R = " << per_radius << " h";
+  }
+}
+
+TEST(HertzReference, ABlockOfTwiceTheSizeIsALittleSofter) {
+  Block usual(tip_radius / 2, std::nullopt), large(tip_radius / 2, std::nullopt, 16 * tip_radius);
+  const double depth = 0.5 * tip_radius, mean = press_everywhere(usual, depth, "usual_block").mean();
+  const double far = press_everywhere(large, depth, "large_block").mean();
+  EXPECT_LT(far, mean);
+  EXPECT_GT(far, 0.95 * mean);
+}
+
+// A refinement offline leaves the nodes that carry the contact as few as they are: at R = 2h the mean is no
+// better, and the places differ as much as on the mesh itself.
+TEST(HertzReference, ARefinementOfflineDoesNotCureTheDependenceOnThePlace) {
+  Block coarse(tip_radius / 2, Offline{1, "p1", "displacement"});
+  const auto pressed = press_everywhere(coarse, 0.5 * tip_radius, "refined_h2");
+  EXPECT_GT(*std::max_element(pressed.ratio.begin(), pressed.ratio.end()) -
+                *std::min_element(pressed.ratio.begin(), pressed.ratio.end()),
+            0.08);
+  EXPECT_LT(pressed.worst(), 0.15);
+  if (!long_form()) return;
+  Block fine(tip_radius / 4, Offline{1, "p1", "displacement"});
+  EXPECT_LT(press_everywhere(fine, 0.5 * tip_radius, "refined_h4").worst(), 0.05);
+}
+
+}  // namespace
+}  // namespace palpate
