@@ -1,7 +1,6 @@
 /// How long does a message take to another process and back on loopback? Bare Cyclone DDS through its C API,
 /// beside the bus of this project, at 1 kHz. Usage: bench_latency_dds [--quick] [--there BYTES] [--back
 /// BYTES]
-#include <dds/dds.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -14,65 +13,16 @@
 #include <string>
 
 #include "bench/report.hpp"
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/bare_dds.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
-#include "palpate.h"
 
 namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Answers of the other process, and questions to it, as a topic of plain bytes each.
-class BarePort {
- public:
-  BarePort(int domain, const char* out_name, const char* in_name) {
-    const std::string configuration = dds_configuration({.domain = domain});
-    const auto id = static_cast<dds_domainid_t>(domain);
-    dds_create_domain(id, configuration.c_str());
-    participant_ = dds_create_participant(id, nullptr, nullptr);
-    dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
-    const auto topic = [&](const char* name) {
-      return dds_create_topic(participant_, &palpate_HapticKeyframe_desc, name, nullptr, nullptr);
-    };
-    writer_ = dds_create_writer(participant_, topic(out_name), qos, nullptr);
-    reader_ = dds_create_reader(participant_, topic(in_name), qos, nullptr);
-    dds_delete_qos(qos);
-    waitset_ = dds_create_waitset(participant_);
-    const dds_entity_t condition = dds_create_readcondition(reader_, DDS_ANY_STATE);
-    if (writer_ < 0 || reader_ < 0 || waitset_ < 0 || condition < 0)
-      throw std::runtime_error("DDS set-up failed");
-    dds_waitset_attach(waitset_, condition, 0);
-  }
-  ~BarePort() { dds_delete(participant_); }
-
-  void send(std::uint64_t seq, std::vector<std::uint8_t>& bytes) {
-    palpate_HapticKeyframe sample{};
-    sample.seq = seq;
-    sample.state._length = sample.state._maximum = static_cast<std::uint32_t>(bytes.size());
-    sample.state._buffer = bytes.data();
-    dds_write(writer_, &sample);
-  }
-
-  /// The sequence number of the next message, 0 if none comes in time.
-  std::uint64_t receive(std::chrono::nanoseconds timeout) {
-    dds_waitset_wait(waitset_, nullptr, 0, timeout.count());
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return 0;
-    const auto seq = info.valid_data ? static_cast<palpate_HapticKeyframe*>(sample)->seq : 0;
-    dds_return_loan(reader_, &sample, 1);
-    return seq;
-  }
-
- private:
-  dds_entity_t participant_, writer_, reader_, waitset_;
-};
-
-/// The same through the project's bus: the tool's dofs there, the force back.
+/// A question and its answer through the project's bus: the tool's dofs there, the force back.
 class BusPort {
  public:
   explicit BusPort(int domain) : bus_(make_dds_bus({.domain = domain})) {}
@@ -158,7 +108,7 @@ void report_all(const std::string& name, const bench::Samples& s) {
 
 void measure_bare(bench::Samples& samples, int domain, int count, std::size_t there, std::size_t back) {
   OtherSide other("--answer-bare", domain, back);
-  BarePort port(domain, "bench/there", "bench/back");
+  BareDds port({.domain = domain}, "bench/there", "bench/back");
   std::vector<std::uint8_t> bytes(there);
   ping(
       samples, count, [&](std::uint64_t seq) { port.send(seq, bytes); },
@@ -175,7 +125,7 @@ void measure_bus(bench::Samples& samples, int domain, int count) {
 }
 
 int answer_bare(int domain, std::size_t back) {
-  BarePort port(domain, "bench/back", "bench/there");
+  BareDds port({.domain = domain}, "bench/back", "bench/there");
   std::vector<std::uint8_t> bytes(back);
   for (;;)
     if (const std::uint64_t seq = port.receive(1s)) port.send(seq, bytes);
@@ -203,11 +153,10 @@ int run(int argc, char** argv) {
   measure_bare(sized, 1 + domain, count, there, back);
   report_all("loopback_bare_dds", sized);
 
-  // By turns, so that a change of the host's load meets both. With these sizes the bare messages are as long
-  // as ToolState and ForceState.
+  // By turns, so that a change of the host's load meets both.
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, 43, 47);
+    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, BareDds::as_tool_state, BareDds::as_force_state);
     measure_bus(bus, 1 + (domain + 2 * round + 2) % 200, count / rounds);
   }
   report_all("loopback_bare_dds_step", bare);

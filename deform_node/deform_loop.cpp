@@ -20,9 +20,13 @@ DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double 
     : deformer_(deformer),
       bus_(bus),
       presence_(presence),
+      clock_(bus, presence.node()),
+      link_(bus),
       frame_ns_(static_cast<std::int64_t>(1e9 / visual_hz)),
       feed_(bus, presence, deformer),
-      surfaces_(bus, surface_nodes(deformer)) {}
+      surfaces_(bus, surface_nodes(deformer)) {
+  presence_.set_clock(&clock_);
+}
 
 void DeformLoop::publish(bool all) {
   if (deformer_.fresh()) {
@@ -39,10 +43,12 @@ void DeformLoop::publish(bool all) {
 // Peers, the death of the haptic node and the status: what is not for every frame.
 void DeformLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < 1'000'000'000) return;
   const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
-  presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)), 1e-3 * static_cast<double>(report_.latency.percentile(0.99)));
+  presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)), 1e-3 * static_cast<double>(report_.latency.percentile(0.99)),
+                     link_.silence("haptic", now));
   last_status_ns_ = now;
   last_frames_ = report_.frames;
 }
@@ -58,12 +64,14 @@ const DeformReport& DeformLoop::run(double seconds) {
       next_house = now + 50'000'000;
     }
     if (next_frame > now) bus_.wait(std::chrono::nanoseconds(next_frame - now));
+    clock_.follow();
     const bool news = feed_.take();
     now = now_ns();
     const bool frame = now >= next_frame;
-    if (!news && !frame) continue;
+    // What the network has not carried yet is not followed by more of the same, or it would never carry anything.
+    if (!frame && !(news && surfaces_.delivered())) continue;
     publish(frame);
-    if (news) report_.latency.record(surfaces_.last_publish_ns() - deformer_.sense_ns());
+    if (news) report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
     if (frame) next_frame = now + frame_ns_;
   }
   report_.refused = feed_.refused();

@@ -2,6 +2,8 @@
 #include <cstdint>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/clock_link.hpp"
+#include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
 #include "common/models/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
@@ -34,6 +36,8 @@ class DeformLoop {
   Deformer& deformer_;
   Bus& bus_;
   Presence& presence_;
+  ClockFollower clock_;
+  LinkWatch link_;
   std::int64_t frame_ns_;
   ContactFeed feed_;
   SurfacePublisher surfaces_;

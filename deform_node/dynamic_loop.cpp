@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+constexpr std::uint64_t reminder_ticks = 64;
 constexpr int loop_priority = 50;         // below the haptic loop, above the picture
 
 std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
@@ -24,6 +25,8 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
     : world_(world),
       deformer_(deformer),
       presence_(presence),
+      clock_(bus, presence.node()),
+      link_(bus),
       run_(run),
       visual_hz_(scene.rates.visual_hz),
       local_models_(local_models),
@@ -36,6 +39,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       keyframes_(bus.writer(topics::deform_keyframe)),
       change_seq_(scene.bodies.size(), 0),
       model_(scene.tools.size()) {
+  presence_.set_clock(&clock_);
   keyframe_.dt = world.dt();
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies) moves_.push_back(is_dynamic(body));
@@ -96,7 +100,9 @@ void DynamicLoop::publish_models() {
     LocalContactModel& m = model_[t];
     const bool was_near = !m.triangles.empty() || !m.contacts.empty();
     const bool near = local_models_.describe(t, m);
-    if (!near && !was_near) continue;  // an empty one says that there is nothing near any more
+    // An empty one says that there is nothing near any more, and again from time to time, since it may be lost.
+    const bool remind = m.seq > 0 && world_.ticks() % reminder_ticks == 0;
+    if (!near && !was_near && !remind) continue;
     const ToolState& s = world_.consumed(t);
     m.tool = static_cast<std::uint32_t>(t);
     m.run = run_;
@@ -128,17 +134,18 @@ void DynamicLoop::publish_frames() {
     surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
   }
   ++report_.frames;
-  if (newest.sense_ns > shown_sense_ns_) report_.latency.record(surfaces_.last_publish_ns() - newest.sense_ns);
+  if (newest.sense_ns != shown_sense_ns_) report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
   shown_sense_ns_ = newest.sense_ns;
 }
 
 void DynamicLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < ns_per_s) return;
   const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.ticks - last_ticks_) / static_cast<double>(now - last_status_ns_);
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
-  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99));
+  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99), link_.silence("haptic", now));
   last_status_ns_ = now;
   last_ticks_ = report_.ticks;
 }
@@ -153,6 +160,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
     timer.wait();
     const std::int64_t now = now_ns();
     if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
+    clock_.follow();
     take_tools();
     if (begun_) {
       tick();

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/clock_link.hpp"
+#include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
 #include "common/models/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
@@ -48,6 +50,8 @@ class DynamicLoop {
   DynamicWorld& world_;
   Deformer& deformer_;
   Presence& presence_;
+  ClockFollower clock_;
+  LinkWatch link_;
   std::uint64_t run_;
   double visual_hz_;
   std::vector<char> moves_;  ///< per body: it is dynamic

@@ -21,6 +21,7 @@ class SurfacePublisher {
   };
   void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal, const Origin& origin);
   std::int64_t last_publish_ns() const { return last_ns_; }
+  bool delivered() const { return writer_->delivered(); }  ///< every viewer has what was published
 
  private:
   std::unique_ptr<Writer<SurfaceState>> writer_;

@@ -26,6 +26,8 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
       devices_(devices),
       presence_(presence),
       publisher_(bus, haptic, run),
+      clock_(bus, presence.node()),
+      link_(bus),
       bus_devices_(bus, devices),
       local_feed_(bus, haptic, run),
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
@@ -130,6 +132,7 @@ void HapticLoop::publish_loop() {
   request_realtime({.priority = publisher_priority, .lock_memory = false});
   while (!over_.load()) {
     (void)wake_.try_acquire_for(20ms);
+    clock_.answer();
     drain();
     report_status(now_ns());
   }
@@ -151,6 +154,7 @@ void HapticLoop::drain() {
 void HapticLoop::report_status(std::int64_t now) {
   check_peers();
   if (now - last_status_ns_ < 1'000'000'000) return;
+  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   const std::uint64_t ticks = shown_ticks_.load(std::memory_order_relaxed);
   const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(ticks - last_status_ticks_) / static_cast<double>(now - last_status_ns_);
   const bool stale = shown_stale_.exchange(false, std::memory_order_relaxed);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/clock_link.hpp"
+#include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
@@ -53,6 +55,8 @@ class HapticLoop {
   std::vector<std::unique_ptr<Device>>& devices_;
   Presence& presence_;
   Publisher publisher_;
+  ClockServer clock_;
+  LinkWatch link_;
   BusDevices bus_devices_;
   LocalFeed local_feed_;
   std::uint64_t step_ = 0, keyframe_interval_;

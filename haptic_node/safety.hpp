@@ -4,19 +4,23 @@
 
 namespace palpate {
 
-/// The last thing before the hand: finite check, force limit, slew limit. After a fault the force ramps to zero
+/// The last thing before the hand: finite check, limits of force and torque, slew limits. After a fault the force ramps to zero
 /// within ramp_seconds and stays there.
 class SafetyChain {
  public:
   static constexpr double ramp_seconds = 0.005;
+  /// [m] at which the largest force makes the largest torque: a long instrument's shaft. Contacts that pull against
+  /// one another make torque without force.
+  static constexpr double longest_lever = 0.3;
 
   /// Limits: force [N], rate of change of the force [N/s]; dt [s] is the step.
   SafetyChain(double max_force, double max_force_rate, double dt);
 
-  /// The force limit alone, for what must know it before the slew limit. Returns force_limited or 0; what is not finite is left.
+  /// The limits of force and torque alone, for what must know them before the slew limits: both shrink together.
+  /// Returns force_limited or 0; what is not finite is left.
   std::uint32_t limit(Eigen::Vector3d& force, Eigen::Vector3d& torque) const;
 
-  /// Turns what the tissue asks for into what the hand gets; torque is scaled as the force is.
+  /// Turns what the tissue asks for into what the hand gets; force and torque are scaled alike.
   /// `healthy` false reports a fault of this step. Returns ForceFlag bits.
   std::uint32_t apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy);
 

@@ -64,6 +64,18 @@ inline constexpr Topic<NodeStatus> node_status{
     "palpate/node_status", "NodeStatus", {true, 1, true},
     "1 Hz and on change", "all", "all",
     "who is there, what it runs and how well it keeps up"};
+inline constexpr Topic<ClockProbe> clock_probe{
+    "palpate/clock_probe", "ClockProbe", {false, 1, false},
+    "8 Hz", "all but haptic", "haptic",
+    "asks for the haptic node's clock"};
+inline constexpr Topic<ClockAnswer> clock_answer{
+    "palpate/clock_answer", "ClockAnswer", {false, 1, false},
+    "on each probe", "haptic", "who asked",
+    "times of a probe on the haptic node's clock"};
+inline constexpr Topic<PictureState> picture_state{
+    "palpate/picture_state", "PictureState", {true, 64, false},
+    "visual rate", "render", "-",
+    "which haptic step a picture shows, and when it was done"};
 inline constexpr Topic<HapticKeyframe> haptic_keyframe{
     "palpate/haptic_keyframe", "HapticKeyframe", {true, 4, false},
     "1 Hz", "haptic", "-",
@@ -104,7 +116,7 @@ inline constexpr Topic<TaskRecord> task_record{
 
 inline constexpr auto all =
     std::tuple{tool_state,  device_state,    contact_state, held_contacts,       force_state,
-               surface_state, node_status,   haptic_keyframe, scene,
+               surface_state, node_status,   clock_probe, clock_answer, picture_state, haptic_keyframe, scene,
                topology_change, local_contact_model, deform_step, deform_keyframe, modal_state, catheter_state, task_record};
 
 /// Calls f(topic) for every row.

@@ -39,9 +39,14 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
       source_(source),
       presence_(presence),
       renderer_(renderer),
+      clock_(bus, presence.node()),
+      link_(bus),
+      pictures_(bus.writer(topics::picture_state)),
       tools_(bus.reader(topics::tool_state)),
       forces_(bus.reader(topics::force_state)),
       latest_force_(scene.tools.size()) {
+  presence_.set_clock(&clock_);
+  picture_.node = presence.node();
   if (std::ranges::any_of(scene.bodies, [](const Body& body) { return body.catheter.has_value(); })) tasks_ = bus.reader(topics::task_record);
 }
 
@@ -76,6 +81,8 @@ void RenderLoop::write_overlay() {
   for (const auto& [name, peer] : presence_.peers())
     if (peer.role == "haptic" && presence_.accepts(peer.run)) haptic_hz = std::max(haptic_hz, peer.rate_hz);
   if (!presence_.matched("haptic")) lines.push_back("waiting for a haptic node");
+  for (const char* role : {"haptic", "deform"})
+    if (const std::string silence = link_.silence(role, now_ns()); !silence.empty()) lines.push_back(silence);
   lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
   lines.push_back(fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
                               1e-3 * shown_latency_.p99));
@@ -103,17 +110,19 @@ void RenderLoop::add_to_film(std::int64_t since_begin) {
 
 void RenderLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   if (now - last_status_ns_ < ns_per_s) return;
   rate_hz_ =
       1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
-  presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99);
+  presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99, link_.silence("haptic", now));
   recent_latency_.clear();
   last_status_ns_ = now;
   last_frames_ = report_.frames;
 }
 
 void RenderLoop::step(std::int64_t begin) {
+  clock_.follow();
   take();
   write_overlay();
   const std::int64_t drawing = now_ns();
@@ -121,11 +130,22 @@ void RenderLoop::step(std::int64_t begin) {
   const std::int64_t done = now_ns();
   report_.draw.record(done - drawing);
   ++report_.frames;
-  if (news_) {
-    report_.latency.record(done - source_.sense_ns());
-    recent_latency_.record(done - source_.sense_ns());
-  }
+  if (news_) tell_picture(done);
   if (film_) add_to_film(done - begin);
+}
+
+/// A step is seen for the first time.
+void RenderLoop::tell_picture(std::int64_t done) {
+  const SurfaceSource::Moment moment = source_.moment();
+  const std::int64_t latency = done - clock_.to_own(moment.sense_ns);
+  report_.latency.record(latency);
+  recent_latency_.record(latency);
+  ++picture_.seq;
+  picture_.run = moment.run;
+  picture_.step = moment.step;
+  picture_.sense_ns = moment.sense_ns;
+  picture_.publish_ns = done;
+  pictures_->write(picture_);
 }
 
 const RenderReport& RenderLoop::run(double seconds) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/clock_link.hpp"
+#include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
 #include "common/models/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
@@ -49,6 +51,7 @@ class RenderLoop {
   void follow_cuts();
   void write_overlay();
   void add_to_film(std::int64_t since_begin);
+  void tell_picture(std::int64_t done);
   void keep_house(std::int64_t now);
 
   const Scene& scene_;
@@ -57,6 +60,10 @@ class RenderLoop {
   SurfaceSource& source_;
   Presence& presence_;
   Renderer& renderer_;
+  ClockFollower clock_;
+  LinkWatch link_;
+  std::unique_ptr<Writer<PictureState>> pictures_;
+  PictureState picture_;
   Film* film_ = nullptr;
   TopologyFeed* topology_ = nullptr;
   std::unique_ptr<Reader<ToolState>> tools_;

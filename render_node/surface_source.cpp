@@ -26,8 +26,10 @@ class ReceivedSurfaces : public SurfaceSource {
         ++refused_;
         continue;
       }
-      news |= sample->sense_ns > sense_ns_;
-      sense_ns_ = std::max(sense_ns_, sample->sense_ns);
+      if (sample->run != 0 && (sample->run != moment_.run || sample->step > moment_.step)) {
+        moment_ = {sample->run, sample->step, sample->sense_ns};
+        news = true;
+      }
       latest_[sample->body] = std::move(*sample);
     }
     return news;
@@ -36,7 +38,7 @@ class ReceivedSurfaces : public SurfaceSource {
   Shape shape(int body) const override {
     return {as_vectors(latest_[body].position), as_vectors(latest_[body].normal)};
   }
-  std::int64_t sense_ns() const override { return sense_ns_; }
+  Moment moment() const override { return moment_; }
   std::uint64_t refused() const override { return refused_; }
 
  private:
@@ -49,7 +51,7 @@ class ReceivedSurfaces : public SurfaceSource {
   std::unique_ptr<Reader<SurfaceState>> reader_;
   std::vector<std::size_t> nodes_;
   std::vector<SurfaceState> latest_;
-  std::int64_t sense_ns_ = 0;
+  Moment moment_;
   std::uint64_t refused_ = 0;
 };
 
@@ -71,7 +73,7 @@ class OwnSurfaces : public SurfaceSource {
     const DeformedSurface& surface = deformer_.surface(body);
     return {surface.position, surface.normal};
   }
-  std::int64_t sense_ns() const override { return deformer_.sense_ns(); }
+  Moment moment() const override { return {deformer_.run(), deformer_.step(), deformer_.sense_ns()}; }
   std::uint64_t refused() const override { return feed_.refused(); }
 
  private:

@@ -18,7 +18,12 @@ class SurfaceSource {
   virtual ~SurfaceSource() = default;
   virtual bool update() = 0;                  ///< takes what has come; true if a newer haptic step is shown
   virtual Shape shape(int body) const = 0;    ///< empty spans: not known yet, so at rest
-  virtual std::int64_t sense_ns() const = 0;  ///< sense time of the haptic step shown
+  /// The haptic step shown.
+  struct Moment {
+    std::uint64_t run = 0, step = 0;  ///< run 0: rest shape
+    std::int64_t sense_ns = 0;        ///< on the haptic node's clock
+  };
+  virtual Moment moment() const = 0;
   virtual std::uint64_t refused() const = 0;  ///< samples of foreign runs, or that do not fit the archives
 };
 

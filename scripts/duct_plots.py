@@ -7,6 +7,7 @@ import pathlib
 import sys
 
 import matplotlib
+import small_png
 import numpy as np
 
 matplotlib.use("Agg")
@@ -54,7 +55,7 @@ def draw(values, file):
     axes[0].set_ylabel("haptic step, median [µs]")
     axes[0].set_ylim(0, 1.08 * max(series(values, prefix)[1].max() for prefix, _ in titles if len(series(values, prefix)[1])))
     figure.tight_layout()
-    figure.savefig(file)
+    small_png.save(figure, file)
 
 
 def words(values, origin):

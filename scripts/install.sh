@@ -7,7 +7,7 @@ packages=(
   cyclonedds-dev cyclonedds-tools liblcm-dev zlib1g-dev libxxhash-dev
   libgmsh-dev libhdf5-dev hdf5-tools libosmesa6-dev libpng-dev libfreetype-dev fonts-dejavu-core ffmpeg
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev python3 python3-numpy python3-h5py python3-matplotlib
+  libgtest-dev libbenchmark-dev openssh-client openssh-server python3 python3-numpy python3-h5py python3-matplotlib
 )
 missing=()
 for package in "${packages[@]}"; do

@@ -7,6 +7,7 @@ import pathlib
 import sys
 
 import matplotlib
+import small_png
 import numpy as np
 
 matplotlib.use("Agg")
@@ -137,7 +138,7 @@ def plot_cost(values, file):
 def save(figure, file):
     file.parent.mkdir(exist_ok=True)
     figure.tight_layout()
-    figure.savefig(file, dpi=DPI)
+    small_png.save(figure, file, dpi=DPI)
     print(f"{file}: {file.stat().st_size} bytes")
 
 

@@ -8,6 +8,7 @@ import pathlib
 import sys
 
 import matplotlib
+import small_png
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -96,7 +97,7 @@ def picture(cases, path):
     axes[0].set_ylabel("|value / target − 1|", fontsize=8)
     axes[0].legend(fontsize=5.5, loc="lower left")
     figure.tight_layout()
-    figure.savefig(path, dpi=90)
+    small_png.save(figure, path, dpi=90)
 
 
 def main():

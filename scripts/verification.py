@@ -16,6 +16,7 @@ import sys
 import tempfile
 
 import matplotlib
+import small_png
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -315,7 +316,7 @@ def finish(figure, axes, path, xlabel, ylabel, columns=5, foot=0.4):
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=columns, frameon=False)
     figure.tight_layout(rect=(0, foot / figure.get_figheight(), 1, 1))
-    figure.savefig(path, dpi=110)
+    small_png.save(figure, path, dpi=110)
     plt.close(figure)
 
 

@@ -13,6 +13,9 @@ void add_study_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_record_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_export_command(CLI::App& app);
+void add_latency_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
+void add_top_command(CLI::App& app);
 
 }  // namespace palpate

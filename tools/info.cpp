@@ -47,6 +47,10 @@ Json json_of(const LogSummary& s, const std::string& file) {
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
     json["damage"].push_back({{"offset", d.offset}, {"bytes", d.bytes}, {"tail", d.tail}});
+  json["hops_us"] = {{"tool_to_force", json_of(s.hops.force())},
+                     {"tool_to_surface", json_of(s.hops.surface())},
+                     {"tool_to_picture", json_of(s.hops.picture())},
+                     {"clock_uncertainty", 1e-3 * static_cast<double>(s.hops.uncertainty_ns())}};
   json["tasks"] = Json::array();
   for (const TaskRecord& task : s.tasks) json["tasks"].push_back(Json::parse(to_json(task)));
   json["topics"] = Json::object();
@@ -75,6 +79,20 @@ void print_table(const LogSummary& s) {
   }
 }
 
+void print_hops(const LogSummary& s) {
+  const auto print = [](const char* name, const Histogram& h) {
+    if (h.count() == 0) return;
+    const Percentiles p = percentiles_us(h);
+    fmt::print("{:24} {:10.1f} {:10.1f} {:10.1f} {:10.1f} {:10.1f}\n", name, p.p50, p.p90, p.p99, p.p999, p.max);
+  };
+  if (s.hops.force().count() == 0) return;
+  fmt::print("\n{:24} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "one way [us]", "p50", "p90", "p99", "p99.9", "max");
+  print("tool to force", s.hops.force());
+  print("tool to surface", s.hops.surface());
+  print("tool to picture", s.hops.picture());
+  if (s.hops.uncertainty_ns() > 0) fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(s.hops.uncertainty_ns()));
+}
+
 void print_tasks(const LogSummary& s) {
   for (const TaskRecord& task : s.tasks) fmt::print("\ntask of catheter {} in run {:016x}\n{}", task.body, task.run, task_text(task));
 }
@@ -94,6 +112,7 @@ void print_text(const LogSummary& s, const std::string& file) {
   if (!s.damage_text.empty()) fmt::print("{}\n", s.damage_text);
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
   print_table(s);
+  print_hops(s);
   print_tasks(s);
 }
 

@@ -60,6 +60,7 @@ class Summariser {
       if constexpr (requires { message.publish_ns; }) t.to_publish.record(message.publish_ns - sense);
     }
     learn(message);
+    summary_.hops.add(message);
   }
 
   void keep(const TaskRecord& task) {

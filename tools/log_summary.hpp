@@ -6,6 +6,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/realtime/histogram.hpp"
+#include "tools/latency/hop_times.hpp"
 
 namespace palpate {
 
@@ -32,6 +33,7 @@ struct LogSummary {
   std::uint64_t bytes = 0;
   std::uint64_t unknown = 0;                   ///< events of topics that this program does not know
   std::map<std::string, TopicSummary> topics;  ///< those with samples
+  HopTimes hops;
   std::vector<TaskRecord> tasks;  ///< the last one of each catheter and run, in order of appearance
   std::vector<LogDamage> damage;
   std::string damage_text;

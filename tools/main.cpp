@@ -12,10 +12,13 @@ int main(int argc, char** argv) {
   palpate::add_run_command(app);
   palpate::add_record_command(app);
   palpate::add_info_command(app);
+  palpate::add_export_command(app);
+  palpate::add_latency_command(app);
   palpate::add_replay_command(app);
   palpate::add_solve_command(app);
   palpate::add_stability_command(app);
   palpate::add_study_command(app);
+  palpate::add_top_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "common/bus/fields.hpp"
 #include "idl/topics.hpp"
@@ -16,8 +17,9 @@ class Writer {
   virtual ~Writer() = default;
   /// Never waits for a reader. False if the sample was not sent: it is invalid or the buffers are full.
   virtual bool write(const Message& message) = 0;
-  virtual int readers() const = 0;  ///< matched readers; over DDS one that was killed counts for a minute
+  virtual int readers() const = 0;  ///< matched readers; over DDS one that was killed counts for two minutes
   virtual std::uint64_t refused() const = 0;  ///< samples for which write() was false
+  virtual bool delivered() const = 0;  ///< no reader that asks for repair still lacks something that was written
 };
 
 /// Receives samples of one topic, oldest first within a key. Samples that fail `valid` are dropped and
@@ -48,6 +50,9 @@ class Bus {
   virtual std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep = Keep::latest) = 0;
   PALPATE_MESSAGES(PALPATE_BUS_PORTS)
 #undef PALPATE_BUS_PORTS
+
+  /// Where it meets others, for a sentence: "domain 3 on eth0 (192.0.2.1)".
+  virtual std::string place() const = 0;
 
   /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be
   /// something.

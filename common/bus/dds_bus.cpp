@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/bus/dds_convert.hpp"
+#include "common/bus/stamp.hpp"
 #include "common/bus/validate.hpp"
 
 namespace palpate {
@@ -109,11 +110,15 @@ QosPtr writer_qos(const Qos& qos, int lease_ms) {
 
 /// A reader that keeps all stops accepting after a while; the writer then drops its oldest samples, not its
 /// pace.
+/// One that wants the latest of a stream does not ask for what was lost on the way: it would wait for old samples to be
+/// repeated, behind which newer ones queue.
 QosPtr reader_qos(const Qos& qos, Keep keep) {
   constexpr int most_kept = 16384;
   QosPtr q = common_qos(qos);
   if (keep == Keep::latest) {
     dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, 1);
+    const bool stream = qos.depth > 1 && !qos.transient_local;
+    if (stream) dds_qset_reliability(q.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
   } else {
     dds_qset_history(q.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
     dds_qset_resource_limits(q.get(), most_kept, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
@@ -134,6 +139,7 @@ class DdsWriter final : public Writer<M> {
     typename dds::Generated<M>::Type sample{};
     if (valid(message)) {
       fields(dds::Lend{}, message, sample);
+      stamp(sample);
       if (dds_write(writer_, &sample) == DDS_RETCODE_OK) return true;
     }
     ++refused_;
@@ -147,6 +153,7 @@ class DdsWriter final : public Writer<M> {
   }
 
   std::uint64_t refused() const override { return refused_; }
+  bool delivered() const override { return dds_wait_for_acks(writer_, 0) == DDS_RETCODE_OK; }
 
  private:
   Entity topic_, writer_;
@@ -202,6 +209,7 @@ class DdsBus final : public Bus {
  public:
   explicit DdsBus(const BusSettings& settings)
       : lease_ms_(settings.lease_ms),
+        place_(dds_place(settings)),
         domain_(join_domain(settings)),
         participant_(dds_create_participant(static_cast<dds_domainid_t>(settings.domain), nullptr, nullptr),
                      fmt::format("joining domain {}", settings.domain)),
@@ -217,12 +225,15 @@ class DdsBus final : public Bus {
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
 
+  std::string place() const override { return place_; }
+
   bool wait(std::chrono::nanoseconds timeout) override {
     return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;
   }
 
  private:
   int lease_ms_;
+  std::string place_;
   std::shared_ptr<Domain> domain_;
   Entity participant_, waitset_;
 };

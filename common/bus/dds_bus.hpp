@@ -20,6 +20,9 @@ struct BusSettings {
 /// receiver's kernel. Throws std::runtime_error in one sentence for a bad domain, interface or peer name.
 std::string dds_configuration(const BusSettings& settings);
 
+/// Where these settings meet others, in words: domain, interface and address, first UDP port, and who is asked for others.
+std::string dds_place(const BusSettings& settings);
+
 /// Joins the network. Several buses of one process may share a domain if their settings are the same.
 /// Throws std::runtime_error in one sentence.
 std::unique_ptr<Bus> make_dds_bus(const BusSettings& settings);

@@ -1,5 +1,6 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <ifaddrs.h>
 
 #include <algorithm>
@@ -41,10 +42,11 @@ std::string address_of(const std::string& interface) {
   return found;
 }
 
-/// The two parts that differ between loopback and a real network.
+/// What differs between loopback and a real network.
 struct Parts {
   std::string general;
   std::string peers;
+  std::string internal{};
 };
 
 std::string peer_list(const std::vector<std::string>& peers) {
@@ -63,6 +65,8 @@ Parts loopback_network(const BusSettings& settings) {
       peer_list(peers)};
 }
 
+/// With a receiving thread per socket the middleware ends by sending to itself, and a node would never end once its
+/// interface is gone: one thread receives for all.
 Parts real_network(const BusSettings& settings) {
   const std::string own = address_of(settings.interface);
   if (own.empty() && !is_address(settings.interface))
@@ -77,10 +81,17 @@ Parts real_network(const BusSettings& settings) {
                       "address=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>"
                       "<MaxMessageSize>1400B</MaxMessageSize><FragmentSize>1300B</FragmentSize></General>",
                       own, settings.peers.empty() ? "true" : "false"),
-          peer_list(peers)};
+          peer_list(peers), "<MultipleReceiveThreads>false</MultipleReceiveThreads>"};
 }
 
 }  // namespace
+
+std::string dds_place(const BusSettings& settings) {
+  const bool loopback = settings.interface.empty();
+  const std::string interface = loopback ? "this host alone" : fmt::format("{} ({})", settings.interface, address_of(settings.interface));
+  const std::string asked = settings.peers.empty() ? (loopback ? "" : ", asking by multicast") : fmt::format(", asking {}", fmt::join(settings.peers, ", "));
+  return fmt::format("domain {} on {}, UDP ports from {}{}", settings.domain, interface, 7400 + 250 * settings.domain, asked);
+}
 
 std::string dds_configuration(const BusSettings& settings) {
   if (settings.domain < 0 || settings.domain > 230)
@@ -89,20 +100,23 @@ std::string dds_configuration(const BusSettings& settings) {
   for (const std::string& peer : settings.peers) check_name("a peer", peer);
 
   const Parts parts = settings.interface.empty() ? loopback_network(settings) : real_network(settings);
-  // A participant that falls silent is kept for 60 s so that a cut cable costs no history; its death is known
-  // earlier by the liveliness lease. Frequent heartbeats repair a lost datagram within milliseconds. The high
-  // watermark lies above what any keep-last writer holds, so that such a writer is never throttled.
+  // A participant that falls silent is kept for two minutes so that a cut cable costs neither history nor the time to
+  // find each other again; after a longer cut that takes up to two seconds. Its death is known earlier by the
+  // liveliness lease. Frequent heartbeats repair a lost datagram within milliseconds. The high
+  // watermark lies above what any keep-last writer holds, so that such a writer is never throttled. A reader of a
+  // stream forgets samples that lack a fragment once a newer one is complete; after as many of them in a row as it may
+  // put together at once it would take nothing more, so that this number is large.
   return fmt::format(
       "<CycloneDDS><Domain Id=\"any\">{}"
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</"
       "MaxAutoParticipantIndex>"
-      "<LeaseDuration>60 s</LeaseDuration>{}</Discovery>"
-      "<Internal><HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"50 ms\">5 ms</HeartbeatInterval>"
-      "<MaxSampleSize>64 MB</MaxSampleSize>"
+      "<LeaseDuration>120 s</LeaseDuration><SPDPInterval>2 s</SPDPInterval>{}</Discovery>"
+      "<Internal>{}<HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"50 ms\">5 ms</HeartbeatInterval>"
+      "<MaxSampleSize>64 MB</MaxSampleSize><DefragReliableMaxSamples>2048</DefragReliableMaxSamples>"
       "<Watermarks><WhcLow>1 MB</WhcLow><WhcHigh>128 MB</WhcHigh><WhcHighInit>128 MB</WhcHighInit>"
       "<WhcAdaptive>false</WhcAdaptive></Watermarks></Internal>"
       "</Domain></CycloneDDS>",
-      parts.general, parts.peers);
+      parts.general, parts.peers, parts.internal);
 }
 
 }  // namespace palpate

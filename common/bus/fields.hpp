@@ -32,36 +32,40 @@
 #define PALPATE_MESSAGES(X) \
   X(ToolState)              \
   X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) \
-  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord)
+  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord) \
+  X(ClockProbe) X(ClockAnswer) X(PictureState)
 
 namespace palpate {
 
 PALPATE_FIELDS(NodalForce, body, node, force)
 PALPATE_FIELDS(HeldContact, body, nodes, weights, offset, normal, force, sample, sticking)
 PALPATE_FIELDS(ToolState, tool, run, seq, step, sense_ns, device_seq, yaw, pitch, depth, roll, grip, opening, pedal,
-               local_model_run, local_model_seq)
-PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, pedal)
-PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts)
-PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, energy, flags)
+               local_model_run, local_model_seq, publish_ns)
+PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, pedal, publish_ns)
+PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts, publish_ns)
+PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, energy, flags, publish_ns)
 PALPATE_FIELDS(SurfaceState, body, run, seq, step, sense_ns, publish_ns, position, normal)
 PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_hash, version, rate_hz, ticks,
-               missed, latency_p50_us, latency_p99_us, text)
-PALPATE_FIELDS(HapticKeyframe, run, seq, step, dt, code_path, state)
-PALPATE_FIELDS(SceneText, run, seq, scene_hash, text, version, code_path)
-PALPATE_FIELDS(TopologyChange, body, run, seq, tick, cause, removed)
+               missed, latency_p50_us, latency_p99_us, clock_of, clock_offset_ns, clock_uncertainty_ns, clock_drift_ppm, text)
+PALPATE_FIELDS(ClockProbe, node, seq, publish_ns)
+PALPATE_FIELDS(ClockAnswer, node, clock_of, host, seq, probe_ns, receive_ns, publish_ns)
+PALPATE_FIELDS(PictureState, node, run, seq, step, sense_ns, publish_ns)
+PALPATE_FIELDS(HapticKeyframe, run, seq, step, dt, code_path, state, publish_ns)
+PALPATE_FIELDS(SceneText, run, seq, scene_hash, text, version, code_path, publish_ns)
+PALPATE_FIELDS(TopologyChange, body, run, seq, tick, cause, removed, publish_ns)
 PALPATE_FIELDS(LocalContact, body, grasped, position, normal, force, stiffness)
 PALPATE_FIELDS(LocalNode, body, node, position, velocity, stiffness)
 PALPATE_FIELDS(LocalTriangle, a, b, c)
 PALPATE_FIELDS(LocalContactModel, tool, run, seq, tick, tool_run, tool_step, sense_ns, yaw, pitch, depth, roll, grip,
-               contacts, nodes, triangles)
+               contacts, nodes, triangles, publish_ns)
 PALPATE_FIELDS(ConsumedStep, tool, run, step)
-PALPATE_FIELDS(DeformStep, run, seq, tick, consumed, hash)
-PALPATE_FIELDS(DeformKeyframe, run, seq, tick, dt, code_path, state)
+PALPATE_FIELDS(DeformStep, run, seq, tick, consumed, hash, publish_ns)
+PALPATE_FIELDS(DeformKeyframe, run, seq, tick, dt, code_path, state, publish_ns)
 PALPATE_FIELDS(ShellForce, node, force)
-PALPATE_FIELDS(ModalState, body, run, seq, step, sense_ns, coordinates, forces)
-PALPATE_FIELDS(CatheterState, body, run, seq, step, sense_ns, position)
+PALPATE_FIELDS(ModalState, body, run, seq, step, sense_ns, coordinates, forces, publish_ns)
+PALPATE_FIELDS(CatheterState, body, run, seq, step, sense_ns, position, publish_ns)
 PALPATE_FIELDS(TaskRecord, body, run, seq, step, sense_ns, inserted, deepest, inserting_s, largest_force, wall_contacts,
-               grasps, drops, held_s)
+               grasps, drops, held_s, publish_ns)
 
 /// True for the structs listed above.
 template <class M>

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "common/bus/key.hpp"
+#include "common/bus/stamp.hpp"
 #include "common/bus/validate.hpp"
 
 namespace palpate {
@@ -88,8 +89,10 @@ class MemoryWriter final : public Writer<M> {
       ++refused_;
       return false;
     }
-    for (Queue<M>* queue : channel_.queues) deliver(*queue, message);
-    if (qos_.transient_local) keep_for_late_joiners(message);
+    M sent = message;
+    stamp(sent);
+    for (Queue<M>* queue : channel_.queues) deliver(*queue, sent);
+    if (qos_.transient_local) keep_for_late_joiners(sent);
     return true;
   }
 
@@ -98,6 +101,7 @@ class MemoryWriter final : public Writer<M> {
     return static_cast<int>(channel_.queues.size());
   }
   std::uint64_t refused() const override { return refused_; }
+  bool delivered() const override { return true; }
 
  private:
   void keep_for_late_joiners(const M& message) {
@@ -164,6 +168,8 @@ class MemoryBus final : public Bus {
   }
   PALPATE_MESSAGES(PALPATE_MEMORY_PORTS)
 #undef PALPATE_MEMORY_PORTS
+
+  std::string place() const override { return "this process"; }
 
   bool wait(std::chrono::nanoseconds timeout) override {
     std::unique_lock lock(network_->mutex);

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// The messages that cross the bus, as plain values. idl/palpate.idl holds the same fields for DDS; the two are
-/// kept in step by a test. Times are CLOCK_MONOTONIC nanoseconds of the host that wrote them.
+/// kept in step by a test. Times are CLOCK_MONOTONIC nanoseconds of the host that wrote them, sense_ns of the haptic node.
 namespace palpate {
 
 /// One haptic step's input: the degrees of freedom of one tool, as the step consumed them.
@@ -24,6 +24,7 @@ struct ToolState {
   double pedal = 0;              ///< [1] 1 while the tool's pedal is down
   std::uint64_t local_model_run = 0;  ///< run and seq of the LocalContactModel that this step used for this tool;
   std::uint64_t local_model_seq = 0;  ///< 0: none
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// A driver elsewhere publishes this for a tool whose device is "bus".
@@ -32,6 +33,7 @@ struct DeviceState {
   std::uint64_t seq = 0;
   std::int64_t sense_ns = 0;
   double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0, pedal = 0;  ///< as in ToolState
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Linear force on the tissue at one surface node.
@@ -63,6 +65,7 @@ struct ContactState {
   std::array<double, 3> press{};      ///< unit, world: common direction of this tool's press on the tissue
   std::vector<NodalForce> forces;     ///< f of u = C f, summed over the tool's contacts
   std::vector<HeldContact> contacts;
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Force and torque on the tool at its tip, world frame, after correction and safety chain.
@@ -78,6 +81,7 @@ struct ForceState {
   std::array<double, 3> trocar{};  ///< [N] of the trocar on the shaft
   double energy = 0;               ///< [J] that all tools together have put into the tissue; negative: taken out
   std::uint32_t flags = 0;         ///< bits of ForceFlag
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 /// `stale_model`: the force of moving tissue fades or is gone, because its local contact model comes too late.
 /// `passivity_limited`: damped, since the tools would take more energy out of the tissue than they put in.
@@ -109,7 +113,39 @@ struct NodeStatus {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   double latency_p50_us = 0, latency_p99_us = 0;  ///< haptic: step time; deform, render: sense to here
+  std::string clock_of;                 ///< node whose clock the next three are about; empty: none known
+  std::int64_t clock_offset_ns = 0;     ///< to add to this node's clock for that node's
+  std::int64_t clock_uncertainty_ns = 0;  ///< the true offset is within so much of it
+  double clock_drift_ppm = 0;           ///< by which that node's clock runs faster
   std::string text;          ///< plain sentence for the operator, empty if all is well
+};
+
+/// Asks the haptic node for its clock.
+struct ClockProbe {
+  std::string node;             ///< key: who asks
+  std::uint64_t seq = 0;        ///< from 1
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+};
+
+/// The haptic node's answer to a ClockProbe.
+struct ClockAnswer {
+  std::string node;             ///< key: who asked
+  std::string clock_of;         ///< node that answers
+  std::string host;             ///< boot of its machine: on the same one all nodes have one clock
+  std::uint64_t seq = 0;        ///< of the probe
+  std::int64_t probe_ns = 0;    ///< publish_ns of the probe, on the asker's clock
+  std::int64_t receive_ns = 0;  ///< when the probe came
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+};
+
+/// A picture is done.
+struct PictureState {
+  std::string node;             ///< key: the render node
+  std::uint64_t run = 0;        ///< of the haptic loop whose state is shown; 0: rest shape
+  std::uint64_t seq = 0;        ///< from 1
+  std::uint64_t step = 0;       ///< newest haptic step in it
+  std::int64_t sense_ns = 0;    ///< sense time of that step
+  std::int64_t publish_ns = 0;  ///< when the picture was done
 };
 
 /// State of the haptic loop, from which a replay can start.
@@ -120,6 +156,7 @@ struct HapticKeyframe {
   double dt = 0;                   ///< [s] nominal period
   std::string code_path;           ///< vector width and software version
   std::vector<std::uint8_t> state;
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// The resolved scene of a running haptic node, for recorders and observers that have no scene file.
@@ -130,6 +167,7 @@ struct SceneText {
   std::string text;       ///< TOML, every default written out
   std::string version;    ///< software version
   std::string code_path;  ///< vector width and libraries of the haptic step
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Tetrahedra that a body has lost: one cut or tear, or a part that fell away. Messages are numbered from 1 without gaps, so that a node knows
@@ -141,6 +179,7 @@ struct TopologyChange {
   std::uint64_t tick = 0;   ///< of the deform node, after which they are gone
   std::uint32_t cause = 0;  ///< a RemovalCause
   std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal, those that followed included
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 enum RemovalCause : std::uint32_t { cut = 0, torn = 1, fell_away = 2 };
 
@@ -181,6 +220,7 @@ struct LocalContactModel {
   std::vector<LocalContact> contacts;
   std::vector<LocalNode> nodes;
   std::vector<LocalTriangle> triangles;
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// The newest step of one tool that a tick of the deform node consumed.
@@ -197,6 +237,7 @@ struct DeformStep {
   std::uint64_t tick = 0;
   std::vector<ConsumedStep> consumed;  ///< at most one per tool
   std::uint64_t hash = 0;  ///< of the state after the tick
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// State of the deform node's moving tissue, from which a replay can start.
@@ -207,6 +248,7 @@ struct DeformKeyframe {
   double dt = 0;           ///< [s] nominal period of a tick
   std::string code_path;   ///< vector width and software version
   std::vector<std::uint8_t> state;
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Force of tools and catheters on a modal body at one surface node.
@@ -225,6 +267,7 @@ struct ModalState {
   std::int64_t sense_ns = 0;
   std::vector<double> coordinates;  ///< [kg^1/2 m] per mode: X - Omega^-2 Phi^T f
   std::vector<ShellForce> forces;   ///< f, at most one per node
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Where a catheter is.
@@ -235,6 +278,7 @@ struct CatheterState {
   std::uint64_t step = 0;
   std::int64_t sense_ns = 0;
   std::vector<double> position;  ///< [m] x,y,z per particle, world, from tail to tip
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// How the task of leading a catheter into a duct goes: what a trainer tells the trainee.
@@ -252,6 +296,7 @@ struct TaskRecord {
   std::uint64_t grasps = 0;  ///< how often jaws took the catheter
   std::uint64_t drops = 0;   ///< how often it slipped out of the jaws
   double held_s = 0;         ///< [s] that jaws have held it
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 }  // namespace palpate

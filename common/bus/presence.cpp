@@ -38,6 +38,13 @@ void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t misse
   status_.latency_p50_us = p50_us;
   status_.latency_p99_us = p99_us;
   status_.text = text;
+  if (clock_ && clock_->known()) {
+    const ClockOffset::Estimate clock = clock_->estimate();
+    status_.clock_of = clock_->of();
+    status_.clock_offset_ns = clock.offset_ns;
+    status_.clock_uncertainty_ns = clock.uncertainty_ns;
+    status_.clock_drift_ppm = 1e6 * clock.drift;
+  }
   writer_->write(status_);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/clock_link.hpp"
 
 namespace palpate {
 
@@ -16,6 +17,8 @@ class Presence {
   Presence(Bus& bus, std::string role, std::uint64_t run, std::string scene_hash, std::string archive_hash);
 
   const std::string& node() const { return status_.node; }
+  /// Whose estimate goes out with what is announced; nullptr, as at first: none.
+  void set_clock(const ClockFollower* clock) { clock_ = clock; }
 
   /// Publishes what has been measured; call about once a second and when `text` changes.
   void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us, const std::string& text = "");
@@ -36,6 +39,7 @@ class Presence {
   std::unique_ptr<Writer<NodeStatus>> writer_;
   std::unique_ptr<Reader<NodeStatus>> reader_;
   NodeStatus status_;
+  const ClockFollower* clock_ = nullptr;
   std::map<std::string, NodeStatus> peers_;
 };
 

@@ -59,6 +59,15 @@ inline bool sizes_fit(const SurfaceState& m) {
 inline bool sizes_fit(const NodeStatus& m) {
   return !m.node.empty() && m.text.size() <= Limits::text_bytes;
 }
+inline bool sizes_fit(const ClockProbe& m) {
+  return !m.node.empty() && m.seq > 0;
+}
+inline bool sizes_fit(const ClockAnswer& m) {
+  return !m.node.empty() && m.seq > 0;
+}
+inline bool sizes_fit(const PictureState& m) {
+  return !m.node.empty() && m.seq > 0;
+}
 inline bool sizes_fit(const HapticKeyframe& m) {
   return m.dt > 0 && m.state.size() <= Limits::keyframe_bytes;
 }

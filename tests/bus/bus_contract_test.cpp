@@ -80,6 +80,9 @@ TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
   expect_round_trip(topics::catheter_state, catheter_sample());
   expect_round_trip(topics::catheter_state, catheter_sample(1024));
   expect_round_trip(topics::task_record, task_sample());
+  expect_round_trip(topics::clock_probe, probe_sample());
+  expect_round_trip(topics::clock_answer, answer_sample());
+  expect_round_trip(topics::picture_state, picture_sample());
 }
 
 TEST_P(BusContract, ALateReaderGetsEveryChangeOfTopologyInOrder) {

@@ -33,6 +33,9 @@ void for_each_message(F&& f) {
   f(modal_sample(0, 0));
   f(catheter_sample());
   f(task_sample());
+  f(probe_sample());
+  f(answer_sample());
+  f(picture_sample());
 }
 
 TEST(Codec, DecodingGivesBackEveryMessage) {
@@ -70,7 +73,7 @@ TEST(Codec, ACountBeyondTheTextAllocatesNothing) {
   LocalContactModel model;
   Bytes longer;
   encode(model, longer);
-  std::fill(longer.end() - 4, longer.end(), 0xFF);
+  std::fill(longer.end() - 12, longer.end() - 8, 0xFF);  // the last sequence's count, before publish_ns
   LocalContactModel model_back;
   EXPECT_FALSE(decode(longer, model_back));
   EXPECT_EQ(model_back.triangles.capacity(), 0u);
@@ -78,8 +81,8 @@ TEST(Codec, ACountBeyondTheTextAllocatesNothing) {
 
 TEST(Codec, NumbersAreLittleEndianAndUnpadded) {
   Bytes bytes;
-  encode(DeviceState{0x01020304, 5, 6, 0, 0, 0, 0, 1.0, 0}, bytes);
-  ASSERT_EQ(bytes.size(), 4u + 8 + 8 + 6 * 8);
+  encode(DeviceState{0x01020304, 5, 6, 0, 0, 0, 0, 1.0, 0, 0}, bytes);
+  ASSERT_EQ(bytes.size(), 4u + 8 + 8 + 6 * 8 + 8);
   EXPECT_EQ(bytes[0], 4);
   EXPECT_EQ(bytes[3], 1);
   EXPECT_EQ(bytes[4], 5);
@@ -89,7 +92,7 @@ TEST(Codec, NumbersAreLittleEndianAndUnpadded) {
 
 TEST(Codec, TheSchemaSpellsOutFieldsAndTopics) {
   EXPECT_EQ(schema_line<NodalForce>(), "NodalForce: body u32, node u32, force f64[3]\n");
-  EXPECT_NE(schema_text().find("forces NodalForce[], contacts HeldContact[]\n"), std::string::npos);
+  EXPECT_NE(schema_text().find("forces NodalForce[], contacts HeldContact[], publish_ns i64\n"), std::string::npos);
   EXPECT_NE(schema_text().find("topic palpate/held_contacts ContactState\n"), std::string::npos);
 }
 
@@ -117,8 +120,8 @@ TEST(Print, ATaskRecordIsTwoLinesForTheTrainee) {
 
 TEST(Print, CsvHasAsManyCellsAsColumns) {
   EXPECT_EQ(csv_header<ForceState>(),
-            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,trocar_2,energy,flags");
-  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.04,7,-8,9,0.25,5");
+            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,trocar_2,energy,flags,publish_ns");
+  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.04,7,-8,9,0.25,5,7");
   NodeStatus status;
   status.node = "a \"b\", c";
   EXPECT_EQ(csv_row(status).substr(0, 13), "\"a \"\"b\"\", c\",");

@@ -121,7 +121,7 @@ TEST_F(NodesTest, TheSurfaceThatARenderNodeReceivesIsTheDirectSolversForTheSameC
     if (contacts == heard.contacts.end() || tool == heard.tools.end() || contacts->second.contacts.empty()) continue;
     const bool all_stick = std::all_of(contacts->second.contacts.begin(), contacts->second.contacts.end(), [](const auto& c) { return c.sticking; });
     const bool softened = heard.forces[step].flags & regularised;
-    if (!all_stick || softened || step % 40 != 0 || compared >= 12) continue;
+    if (!all_stick || softened || step % 8 != 0 || compared >= 12) continue;
     const StaticSolution direct = solve_direct(problem, conditions(scene, archive, tool->second, contacts->second));
     double error = 0, size = 0;
     for (int n = 0; n < archive.surface.size(); ++n) {

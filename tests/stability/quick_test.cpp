@@ -1,14 +1,9 @@
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <stdexcept>
 
-#include "tools/stability/table.hpp"
+#include "tools/stability/case.hpp"
 
 /// The quick subset of the cases, each with the outcome that is expected of it.
 namespace palpate::stability {
@@ -45,37 +40,16 @@ TEST(StabilityCases, TheClosedLoopKeepsToTheReserveWhereTheControllerIsOn) {
   EXPECT_GT(without, 2) << "else the controller had nothing to do";
 }
 
-TEST(StabilityGuard, ACrashAHangAndNonsenseBecomeFailedRows) {
-  const auto row = [](auto run, double limit = 5) { return run_guarded({.name = "a", .parameter = "b", .value = "c", .run = run, .limit = limit}); };
-  EXPECT_EQ(row([]() -> Result { raise(SIGKILL); return {}; }).outcome, "failed");
-  EXPECT_EQ(row([]() -> Result { for (;;) usleep(1000); }, 0.2).outcome, "failed");
-  EXPECT_EQ(row([]() -> Result { return {.max_force = NAN}; }).outcome, "failed");
-  EXPECT_EQ(row([]() -> Result { throw std::logic_error("no"); }).outcome, "failed");
-  const Row refused = row([]() -> Result { throw std::runtime_error("the bound is 3"); });
-  EXPECT_EQ(refused.outcome, "refused");
-  EXPECT_EQ(refused.note, "the bound is 3");
-  const Row good = row([]() -> Result { return {.outcome = Outcome::regularised, .max_force = 1.5, .energy_growth = -2, .note = "a, \"b\""}; });
-  EXPECT_EQ(good.outcome, "regularised");
-  EXPECT_EQ(good.max_force, 1.5);
-  EXPECT_EQ(good.note, "a, \"b\"");
-}
-
-TEST(StabilityTable, AnInterruptedRunGoesOnAndAnotherSubjectBeginsAnew) {
-  const auto folder = std::filesystem::temp_directory_path() / ("stability" + std::to_string(getpid()));
-  const auto counted = [&](double force) {
-    return std::vector<Point>{{.name = "a,b", .parameter = "p", .value = "1", .run = [force] { return Result{.max_force = force, .note = "x, y"}; }},
-                              {.name = "a,b", .parameter = "p", .value = "2", .run = [] { return Result{.outcome = Outcome::failed, .note = {}}; }}};
-  };
-  EXPECT_EQ(run_table(counted(1), folder, "one"), 1);
-  EXPECT_EQ(run_table(counted(2), folder, "one"), 1);
-  auto rows = read_rows(folder / "stability.csv");
-  ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].name, "a,b");
-  EXPECT_EQ(rows[0].note, "x, y");
-  EXPECT_EQ(rows[0].max_force, 1) << "kept";
-  EXPECT_EQ(run_table(counted(2), folder, "two"), 1);
-  EXPECT_EQ(read_rows(folder / "stability.csv")[0].max_force, 2) << "another subject";
-  std::filesystem::remove_all(folder);
+TEST(StabilityCases, MovingTissueGivesTheSameRowEachTime) {
+  int compared = 0;
+  for (const Point& p : loop_points({.quick = true})) {
+    if (!p.name.starts_with("moving tissue")) continue;
+    const Row once = run_guarded(p), again = run_guarded(p);
+    EXPECT_EQ(once.energy_growth, again.energy_growth) << p.name;
+    EXPECT_EQ(once.note, again.note) << p.name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);
 }
 
 // What each quick point is expected to be, where that is not plain `stable`.

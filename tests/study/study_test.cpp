@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <fstream>
-#include <set>
 
-#include "common/mesh/generators.hpp"
-#include "common/mesh/mesh_file.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_generators.hpp"
+#include "tests/study/small_scenes.hpp"
 #include "tools/study/budget.hpp"
 #include "tools/study/modal.hpp"
 #include "tools/study/patches.hpp"
@@ -23,70 +21,12 @@ namespace palpate::study {
 namespace {
 
 using std::filesystem::path;
-
-/// A folder of its own that is gone with the test.
-struct Folder {
-  Folder()
-      : at(path(::testing::TempDir()) /
-           ("study_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    std::filesystem::remove_all(at);
-    std::filesystem::create_directories(at);
-  }
-  ~Folder() { std::filesystem::remove_all(at); }
-  path at;
-};
-
-Scene write_scene(const path& folder, const std::string& body, const std::string& tool) {
-  const path file = folder / "small.toml";
-  std::ofstream(file) << body << tool;
-  return load_scene(file);
-}
-
-const char* const kProbe = R"(
-[[tool]]
-name = "probe"
-pivot = [0, 0, 0.3]
-axis = [0, 0, -1]
-up = [0, 1, 0]
-radius = 0.012
-trajectory = "still.csv"
-[contact]
-friction = 0.2
-)";
-
-void write_trajectory(const path& folder) {
-  std::ofstream(folder / "still.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.1,0,0\n1,0,0,0.1,0,0\n";
-}
-
-/// 60 x 60 x 30 mm in cells of 10 mm, on its bottom.
-Scene block_scene(const path& folder, const std::string& more = "") {
-  write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3}), folder / "block.msh");
-  write_trajectory(folder);
-  return write_scene(
-      folder,
-      "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\n" +
-          more + "[[body.fixed]]\ngroup = \"bottom\"\n",
-      kProbe);
-}
-
-const Row* find(const Result& result, const std::string& method, const std::string& knob,
-                const std::string& value, const std::string& reference) {
-  for (const Row& r : result.rows)
-    if (r.method == method && r.knob == knob && (value.empty() || r.value == value) &&
-        r.reference == reference)
-      return &r;
-  return nullptr;
-}
-
-std::string text_of(const path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using namespace testing;
 
 TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
-  const SolidCase one(scene, 0, false), two(scene, 0, false);
+  const SolidCase one(scene, 0, on_one(scene), false), two(scene, 0, on_one(scene), false);
   ASSERT_EQ(one.presses().patches.size(), 3u);
   EXPECT_EQ(one.presses().radius, 0.012);
   for (std::size_t p = 0; p < 3; ++p) {
@@ -116,6 +56,12 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   EXPECT_GT(as_is->step_us_median, 0);
   EXPECT_LE(as_is->step_us_median, as_is->step_us_p99);
   EXPECT_GT(as_is->memory_bytes, 8.0 * 300 * 300);
+  EXPECT_GT(as_is->offline_s, 0);
+  // Rounded tensors are not quite the same.
+  const Row* single = find(result, "quasi_static", "precision", "single", "fine_linear");
+  ASSERT_TRUE(single);
+  EXPECT_NE(single->err_f_rel, as_is->err_f_rel);
+  EXPECT_NEAR(single->err_f_rel, as_is->err_f_rel, 1e-4);
   // Fewer tensors, the same answer in less memory.
   const Row* few = find(result, "quasi_static", "tensors", "", "fine_linear");
   ASSERT_TRUE(few);
@@ -149,7 +95,7 @@ TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
   const Folder folder;
   Scene scene = block_scene(folder.at);
   scene.bodies[0].material.poisson = 0.499;
-  const auto solid = std::make_shared<SolidCase>(scene, 0, true);
+  const auto solid = std::make_shared<SolidCase>(scene, 0, on_one(scene), true);
   const auto method = make_quasi_static(solid);
   Result as_is, finer;
   for (const Point& point : method->points())
@@ -171,7 +117,7 @@ TEST(Study, TensorsFromQuadraticAndLockingFreeElementsArePressed) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
   const ReferenceCache cache(folder.at / "references");
-  const auto method = make_quasi_static(std::make_shared<SolidCase>(scene, 0, true, cache));
+  const auto method = make_quasi_static(std::make_shared<SolidCase>(scene, 0, on_one(scene), true, cache));
   for (const Offline& offline : {Offline{.element = "p2"}, Offline{.refine = 1, .formulation = "locking_free"}}) {
     const auto apply = [&](Scene& s) { s.bodies[0].offline = offline; };
     const Result result = method->evaluate({"quasi_static", "offline", offline.element, apply, true});
@@ -188,7 +134,7 @@ TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
   const ReferenceCache cache(folder.at / "references");
   int solved = 0;
   const auto say = [&](const std::string&) { ++solved; };
-  SolidCase first(scene, 0, true, cache, say), second(scene, 0, true, cache, say);
+  SolidCase first(scene, 0, on_one(scene), true, cache, say), second(scene, 0, on_one(scene), true, cache, say);
   const double force = first.fine(0)[1].force;
   EXPECT_EQ(solved, 1);
   EXPECT_EQ(second.fine(0)[1].force, force);
@@ -196,7 +142,7 @@ TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
   EXPECT_EQ(solved, 1);
   Scene stiffer = scene;
   stiffer.bodies[0].material.young *= 2;
-  SolidCase other(stiffer, 0, true, cache, say);
+  SolidCase other(stiffer, 0, on_one(stiffer), true, cache, say);
   EXPECT_NEAR(other.fine(0)[1].force, 2 * force, 1e-6 * force);
   EXPECT_EQ(solved, 2);
 }
@@ -221,7 +167,7 @@ TEST(ReferenceCache, ComputesOnceAndAgainWhereTheFileIsDamaged) {
 TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
-  SolidCase solid(scene, 0, true);
+  SolidCase solid(scene, 0, on_one(scene), true);
   const auto& both = solid.nonlinearity(0);
   ASSERT_TRUE(both.gave_up.empty()) << both.gave_up;
   ASSERT_EQ(both.linear.size(), both.neo_hookean.size());
@@ -231,6 +177,15 @@ TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {
   EXPECT_GT(error(0), 0);
   EXPECT_GT(error(both.linear.size() - 1), 1.5 * error(0));
   EXPECT_LT(both.penetration, 2e-3 * solid.presses().radius);
+  // What the law changes on one mesh is what the reference has beyond the fine linear one.
+  const PressAnswers reference = solid.neo_hookean();
+  ASSERT_EQ(reference[0].size(), both.linear.size());
+  for (std::size_t d = 0; d < both.linear.size(); ++d) {
+    const PressAnswer &law = reference[0][d], &fine = solid.fine(0)[d];
+    EXPECT_NEAR(law.force - fine.force, both.neo_hookean[d].force - both.linear[d].force, 1e-9 * fine.force);
+    for (std::size_t n = 0; n < fine.displacement.size(); n += 7)
+      EXPECT_NEAR((law.displacement[n] - fine.displacement[n] - both.neo_hookean[d].displacement[n] + both.linear[d].displacement[n]).norm(), 0, 1e-12);
+  }
 }
 
 TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {

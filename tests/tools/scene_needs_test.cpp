@@ -89,7 +89,7 @@ Names open_files(pid_t pid) {
 /// What a scene's sections ask for.
 struct Needs {
   Names programs{"haptic_node"};
-  Names topics{"tool_state", "contact_state", "force_state", "haptic_keyframe", "scene", "node_status"};
+  Names topics{"tool_state", "contact_state", "force_state", "haptic_keyframe", "scene", "node_status", "clock_probe", "clock_answer"};
   int haptic_threads = 2;  ///< the loop, and what writes to the network
 
   explicit Needs(const Scene& scene) {
@@ -97,7 +97,7 @@ struct Needs {
     const bool moving = any(is_dynamic), on_bus = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
     const bool shell = any([](const Body& b) { return b.shell.has_value(); }), catheter = any([](const Body& b) { return b.catheter.has_value(); });
     const auto add = [](Names& to, Names names) { to.merge(names); };
-    if (scene.render) add(programs, {"render_node"});
+    if (scene.render) add(programs, {"render_node"}), add(topics, {"picture_state"});
     if (moving) add(programs, {"deform_node"});
     if (scene.record) add(programs, {"palpate"});
     if (scene.render || moving) add(topics, {"held_contacts"});

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
 
 namespace palpate::stability {
 namespace {
@@ -26,6 +27,8 @@ Result checked(const Point& point) {
     Result r = point.run();
     if (std::isfinite(r.max_force) && std::isfinite(r.energy_growth)) return r;
     return {.outcome = Outcome::failed, .note = "not a number; " + r.note};
+  } catch (const std::system_error& error) {  // no file, no thread: that is no refusal
+    return {.outcome = Outcome::failed, .note = error.what()};
   } catch (const std::runtime_error& refusal) {
     return {.outcome = Outcome::refused, .note = refusal.what()};
   } catch (const std::exception& error) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,7 +26,8 @@ struct Result {
   std::string note;
 };
 
-/// One value of one parameter. `run` throws std::runtime_error for what the product refuses; what else it throws is a failure.
+/// One value of one parameter. `run` throws std::runtime_error for what the product refuses; what else it throws, the
+/// system's own errors among it, is a failure.
 struct Point {
   std::string name, parameter, value;
   std::function<Result()> run;
@@ -42,6 +44,9 @@ struct Row {
 struct Extent {
   bool quick = false;
 };
+
+/// The larger of two; not a number as soon as one of them is none.
+inline double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 
 /// Runs a point in a child process, so that a crash or hang becomes the outcome `failed`. The calling process must have no
 /// threads at work.

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
-#include "common/catheter/catheter_body.hpp"
-#include "tools/stability/case.hpp"
+#include "tools/stability/catheter_bench.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -25,27 +25,6 @@ CatheterSettings settings(double young, const std::string& integrator, double da
   return s;
 }
 
-/// What happened to a catheter, tick by tick.
-class CatheterWatch {
- public:
-  void look(const CatheterBody& body) {
-    for (const CatheterToolForce& f : body.tool_forces()) force_ = std::max(force_, f.force.allFinite() ? f.force.norm() : NAN);
-    for (const Vector3d& x : body.positions()) {
-      finite_ &= x.allFinite();
-      reach_ = std::max(reach_, x.norm());
-    }
-  }
-  Result result(double growth) const {
-    Result r{.max_force = force_, .energy_growth = growth, .note = fmt::format("energy is the catheter's own; reach {:.3g} m", reach_)};
-    if (!finite_ || reach_ > 10) r.outcome = Outcome::failed;
-    return r;
-  }
-
- private:
-  double force_ = 0, reach_ = 0;
-  bool finite_ = true;
-};
-
 /// Takes the middle by a jaw, swings it to and fro, lets go, falls.
 Result swing(const CatheterSettings& s, int ticks) {
   CatheterBody body(s, nullptr);
@@ -60,29 +39,50 @@ Result swing(const CatheterSettings& s, int ticks) {
     if (i == ticks / 2) body.let_go(0);
     body.step({}, jaw);
     watch.look(body);
-    (i < 3 * ticks / 4 ? early : late) = std::max(i < 3 * ticks / 4 ? early : late, body.energy());
+    double& most = i < 3 * ticks / 4 ? early : late;
+    most = larger(most, body.energy());
   }
-  return watch.result(std::max(0.0, late - early));
+  return watch.result(larger(late - early, 0));
 }
 
-Result many_grasps(int grasps) {
-  CatheterBody body(settings(3e7, "implicit"), nullptr);
+/// Grasps wherever chance has it: alone, or half led into a duct, drawn to and fro.
+Result many_grasps(int grasps, bool in_duct) {
+  std::optional<Duct> duct;
+  CatheterSettings s = settings(3e7, "implicit");
+  if (in_duct) {
+    duct.emplace();
+    s.shape.tail = {0, 0, -0.08};
+    s.shape.tip = {0, 0, 0.02};
+    s.shape.inside = "duct";
+    s.shape.damping = 100;
+  }
+  CatheterBody body(s, duct ? &duct->wall() : nullptr);
   CatheterWatch watch;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
   std::array<Eigen::Isometry3d, 2> jaws{Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
+  double deepest = 0, wall_energy = 0;
+  long touches = 0;
   for (int g = 0; g < grasps; ++g) {
     const int tool = g % 2;
-    jaws[tool].translation() = body.positions()[10 + random() % 30] + 1e-3 * Vector3d(any(random), any(random), any(random));
+    const Vector3d hand = 2e-3 * Vector3d(any(random), any(random), 2 * any(random));  // a few millimetres, mostly along it
+    jaws[tool].translation() = body.positions()[10 + random() % 18] + 1e-3 * Vector3d(any(random), any(random), any(random));
     body.grasp(tool, jaws[tool], body.nearest(jaws[tool].translation()), 0.004 * (g % 3), 1e-4);
     for (int i = 0; i < 3; ++i) {
-      jaws[tool].translation() += 2e-4 * Vector3d(any(random), any(random), any(random));
-      body.step({}, jaws);
+      jaws[tool].translation() += 0.1 * hand;
+      duct ? duct->tick(body, jaws) : body.step({}, jaws);
       watch.look(body);
+      touches += body.wall_contacts();
+      deepest = larger(deepest, body.inserted());
+      if (duct) wall_energy = larger(wall_energy, duct->energy());
     }
     if (random() % 4) body.let_go(tool);
   }
-  return watch.result(0);
+  Result r = watch.result(0);
+  if (!duct) return r;
+  r.note += fmt::format("; {} touches of the wall, {:.3g} mm led in at most, {:.3g} mJ in the wall at most", touches, 1e3 * deepest, 1e3 * wall_energy);
+  if (!(wall_energy < 1)) r.outcome = Outcome::failed;
+  return r;
 }
 
 }  // namespace
@@ -103,7 +103,8 @@ std::vector<Point> catheter_points(const Extent& extent) {
                         }});
   }
   const int grasps = extent.quick ? 1000 : 100000;
-  points.push_back({"grasps", "number", std::to_string(grasps), [=] { return many_grasps(grasps); }, 600});
+  for (const bool in_duct : {false, true})
+    points.push_back({in_duct ? "grasps in a duct" : "grasps", "number", std::to_string(grasps), [=] { return many_grasps(grasps, in_duct); }, 600});
   return points;
 }
 

@@ -2,13 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 
-#include "common/tensors/ensure_archive.hpp"
 #include "tools/commands.hpp"
+#include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
+#include "tools/study/run_script.hpp"
 
 namespace palpate {
 namespace {
@@ -19,23 +20,14 @@ struct Options {
 };
 
 void run(const Options& o) {
-  std::vector<stability::Point> points;
-  std::string subject = "the general cases";
-  if (o.scene.empty()) {
-    points = stability::all_points({.quick = o.quick});
-  } else {
-    const Scene scene = load_scene(o.scene);
-    subject = scene_hash(scene);
-    points = stability::scene_points(scene, {.quick = o.quick});
-  }
-  std::erase_if(points, [&](const stability::Point& p) { return p.name.find(o.only) == std::string::npos; });
-  const int failed = stability::run_table(points, o.folder, fmt::format("{} of {}", subject, PALPATE_VERSION));
-  const std::string script = PALPATE_SOURCE_DIR "/scripts/stability_page.py";
-  const std::string arguments = fmt::format("'{}' '{}'", script, o.folder);
-  const auto paged = [&](const char* python) { return std::system(fmt::format("{} {} 2>/dev/null", python, arguments).c_str()) == 0; };
-  if (!paged("python3") && !paged("/usr/bin/python3"))
-    fmt::print(stderr, "stability: no page was made (python3 with matplotlib is missing); the table is in {}/stability.csv\n", o.folder);
-  if (failed > 0) throw std::runtime_error(fmt::format("{} of {} points failed; see {}/stability.csv", failed, points.size(), o.folder));
+  std::optional<Scene> scene;
+  if (!o.scene.empty()) scene = load_scene(o.scene);
+  const stability::Extent extent{.quick = o.quick};
+  const auto points = scene ? stability::scene_points(*scene, extent) : stability::all_points(extent);
+  const int failed = stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.only);
+  const std::string missing = run_script("stability_page.py", o.folder);
+  if (!missing.empty()) fmt::print(stderr, "stability: {}\n", missing);
+  if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
 }
 
 }  // namespace

@@ -36,11 +36,11 @@ Result pluck(const Scene& scene, double step, int count) {
   first = model->energy();
   for (int i = 0; i < count; ++i) {
     model->step(step);
-    last = std::max(last, model->energy());
+    last = larger(last, model->energy());
   }
-  for (int n = 0; n < model->nodes(); ++n) strongest = std::max(strongest, model->elastic_force(n).norm());
+  for (int n = 0; n < model->nodes(); ++n) strongest = larger(strongest, model->elastic_force(n).norm());
   Result r{.max_force = strongest, .energy_growth = last - first, .note = fmt::format("bound {:.3g} s; energy is the tissue's own, {:.3g} J at first", bound, first)};
-  if (!std::isfinite(last) || last > 20 * first) r.outcome = Outcome::failed;
+  if (!(last <= 20 * first)) r.outcome = Outcome::failed;
   return r;
 }
 
@@ -102,7 +102,7 @@ std::vector<Point> cut_points(const Extent& extent) {
                           for (int i = 0; i < 20; ++i) tissue->step(step);
                           for (int n = 0; n < tissue->nodes(); ++n) {
                             if (tissue->mass(n) > 0) tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
-                            r.max_force = std::max(r.max_force, tissue->elastic_force(n).norm());
+                            r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
                             if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
                           }
                           if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;

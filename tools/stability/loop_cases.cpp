@@ -15,6 +15,7 @@
 #include "deform_node/local_model.hpp"
 #include "tools/stability/organ_bench.hpp"
 #include "tools/stability/press_bench.hpp"
+#include "tools/stability/wait_for_workers.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -180,6 +181,7 @@ LoopEnd touch_tissue(int delay, bool controller) {
     world.take({.run = 1, .step = i, .sense_ns = static_cast<std::int64_t>(i), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = d.roll, .grip = d.grip});
     world.tick();
     models.refresh();
+    wait_for_workers();
     LocalContactModel m;
     m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
     m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;

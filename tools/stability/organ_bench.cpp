@@ -23,17 +23,16 @@ void OrganBench::tick(const Vector3d& p, double pedal, double grip) {
   Vector3d force = Vector3d::Zero();
   for (const TissueContact& c : organ().contacts()) force += c.force;
   for (const Vector3d& x : organ().surface().positions()) {
-    finite_ &= x.allFinite();
-    reach_ = std::max(reach_, x.norm());
+    reach_ = larger(reach_, x.norm());
   }
-  finite_ &= force.allFinite();
-  largest_ = std::max(largest_, force.norm());
-  (step_ <= 200 ? first_energy_ : late_energy_) = std::max(step_ <= 200 ? first_energy_ : late_energy_, organ().model().energy());
+  largest_ = larger(largest_, force.norm());
+  double& most = step_ <= 200 ? first_energy_ : late_energy_;
+  most = larger(most, organ().model().energy());
 }
 
 Result OrganBench::result() const {
-  Result r{.max_force = largest_, .energy_growth = std::max(0.0, late_energy_ - first_energy_), .note = "energy is the tissue's own"};
-  if (!finite_ || reach_ > 1e3) r = {.outcome = Outcome::failed, .note = "the tissue's shape is not a number or runs away"};
+  Result r{.max_force = largest_, .energy_growth = larger(late_energy_ - first_energy_, 0), .note = "energy is the tissue's own"};
+  if (!(reach_ <= 1e3)) r = {.outcome = Outcome::failed, .note = "the tissue's shape is not a number or runs away"};
   return r;
 }
 

@@ -28,7 +28,6 @@ class OrganBench {
   DynamicWorld world_;
   std::uint64_t step_ = 0;
   double largest_ = 0, first_energy_ = 0, late_energy_ = 0, reach_ = 0;
-  bool finite_ = true;
 };
 
 /// A small block of moving tissue, base fixed, under a probe; 5 kPa.

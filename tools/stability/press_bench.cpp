@@ -12,11 +12,11 @@ void Watch::look(const HapticStep& haptic) {
   std::uint32_t flags = 0;
   for (int t = 0; t < haptic.tools(); ++t) {
     flags |= haptic.flags(t);
-    finite_ &= haptic.force(t).allFinite() && haptic.torque(t).allFinite() && std::isfinite(haptic.grip_torque(t));
-    largest_ = std::max(largest_, haptic.force(t).norm());
+    torque_ = larger(torque_, haptic.torque(t).norm());
+    finite_ &= std::isfinite(haptic.grip_torque(t));
+    largest_ = larger(largest_, haptic.force(t).norm());
   }
-  finite_ &= std::isfinite(haptic.energy());
-  least_energy_ = std::min(least_energy_, haptic.energy());
+  most_lost_ = larger(most_lost_, -haptic.energy());
   regularised_ += (flags & regularised) != 0;
   limited_ += (flags & force_limited) != 0;
   slewed_ += (flags & slew_limited) != 0;
@@ -26,7 +26,7 @@ void Watch::look(const HapticStep& haptic) {
 }
 
 Result Watch::result() const {
-  Result r{.max_force = largest_, .energy_growth = -least_energy_, .note = {}};
+  Result r{.max_force = largest_, .energy_growth = most_lost_, .note = {}};
   const auto say = [&](int count, const char* what) {
     if (count == 0) return;
     r.outcome = Outcome::regularised;
@@ -38,7 +38,11 @@ Result Watch::result() const {
   say(damped_, "damped for passivity");
   say(stale_, "faded for want of a model");
   say(faults_, "fault, force ramped to zero,");
-  if (!finite_) r = {.outcome = Outcome::failed, .note = "a force is not a number; " + r.note};
+  if (torque_ > most_torque) {
+    r.outcome = Outcome::failed;
+    r.note += fmt::format("{}torque up to {:.3g} N m", r.note.empty() ? "" : ", ", torque_);
+  }
+  if (!finite_ || !std::isfinite(torque_)) r = {.outcome = Outcome::failed, .note = "a force is not a number; " + r.note};
   return r;
 }
 

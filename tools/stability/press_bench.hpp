@@ -11,6 +11,9 @@ namespace palpate::stability {
 /// Follows a haptic step and says how it went.
 class Watch {
  public:
+  /// [N m] to a hand, beyond which it counts as unbounded: contacts that pull against one another add up to little force.
+  static constexpr double most_torque = 100;
+
   /// Looks at the step that has just been made.
   void look(const HapticStep& haptic);
   /// The outcome so far: regularised as soon as any flag was up.
@@ -18,7 +21,7 @@ class Watch {
   double largest() const { return largest_; }
 
  private:
-  double largest_ = 0, least_energy_ = 0;
+  double largest_ = 0, torque_ = 0, most_lost_ = 0;
   bool finite_ = true;
   int steps_ = 0, regularised_ = 0, limited_ = 0, slewed_ = 0, faults_ = 0, stale_ = 0, damped_ = 0;
 };

@@ -9,7 +9,9 @@
 #include "common/tensors/ensure_archive.hpp"
 #include "deform_node/local_model.hpp"
 #include "haptic_node/device.hpp"
+#include "tools/stability/held_nodes.hpp"
 #include "tools/stability/press_bench.hpp"
+#include "tools/stability/wait_for_workers.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -66,6 +68,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
     }
     world->tick();
     models->refresh();
+    wait_for_workers();
     for (std::size_t t = 0; t < dofs.size(); ++t) {
       const ToolDofs& d = dofs[t];
       LocalContactModel m;
@@ -103,6 +106,43 @@ void change_materials(Scene& scene, Change&& change) {
   }
 }
 
+/// [m] largest extent of a body's surface.
+double extent_of(const SurfaceMap& surface) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : surface.position) box.extend(x);
+  return box.sizes().maxCoeff();
+}
+
+/// Held nodes of the quasi-static bodies, by a hundredth of their size.
+void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>& points) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].model != "quasi_static") continue;
+    for (const int count : extent.quick ? std::vector{1, 64, 512} : std::vector{1, 8, 32, 64, 96, 256, 512})
+      points.push_back({"held nodes", fmt::format("number, of body '{}'", scene.bodies[b].name), std::to_string(count), [=] {
+                          const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
+                          return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface), TouchBody::max_contacts);
+                        }, 600});
+  }
+}
+
+/// The scene's motion with the integrator's step of moving tissue at a share of its bound.
+Result play_at_step(Scene scene, double share) {
+  const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
+  std::string bounds;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (!is_dynamic(scene.bodies[b])) continue;
+    Body& body = scene.bodies[b];
+    body.dynamic.step = 0;
+    const DynamicOrgan organ(archives[b], scene, static_cast<int>(b));
+    const double bound = largest_step(integrator_of(body), organ.model().frequency_bound(), body.dynamic.damping);
+    body.dynamic.step = share * bound;
+    bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, scene.bodies[b].name);
+  }
+  Result r = play(scene, archives, {});
+  r.note += bounds;
+  return r;
+}
+
 }  // namespace
 
 std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
@@ -131,10 +171,9 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
   for (double nu : extent.quick ? std::vector{0.49999} : std::vector{0.0, 0.499, 0.49999})
     add("poisson [1]", fmt::format("{:g}", nu), {}, [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
   if (std::ranges::any_of(scene.bodies, is_dynamic))
-    for (double step : extent.quick ? std::vector{1e-2} : std::vector{1e-5, 1e-3, 1e-2})
-      add("step of moving tissue [s]", fmt::format("{:g}", step), {}, [step](Scene& s) {
-        for (Body& body : s.bodies) body.dynamic.step = step;
-      });
+    for (double share : extent.quick ? std::vector{1.5} : std::vector{0.1, 0.5, 0.999, 1.001, 1.5, 10.0})
+      points.push_back({"scene", "step of moving tissue / bound [1]", fmt::format("{:g}", share), [=] { return play_at_step(scene, share); }, 600});
+  add_held_nodes(scene, extent, points);
   return points;
 }
 

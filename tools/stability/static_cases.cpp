@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "common/contact/held_points.hpp"
 #include "common/mesh/quality.hpp"
+#include "tools/stability/held_nodes.hpp"
 #include "tools/stability/press_bench.hpp"
 
 namespace palpate::stability {
@@ -85,40 +85,7 @@ std::vector<Point> hold_points(const Extent& extent) {
   const auto add = [&](const std::string& how, int count) {
     points.push_back({"held_nodes", how, std::to_string(count), [how, count] {
                         const TetMesh mesh = block_mesh(1, how == "spread" && count > 100 ? 16 : 8);
-                        const Archive archive = precompute(block_scene().bodies[0], mesh);
-                        const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
-                        HeldPoints held(compliance, 512);
-                        const int touchable = archive.surface.touchable;
-                        int added = 0;
-                        for (int i = 0; i < count; ++i) {
-                          const int node = how == "spread" ? i : how == "collinear" ? i % 9 : 0;
-                          if (node >= touchable) break;
-                          bool fixed = false;
-                          for (const bool f : archive.surface.fixed[node]) fixed |= f;
-                          if (fixed) continue;
-                          Anchor anchor;
-                          anchor.nodes = {node, (node + 1) % touchable, node};
-                          const double shift = how == "adjacent" ? 1e-9 * i : 0;
-                          anchor.weights = Vector3d(1 - shift, shift, 0);
-                          held.add(anchor);
-                          ++added;
-                        }
-                        std::vector<Hold> hold(added, Hold::all);
-                        std::vector<Vector3d> normal(added, Vector3d::UnitZ()), target(added, Vector3d(0, 0, -0.001));
-                        if (how == "contradictory")
-                          for (int i = 1; i < added; i += 2) target[i].z() = 0.001;
-                        std::vector<double> forces(3 * static_cast<std::size_t>(added), 0.0);
-                        const int raised = held.solve(hold, normal, target, forces.data());
-                        Result r;
-                        for (const double f : forces) r.max_force = std::isfinite(f) ? std::max(r.max_force, std::abs(f)) : NAN;
-                        std::vector<double> moved(forces.size());
-                        held.displacements(forces.data(), moved.data());
-                        double miss = 0;
-                        for (int i = 0; i < added; ++i) miss = std::max(miss, (Eigen::Map<Vector3d>(moved.data() + 3 * i) - target[i]).norm());
-                        if (raised > 0) r.outcome = Outcome::regularised;
-                        r.note = fmt::format("{} held points, {} pivots raised, a point misses its place by {:.2g} of the press at most; force is a point's", added,
-                                             raised, miss / 0.001);
-                        return r;
+                        return hold_nodes(precompute(block_scene().bodies[0], mesh), how, count, 0.001, 512);
                       }});
   };
   for (int n : extent.quick ? std::vector{1, 64} : std::vector{1, 8, 64, 256, 512}) add("spread", n);

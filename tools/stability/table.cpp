@@ -6,6 +6,11 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <optional>
+#include <stdexcept>
+
+#include "common/fem/dense.hpp"
+#include "tools/study/output_folder.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -36,6 +41,18 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
+/// Whole or as it was: written beside and renamed.
+void write_rows(const std::vector<std::optional<Row>>& rows, const std::filesystem::path& file) {
+  const std::filesystem::path beside = file.string() + ".part";
+  std::ofstream out(beside);
+  out << heading << "\n";
+  for (const auto& row : rows)
+    if (row) out << line_of(*row);
+  if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", beside.string()));
+  out.close();
+  std::filesystem::rename(beside, file);
+}
+
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -52,8 +69,8 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
   std::getline(in, line);
   while (std::getline(in, line)) {
     const auto f = fields_of(line);
-    if (f.size() != 7) continue;  // a line that was cut off by an interruption
     try {
+      if (f.size() != 7) throw std::invalid_argument("columns");
       rows.push_back({f[0], f[1], f[2], f[3], std::stod(f[4]), std::stod(f[5]), f[6]});
     } catch (const std::exception&) {
       throw std::runtime_error(fmt::format("{}: a line is no row of this table: {}", file.string(), line));
@@ -62,26 +79,30 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
-int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject) {
-  std::filesystem::create_directories(folder);
+int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject, const std::string& only) {
+  if (std::ranges::none_of(points, [&](const Point& p) { return p.name.find(only) != std::string::npos; }))
+    throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", only));
   const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
+  prepare_folder(folder, csv.filename(), heading);
   std::vector<Row> before;
   if (text_of(mark) == subject) before = read_rows(csv);
   std::ofstream(mark) << subject << "\n";
-  std::ofstream out(csv);
-  if (!out) throw std::runtime_error(fmt::format("{} cannot be written", csv.string()));
-  out << heading << "\n";
+  set_linear_algebra_threads(1);  // as the nodes have it; threads that spin would only slow the others down
+  std::vector<std::optional<Row>> rows;
+  for (const Point& p : points) {
+    const auto kept = std::ranges::find_if(before, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
+    rows.push_back(kept == before.end() ? std::nullopt : std::optional(*kept));
+  }
   int failed = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point& p = points[i];
-    const auto same = [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value && r.outcome != "failed"; };
-    const auto kept = std::ranges::find_if(before, same);
+    if (points[i].name.find(only) == std::string::npos) continue;
     const auto begin = std::chrono::steady_clock::now();
-    const Row row = kept != before.end() ? *kept : run_guarded(p);
+    if (!rows[i] || rows[i]->outcome == "failed") rows[i] = run_guarded(points[i]);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    failed += row.outcome == "failed";
-    out << line_of(row) << std::flush;
-    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", i + 1, points.size(), row.name, row.parameter, row.value, row.outcome, seconds, row.note);
+    failed += rows[i]->outcome == "failed";
+    write_rows(rows, csv);
+    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", i + 1, points.size(), rows[i]->name, rows[i]->parameter, rows[i]->value, rows[i]->outcome,
+               seconds, rows[i]->note);
   }
   return failed;
 }

@@ -17,17 +17,17 @@ struct Offer {
 
 bool counts(const std::string& reference) {
   return reference == "fine_linear" || reference.starts_with("all_modes") ||
-         reference.starts_with("finest_chain");
+         reference.starts_with("finest_");
 }
 
-/// A point's worst error over the references that count; none without a figure.
+/// A point's worst error over the references that count; none without all figures.
 std::optional<Offer> offer_of(const Point& point, const Result& result) {
   Offer offer{point, 0, -1};
   for (const Row& row : result.rows) {
     const bool same = row.method == point.method && row.knob == point.knob && row.value == point.value;
-    if (!same || !counts(row.reference) || !std::isfinite(row.step_us_p99) || !std::isfinite(row.err_u_rel))
-      continue;
-    offer.p99 = 1e-6 * row.step_us_p99;
+    if (!same || !counts(row.reference)) continue;
+    if (!std::isfinite(row.step_us_p99 + row.err_u_rel + row.err_f_rel)) return {};
+    offer.p99 = std::max(offer.p99, 1e-6 * row.step_us_p99);
     offer.error = std::max({offer.error, row.err_u_rel, row.err_f_rel});
   }
   return offer.error < 0 ? std::nullopt : std::optional(offer);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "common/catheter/catheter_body.hpp"
+#include "tools/study/insertion.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/press_errors.hpp"
 
@@ -19,6 +19,7 @@ constexpr double ramp_seconds = 0.1, course_seconds = 0.3, rest_seconds = 3, res
 constexpr double clamp = 0.02;  // of its length, held at the tail by three points
 constexpr double stiff = 1e-6;  // [m/N] of the grasps
 constexpr int places = 60;      // along its length, where shapes are compared
+constexpr const char* insertion_suffix = " insertion";  // of the method in course.csv
 
 /// What the tip's pull did.
 struct Pulled {
@@ -76,15 +77,10 @@ class Rig {
 
  private:
   static CatheterSettings settings(const Scene& scene, int body, double tick, double damping) {
-    const Body& of = scene.bodies[body];
-    CatheterSettings s;
-    s.shape = *of.catheter;
+    CatheterSettings s = catheter_settings(scene, body, tick);
     s.shape.sleeve = 0;
     s.shape.gravity.setZero();
     s.shape.damping = damping;
-    s.young = of.material.young;
-    s.density = of.material.density;
-    s.step = tick;
     return s;
   }
 
@@ -114,7 +110,9 @@ class CatheterMethod : public Method {
       : scene_(scene),
         body_(body),
         quick_(quick),
-        name_(scene.bodies.size() == 1 ? "catheter" : fmt::format("{}:catheter", scene.bodies[body].name)) {}
+        name_(scene.bodies.size() == 1 ? "catheter" : fmt::format("{}:catheter", scene.bodies[body].name)) {
+    if (!shape(scene).inside.empty()) insertion_.emplace(scene, body);
+  }
   int body() const override { return body_; }
 
   std::vector<Point> points() const override {
@@ -138,10 +136,12 @@ class CatheterMethod : public Method {
       all.push_back({name_, "step", fmt::format("{:.3g} ms", 1e3 / hz),
                      [hz](Scene& s) { s.rates.haptic_hz = hz; }, false});
     }
+    if (insertion_) all.push_back({name_, "insertion reference", "coarser", {}, false});
     return all;
   }
 
   Result evaluate(const Point& point) override {
+    if (!point.apply) return insertion_reference_rest(point);
     Scene scene = scene_;
     point.apply(scene);
     Row row{scene_.file.stem().string(), point.method, point.knob, point.value};
@@ -168,6 +168,7 @@ class CatheterMethod : public Method {
     row.reference = "finest_chain_in_time";
     add_course(row, Rig(scene, body_, tick, shape(scene).damping).course(interval()), course_, interval(),
                result);
+    if (insertion_) add_insertion(row, scene, tick, result);
     return result;
   }
 
@@ -185,10 +186,48 @@ class CatheterMethod : public Method {
     reference_ = Rig(scene, body_, 4 * tick, rest_damping).rest();
   }
 
+  /// Depth and force on the wall over time; the step's time is then that of the catheter in the duct.
+  void add_insertion(Row row, const Scene& scene, double tick, Result& result) {
+    std::vector<double> seconds;
+    const auto course = insertion_->course(scene, tick, interval(), &seconds);
+    const StepTime time = summarise(std::move(seconds));
+    row.step_us_median = 1e6 * time.median;
+    row.step_us_p99 = 1e6 * time.p99;
+    row.reference = "finest_insertion";
+    const auto first = result.courses.size();
+    add_course(row, course, insertion_course(), interval(), result);
+    for (auto i = first; i < result.courses.size(); ++i) result.courses[i].method += insertion_suffix;
+  }
+
+  const std::vector<std::array<double, 2>>& insertion_course() {
+    if (insertion_course_.empty()) insertion_course_ = finer_insertion(quick_ ? 3 : 4);
+    return insertion_course_;
+  }
+
+  /// So many times the particles, in ticks smaller by twice as much.
+  std::vector<std::array<double, 2>> finer_insertion(int times) const {
+    Scene scene = scene_;
+    Catheter& fine = *scene.bodies[body_].catheter;
+    fine.particles = times * (fine.particles - 1) + 1;
+    fine.integrator = "implicit";
+    return insertion_->course(scene, interval() / (2 * times), interval());
+  }
+
+  Result insertion_reference_rest(const Point& point) {
+    Result result;
+    Row row{scene_.file.stem().string(), point.method, point.knob, point.value};
+    row.reference = "finest_insertion";
+    add_course(row, finer_insertion(2), insertion_course(), interval(), result);
+    result.courses.clear();
+    return result;
+  }
+
   const Scene& scene_;
   int body_;
   bool quick_;
   std::string name_;
+  std::optional<Insertion> insertion_;
+  std::vector<std::array<double, 2>> insertion_course_;
   std::optional<Pulled> reference_;
   std::vector<std::array<double, 2>> course_;
 };

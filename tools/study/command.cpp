@@ -5,7 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/study/growth.hpp"
-#include "tools/study/page.hpp"
+#include "tools/study/run_script.hpp"
 #include "tools/study/study.hpp"
 
 namespace palpate {
@@ -39,6 +39,23 @@ void say(const std::string& line) {
   std::fflush(stdout);
 }
 
+void make_page(const std::filesystem::path& folder) {
+  const std::string missing = run_script("study_page.py", folder);
+  say(missing.empty() ? (folder / "index.html").string() : missing);
+}
+
+/// All of them before the first is studied. Throws std::runtime_error where two would share a folder.
+std::vector<Scene> load_scenes(const std::vector<std::string>& files) {
+  std::vector<Scene> scenes;
+  for (const std::string& file : files) {
+    scenes.push_back(load_scene(file));
+    for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
+      if (scenes[i].file.stem() == scenes.back().file.stem())
+        throw std::runtime_error(fmt::format("study: two scenes are called {}", scenes.back().file.stem().string()));
+  }
+  return scenes;
+}
+
 void run(const Arguments& arguments) {
   study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = say};
   if (!arguments.budget.empty()) options.budget = seconds_of(arguments.budget);
@@ -47,18 +64,13 @@ void run(const Arguments& arguments) {
   if (arguments.scenes.empty() && !arguments.growth)
     throw std::runtime_error("study: name a scene, or ask for --growth");
   if (several) options.references = out / "references";
-  for (const std::string& file : arguments.scenes) {
-    const Scene scene = load_scene(file);
+  for (const Scene& scene : load_scenes(arguments.scenes)) {
     const auto folder = several ? out / scene.file.stem() : out;
     study::run_study(scene, folder, options);
-    study::describe_machine(folder);
-    const std::string missing = study::make_page(folder);
-    say(missing.empty() ? fmt::format("{}", (folder / "index.html").string()) : missing);
+    make_page(folder);
   }
   if (arguments.growth) study::measure_growth(out, arguments.quick, say);
-  if (!several && !arguments.growth) return;
-  const std::string missing = study::make_page(out);
-  say(missing.empty() ? fmt::format("{}", (out / "index.html").string()) : missing);
+  if (several) make_page(out);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ class Dynamic : public Method {
                        become(body);
                        change(body);
                      },
-                     serves && is_dynamic(solid_->body())});
+                     serves && is_dynamic(solid_->body()) && (own_ || !solid_->has_two_meshes())});
     };
     const Body& of = solid_->body();
     add(own_ ? "scene" : "model", own_ ? "as it is" : model_, true, [](Body&) {});
@@ -56,14 +56,14 @@ class Dynamic : public Method {
     if (model_ != "spring_mass")
       add("corotational", turning ? "off" : "on", true,
           [turning](Body& body) { body.dynamic.corotational = !turning; });
-    if (!own_) return all;
+    if (!own_ && solid_->quick()) return all;
     const std::string integrator = of.dynamic.integrator == "rk4" ? "semi_implicit" : "rk4";
     add("integrator", integrator, true,
         [integrator](Body& body) { body.dynamic.integrator = integrator, body.dynamic.step = 0; });
     const std::string precision = of.dynamic.precision == "single" ? "double" : "single";
     add("precision", precision, true, [precision](Body& body) { body.dynamic.precision = precision; });
     for (const int parts : {1, 2, 4, 8}) {
-      if (solid_->quick() && parts != 1 && parts != 4) continue;
+      if ((solid_->quick() || !own_) && parts != 1 && parts != 4) continue;
       const double step = 0.9 * bound() / parts;
       add("step", fmt::format("{:.4g} s", step), true, [step](Body& body) { body.dynamic.step = step; });
     }
@@ -75,12 +75,11 @@ class Dynamic : public Method {
         add("dynamic share",
             fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.size()) /
                                         static_cast<double>(solid_->mesh().tetrahedra.size())),
-            layers > 0, [part](Body& body) {
+            layers > 0 && !solid_->has_two_meshes(), [part](Body& body) {
               body.hybrid->regions = {Selector{.indices = part, .box = {}, .group = {}}};
-              body.hybrid->mesh.clear();
             });
       }
-    if (model_ != "hybrid") {
+    if (model_ != "hybrid" && own_) {
       if (!solid_->quick()) all.push_back({name_, "resolution", "edges x 0.6", {}, false});
       all.push_back({name_, "cut", "a slot", {}, false});
     }
@@ -107,8 +106,6 @@ class Dynamic : public Method {
   }
 
   Ready prepare(const Scene& scene) const {
-    if (scene.bodies[body()].hybrid && !scene.bodies[body()].hybrid->mesh.empty())
-      throw std::runtime_error("a hybrid whose tensor-mass part has a mesh of its own is not studied");
     return prepare(scene.bodies[body()], solid_->mesh());
   }
 

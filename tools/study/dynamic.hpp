@@ -6,7 +6,8 @@ namespace palpate::study {
 
 /// Moving tissue of one model (tensor_mass | spring_mass | hybrid) pressed in the deformation node's organ:
 /// integrator, step, precision, turning elements, resolution, share of a hybrid's dynamic elements; rest
-/// after a cut. A body that has another model in its scene gets the model alone, and turning elements.
+/// after a cut. A body that has another model in its scene is neither cut nor refined, and in quick mode gets the model
+/// alone, and turning elements.
 std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const std::string& model);
 
 /// A body on a finer mesh of the same shape, everything that names its nodes and elements named anew.

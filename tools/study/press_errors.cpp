@@ -1,9 +1,20 @@
 #include "tools/study/press_errors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace palpate::study {
+namespace {
+
+/// An answer that is no number would else leave an empty cell, as if it had not been asked for.
+void require_number(double value, const char* what) {
+  if (!std::isfinite(value)) throw std::runtime_error(fmt::format("{} does not stay a number", what));
+}
+
+}  // namespace
 
 double course_depth(double time, double ramp, double radius) {
   const double s = std::min(1.0, time / ramp);
@@ -27,9 +38,12 @@ void PressErrors::add(const Row& cost, const PressAnswers& ours, const PressAnsw
   for (std::size_t p = 0; p < ours.size(); ++p)
     for (std::size_t d = 0; d < std::min(ours[p].size(), reference[p].size()); ++d) {
       const PressAnswer &mine = ours[p][d], &theirs = reference[p][d];
+      require_number(mine.force, "the force of a press");
       if (theirs.force == 0) continue;  // so shallow that the reference itself has no contact yet
       const double of_u = of_field(mine.displacement, theirs.displacement),
                    of_f = mine.force / theirs.force - 1;
+      require_number(of_u, "the displacement of a press");
+      require_number(of_f, "the force of a press");
       field += of_u * of_u;
       force += of_f * of_f;
       ++count;
@@ -48,6 +62,7 @@ void add_course(Row row, const std::vector<std::array<double, 2>>& ours,
   std::array<double, 2> difference{0, 0}, size{0, 0};
   for (std::size_t i = 0; i < ours.size(); ++i) {
     for (int k = 0; k < 2; ++k) {
+      require_number(ours[i][k] - reference[i][k], "the course over time");
       difference[k] += std::pow(ours[i][k] - reference[i][k], 2);
       size[k] += std::pow(reference[i][k], 2);
     }

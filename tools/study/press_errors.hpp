@@ -23,7 +23,7 @@ class PressErrors {
   double of_field(const std::vector<Eigen::Vector3d>& u, const std::vector<Eigen::Vector3d>& reference) const;
   /// Adds a row with the root mean squares of the relative errors over patches and depths, and a row per
   /// press; `cost` has everything but errors and reference. Depths that the reference lacks, or without force
-  /// in it, are left out.
+  /// in it, are left out. Throws std::runtime_error where a press gives no number.
   void add(const Row& cost, const PressAnswers& ours, const PressAnswers& reference, const std::string& name,
            Result& result) const;
 
@@ -37,7 +37,7 @@ class PressErrors {
 double course_depth(double time, double ramp, double radius);
 
 /// Root mean square differences against root mean squares of two courses of (force, displacement); fills in
-/// the row's errors, and a line of course.csv per `step` [s].
+/// the row's errors, and a line of course.csv per `step` [s]. Throws std::runtime_error where a moment has no number.
 void add_course(Row row, const std::vector<std::array<double, 2>>& ours,
                 const std::vector<std::array<double, 2>>& reference, double step, Result& result);
 

@@ -7,10 +7,12 @@
 #include <stdexcept>
 
 namespace palpate::study {
-namespace {
 
 const char* const study_head =
     "scene,method,knob,value,step_us_median,step_us_p99,offline_s,memory_bytes,err_u_rel,err_f_rel,reference";
+
+namespace {
+
 const char* const depth_head =
     "scene,method,knob,value,patch,depth_m,depth_per_radius,force_N,reference_force_N,err_u_rel,err_f_rel,"
     "reference";

@@ -8,6 +8,8 @@ namespace palpate::study {
 
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
 
+extern const char* const study_head;  ///< first line of study.csv
+
 /// One line of study.csv: what one setting of one knob of a method costs and how wrong it is, everything else
 /// being as the scene has it.
 struct Row {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/mesh/mesh_file.hpp"
 #include "common/tensors/content_hash.hpp"
 #include "common/tensors/precompute.hpp"
 #include "tools/study/measure.hpp"
@@ -31,15 +30,26 @@ void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   for (const Eigen::Vector3d& u : answer.displacement) numbers.insert(numbers.end(), u.begin(), u.end());
 }
 
+/// Empty unless the body has a second mesh.
+std::string second_mesh(const Body& body) {
+  return body.hybrid && !body.hybrid->mesh.empty() ? content_hash(body) : "";
+}
+
+Scene with_body(Scene scene, int index, Body body) {
+  scene.bodies[index] = std::move(body);
+  return scene;
+}
+
 }  // namespace
 
-SolidCase::SolidCase(const Scene& scene, int body, bool quick, ReferenceCache cache, Say say)
-    : scene_(scene),
+SolidCase::SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache, Say say)
+    : second_mesh_(second_mesh(scene.bodies[body])),
+      scene_(with_body(scene, body, std::move(whole.body))),
       body_(body),
       quick_(quick),
       cache_(std::move(cache)),
       say_(std::move(say)),
-      problem_(make_static_problem(this->body(), load_tet_mesh(this->body().mesh, this->body().scale))),
+      problem_(make_static_problem(this->body(), std::move(whole.mesh))),
       surface_(make_surface_map(this->body(), problem_.mesh, problem_.dofs)),
       errors_(node_areas(surface_), choose_presses(scene, surface_, quick)) {}
 
@@ -104,7 +114,7 @@ std::string SolidCase::key(int patch, const Fineness& fineness) const {
   plain.nonlinear.reset();
   plain.offline.reset();
   const Patch& at = presses().patches[patch];
-  std::string text = fmt::format("{} {} {} {} {}", definitions, content_hash(plain), fineness.edge, fineness.ball,
+  std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge, fineness.ball,
                                  fineness.growth);
   for (const double number : {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2],
                               presses().radius})

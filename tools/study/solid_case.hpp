@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/fem/direct.hpp"
+#include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
 #include "tools/study/reference_cache.hpp"
 #include "tools/study/reference/linear_contact.hpp"
@@ -16,11 +17,13 @@ class SolidCase {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  SolidCase(const Scene& scene, int body, bool quick, ReferenceCache cache = {}, Say say = [](const std::string&) {});
+  /// `whole`: the body on one mesh, by which it stands in scene() too.
+  SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache = {}, Say say = [](const std::string&) {});
 
   const Scene& scene() const { return scene_; }
   int index() const { return body_; }
   const Body& body() const { return scene_.bodies[body_]; }
+  bool has_two_meshes() const { return !second_mesh_.empty(); }  ///< in the scene's files
   bool quick() const { return quick_; }
   const TetMesh& mesh() const { return problem_.mesh; }
   const StaticProblem& problem() const { return problem_; }
@@ -75,7 +78,8 @@ class SolidCase {
   std::string key(int patch, const Fineness& fineness) const;
   std::vector<PressAnswer> read_answers(const double*& at, std::size_t count) const;
 
-  const Scene& scene_;
+  const std::string second_mesh_;  // content hash with it; empty unless a hybrid has one
+  Scene scene_;
   int body_;
   bool quick_;
   ReferenceCache cache_;

@@ -22,6 +22,9 @@ std::string first_line(const std::filesystem::path& file) {
 
 Store::Store(const std::filesystem::path& folder, const std::string& key) : folder_(folder / "points") {
   if (first_line(folder_ / "key") == key) return;
+  if (std::filesystem::exists(folder_) && !std::filesystem::exists(folder_ / "key"))
+    throw std::runtime_error(fmt::format("{}: not made by a study, so it stays; name another folder", folder_.string()));
+  new_ = true;
   std::filesystem::remove_all(folder_);
   std::filesystem::create_directories(folder_);
   std::ofstream out(folder_ / "key");
@@ -54,7 +57,11 @@ std::string study_key(const Scene& scene, bool quick) {
   constexpr int definitions = 3;  // changes with every change of what the figures mean
   std::string key =
       fmt::format("{} {} {} {}", PALPATE_VERSION, definitions, quick ? "quick" : "whole", scene_hash(scene));
-  for (const Body& body : scene.bodies) key += " " + content_hash(body);
+  for (const Body& body : scene.bodies) {
+    key += " " + content_hash(body);
+    if (body.catheter && !body.catheter->inside.empty()) key += " with insertion";
+    if (body.hybrid && !body.hybrid->mesh.empty()) key += " on one mesh";
+  }
   return key;
 }
 

@@ -10,13 +10,30 @@
 #include "tools/study/budget.hpp"
 #include "tools/study/catheter.hpp"
 #include "tools/study/dynamic.hpp"
+#include "tools/study/machine.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/modal.hpp"
+#include "tools/study/output_folder.hpp"
 #include "tools/study/quasi_static.hpp"
 #include "tools/study/store.hpp"
 
 namespace palpate::study {
 namespace {
+
+/// A hybrid body whose two meshes meet at some nodes only: see on_one_mesh().
+class JoinedAtNodes : public Method {
+ public:
+  JoinedAtNodes(int body, std::string name) : body_(body), name_(std::move(name)) {}
+  int body() const override { return body_; }
+  std::vector<Point> points() const override { return {{name_, "connection", "at some nodes", {}, false}}; }
+  Result evaluate(const Point&) override {
+    throw std::runtime_error("the two meshes meet at some nodes only, and there is no converged solution to compare with: not assessed");
+  }
+
+ private:
+  int body_;
+  std::string name_;
+};
 
 void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods& methods) {
   const bool quick = options.quick;
@@ -29,7 +46,12 @@ void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods
     methods.push_back(make_modal(scene, b, quick));
     return;
   }
-  auto solid = std::make_shared<SolidCase>(scene, b, quick, ReferenceCache(options.references), options.say);
+  auto whole = on_one_mesh(body);
+  if (!whole) {
+    methods.push_back(std::make_unique<JoinedAtNodes>(b, scene.bodies.size() == 1 ? "hybrid" : body.name + ":hybrid"));
+    return;
+  }
+  auto solid = std::make_shared<SolidCase>(scene, b, *std::move(whole), quick, ReferenceCache(options.references), options.say);
   methods.push_back(make_quasi_static(solid));
   methods.push_back(make_linearity(solid));
   std::vector<std::string> models{"tensor_mass", "spring_mass"};
@@ -83,9 +105,10 @@ Methods make_methods(const Scene& scene, const StudyOptions& options) {
 }
 
 Result run_study(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options) {
-  std::filesystem::create_directories(folder);
+  prepare_folder(folder, "study.csv", study_head);
   set_linear_algebra_threads(1);  // offline times then do not depend on who else computes, and nothing spins
   const Store store(folder, study_key(scene, options.quick));
+  if (store.is_new()) std::filesystem::remove(folder / "machine.txt");
   StudyOptions here = options;
   if (here.references.empty()) here.references = folder / "references";
   const Methods methods = make_methods(scene, here);
@@ -93,10 +116,12 @@ Result run_study(const Scene& scene, const std::filesystem::path& folder, const 
   for (const auto& method : methods)
     for (const Point& point : method->points()) all.emplace_back(method.get(), point);
   Result result;
+  bool described = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& [method, point] = all[i];
     const auto begin = std::chrono::steady_clock::now();
     const auto found = store.find(point);
+    if (!found && !described) describe_machine(folder), described = true;
     const Result one = found ? *found : evaluate(scene, *method, point);
     if (!found) store.keep(point, one);
     append(result, one);

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus/presence.hpp"
+
+namespace palpate {
+
+/// Tells the operator what the link does: which nodes have fallen silent and which are back, and, in a node that is
+/// alone, where it listens.
+class LinkWatch {
+ public:
+  static constexpr std::int64_t silent_after_ns = 2'500'000'000;  ///< each node announces itself once a second
+  static constexpr std::int64_t alone_after_ns = 5'000'000'000;
+
+  explicit LinkWatch(const Bus& bus) : place_(bus.place()) {}
+
+  /// Sentences about what has changed. Call a few times a second, after Presence::watch().
+  std::vector<std::string> look(const Presence& presence, std::int64_t now_ns);
+  /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever was.
+  std::string silence(const std::string& role, std::int64_t now_ns) const;
+
+ private:
+  struct Heard {
+    std::string role;
+    std::uint64_t seq = 0;
+    std::int64_t last_ns = 0;
+    bool silent = false;
+  };
+  std::string place_;
+  std::map<std::string, Heard> heard_;  ///< by node
+  std::int64_t company_ns_ = 0;         ///< when another node was there, or this one began
+  bool said_alone_ = false;
+};
+
+}  // namespace palpate

@@ -1,0 +1,70 @@
+// Moving tissue lives in the deformation node, so that its force crosses the link.
+#include <csignal>
+
+#include "tests/network/network_test.hpp"
+
+namespace palpate::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The tool rests deep in moving tissue.
+struct TissueScene : CutScene {
+  explicit TissueScene(const std::string& name) : CutScene(name) {
+    replace("\ncautery = { radius = 0.009 }", "");
+    write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n0.8,0.05,0.02,0.197,0,0\n600,0.05,0.02,0.197,0,0\n");
+  }
+};
+
+class TissueOverRelay : public NodesTest<TissueScene, TwoHosts::Link::relay> {
+ protected:
+  bool stale() const { return (observer_->force.flags & stale_model) != 0; }
+  bool fresh_within(std::chrono::milliseconds limit) {
+    return observer_->listen(limit, [&] { return !stale() && observer_->force.force[2] > 0; });
+  }
+};
+
+TEST_F(TissueOverRelay, ItsForceFadesInACutAndComesBackWithoutAJump) {
+  ChildProcess deform = nodes_->on_b("deform_node");
+  ChildProcess haptic = nodes_->on_a("haptic_node");
+  ASSERT_TRUE(joined());
+  observer_->listen(1500ms);
+  const double force = observer_->force.force[2];
+  ASSERT_GT(force, 0.1);
+
+  hosts_->impair("both cut 1");
+  EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; })) << "nothing is felt that nobody computes";
+  hosts_->impair("both cut 0");
+  const std::int64_t back = now_ns();
+  EXPECT_TRUE(fresh_within(5s));
+  fmt::print("force back after {:.1f} ms\n", 1e-6 * static_cast<double>(now_ns() - back));
+  observer_->listen(300ms);
+
+  // The models of the newest steps get through without repair.
+  hosts_->impair("both loss 0.3");
+  observer_->listen(300ms);
+  int stale_steps = 0;
+  for (int i = 0; i < 20; ++i) {
+    observer_->listen(50ms);
+    stale_steps += stale();
+  }
+  EXPECT_LE(stale_steps, 5);
+  hosts_->impair("both clear");
+  EXPECT_TRUE(fresh_within(5s));
+  observer_->listen(500ms);
+
+  const double before = observer_->force.force[2];
+  observer_->largest_jump = 0;
+  kill(deform.pid(), SIGSTOP);
+  EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; }));
+  kill(deform.pid(), SIGCONT);
+  EXPECT_TRUE(fresh_within(5s));
+  observer_->listen(500ms);
+  EXPECT_NEAR(observer_->force.force[2], before, 0.1 * before);
+  EXPECT_LT(observer_->largest_jump, 0.5 * before) << "it fades over several steps";
+  EXPECT_TRUE(observer_->finite);
+  EXPECT_GE(observer_->least_energy, -0.01);
+}
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/study/small_scenes.hpp"
+#include "tools/study/budget.hpp"
+#include "tools/study/press_errors.hpp"
+#include "tools/study/study.hpp"
+
+/// What is no number, not measured here, or someone else's is not passed off as a figure.
+namespace palpate::study {
+namespace {
+
+using namespace testing;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+PressErrors two_nodes() {
+  return {{1, 3}, Presses{.radius = 0.01, .radius_from = {}, .depths = {0.001, 0.002}, .patches = {}}};
+}
+PressAnswer answer(double force, double u) {
+  return {force, {Eigen::Vector3d(u, 0, 0), Eigen::Vector3d(u, 0, 0)}};
+}
+
+TEST(Errors, AreTheRootMeanSquareOfTheRelativeOnesAndKeepTheirSignInEachPress) {
+  Result result;
+  two_nodes().add({}, {{answer(0.9, 0.8), answer(2.6, 2)}}, {{answer(1, 1), answer(2, 2)}}, "r", result);
+  EXPECT_NEAR(result.rows[0].err_f_rel, std::sqrt((0.01 + 0.09) / 2), 1e-12);
+  EXPECT_NEAR(result.rows[0].err_u_rel, 0.2 / std::sqrt(2), 1e-12);
+  EXPECT_NEAR(result.depths[0].err_f_rel, -0.1, 1e-12);
+  EXPECT_NEAR(result.depths[1].err_f_rel, 0.3, 1e-12);
+  Result moving;
+  add_course({}, {{1, 2}, {3, 2}}, {{1, 2}, {1, 4}}, 0.5, moving);
+  EXPECT_NEAR(moving.rows[0].err_f_rel, std::sqrt(4.0 / 2), 1e-12);
+  EXPECT_NEAR(moving.rows[0].err_u_rel, std::sqrt(4.0 / 20), 1e-12);
+  EXPECT_EQ(moving.courses[1].time_s, 1);
+}
+
+TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
+  Result result;
+  const PressAnswers good{{answer(1, 1), answer(2, 2)}};
+  EXPECT_NO_THROW(two_nodes().add({}, good, good, "r", result));
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, 1), answer(nan, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, nan), answer(2, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(nan, 1), answer(2, 2)}}, {{answer(0, 0), answer(2, 2)}}, "r", result),
+               std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {nan, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {3, nan}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+}
+
+TEST(Budget, BuysNothingWhoseForceOrTimeCourseHasNoFigure) {
+  struct One : Method {
+    int body() const override { return 0; }
+    std::vector<Point> points() const override { return {{"m", "k", "v", [](Scene&) {}, true}}; }
+    Result evaluate(const Point&) override { return {}; }
+  };
+  Methods methods;
+  methods.push_back(std::make_unique<One>());
+  const auto buys = [&](double still_force, double moving_force, double still_time, double moving_time) {
+    Result result;
+    result.rows.push_back({"s", "m", "k", "v", 1, still_time, 0, 0, 0.1, still_force, "finest_chain"});
+    result.rows.push_back({"s", "m", "k", "v", 1, moving_time, 0, 0, 0.1, moving_force, "finest_insertion"});
+    return choose(methods, 1, result, 50e-6).has_value();
+  };
+  EXPECT_TRUE(buys(0.1, 0.1, 10, 10));
+  EXPECT_FALSE(buys(nan, 0.1, 10, 10));
+  EXPECT_FALSE(buys(0.1, nan, 10, 10));
+  EXPECT_FALSE(buys(0.1, 0.1, 10, 60)) << "the slower of its steps counts";
+  EXPECT_FALSE(buys(0.1, 0.1, 60, 10));
+}
+
+Scene catheter_scene(const Folder& folder) {
+  write_trajectory(folder.at);
+  return write_scene(folder.at,
+                     "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
+                     "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 10\n",
+                     kProbe);
+}
+
+TEST(Study, AnInterruptedOneGoesOnWithoutLosingARowAndSaysWhichMachineItsFiguresAreOf) {
+  const Folder folder;
+  const Scene scene = catheter_scene(folder);
+  const std::size_t rows = run_study(scene, folder.at / "out", {.quick = true}).rows.size();
+  const std::string table = text_of(folder.at / "out/study.csv"), courses = text_of(folder.at / "out/course.csv");
+  EXPECT_NE(text_of(folder.at / "out/machine.txt").find("cores"), std::string::npos);
+  std::ofstream(folder.at / "out/machine.txt") << "another machine\n";
+  run_study(scene, folder.at / "out", {.quick = true});
+  EXPECT_EQ(text_of(folder.at / "out/machine.txt"), "another machine\n") << "all points were kept";
+  EXPECT_EQ(text_of(folder.at / "out/study.csv"), table);
+  EXPECT_EQ(text_of(folder.at / "out/course.csv"), courses);
+  for (const auto& file : std::filesystem::directory_iterator(folder.at / "out/points"))
+    if (file.path().extension() == ".csv") {
+      std::filesystem::remove(file);
+      break;
+    }
+  EXPECT_EQ(run_study(scene, folder.at / "out", {.quick = true}).rows.size(), rows);
+  const std::string both = text_of(folder.at / "out/machine.txt");
+  EXPECT_TRUE(both.starts_with("another machine\n") && both.find("cores") != std::string::npos) << both;
+}
+
+TEST(Study, FilesThatAreNotItsOwnStay) {
+  const Folder folder;
+  const Scene scene = catheter_scene(folder);
+  std::filesystem::create_directories(folder.at / "a");
+  std::ofstream(folder.at / "a/study.csv") << "my,own,figures\n";
+  EXPECT_THROW(run_study(scene, folder.at / "a", {.quick = true}), std::runtime_error);
+  EXPECT_EQ(text_of(folder.at / "a/study.csv"), "my,own,figures\n");
+  std::filesystem::create_directories(folder.at / "b/points");
+  std::ofstream(folder.at / "b/points/mine.txt") << "precious\n";
+  EXPECT_THROW(run_study(scene, folder.at / "b", {.quick = true}), std::runtime_error);
+  EXPECT_EQ(text_of(folder.at / "b/points/mine.txt"), "precious\n");
+  EXPECT_THROW(run_study(scene, folder.at / "small.toml", {.quick = true}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace palpate::study

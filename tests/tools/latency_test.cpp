@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/tools/program_result.hpp"
+#include "tools/child_process.hpp"
+#include "tools/latency/hop_times.hpp"
+#include "tools/latency/round_trips.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;
+using nlohmann::json;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(HopTimes, AreOnTheHapticNodesClock) {
+  HopTimes hops;
+  NodeStatus deform{.node = "deform 1@there", .role = "deform", .clock_of = "haptic 2@here", .clock_offset_ns = -500 * kMs, .clock_uncertainty_ns = 40'000};
+  NodeStatus render{.node = "render 3@there", .role = "render", .clock_of = "haptic 2@here", .clock_offset_ns = 1000 * kMs, .clock_uncertainty_ns = 90'000};
+  hops.add(deform);
+  hops.add(render);
+  hops.add(ForceState{.sense_ns = 100 * kMs, .publish_ns = 101 * kMs});
+  hops.add(SurfaceState{.body = 0, .run = 7, .step = 1, .sense_ns = 100 * kMs, .publish_ns = 603 * kMs});
+  hops.add(SurfaceState{.body = 0, .run = 7, .step = 1, .sense_ns = 100 * kMs, .publish_ns = 620 * kMs});  // shown anew, nothing new
+  hops.add(SurfaceState{.body = 1, .run = 0, .step = 0, .sense_ns = 0, .publish_ns = 620 * kMs});          // rest shape
+  hops.add(PictureState{.node = "render 3@there", .run = 7, .step = 1, .sense_ns = 1100 * kMs, .publish_ns = 116 * kMs});
+  EXPECT_EQ(hops.force().max(), kMs);
+  EXPECT_EQ(hops.surface().count(), 1u);
+  EXPECT_EQ(hops.surface().max(), 3 * kMs);
+  EXPECT_EQ(hops.picture().max(), 16 * kMs);
+  EXPECT_EQ(hops.uncertainty_ns(), 90'000);
+}
+
+/// A way that comes back at once, but loses every seventh and gives every tenth late.
+class CrookedEcho : public latency::Echo {
+ public:
+  void send(std::uint64_t seq) override {
+    const std::lock_guard lock(mutex_);
+    if (seq % 7 == 0) return;
+    if (seq % 10 == 0) {
+      late_ = seq;
+      return;
+    }
+    waiting_.push_back(seq);
+    if (late_ != 0 && seq > late_) waiting_.push_back(std::exchange(late_, 0));
+  }
+  std::uint64_t receive(std::chrono::nanoseconds) override {
+    std::this_thread::sleep_for(100us);
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return 0;
+    const std::uint64_t seq = waiting_.front();
+    waiting_.erase(waiting_.begin());
+    return seq;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::uint64_t> waiting_;
+  std::uint64_t late_ = 0;
+};
+
+TEST(RoundTrips, CountWhatIsLostAndWhatIsLate) {
+  latency::RoundTrips trips(std::make_unique<CrookedEcho>());
+  for (int i = 0; i < 20; ++i) trips.send();  // 1..20, before the measurement
+  std::this_thread::sleep_for(50ms);
+  trips.begin();
+  for (int i = 0; i < 210; ++i) trips.send();  // 21..230
+  const latency::RoundTripReport report = trips.finish();
+  EXPECT_EQ(report.sent, 210u);
+  EXPECT_EQ(report.lost, 30u + 1u);  // multiples of seven; 230, which nothing follows
+  EXPECT_EQ(report.reordered, 17u);  // multiples of ten that are none of seven: 30..220 without 70, 140 and 210
+  EXPECT_EQ(report.repeated, 0u);
+  EXPECT_GT(report.time.min(), 0);
+  EXPECT_GT(report.jitter_ns, 0);
+}
+
+TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
+  const std::string domain = std::to_string(own_domain());
+  const ProgramResult result = run_program(
+      program("palpate") + " latency --seconds 2 --rate 200 --json --udp-port " + std::to_string(20000 + getpid() % 10000) + " --domain " + domain);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  for (const char* way : {"round_trip_us", "bare_dds_us", "bare_udp_us"}) {
+    EXPECT_GT(report[way]["p50"].get<double>(), 1) << way;
+    EXPECT_LE(report[way]["p50"].get<double>(), report[way]["p99"].get<double>()) << way;
+    EXPECT_LE(report[way]["p999"].get<double>(), report[way]["max"].get<double>()) << way;
+  }
+  EXPECT_NEAR(report["sent"].get<double>(), 400, 60);
+  EXPECT_EQ(report["lost"], 0);
+  EXPECT_TRUE(report["hops_us"].is_null());
+  EXPECT_GT(report["ratio_to_bare_dds"].get<double>(), 0.3);
+}
+
+TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
+  const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string();
+  const OwnFolder folder("latency");
+  const ProgramResult result =
+      run_program(program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() + " --udp-port " +
+                  std::to_string(20000 + getpid() % 10000) + " --domain " + std::to_string(own_domain()));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json hops = json::parse(text_of(folder / "latency.json"))["hops_us"];
+  EXPECT_GT(hops["tool_to_force"]["p50"].get<double>(), 1);
+  EXPECT_GT(hops["tool_to_surface"]["p50"].get<double>(), hops["tool_to_force"]["p50"].get<double>());
+  EXPECT_GT(hops["tool_to_picture"]["p50"].get<double>(), hops["tool_to_surface"]["p50"].get<double>());
+  EXPECT_EQ(hops["clock_uncertainty"], 0);
+}
+
+TEST(ToolsTop, ShowsNodesForcesAndHopsOfARunningSystem) {
+  const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string(), domain = std::to_string(own_domain());
+  ChildProcess simulation("palpate", {program("palpate"), "run", scene, "--seconds", "20", "--domain", domain});
+  ProgramResult look;
+  for (int i = 0; i < 6 && look.out.find("tool to picture") == std::string::npos; ++i)
+    look = run_program(program("palpate") + " top --once --interval 3 --domain " + domain);
+  simulation.interrupt();
+  simulation.wait(10s);
+  EXPECT_EQ(look.status, 0) << look.err;
+  for (const char* words : {"haptic ", "render ", " up ", "the reference", "tool 0   force", "tool to force", "tool to picture"})
+    EXPECT_NE(look.out.find(words), std::string::npos) << words << "\n" << look.out;
+}
+
+TEST(ToolsTop, SaysThatNobodyIsThere) {
+  const ProgramResult look = run_program(program("palpate") + " top --once --interval 0.3 --domain " + std::to_string(own_domain()));
+  EXPECT_EQ(look.status, 0) << look.err;
+  EXPECT_NE(look.out.find("no node is heard of"), std::string::npos) << look.out;
+}
+
+TEST(ToolsLatency, SaysWhatIsMissing) {
+  const std::string palpate = program("palpate") + " latency --domain " + std::to_string(own_domain());
+  expect_refusal(palpate + " nowhere.toml", {"nowhere.toml"});
+  expect_refusal(palpate + " --interface lo", {"--peer"});
+}
+
+}  // namespace
+}  // namespace palpate

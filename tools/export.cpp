@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "common/bus/log_reader.hpp"
+#include "common/bus/print.hpp"
+#include "idl/topics.hpp"
+#include "tools/commands.hpp"
+
+namespace palpate {
+namespace {
+
+struct Options {
+  std::string log, topic, file;
+  bool csv = false, json = false;
+};
+
+/// A file, or the standard output.
+class Output {
+ public:
+  explicit Output(const std::string& file) : name_(file), file_(file.empty() ? stdout : std::fopen(file.c_str(), "w")) {
+    if (!file_) throw std::runtime_error(fmt::format("{}: cannot write", file));
+  }
+  ~Output() {
+    if (file_ != stdout) std::fclose(file_);
+  }
+  Output(const Output&) = delete;
+  void line(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), file_);
+    std::fputc('\n', file_);
+  }
+  void finish() {
+    if (std::fflush(file_) != 0 || std::ferror(file_)) throw std::runtime_error(fmt::format("{}: cannot write", name_.empty() ? "standard output" : name_));
+  }
+
+ private:
+  std::string name_;
+  std::FILE* file_;
+};
+
+template <class M>
+std::uint64_t export_topic(const Options& o, const Topic<M>& topic, LogReader& reader, Output& out) {
+  if (!o.json) out.line("receive_ns," + csv_header<M>());
+  std::uint64_t count = 0;
+  LogEvent event;
+  M message;
+  while (reader.next(event)) {
+    if (!event.read(topic, message)) continue;
+    out.line(o.json ? fmt::format("{{\"receive_ns\":{},\"message\":{}}}", event.receive_ns, to_json(message))
+                    : fmt::format("{},{}", event.receive_ns, csv_row(message)));
+    ++count;
+  }
+  return count;
+}
+
+void run(const Options& o) {
+  const std::string name = o.topic.find('/') == std::string::npos ? "palpate/" + o.topic : o.topic;
+  LogReader reader(o.log);
+  bool known = false;
+  std::string names;
+  topics::for_each([&](const auto& topic) {
+    names += fmt::format(" {}", std::string(topic.name).substr(8));
+    if (known || name != topic.name) return;
+    known = true;
+    Output out(o.file);
+    const std::uint64_t count = export_topic(o, topic, reader, out);
+    out.finish();
+    if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
+    if (count == 0) throw std::runtime_error(fmt::format("{}: holds no sample of {}", o.log, name));
+  });
+  if (!known) throw std::runtime_error(fmt::format("export: there is no topic '{}'; the topics are{}", o.topic, names));
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("export", "Write one topic of a log as CSV or JSON lines");
+  command->add_option("log", o->log, "LCM event log")->required();
+  command->add_option("--topic", o->topic, "Topic, with or without palpate/ before it")->required();
+  command->add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
+  command->add_flag("--jsonl", o->json, "One JSON object a line")->excludes("--csv");
+  command->add_option("-o,--output", o->file, "File (default: standard output)");
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace palpate

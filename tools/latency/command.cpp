@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/periodic.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "common/scene/scene.hpp"
+#include "tools/child_process.hpp"
+#include "tools/commands.hpp"
+#include "tools/latency/observe.hpp"
+#include "tools/latency/round_trips.hpp"
+#include "tools/network_options.hpp"
+#include "tools/study/run_script.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using latency::Echo;
+using latency::RoundTrips;
+using latency::Side;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  BusSettings network;
+  std::string scene, out;
+  double rate = 1000, seconds = 10;
+  int port = 7390;
+  bool answer = false, attach = false, json = false;
+};
+
+constexpr std::array names{"round_trip", "bare_dds", "bare_udp"};
+using Ways = std::array<std::unique_ptr<Echo>, names.size()>;
+
+Ways open_ways(const Options& o, Side side) {
+  const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
+  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side), latency::udp_echo(host, o.port, side)};
+}
+
+/// Sends back whatever comes, over each way on a thread of its own, until told to stop.
+void answer(const Options& o) {
+  Ways ways = open_ways(o, Side::answers);
+  catch_shutdown_signals();
+  std::vector<std::jthread> threads;
+  for (auto& way : ways)
+    threads.emplace_back([&way](const std::stop_token& stop) {
+      while (!stop.stop_requested())
+        if (const std::uint64_t seq = way->receive(20ms)) way->send(seq);
+    });
+  if (!o.json) fmt::print("answering in domain {} and on UDP port {}\n", o.network.domain, o.port);
+  std::fflush(stdout);
+  while (!shutdown_requested()) sleep_until_ns(now_ns() + 20'000'000);
+}
+
+std::vector<std::string> with_network(std::vector<std::string> command, const BusSettings& network) {
+  command.insert(command.end(), {"--domain", std::to_string(network.domain)});
+  if (!network.interface.empty()) command.insert(command.end(), {"--interface", network.interface});
+  for (const std::string& peer : network.peers) command.insert(command.end(), {"--peer", peer});
+  return command;
+}
+
+/// The other side, on this machine, where no other is named.
+std::optional<ChildProcess> answerer_here(const Options& o) {
+  if (!o.network.peers.empty()) return std::nullopt;
+  return ChildProcess("latency --answer",
+                      with_network({sibling_program("palpate"), "latency", "--answer", "--json", "--udp-port", std::to_string(o.port)}, o.network));
+}
+
+void find_other_side(std::array<std::unique_ptr<RoundTrips>, names.size()>& ways, const Options& o) {
+  const std::int64_t limit = now_ns() + 10 * ns_per_s;
+  const auto silent = [&]() -> std::string {
+    std::string text;
+    for (std::size_t i = 0; i < ways.size(); ++i)
+      if (ways[i]->back() == 0) text += (text.empty() ? "" : ", ") + std::string(names[i]);
+    return text;
+  };
+  while (!silent().empty() && !shutdown_requested()) {
+    if (now_ns() > limit)
+      throw std::runtime_error(fmt::format("latency: no answer over {} within 10 s; `palpate latency --answer` has to run on the other host, in domain {}, and "
+                                           "UDP port {} has to be open there",
+                                           silent(), o.network.domain, o.port));
+    for (auto& way : ways)
+      if (way->back() == 0) way->send();
+    sleep_until_ns(now_ns() + 20'000'000);
+  }
+}
+
+struct Result {
+  std::array<latency::RoundTripReport, names.size()> trips;
+  HopTimes hops;
+  bool observed = false;
+};
+
+/// The ways take turns within each period, so that a change of the host's load meets all three.
+Result measure(const Options& o) {
+  const auto other = answerer_here(o);
+  std::array<std::unique_ptr<RoundTrips>, names.size()> ways;
+  Ways echoes = open_ways(o, Side::asks);
+  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = std::make_unique<RoundTrips>(std::move(echoes[i]));
+  find_other_side(ways, o);
+
+  const auto bus = make_dds_bus(o.network);
+  std::optional<latency::HopObserver> observer;
+  std::optional<ChildProcess> simulation;
+  if (o.attach || !o.scene.empty()) observer.emplace(*bus);
+  if (!o.scene.empty() && !o.attach)
+    simulation.emplace("run", std::vector<std::string>{sibling_program("palpate"), "run", o.scene, "--processes", "3", "--domain",
+                                                       std::to_string(o.network.domain)});
+  if (observer) {
+    for (const std::int64_t limit = now_ns() + 30 * ns_per_s; observer->times().force().count() < 100 && !shutdown_requested();) {
+      observer->take();
+      if (simulation && !simulation->running()) throw std::runtime_error(fmt::format("latency: {} did not run", o.scene));
+      if (now_ns() > limit) throw std::runtime_error(fmt::format("latency: no haptic node runs in domain {}", o.network.domain));
+      sleep_until_ns(now_ns() + 5'000'000);
+    }
+    observer.emplace(*bus);
+  }
+
+  PeriodicTimer timer(static_cast<double>(names.size()) * o.rate, 0);
+  const auto warm_up = static_cast<std::uint64_t>(names.size() * o.rate * 0.3), end = warm_up + static_cast<std::uint64_t>(names.size() * o.rate * o.seconds);
+  bool begun = false;
+  for (std::uint64_t i = timer.wait(); i < end && !shutdown_requested(); i = timer.wait()) {
+    if (i >= warm_up && !begun) {
+      for (auto& way : ways) way->begin();
+      begun = true;
+    }
+    ways[i % ways.size()]->send();
+    if (observer && i % 16 == 0) observer->take();
+  }
+  Result result;
+  for (std::size_t i = 0; i < ways.size(); ++i) result.trips[i] = ways[i]->finish();
+  if (observer) result.hops = observer->times();
+  result.observed = observer.has_value();
+  return result;
+}
+
+Json json_of(const Histogram& h) {
+  if (h.count() == 0) return nullptr;
+  const Percentiles p = percentiles_us(h);
+  return {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
+}
+
+/// Bins with samples: lowest value [us] and count.
+Json bins_of(const Histogram& h) {
+  Json bins = Json::array();
+  for (std::size_t b = 0; b < Histogram::bins; ++b)
+    if (h.in_bin(b) > 0) bins.push_back({1e-3 * static_cast<double>(Histogram::bin_start(b)), h.in_bin(b)});
+  return bins;
+}
+
+Json json_of(const Options& o, const Result& r) {
+  Json json;
+  for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i]) + "_us"] = json_of(r.trips[i].time);
+  json["ratio_to_bare_dds"] = json["round_trip_us"].is_null() || json["bare_dds_us"].is_null()
+                                  ? Json(nullptr)
+                                  : Json(json["round_trip_us"]["p50"].get<double>() / json["bare_dds_us"]["p50"].get<double>());
+  json["hops_us"] = nullptr;
+  if (r.observed)
+    json["hops_us"] = {{"tool_to_force", json_of(r.hops.force())},
+                       {"tool_to_surface", json_of(r.hops.surface())},
+                       {"tool_to_picture", json_of(r.hops.picture())},
+                       {"clock_uncertainty", 1e-3 * static_cast<double>(r.hops.uncertainty_ns())}};
+  json["sent"] = r.trips[0].sent;
+  json["lost"] = r.trips[0].lost;
+  json["reordered"] = r.trips[0].reordered;
+  json["jitter_us"] = 1e-3 * r.trips[0].jitter_ns;
+  json["rate_hz"] = o.rate;
+  json["seconds"] = o.seconds;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    json["ways"][names[i]] = {{"sent", r.trips[i].sent},
+                              {"lost", r.trips[i].lost},
+                              {"reordered", r.trips[i].reordered},
+                              {"repeated", r.trips[i].repeated},
+                              {"jitter_us", 1e-3 * r.trips[i].jitter_ns},
+                              {"histogram_us", bins_of(r.trips[i].time)}};
+  if (r.observed)
+    json["hop_histograms_us"] = {{"tool_to_force", bins_of(r.hops.force())},
+                                 {"tool_to_surface", bins_of(r.hops.surface())},
+                                 {"tool_to_picture", bins_of(r.hops.picture())}};
+  return json;
+}
+
+void print_row(const std::string& name, const Histogram& h, const std::string& rest = "") {
+  if (h.count() == 0) {
+    fmt::print("{:18} nothing came\n", name);
+    return;
+  }
+  const Percentiles p = percentiles_us(h);
+  fmt::print("{:18} {:10.1f} {:10.1f} {:10.1f} {:10.1f} {:10.1f}{}\n", name, p.p50, p.p90, p.p99, p.p999, p.max, rest);
+}
+
+void print_text(const Result& r) {
+  fmt::print("{:18} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>7} {:>10} {:>10}\n", "there and back [us]", "p50", "p90", "p99", "p99.9", "max", "sent", "lost",
+             "reordered", "jitter");
+  constexpr std::array titles{"palpate's bus", "bare Cyclone DDS", "bare UDP"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& t = r.trips[i];
+    print_row(titles[i], t.time, fmt::format(" {:9} {:7} {:10} {:10.1f}", t.sent, t.lost, t.reordered, 1e-3 * t.jitter_ns));
+  }
+  if (r.trips[0].time.count() > 0 && r.trips[1].time.count() > 0)
+    fmt::print("the bus takes {:.2f} times as long as bare DDS (medians)\n",
+               static_cast<double>(r.trips[0].time.percentile(0.5)) / static_cast<double>(r.trips[1].time.percentile(0.5)));
+  if (!r.observed) return;
+  fmt::print("\none way [us]\n");
+  print_row("tool to force", r.hops.force());
+  print_row("tool to surface", r.hops.surface());
+  print_row("tool to picture", r.hops.picture());
+  if (r.hops.uncertainty_ns() > 0) fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
+}
+
+void run(Options& o) {
+  if (o.answer) return answer(o);
+  if (!o.scene.empty()) (void)load_scene(o.scene);
+  if (!o.network.interface.empty() && o.network.peers.empty())
+    throw std::runtime_error("latency: with --interface, name the other host by --peer");
+  catch_shutdown_signals();
+  const Result result = measure(o);
+  const Json json = json_of(o, result);
+  if (o.json)
+    fmt::print("{}\n", json.dump(2));
+  else
+    print_text(result);
+  if (o.out.empty()) return;
+  std::filesystem::create_directories(o.out);
+  const auto file = std::filesystem::path(o.out) / "latency.json";
+  std::ofstream stream(file);
+  stream << json.dump(2) << "\n";
+  if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot write", file.string()));
+  const std::string missing = run_script("latency_plot.py", o.out);
+  fmt::print(stderr, "{}\n", missing.empty() ? (std::filesystem::path(o.out) / "latency.png").string() : missing);
+}
+
+}  // namespace
+
+void add_latency_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("latency", "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");
+  command->add_option("scene", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
+  command->add_flag("--attach", o->attach, "Measure the hops of a simulation that runs already");
+  command->add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
+  command->add_option("--rate", o->rate, "Messages a second over each way [Hz]")->check(CLI::Range(1.0, 5000.0))->capture_default_str();
+  command->add_option("--seconds", o->seconds, "How long")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--udp-port", o->port, "Port of the bare UDP messages")->check(CLI::Range(1024, 65535))->capture_default_str();
+  command->add_flag("--json", o->json, "Print JSON");
+  command->add_option("-o,--output", o->out, "Folder for latency.json and its plot");
+  add_network_options(*command, o->network);
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace palpate

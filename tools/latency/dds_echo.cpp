@@ -1,0 +1,59 @@
+#include "common/bus/bare_dds.hpp"
+#include "tools/latency/echo.hpp"
+
+namespace palpate::latency {
+namespace {
+
+constexpr Topic<ToolState> question{"palpate/latency_question", "ToolState", topics::tool_state.qos, "", "", "", ""};
+constexpr Topic<ForceState> answer{"palpate/latency_answer", "ForceState", topics::force_state.qos, "", "", "", ""};
+
+template <class Out, class In>
+class BusEcho : public Echo {
+ public:
+  BusEcho(const BusSettings& settings, const Topic<Out>& out, const Topic<In>& in)
+      : bus_(make_dds_bus(settings)), writer_(bus_->writer(out)), reader_(bus_->reader(in, Keep::all)) {}
+  void send(std::uint64_t seq) override {
+    message_.seq = seq;
+    writer_->write(message_);
+  }
+  std::uint64_t receive(std::chrono::nanoseconds timeout) override {
+    auto message = reader_->take();
+    if (!message) {
+      bus_->wait(timeout);
+      message = reader_->take();
+    }
+    return message ? message->seq : 0;
+  }
+
+ private:
+  std::unique_ptr<Bus> bus_;
+  std::unique_ptr<Writer<Out>> writer_;
+  std::unique_ptr<Reader<In>> reader_;
+  Out message_;
+};
+
+class DdsEcho : public Echo {
+ public:
+  DdsEcho(const BusSettings& settings, const char* out, const char* in, std::size_t size) : dds_(settings, out, in), bytes_(size) {}
+  void send(std::uint64_t seq) override { dds_.send(seq, bytes_); }
+  std::uint64_t receive(std::chrono::nanoseconds timeout) override { return dds_.receive(timeout); }
+
+ private:
+  BareDds dds_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Echo> bus_echo(const BusSettings& settings, Side side) {
+  if (side == Side::asks) return std::make_unique<BusEcho<ToolState, ForceState>>(settings, question, answer);
+  return std::make_unique<BusEcho<ForceState, ToolState>>(settings, answer, question);
+}
+
+std::unique_ptr<Echo> dds_echo(const BusSettings& settings, Side side) {
+  const char *there = "palpate/latency_bare_question", *back = "palpate/latency_bare_answer";
+  if (side == Side::asks) return std::make_unique<DdsEcho>(settings, there, back, BareDds::as_tool_state);
+  return std::make_unique<DdsEcho>(settings, back, there, BareDds::as_force_state);
+}
+
+}  // namespace palpate::latency

@@ -1,0 +1,33 @@
+#include "tools/stability/subject.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "common/tensors/content_hash.hpp"
+
+namespace palpate::stability {
+namespace {
+
+std::string digest_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  return checksum(bytes.data(), bytes.size());
+}
+
+std::string digest_of(const Scene& scene) {
+  std::string all = scene_hash(scene);
+  for (const Body& body : scene.bodies) all += content_hash(body);
+  for (const Tool& tool : scene.tools) all += tool.device + (tool.trajectory.empty() ? "" : digest_of(tool.trajectory));
+  return checksum(all.data(), all.size());
+}
+
+}  // namespace
+
+std::string subject_of(const Scene* scene, bool quick) {
+  return fmt::format("{}{} by program {} {}", scene ? "scene " + digest_of(*scene) : "the general cases", quick ? ", quick," : "", PALPATE_VERSION,
+                     digest_of("/proc/self/exe"));
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,79 @@
+#include "tools/study/insertion.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "common/mesh/shell_file.hpp"
+#include "common/tensors/precompute_shell.hpp"
+#include "haptic_node/modal_body.hpp"
+#include "tools/study/measure.hpp"
+
+namespace palpate::study {
+namespace {
+
+constexpr double held_at = 1.5;     // of the way that it is led in, behind the tip
+constexpr double share_led = 0.15;  // of the catheter's length that is led in
+constexpr double aside_radii = 4;
+constexpr double softness = 1e-4;  // [m/N] of the hold
+
+double smooth(double s) {
+  s = std::min(1.0, s);
+  return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
+double force_on_wall(const CatheterBody& catheter) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const WallForce& w : catheter.wall_forces()) sum += w.force;
+  return sum.norm();
+}
+
+}  // namespace
+
+CatheterSettings catheter_settings(const Scene& scene, int catheter, double tick) {
+  const Body& of = scene.bodies[catheter];
+  return {.shape = *of.catheter,
+          .young = of.material.young,
+          .density = of.material.density,
+          .step = tick,
+          .friction = scene.contact.friction};
+}
+
+Insertion::Insertion(const Scene& scene, int catheter) : catheter_(catheter) {
+  const Catheter& shape = *scene.bodies[catheter].catheter;
+  duct_ = static_cast<int>(std::ranges::find(scene.bodies, shape.inside, &Body::name) - scene.bodies.begin());
+  const Body& duct = scene.bodies[duct_];
+  archive_ = precompute_shell(duct, load_shell_mesh(duct.mesh, duct.scale));
+  feed_ = share_led * (shape.tip - shape.tail).norm();
+}
+
+std::vector<std::array<double, 2>> Insertion::course(const Scene& scene, double tick, double interval,
+                                                     std::vector<double>* times) const {
+  Scene ticking = scene;
+  ticking.rates.haptic_hz = 1 / tick;
+  ModalBody duct(archive_, ticking, duct_);
+  CatheterBody catheter(catheter_settings(ticking, catheter_, tick), &duct);
+  const Catheter& shape = *scene.bodies[catheter_].catheter;
+  const Eigen::Vector3d along = (shape.tip - shape.tail).normalized(), side = along.unitOrthogonal();
+  std::array jaw{Eigen::Isometry3d::Identity()};
+  const Eigen::Vector3d held = shape.tip - held_at * feed_ * along;
+  jaw[0].translation() = held;
+  catheter.grasp(0, jaw[0], catheter.nearest(held), 0, softness);
+  std::vector<std::array<double, 2>> path;
+  const auto each = std::lround(interval / tick);
+  for (long i = 1; static_cast<double>(i) * tick < seconds + 1e-9; ++i) {
+    const double share = smooth(static_cast<double>(i) * tick / feed_seconds);
+    jaw[0].translation() = held + share * (feed_ * along + aside_radii * shape.radius * side);
+    duct.update_surface({});
+    const auto begin = std::chrono::steady_clock::now();
+    catheter.step({}, jaw);
+    if (times) times->push_back(seconds_since(begin));
+    duct.push(catheter.wall_forces());
+    duct.collide({});
+    duct.hold({});
+    if (i % each == 0) path.push_back({force_on_wall(catheter), catheter.inserted()});
+  }
+  return path;
+}
+
+}  // namespace palpate::study

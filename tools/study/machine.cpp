@@ -1,0 +1,31 @@
+#include "tools/study/machine.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "common/kernels/code_path.hpp"
+
+namespace palpate::study {
+namespace {
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown processor";
+}
+
+}  // namespace
+
+void describe_machine(const std::filesystem::path& folder) {
+  std::ofstream out(folder / "machine.txt", std::ios::app);
+  out << fmt::format("{}, {} cores; palpate {} ({}); {:%Y-%m-%d %H:%M}\n", processor(),
+                     std::thread::hardware_concurrency(), PALPATE_VERSION, code_path(),
+                     fmt::localtime(std::time(nullptr)));
+}
+
+}  // namespace palpate::study
