@@ -3,12 +3,13 @@
 
 #include "common/bus/fields.hpp"
 
-/// What a sample from outside must fulfil before a node sees it: finite numbers, bounded lengths, sizes that
+/// What a sample from outside must fulfil before a node sees it: finite numbers, times of this age, bounded lengths, sizes that
 /// fit each other, indices into its own sequences, unit normals of local contacts, a task record that can be. Other indices are checked against the scene by the node that uses them.
 namespace palpate {
 
 /// Bounds on lengths, the same as in idl/palpate.idl.
 struct Limits {
+  static constexpr std::int64_t time_ns = 2'000'000'000'000'000'000;  ///< so that two may be added and a third taken off
   static constexpr std::size_t contacts = 4096;           ///< nodal forces, and contacts, of one tool
   static constexpr std::size_t surface_floats = 3000000;  ///< one million surface nodes
   static constexpr std::size_t keyframe_bytes = 16777216;
@@ -28,6 +29,8 @@ template <class T>
 bool finite(const T& value) {
   if constexpr (std::is_floating_point_v<T>) {
     return std::isfinite(value);
+  } else if constexpr (std::same_as<T, std::int64_t>) {
+    return value >= -Limits::time_ns && value <= Limits::time_ns;
   } else if constexpr (is_vector<T> || is_array<T>) {
     bool all = true;
     if constexpr (!std::is_integral_v<typename T::value_type>)

@@ -122,6 +122,19 @@ TEST_P(BusContract, LocalContactModelsThatCannotBeAreRefused) {
   EXPECT_FALSE(refused([](auto& m) { m.contacts.resize(32, m.contacts[0]); }));
 }
 
+TEST_P(BusContract, TimesWithWhichNobodyCanReckonAreRefused) {
+  auto writer = a->writer(topics::clock_answer);
+  EXPECT_TRUE(writer->write(answer_sample()));
+  for (const std::int64_t time : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    ClockAnswer answer = answer_sample();
+    answer.receive_ns = time;
+    EXPECT_FALSE(writer->write(answer));
+    answer = answer_sample();
+    answer.publish_ns = time;
+    EXPECT_FALSE(writer->write(answer));
+  }
+}
+
 TEST_P(BusContract, ReducedStatesAndTaskRecordsThatCannotBeAreRefused) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [&](const auto& topic, auto message, auto&& change) {
