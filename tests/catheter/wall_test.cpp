@@ -236,6 +236,35 @@ TEST(CatheterInASqueezedDuct, IsTouchedFromBothSides) {
   for (const Vector3d& p : body.positions()) EXPECT_LT(std::abs(p.y()), 2e-4);
 }
 
+TEST(CatheterInARigidDuct, IsHeldByASpringThatStiffensWithoutAJump) {
+  for (const double gravity : {2e5, 1e6, 3e6, 6e6}) {  // 3 to 90 N a particle
+    TubeWall wall({.length = 0.06});
+    CatheterSettings s = plain_catheter(0.03, 11);
+    s.shape.tail = {0, 0, 0.015};
+    s.shape.tip = {0, 0, 0.045};
+    s.shape.damping = 1000;
+    s.shape.gravity = {0, -gravity, 0};
+    CatheterBody body(s, &wall);
+    for (int i = 0; i < 3000; ++i) body.step({}, {});
+    const double reach = body.radius() + wall.half_thickness(), soft = WallTouches::kLedBack * reach;
+    int compared = 0;
+    for (const WallForce& f : body.wall_forces()) {
+      if (f.anchor.weights.minCoeff() <= 1e-6) continue;  // on an edge the push has another direction
+      const double force = f.force.norm(), within = std::min(force, soft / WallTouches::kCompliance);
+      const double overlap = WallTouches::kCompliance * (within + (force - within) / WallTouches::kStiffening);
+      const auto p = wall.surface().positions();
+      const auto& n = f.anchor.nodes;
+      const Vector3d inward = (p[n[2]] - p[n[0]]).cross(p[n[1]] - p[n[0]]).normalized();
+      double nearest = 1;
+      for (const Vector3d& x : body.positions())
+        nearest = std::min(nearest, std::abs(reach - overlap - inward.dot(x - anchor_position(f.anchor, p))));
+      EXPECT_LT(nearest, 0.05 * soft) << gravity << ": " << force << " N";
+      ++compared;
+    }
+    EXPECT_GT(compared, 0) << gravity;
+  }
+}
+
 /// A duct that is thrown to and fro at 6 m/s, by several times the wall's reach in a tick, over a catheter that lies
 /// beside it or in it.
 void throw_over(double beside) {
