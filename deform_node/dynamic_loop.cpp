@@ -38,19 +38,35 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       steps_(bus.writer(topics::deform_step)),
       keyframes_(bus.writer(topics::deform_keyframe)),
       change_seq_(scene.bodies.size(), 0),
-      model_(scene.tools.size()) {
+      model_(scene.tools.size()),
+      earlier_(bus, {world.bodies().begin(), world.bodies().end()}) {
   presence_.set_clock(&clock_);
   keyframe_.dt = world.dt();
   keyframe_.code_path = std::move(code_path);
-  for (const Body& body : scene.bodies) moves_.push_back(is_dynamic(body));
+  for (const Body& body : scene.bodies) moves_.push_back(is_dynamic(body)), names_.push_back(body.name);
 }
 
 void DynamicLoop::take_tools() {
   while (const auto state = tools_->take()) {
     const bool good = presence_.accepts(state->run) && world_.take(*state);
-    begun_ |= good;
+    heard_ |= good;
     report_.refused += !good;
   }
+  if (tools_->known_writers() == 0)
+    for (int t = 0; t < world_.tools(); ++t) world_.leave(t);
+}
+
+void DynamicLoop::begin_tissue(std::int64_t now) {
+  if (!earlier_.complete(presence_, now)) return;
+  if (!earlier_.in_time()) spdlog::warn("not every node has told what had been cut before: what those know that have is taken");
+  for (int i = 0; i < world_.organs(); ++i) {
+    const int body = world_.bodies()[i];
+    const HeldTopology* held = whole_ ? nullptr : earlier_.of(body);
+    if (held && world_.organ(i).begin_without(held->removed))
+      spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(), held->node);
+    publish_change(i, gone_before, world_.organ(i).removed(), 0);
+  }
+  begun_ = true;
 }
 
 void DynamicLoop::tick() {
@@ -71,25 +87,31 @@ void DynamicLoop::tick() {
   ++step_.seq;
   step_.tick = number;
   step_.consumed.clear();
-  for (int t = 0; t < world_.tools(); ++t)
-    if (world_.consumed_anew(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), world_.consumed(t).run, world_.consumed(t).step});
+  for (int t = 0; t < world_.tools(); ++t) {
+    const ToolState& tool = world_.consumed(t);
+    if (world_.has_left(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool_left});
+    if (world_.consumed_anew(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool.step});
+  }
   step_.hash = world_.hash();
   steps_->write(step_);
   publish_changes();
   publish_models();
 }
 
+void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vector<int>& removed, std::uint64_t tick) {
+  const int body = world_.bodies()[organ];
+  TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = tick, .cause = cause};
+  m.removed.assign(removed.begin(), removed.end());
+  changes_->write(m);
+}
+
 void DynamicLoop::publish_changes() {
   for (int i = 0; i < world_.organs(); ++i) {
     for (const DynamicOrgan::Change& change : world_.organ(i).changes()) {
-      const int body = world_.bodies()[i];
-      TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = world_.ticks() - 1};
-      m.cause = static_cast<std::uint32_t>(change.cause);
-      m.removed.assign(change.removed.begin(), change.removed.end());
-      changes_->write(m);
-      report_.cut += change.cause == Removal::cut ? change.removed.size() : 0;
-      report_.torn += change.cause == Removal::torn ? change.removed.size() : 0;
-      report_.fallen += change.cause == Removal::fell_away ? change.removed.size() : 0;
+      publish_change(i, change.cause, change.removed, world_.ticks() - 1);
+      report_.cut += change.cause == RemovalCause::cut ? change.removed.size() : 0;
+      report_.torn += change.cause == RemovalCause::torn ? change.removed.size() : 0;
+      report_.fallen += change.cause == RemovalCause::fell_away ? change.removed.size() : 0;
     }
   }
 }
@@ -162,6 +184,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
     if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
     clock_.follow();
     take_tools();
+    if (heard_ && !begun_) begin_tissue(now);
     if (begun_) {
       tick();
       ++report_.ticks;

@@ -11,6 +11,7 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
 #include "deform_node/dynamic_world.hpp"
+#include "deform_node/earlier_cuts.hpp"
 #include "deform_node/local_model.hpp"
 #include "deform_node/surface_publisher.hpp"
 
@@ -29,19 +30,25 @@ struct DynamicReport {
 
 /// Advances moving tissue in real time: takes the tools' newest states, ticks the world, journals, sends local contact
 /// models and cuts, and publishes all surfaces at the visual rate. A tick that comes late is left out: time in the
-/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of.
+/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of, and others have
+/// told what it had lost before this node started.
 class DynamicLoop {
  public:
   /// `deformer`: of the scene's quasi-static bodies.
   DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence, const Scene& scene,
               std::uint64_t run, std::string code_path);
 
+  /// Begins with whole bodies, whatever others know of them.
+  void forget_earlier_cuts() { whole_ = true; }
+
   /// Until `seconds` are over (0: no limit) or a stop is requested.
   const DynamicReport& run(double seconds);
 
  private:
   void take_tools();
+  void begin_tissue(std::int64_t now);
   void tick();
+  void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed, std::uint64_t tick);
   void publish_changes();
   void publish_models();
   void publish_frames();
@@ -54,7 +61,8 @@ class DynamicLoop {
   LinkWatch link_;
   std::uint64_t run_;
   double visual_hz_;
-  std::vector<char> moves_;  ///< per body: it is dynamic
+  std::vector<char> moves_;         ///< per body: it is dynamic
+  std::vector<std::string> names_;  ///< per body
   LocalModels& local_models_;
   ContactFeed feed_;
   SurfacePublisher surfaces_;
@@ -68,7 +76,10 @@ class DynamicLoop {
   DeformStep step_;
   DeformKeyframe keyframe_;
   std::vector<Eigen::Vector3f> position_, normal_;
-  bool begun_ = false;  ///< a tool has been heard of
+  EarlierCuts earlier_;
+  bool whole_ = false;  ///< they do not count
+  bool heard_ = false;  ///< a tool has been heard of
+  bool begun_ = false;
   std::int64_t shown_sense_ns_ = 0, last_status_ns_ = 0;
   std::uint64_t last_ticks_ = 0;
   DynamicReport report_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "common/contact/triangle.hpp"
 #include "common/dynamics/make_model.hpp"
@@ -98,6 +99,17 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   drop_fallen();
 }
 
+bool DynamicOrgan::begin_without(std::span<const std::uint32_t> removed) {
+  if (!std::ranges::all_of(removed, [&](std::uint32_t t) { return t < static_cast<std::uint32_t>(topology_.size()); })) return false;
+  topology_.erase(std::vector<int>(removed.begin(), removed.end()));
+  std::vector<char> listed(topology_.size(), 0);
+  for (const std::uint32_t t : removed)
+    if (!std::exchange(listed[t], 1)) removed_.push_back(static_cast<int>(t));
+  surface_.follow();
+  note_change(RemovalCause::gone_before, 0);
+  return true;
+}
+
 void DynamicOrgan::update_positions() {
   for (int n = 0; n < mesh_.nodes(); ++n) position_[n] = mesh_.rest[n] + model_->displacement(n);
   surface_.set_positions(position_);
@@ -143,7 +155,7 @@ void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
       remove(nearest / 4);
     }
   }
-  note_change(Removal::cut, first);
+  note_change(RemovalCause::cut, first);
 }
 
 void DynamicOrgan::tear() {
@@ -151,7 +163,7 @@ void DynamicOrgan::tear() {
   const std::size_t first = removed_.size();
   for (int t : tearing_->find(position_))
     if (topology_.alive(t)) remove(t);
-  note_change(Removal::torn, first);
+  note_change(RemovalCause::torn, first);
 }
 
 void DynamicOrgan::remove(int tetrahedron) {
@@ -159,7 +171,7 @@ void DynamicOrgan::remove(int tetrahedron) {
   surface_.follow();
 }
 
-void DynamicOrgan::note_change(Removal cause, std::size_t first) {
+void DynamicOrgan::note_change(RemovalCause cause, std::size_t first) {
   if (first == removed_.size()) return;
   changes_.push_back({cause, {removed_.begin() + static_cast<std::ptrdiff_t>(first), removed_.end()}});
   model_->remove(changes_.back().removed);
@@ -202,7 +214,7 @@ void DynamicOrgan::drop_fallen() {
     surface_.follow();
     removed_.insert(removed_.end(), gone.begin(), gone.end());
   }
-  note_change(Removal::fell_away, first);
+  note_change(RemovalCause::fell_away, first);
 }
 
 void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/bus/messages.hpp"
 #include "common/contact/cut_surface.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
@@ -18,9 +19,6 @@
 #include "deform_node/tissue_contact.hpp"
 
 namespace palpate {
-
-/// Why tetrahedra have gone.
-enum class Removal : std::uint32_t { cut = 0, torn = 1, fell_away = 2 };
 
 /// One tool as an organ meets it within a tick.
 struct ToolInTick {
@@ -39,6 +37,10 @@ class DynamicOrgan {
 
   /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
   void tick(std::span<const ToolInTick> tools, double dt);
+
+  /// Before the first tick: these tetrahedra have gone before, and `changes` is what they are. False, and nothing has
+  /// happened, if one of them is not of this body.
+  bool begin_without(std::span<const std::uint32_t> removed);
 
   /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
   void forget_factors() {
@@ -59,7 +61,7 @@ class DynamicOrgan {
   bool holds(int tool) const;  ///< its jaws hold something of this organ
 
   struct Change {
-    Removal cause;
+    RemovalCause cause;
     std::vector<int> removed;  ///< in order, with those that conformity asked for
   };
   /// What the last tick took away; empty most of the time.
@@ -82,7 +84,7 @@ class DynamicOrgan {
   void tear();
   void drop_fallen();
   void remove(int tetrahedron);
-  void note_change(Removal cause, std::size_t first);
+  void note_change(RemovalCause cause, std::size_t first);
   void follow_change();
 
   const Scene& scene_;

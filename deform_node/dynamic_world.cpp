@@ -1,6 +1,7 @@
 #include "deform_node/dynamic_world.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/tool/instrument.hpp"
 #include "deform_node/state_bytes.hpp"
@@ -8,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr double silent_after = 0.5;  // [s]
+constexpr double gone_after = 120;  // [s] of silence, as the network forgets a participant
 
 ToolDofs dofs_of(const ToolState& s) { return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal}; }
 
@@ -30,6 +31,8 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
       consumed_(scene.tools.size()),
       waiting_(scene.tools.size(), 0),
       anew_(scene.tools.size(), 0),
+      leaving_(scene.tools.size(), 0),
+      left_(scene.tools.size(), 0),
       heard_(scene.tools.size(), 0) {
   for (const Tool& tool : scene.tools) {
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
@@ -55,12 +58,17 @@ bool DynamicWorld::take(const ToolState& state) {
   return true;
 }
 
-void DynamicWorld::drop_silent() {
-  const auto patience = static_cast<std::uint64_t>(silent_after / dt_);
+void DynamicWorld::leave(int tool) {
+  waiting_[tool] = 0;
+  leaving_[tool] = tools_[tool].present;
+}
+
+void DynamicWorld::drop_absent() {
+  const auto patience = static_cast<std::uint64_t>(gone_after / dt_);
   for (int t = 0; t < tools(); ++t) {
-    bool holds = false;
-    for (const auto& organ : organs_) holds |= organ->holds(t);
-    if (!waiting_[t] && heard_[t] + patience < ticks_ && !holds) tools_[t].present = false;
+    left_[t] = std::exchange(leaving_[t], 0);
+    const bool silent = !waiting_[t] && heard_[t] + patience < ticks_;
+    if (left_[t] || silent) tools_[t].present = false;
   }
 }
 
@@ -69,7 +77,7 @@ void DynamicWorld::turn_jaws(int t) {
 }
 
 void DynamicWorld::tick() {
-  drop_silent();
+  drop_absent();
   if (ticks_ % keyframe_interval() == 0)
     for (auto& organ : organs_) organ->forget_factors();
   for (int t = 0; t < tools(); ++t) {

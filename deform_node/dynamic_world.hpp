@@ -30,8 +30,10 @@ class DynamicWorld {
 
   /// The newest state of a tool; false (and nothing kept) if the scene has no such tool or the pose is no number.
   bool take(const ToolState& state);
-  /// Moves everything on by dt(). A tool of which nothing has been heard for half a second is gone, unless its jaws hold
-  /// something.
+  /// The tool's haptic node has ended: from the next tick on it is gone, with what it held.
+  void leave(int tool);
+  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut, for two
+  /// minutes.
   void tick();
 
   std::uint64_t ticks() const { return ticks_; }
@@ -39,13 +41,14 @@ class DynamicWorld {
   /// The state that the last tick consumed; tool_run 0 before any.
   const ToolState& consumed(int t) const { return consumed_[t]; }
   bool consumed_anew(int t) const { return anew_[t]; }  ///< by the last tick
+  bool has_left(int t) const { return left_[t]; }       ///< in the last tick
 
   std::vector<std::uint8_t> save() const;
   void restore(std::span<const std::uint8_t> state);
   std::uint64_t hash() const;
 
  private:
-  void drop_silent();
+  void drop_absent();
   void turn_jaws(int tool);
 
   double dt_;
@@ -54,7 +57,7 @@ class DynamicWorld {
   std::vector<std::optional<Jaws>> forceps_;                 ///< per tool; none for other kinds
   std::vector<ToolInTick> tools_;
   std::vector<ToolState> newest_, consumed_;
-  std::vector<char> waiting_, anew_;
+  std::vector<char> waiting_, anew_, leaving_, left_;
   std::vector<std::uint64_t> heard_;  ///< tick of the last state, per tool
   std::vector<std::unique_ptr<DynamicOrgan>> organs_;
   std::vector<int> body_of_;

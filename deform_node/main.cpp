@@ -14,12 +14,14 @@
 namespace palpate {
 namespace {
 
+bool whole = false;  // begin with whole bodies
+
 double us(const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); }
 
 double rate(std::uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; }
 
 nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
-  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "deform"));
   Presence presence(*bus, "deform", 0, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
   DeformLoop loop(deformer, *bus, presence, loaded.scene.rates.visual_hz);
@@ -42,13 +44,14 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   DynamicWorld world(loaded.scene, loaded.archives);
   LocalModels local_models(world, loaded.archives);
   const std::uint64_t run = new_run();
-  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "deform"));
   Presence presence(*bus, "deform", run, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
   for (int i = 0; i < world.organs(); ++i)
     spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each", loaded.scene.bodies[world.bodies()[i]].name,
                  world.organ(i).topology().alive_count(), world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
   DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
+  if (whole) loop.forget_earlier_cuts();
   say_ready(o);
   const DynamicReport& r = loop.run(o.seconds);
   spdlog::info("{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} fallen away",
@@ -88,5 +91,6 @@ int main(int argc, char** argv) {
   palpate::NodeOptions options;
   CLI::App app{"deform_node: rebuilds the organs' shape from contact information and publishes the surface"};
   palpate::add_node_options(app, options);
+  app.add_flag("--whole", palpate::whole, "Begin with whole bodies, even if other nodes know them to have been cut");
   return palpate::node_main("deform_node", argc, argv, app, palpate::run, options);
 }

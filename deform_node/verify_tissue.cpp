@@ -78,6 +78,11 @@ class TissueVerifier {
 
   bool take(DynamicWorld& world, const DeformStep& step) const {
     for (const ConsumedStep& consumed : step.consumed) {
+      if (consumed.step == tool_left) {
+        if (consumed.tool >= static_cast<std::uint32_t>(world.tools())) return false;
+        world.leave(static_cast<int>(consumed.tool));
+        continue;
+      }
       const auto tool = recorded_.tools.find({consumed.run, consumed.tool, consumed.step});
       if (tool == recorded_.tools.end() || !world.take(tool->second)) return false;
     }

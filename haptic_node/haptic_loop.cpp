@@ -93,6 +93,7 @@ void HapticLoop::tick(double time) {
   const std::int64_t push_begin = now_ns();
   if (StepRecord* record = ring_.begin_push()) {
     fill_record(haptic_, samples_, step_, sense, *record);
+    record->pushed_ns = push_begin;
     ring_.commit_push();
   } else {
     ++report_.dropped;
@@ -135,6 +136,7 @@ void HapticLoop::publish_loop() {
     clock_.answer();
     drain();
     report_status(now_ns());
+    if (topology_) topology_->take();
   }
   drain();
   publisher_.finish();
@@ -147,6 +149,7 @@ void HapticLoop::drain() {
       keyframe_full_.store(false, std::memory_order_release);
     }
     publisher_.publish(*record);
+    report_.wire.record(now_ns() - record->pushed_ns);
     ring_.commit_pop();
   }
 }

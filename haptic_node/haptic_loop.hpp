@@ -9,6 +9,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
+#include "common/models/topology_memory.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/spsc_ring.hpp"
@@ -25,6 +26,7 @@ struct LoopReport {
   std::uint64_t ticks = 0;
   std::uint64_t dropped = 0;         ///< step records that found the ring full
   Histogram step, push;              ///< [ns] whole tick; hand-over to the publisher
+  Histogram wire;                    ///< [ns] from there until the bus has all messages of a step
   PeriodStatistics period;
   double largest_force = 0;          ///< [N]
   std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
@@ -38,6 +40,9 @@ class HapticLoop {
   HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
              std::string code_path);
   ~HapticLoop();
+
+  /// What has been cut, kept for a deformation node that returns.
+  void set_topology(TopologyMemory* topology) { topology_ = topology; }
 
   /// Until `seconds` are over (0: no limit), every device has finished, or a stop is requested.
   const LoopReport& run(double seconds);
@@ -59,6 +64,7 @@ class HapticLoop {
   LinkWatch link_;
   BusDevices bus_devices_;
   LocalFeed local_feed_;
+  TopologyMemory* topology_ = nullptr;
   std::uint64_t step_ = 0, keyframe_interval_;
   std::vector<DeviceSample> samples_;
   std::vector<ToolDofs> dofs_;

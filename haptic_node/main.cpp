@@ -93,6 +93,8 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"step_us_p999", us(r.step, 0.999)},
           {"step_us_max", us(r.step, 1)},
           {"push_us_p50", us(r.push, 0.5)},
+          {"ring_to_wire_us_p50", us(r.wire, 0.5)},
+          {"ring_to_wire_us_p99", us(r.wire, 0.99)},
           {"late_us_p50", us(r.period.wake, 0.5)},
           {"late_us_p99", us(r.period.wake, 0.99)},
           {"slack_us_p50", us(r.period.slack, 0.5)},
@@ -112,13 +114,15 @@ void run(const NodeOptions& o) {
   if (scene.tools.size() > StepRecord::max_tools)
     throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(), StepRecord::max_tools));
   HapticStep haptic(scene, loaded.archives);
-  loaded.archives.clear();
   std::vector<std::unique_ptr<Device>> devices;
   for (std::size_t t = 0; t < scene.tools.size(); ++t) devices.push_back(make_device(scene, static_cast<int>(t)));
 
   const std::uint64_t run_id = new_run();
-  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o));
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "haptic"));
   Presence presence(*bus, "haptic", run_id, loaded.scene_hash, loaded.archive_hash);
+  std::optional<TopologyMemory> topology;
+  if (haptic.has_moving_tissue()) topology.emplace(*bus, presence, loaded.archives);
+  loaded.archives.clear();
   const auto scene_writer = bus->writer(topics::scene);
   scene_writer->write({.run = run_id, .seq = 1, .scene_hash = loaded.scene_hash, .text = to_toml(scene), .version = PALPATE_VERSION, .code_path = code_path()});
   catch_shutdown_signals();
@@ -139,6 +143,7 @@ void run(const NodeOptions& o) {
                      ? std::string("implicit, one step a tick")
                      : fmt::format("semi-implicit, {} substeps a tick", haptic.catheter(b.body).substeps()));
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
+  if (topology) loop.set_topology(&*topology);
   const LoopReport& report = loop.run(o.seconds);
   nlohmann::json summary = summary_of(report);
   if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);

@@ -27,6 +27,7 @@ struct StepRecord {
 
   std::uint64_t step;
   std::int64_t sense_ns;
+  std::int64_t pushed_ns;  ///< when it was put into the ring
   double energy;  ///< [J] put in by all tools
   int tools, contacts, forces;
   std::array<OfTool, max_tools> of_tool;

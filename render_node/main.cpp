@@ -80,7 +80,7 @@ void run(const NodeOptions& o) {
   std::optional<Film> film;
   if (!options.film.empty()) film.emplace(options.film, picture.width, picture.height, options.film_rate);
 
-  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o));
+  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "render"));
   Presence presence(*bus, "render", 0, loaded.scene_hash, loaded.archive_hash);
   const std::unique_ptr<SurfaceSource> source = make_source(*bus, presence, loaded);
   std::optional<TopologyFeed> topology;

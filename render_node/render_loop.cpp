@@ -79,13 +79,13 @@ void RenderLoop::write_overlay() {
   std::vector<std::string> lines{scene_.title.empty() ? scene_.file.stem().string() : scene_.title};
   double haptic_hz = 0;
   for (const auto& [name, peer] : presence_.peers())
-    if (peer.role == "haptic" && presence_.accepts(peer.run)) haptic_hz = std::max(haptic_hz, peer.rate_hz);
+    if (peer.accepted && peer.status.role == "haptic") haptic_hz = std::max(haptic_hz, peer.status.rate_hz);
   if (!presence_.matched("haptic")) lines.push_back("waiting for a haptic node");
   for (const char* role : {"haptic", "deform"})
     if (const std::string silence = link_.silence(role, now_ns()); !silence.empty()) lines.push_back(silence);
   lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
-  lines.push_back(fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
-                              1e-3 * shown_latency_.p99));
+  lines.push_back(shown_steps_ > 0 ? fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50, 1e-3 * shown_latency_.p99)
+                                   : std::string("nothing new to show"));
   for (const auto& [body, task] : latest_task_) describe(task, lines);
   double strongest = 0, full = 1;
   for (std::size_t i = 0; i < latest_force_.size(); ++i) {
@@ -115,6 +115,7 @@ void RenderLoop::keep_house(std::int64_t now) {
   rate_hz_ =
       1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
+  shown_steps_ = recent_latency_.count();
   presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99, link_.silence("haptic", now));
   recent_latency_.clear();
   last_status_ns_ = now;

@@ -75,7 +75,8 @@ class RenderLoop {
   Image image_;
   Histogram recent_latency_;  ///< since the last status
   double rate_hz_ = 0;
-  Percentiles shown_latency_;  ///< of the last second, for the overlay
+  Percentiles shown_latency_;      ///< of the last second, for the overlay
+  std::uint64_t shown_steps_ = 0;  ///< that it is of
   std::uint64_t last_frames_ = 0;
   std::int64_t last_status_ns_ = 0;
   RenderReport report_;

@@ -8,7 +8,8 @@ deploy.sh HOST SCENE [OPTION ...] [-- NODE_OPTION ...]   brings nodes and a scen
 deploy.sh HOST --status | --stop | --remove [OPTION ...]
 
 Programs, scene, what the scene names and the archives of its bodies are sent, their hashes checked there, and the nodes
-started. What runs there from an earlier call is replaced. On failure or Ctrl-C nothing of this call is left there.
+started. Of a scene's keys those of these nodes are sent and no others. What runs there from an earlier call is replaced.
+On failure or Ctrl-C nothing of this call is left there.
 
   --node NAME          haptic_node, deform_node or render_node; may be repeated; default: deform_node
   --interface NAME     network interface there; default: the scene's, else the address by which ssh reaches the host
@@ -79,8 +80,24 @@ for program in palpate "${nodes[@]}"; do [ -x "$bin/$program" ] || fail "$bin/$p
 
 # The files that the scene names: values of the keys that docs/scene.md gives as paths to read.
 named_in_scene() {
-  local keys='mesh|specimen_mesh|force_curve|radial_curve|trajectory|backdrop'
+  local keys=${1:-'mesh|specimen_mesh|force_curve|radial_curve|trajectory|backdrop'}
   grep -oE "(^|[^[:alnum:]_])($keys)[[:space:]]*=[[:space:]]*(\"[^\"]*\"|'[^']*')" "$scene" | sed -E "s/^[^\"']*.(.*).\$/\1/" || true
+}
+
+# The files of the keys that the nodes take of the folder that the scene names, if it has [network.security].
+key_files() {
+  local name node role keys file
+  while read -r name; do
+    [[ $name != /* ]] || fail "$scene names $name: only paths relative to the scene are the same on another host"
+    for node in "${nodes[@]}"; do
+      role=${node%_node} keys=$1/$name
+      [ ! -d "$keys/$role" ] || keys=$keys/$role
+      [ -f "$keys/permissions.p7s" ] || fail "$scene has [network.security], and $keys/$role is not there: palpate keys makes it"
+      grep -qF "<grant name=\"$role\">" "$keys/permissions.p7s" || fail "$keys holds no keys of the role $role"
+      [ -z "$(find -L "$keys/key.pem" -perm /077)" ] || fail "$keys/key.pem may be read by others: chmod 600 it"
+      for file in authority.pem certificate.pem key.pem governance.p7s permissions.p7s; do echo "$keys/$file"; done
+    done
+  done < <(named_in_scene keys)
 }
 
 # Links to all that is sent, in a folder: bin/, archives/ and scene/, where files lie to each other as they do here.
@@ -92,6 +109,8 @@ gather() {
     [[ $name != /* ]] || fail "$scene names $name: only paths relative to the scene are the same on another host"
     [ ! -f "$folder/$name" ] || files+=("$(realpath -ms "$folder/$name")")
   done < <(named_in_scene)
+  key_files "$folder" >"$work/keys"
+  while read -r file; do files+=("$(realpath -ms "$file")"); done <"$work/keys"
   base=$folder
   for file in "${files[@]}"; do
     while [[ $file != "${base%/}"/* ]]; do base=$(dirname "$base"); done

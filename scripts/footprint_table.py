@@ -14,8 +14,12 @@ nodes = ["haptic_node", "deform_node", "render_node"]
 def run(scene):
     with tempfile.TemporaryDirectory() as folder:
         summary = pathlib.Path(folder) / "summary.json"
+        keys = []
+        if "[network.security]" in scene.read_text():
+            keys = ["--keys", pathlib.Path(folder) / "keys"]
+            subprocess.run([bin_folder / "palpate", "keys", keys[1]], check=True, capture_output=True)
         subprocess.run([bin_folder / "palpate", "precompute", scene], check=True, capture_output=True)
-        subprocess.run([bin_folder / "palpate", "run", scene, "--seconds", "1", "--domain", "96", "--summary", summary],
+        subprocess.run([bin_folder / "palpate", "run", scene, "--seconds", "1", "--domain", "96", "--summary", summary, *keys],
                        check=True, capture_output=True)
         return json.loads(summary.read_text())
 

@@ -7,6 +7,7 @@ import pathlib
 import platform
 import shutil
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -61,21 +62,46 @@ def stop(processes):
 def measured(command, picture):
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([*command, "--seconds", seconds, "-o", folder], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        shutil.copy(pathlib.Path(folder) / "latency.png", root / "docs/pictures" / picture)
+        if picture:
+            shutil.copy(pathlib.Path(folder) / "latency.png", root / "docs/pictures" / picture)
         return json.loads((pathlib.Path(folder) / "latency.json").read_text())
 
 
-def over_veth(with_scene, picture):
-    others = [start(on(there, palpate, "latency", "--answer", "--json"))]
-    command = on(here, palpate, "latency")
+def over_veth(with_scene, picture, *keys):
+    others = [start(on(there, palpate, "latency", "--answer", "--json", *keys))]
+    command = on(here, palpate, "latency", *keys)
     if with_scene:
-        others += [start(on(there, str(bin_folder / "deform_node"), scene)), start(on(there, str(bin_folder / "render_node"), scene)),
-                   start(on(here, str(bin_folder / "haptic_node"), scene))]
+        others += [start(on(host, str(bin_folder / node), scene, *keys))
+                   for host, node in ((there, "deform_node"), (there, "render_node"), (here, "haptic_node"))]
         command.append("--attach")
     time.sleep(3)
     result = measured(command, picture)
     stop(reversed(others))
     return result
+
+
+def with_and_without_keys():
+    """The same over veth, in turns, so that a change of the host's load shows."""
+    with tempfile.TemporaryDirectory() as folder:
+        keys = pathlib.Path(folder) / "keys"
+        subprocess.run([palpate, "keys", keys], check=True, stdout=subprocess.DEVNULL)
+        return [(over_veth(True, None), over_veth(True, None, "--keys", str(keys))) for _ in range(3)]
+
+
+def cost_of_security(turns):
+    lines, ratios = [], []
+    for key, title in (("round_trip", "there and back over the bus"), ("tool_to_surface", "tool to surface")):
+        of = [[(d["hops_us"] if key.startswith("tool") else {key: d[f"{key}_us"]})[key] for d in turn] for turn in turns]
+        lines += [f"| {title} [µs] | p50 | p90 | p99 | p99.9 | max |", "| --- | --- | --- | --- | --- | --- |"]
+        for i, turn in enumerate(of):
+            lines += [row(f"without keys, turn {i + 1}", turn[0]), row(f"with keys, turn {i + 1}", turn[1])]
+        lines.append("")
+        ratio = [statistics.median(turn[1][p] / turn[0][p] for turn in of) for p in ("p50", "p99")]
+        ratios.append(f"{title} takes {ratio[0]:.2f} times as long ({ratio[1]:.2f} times at p99)")
+    lost = [sum(turn[i]["ways"]["round_trip"]["lost"] for turn in turns) for i in (0, 1)]
+    sent = [sum(turn[i]["ways"]["round_trip"]["sent"] for turn in turns) for i in (0, 1)]
+    return [*lines, f"With keys, by the medians, {' and '.join(ratios)}; each figure is the middle one of {len(turns)} turns.",
+            f"Of the messages there and back {lost[0]} of {sent[0]} were lost without keys and {lost[1]} of {sent[1]} with them."]
 
 
 def row(name, p, rest=""):
@@ -113,6 +139,7 @@ try:
     make_hosts()
     veth = over_veth(False, "latency_veth.png")
     veth_scene = over_veth(True, "latency_veth_scene.png")
+    turns = with_and_without_keys()
 finally:
     remove_hosts()
 
@@ -136,6 +163,9 @@ document = ["# Latency", "",
             "With the haptic node in one and the deformation and render nodes in the other:", "", *trips(veth_scene), "", *hops(veth_scene), "",
             f"Tool to surface takes {ratio['dds']:.1f} times a bare DDS round trip and {ratio['udp']:.1f} times a bare UDP one.", "",
             "![Round trips and hops over veth](pictures/latency_veth_scene.png)", "",
+            "## The cost of security", "",
+            "The same over veth with the nodes running, without and with [keys](security.md), in turns. Every message is then encrypted and signed, and so",
+            "is the answer that it came.", "", *cost_of_security(turns), "",
             "## How one-way times are told across machines", "",
             "Every message carries the time at which its writer handed it to the bus (`publish_ns`), and those that follow from a haptic step the time at",
             "which that step read its devices (`sense_ns`), each on its own host's monotonic clock. Every node but the haptic one asks it for its clock",

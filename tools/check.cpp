@@ -4,6 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/bus/roles.hpp"
+#include "common/bus/security.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/fem/assembly.hpp"
 #include "common/fem/fixation.hpp"
@@ -115,11 +117,26 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   return surface;
 }
 
+/// Keys are made apart from the scene, and a host may have those of its own nodes alone.
+void print_keys(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    fmt::print("  keys: {} is not there, so that no node starts; `palpate keys` makes it\n", folder.string());
+    return;
+  }
+  fmt::print("  keys: {}\n", folder.string());
+  for (const std::string& role : bus_roles()) try {
+      fmt::print("    {}: until {}\n", role, last_day(find_keys(folder, role)));
+    } catch (const std::runtime_error& error) {
+      fmt::print("    {}: none, {}\n", role, std::string_view(error.what()).substr(9));  // without "network: "
+    }
+}
+
 void print_sections(const Scene& scene) {
   fmt::print("contact: {} rule, friction {}\n", scene.contact.rule, scene.contact.friction);
   fmt::print("rates: haptic {} Hz, visual {} Hz\n", scene.rates.haptic_hz, scene.rates.visual_hz);
   fmt::print("network: domain {}, {}\n", scene.network.domain,
              scene.network.interface.empty() ? "loopback" : scene.network.interface);
+  if (scene.network.security) print_keys(scene.network.security->keys);
   if (scene.record) fmt::print("record: {}\n", scene.record->file.string());
   if (!scene.render) return;
   fmt::print("render: {} x {}, coloured by {}\n", scene.render->width, scene.render->height,
@@ -153,6 +170,7 @@ void print_left_out(const Scene& scene) {
   const bool driven = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
   if (!driven) fmt::print("  no tool on the bus: no device topic and no thread for it\n");
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
+  if (!scene.network.security) fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
   if (!scene.render) fmt::print("  no [render]: default picture\n");
   if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
   if (std::ranges::none_of(scene.bodies, is_dynamic))

@@ -17,5 +17,6 @@ void add_export_command(CLI::App& app);
 void add_latency_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_top_command(CLI::App& app);
+void add_keys_command(CLI::App& app);
 
 }  // namespace palpate

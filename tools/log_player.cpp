@@ -116,8 +116,8 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
     if (!go_on) break;
     wait_until(due);
     const std::int64_t now = now_ns();
-    report.late.record(now - due);
     ++(player.send(event, now) ? report.played : report.skipped);
+    report.pace.record(now_ns() - due);
     report.seconds = 1e-9 * static_cast<double>(in_log);
     if (now < next_progress) continue;
     next_progress = now + progress_ns;

@@ -20,7 +20,7 @@ struct PlayReport {
   std::uint64_t played = 0;   ///< samples sent
   std::uint64_t skipped = 0;  ///< events left out: other topics, invalid, refused by the bus
   double seconds = 0;         ///< of the log, from its first sample
-  Histogram late;             ///< [ns] by which a sample was sent after its time
+  Histogram pace;             ///< [ns] from a sample's recorded time until the bus had it
   bool complete = false;      ///< the end of the log was reached
   std::string damage;         ///< sentence on damaged places, empty if none
 };

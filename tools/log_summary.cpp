@@ -76,9 +76,6 @@ class Summariser {
   template <class M>
   void learn(const M& message) {
     if constexpr (std::same_as<M, TaskRecord>) keep(message);
-    if constexpr (std::same_as<M, SceneText>) {
-      if (summary_.title.empty()) summary_.title = title_of(message.text);
-    }
     if constexpr (requires { message.code_path; }) {
       if (summary_.code_path.empty()) summary_.code_path = message.code_path;
     }
@@ -98,10 +95,6 @@ double TopicSummary::rate_hz() const {
 LogSummary summarise_log(const std::filesystem::path& file) {
   LogReader reader(file);
   LogSummary summary;
-  summary.header = reader.header();
-  summary.has_header = reader.has_header();
-  summary.title = title_of(summary.header.scene);
-  summary.code_path = summary.header.code_path;
   summary.bytes = reader.size();
 
   Summariser summariser(summary);
@@ -113,6 +106,10 @@ LogSummary summarise_log(const std::filesystem::path& file) {
     last = std::max(last, event.receive_ns);
   }
   summariser.finish();
+  summary.has_header = reader.has_header();
+  summary.header = reader.header();  // complete now that the scene's event was read
+  summary.title = title_of(summary.header.scene);
+  if (!summary.header.code_path.empty()) summary.code_path = summary.header.code_path;
   if (last > first) summary.seconds = 1e-9 * static_cast<double>(last - first);
   summary.damage = reader.damage();
   summary.damage_text = reader.damage_text();

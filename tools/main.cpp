@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   palpate::add_stability_command(app);
   palpate::add_study_command(app);
   palpate::add_top_command(app);
+  palpate::add_keys_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

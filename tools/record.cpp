@@ -101,7 +101,7 @@ void add_record_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("record", "Write every topic of a running system into an LCM event log");
-  add_network_options(*command, o->network);
+  add_network_options(*command, o->network, "recorder");
   command->add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
   command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)")
       ->check(CLI::PositiveNumber);

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
+#include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
@@ -15,8 +18,10 @@ struct Options {
   BusSettings network;
   PlaySettings play;
   std::string file;
-  bool verify = false;
+  bool verify = false, json = false;
 };
+
+constexpr int player_priority = 30;  // below a node's loop and its publisher
 
 void verify(const std::string& file) {
   const VerifyReport report = verify_log(file);
@@ -36,20 +41,35 @@ void verify(const std::string& file) {
   if (tissue.ticks > 0) fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
 }
 
+nlohmann::ordered_json json_of(const Options& o, const PlayReport& report) {
+  const Percentiles pace = percentiles_us(report.pace);
+  return {{"file", o.file},
+          {"complete", report.complete},
+          {"seconds", report.seconds},
+          {"played", report.played},
+          {"skipped", report.skipped},
+          {"pace_us", {{"p50", pace.p50}, {"p90", pace.p90}, {"p99", pace.p99}, {"p999", pace.p999}, {"max", pace.max}}},
+          {"damage", report.damage}};
+}
+
 void play(const Options& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
+  request_realtime({.priority = player_priority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const bool terminal = isatty(STDERR_FILENO);
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
     if (terminal) fmt::print(stderr, "\r{:9.2f} s", seconds);
     return !shutdown_requested();
   });
   if (terminal) fmt::print(stderr, "\r");
+  if (o.json) {
+    fmt::print("{}\n", json_of(o, report).dump());
+    return;
+  }
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
-  fmt::print("{}: {} of {:.2f} s: {} messages to domain {}, {} left out; late by {:.0f} us (median), {:.0f} us (p99)\n",
-             o.file, report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain,
-             report.skipped, 1e-3 * static_cast<double>(report.late.percentile(0.5)),
-             1e-3 * static_cast<double>(report.late.percentile(0.99)));
+  const Percentiles pace = percentiles_us(report.pace);
+  fmt::print("{}: {} of {:.2f} s: {} messages to domain {}, {} left out\npaced: median {:.1f} us, p99 {:.1f} us after the recorded times\n", o.file,
+             report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain, report.skipped, pace.p50, pace.p99);
 }
 
 }  // namespace
@@ -60,9 +80,10 @@ void add_replay_command(CLI::App& app) {
   command->add_option("log", o->file, "LCM event log")->required();
   command->add_option("--speed", o->play.speed, "2 plays twice as fast")->check(CLI::PositiveNumber)->capture_default_str();
   command->add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
-  add_network_options(*command, o->network);
+  add_network_options(*command, o->network, "player");
+  command->add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
   command->add_flag("--verify", o->verify, "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
-      ->excludes("--speed", "--topic");
+      ->excludes("--speed", "--topic", "--json");
   command->callback([o] { o->verify ? verify(o->file) : play(*o); });
 }
 

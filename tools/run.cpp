@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string scene, record, film, still, summary;
+  std::string scene, record, film, still, summary, keys;
   double seconds = 0;
   int domain = -1, processes = 2;
 };
@@ -109,10 +109,11 @@ class Nodes {
 };
 
 /// The recorder knows no scene, so the scene's network is passed on.
-std::vector<std::string> recorder_command(const Scene& scene, const std::string& log) {
+std::vector<std::string> recorder_command(const Scene& scene, const std::string& log, const std::string& keys) {
   std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log};
   if (!scene.network.interface.empty()) command.insert(command.end(), {"--interface", scene.network.interface});
   for (const std::string& peer : scene.network.peers) command.insert(command.end(), {"--peer", peer});
+  if (keys.empty() && scene.network.security) command.insert(command.end(), {"--keys", scene.network.security->keys});
   return command;
 }
 
@@ -120,10 +121,11 @@ void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
   const std::string domain = std::to_string(o.domain >= 0 ? o.domain : scene.network.domain);
   const auto with = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
+    if (!o.keys.empty()) arguments.insert(arguments.end(), {"--keys", o.keys});
     return arguments;
   };
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
-  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log)));
+  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o.keys)));
   const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
   const bool moves = std::ranges::any_of(scene.bodies, is_dynamic);  // moving tissue needs the node that owns it
   const bool three = o.processes == 3 || moves;
@@ -212,6 +214,7 @@ void add_run_command(CLI::App& app) {
   run_command->add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
   run_command->add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
   run_command->add_option("--domain", o->domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
+  run_command->add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command->add_option("--processes", o->processes, "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")->check(CLI::IsMember({2, 3}));
   run_command->callback([o] { run(*o); });
 }

@@ -163,7 +163,7 @@ void add_top_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
   command->add_option("--interval", o->interval, "Time between two looks [s]")->check(CLI::Range(0.1, 60.0))->capture_default_str();
   command->add_flag("--once", o->once, "One look, then end");
-  add_network_options(*command, o->network);
+  add_network_options(*command, o->network, "observer");
   command->callback([o] { run(*o); });
 }
 

@@ -4,12 +4,13 @@
 
 #include <stdexcept>
 
+#include "common/bus/dds_entity.hpp"
 #include "palpate.h"
 
 namespace palpate {
 
 BareDds::BareDds(const BusSettings& settings, const std::string& out, const std::string& in) : domain_(make_dds_bus(settings)) {
-  participant_ = dds_create_participant(static_cast<dds_domainid_t>(settings.domain), nullptr, nullptr);
+  participant_ = make_participant(settings);
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/bus/fields.hpp"
 #include "idl/topics.hpp"
@@ -19,7 +20,8 @@ class Writer {
   virtual bool write(const Message& message) = 0;
   virtual int readers() const = 0;  ///< matched readers; over DDS one that was killed counts for two minutes
   virtual std::uint64_t refused() const = 0;  ///< samples for which write() was false
-  virtual bool delivered() const = 0;  ///< no reader that asks for repair still lacks something that was written
+  /// No reader that asks for repair still lacks something that was written; recorders with a stream of their own count where nobody else reads.
+  virtual bool delivered() const = 0;
 };
 
 /// Receives samples of one topic, oldest first within a key. Samples that fail `valid` are dropped and
@@ -30,6 +32,8 @@ class Reader {
   virtual ~Reader() = default;
   virtual std::optional<Message> take() = 0;  ///< the next valid sample, empty if there is none
   virtual int writers() const = 0;            ///< live writers at this moment; death shows within about 0.2 s
+  /// Writers that have not ended; one that was killed or is cut off counts for two minutes.
+  virtual int known_writers() const = 0;
   virtual std::uint64_t invalid() const = 0;  ///< samples dropped because they were invalid
 };
 
@@ -53,6 +57,9 @@ class Bus {
 
   /// Where it meets others, for a sentence: "domain 3 on eth0 (192.0.2.1)".
   virtual std::string place() const = 0;
+
+  /// A sentence about each program of another version that has come since the last call: its messages do not get through.
+  virtual std::vector<std::string> misfits() = 0;
 
   /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be
   /// something.

@@ -8,74 +8,35 @@
 #include <stdexcept>
 
 #include "common/bus/dds_convert.hpp"
+#include "common/bus/dds_entity.hpp"
 #include "common/bus/stamp.hpp"
 #include "common/bus/validate.hpp"
+#include "common/bus/version_watch.hpp"
 
 namespace palpate {
 namespace {
 
-/// The middleware's last words, for the sentence of an exception. It prints nothing of its own.
-class LastWords {
- public:
-  static LastWords& instance() {
-    static auto* words = new LastWords;  // outlives the middleware's threads
-    return *words;
-  }
-  std::string text() {
-    const std::lock_guard lock(mutex_);
-    return text_;
-  }
-
- private:
-  LastWords() { dds_set_log_sink(&LastWords::sink, this); }
-  static void sink(void* self, const dds_log_data_t* data) {
-    auto& words = *static_cast<LastWords*>(self);
-    const std::lock_guard lock(words.mutex_);
-    words.text_.assign(data->message, data->size);
-    while (!words.text_.empty() && words.text_.back() == '\n') words.text_.pop_back();
-  }
-  std::mutex mutex_;
-  std::string text_;
-};
-
-/// Owns an entity of the C API and, through it, the entity's children.
-class Entity {
- public:
-  Entity(dds_entity_t id, const std::string& what) : id_(id) {
-    if (id_ >= 0) return;
-    const std::string words = LastWords::instance().text();
-    throw std::runtime_error(fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_),
-                                         words.empty() ? "" : ", ", words));
-  }
-  ~Entity() { dds_delete(id_); }
-  Entity(const Entity&) = delete;
-  Entity& operator=(const Entity&) = delete;
-  operator dds_entity_t() const { return id_; }
-
- private:
-  dds_entity_t id_;
-};
-
 /// One per domain id and process; the buses of a process share it.
 struct Domain {
   std::string configuration;
+  std::string keys, role;  ///< the middleware gives all participants of a process and domain the rights of the first
   Entity entity;
 };
 
 std::shared_ptr<Domain> join_domain(const BusSettings& settings) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> domains;
-  LastWords::instance();
+  listen_to_middleware();
   const std::string configuration = dds_configuration(settings);
   const std::lock_guard lock(mutex);
   if (auto domain = domains[settings.domain].lock()) {
-    if (domain->configuration == configuration) return domain;
+    if (domain->configuration == configuration && domain->keys == settings.keys && (settings.keys.empty() || domain->role == settings.role)) return domain;
     throw std::runtime_error(
         fmt::format("network: this process is already in domain {} with other settings", settings.domain));
   }
   const auto id = static_cast<dds_domainid_t>(settings.domain);
   auto domain = std::shared_ptr<Domain>(new Domain{
-      configuration,
+      configuration, settings.keys, settings.role,
       {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
   domains[settings.domain] = domain;
   return domain;
@@ -100,9 +61,8 @@ QosPtr writer_qos(const Qos& qos, int lease_ms) {
   QosPtr q = common_qos(qos);
   const bool all = qos.depth == keep_all;
   const dds_history_kind_t kind = all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
-  const int depth = all ? DDS_LENGTH_UNLIMITED : qos.depth;
-  dds_qset_history(q.get(), kind, depth);
-  dds_qset_durability_service(q.get(), 0, kind, depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_history(q.get(), kind, all ? DDS_LENGTH_UNLIMITED : qos.depth);
+  dds_qset_durability_service(q.get(), 0, kind, all ? DDS_LENGTH_UNLIMITED : 1, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_liveliness(q.get(), DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(lease_ms));
   dds_qset_writer_data_lifecycle(q.get(), false);
   return q;
@@ -126,45 +86,69 @@ QosPtr reader_qos(const Qos& qos, Keep keep) {
   return q;
 }
 
+/// A writer of the middleware, with its topic.
+class Outlet {
+ public:
+  Outlet(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name, const Qos& qos, int lease_ms)
+      : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr), fmt::format("creating topic {}", name)),
+        writer_(dds_create_writer(participant, topic_, writer_qos(qos, lease_ms).get(), nullptr), fmt::format("creating the writer of {}", name)) {}
+
+  bool write(const void* sample) { return dds_write(writer_, sample) == DDS_RETCODE_OK; }
+  bool delivered() const { return dds_wait_for_acks(writer_, 0) == DDS_RETCODE_OK; }
+  int readers() const {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer_, &status);
+    return static_cast<int>(status.current_count);
+  }
+
+ private:
+  Entity topic_, writer_;
+};
+
 template <class M>
 class DdsWriter final : public Writer<M> {
  public:
   DdsWriter(dds_entity_t participant, const Topic<M>& topic, int lease_ms)
-      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
-               fmt::format("creating topic {}", topic.name)),
-        writer_(dds_create_writer(participant, topic_, writer_qos(topic.qos, lease_ms).get(), nullptr),
-                fmt::format("creating the writer of {}", topic.name)) {}
+      : outlet_(participant, dds::Generated<M>::descriptor(), topic.name, topic.qos, lease_ms) {
+    Qos deep = topic.qos;
+    deep.depth = topic.qos.recorder_depth;
+    if (deep.depth > 0) for_recorders_.emplace(participant, dds::Generated<M>::descriptor(), recorders_name(topic), deep, lease_ms);
+  }
 
   bool write(const M& message) override {
     typename dds::Generated<M>::Type sample{};
     if (valid(message)) {
       fields(dds::Lend{}, message, sample);
       stamp(sample);
-      if (dds_write(writer_, &sample) == DDS_RETCODE_OK) return true;
+      const bool recorded = !for_recorders_ || for_recorders_->readers() == 0 || for_recorders_->write(&sample);
+      if (outlet_.write(&sample) && recorded) return true;
     }
     ++refused_;
     return false;
   }
 
-  int readers() const override {
-    dds_publication_matched_status_t status{};
-    dds_get_publication_matched_status(writer_, &status);
-    return static_cast<int>(status.current_count);
-  }
-
+  int readers() const override { return outlet_.readers() + (for_recorders_ ? for_recorders_->readers() : 0); }
   std::uint64_t refused() const override { return refused_; }
-  bool delivered() const override { return dds_wait_for_acks(writer_, 0) == DDS_RETCODE_OK; }
+  /// A recorder that falls behind does not hold up viewers, but where it is alone it sets the pace.
+  bool delivered() const override { return for_recorders_ && outlet_.readers() == 0 ? for_recorders_->delivered() : outlet_.delivered(); }
 
  private:
-  Entity topic_, writer_;
+  Outlet outlet_;
+  std::optional<Outlet> for_recorders_;
   std::uint64_t refused_ = 0;
 };
+
+/// Where a reader finds what it wants of a topic.
+template <class M>
+std::string stream_name(const Topic<M>& topic, Keep keep) {
+  return keep == Keep::all && topic.qos.recorder_depth > 0 ? recorders_name(topic) : topic.name;
+}
 
 template <class M>
 class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep)
-      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
+      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), stream_name(topic, keep).c_str(), nullptr, nullptr),
                fmt::format("creating topic {}", topic.name)),
         reader_(dds_create_reader(participant, topic_, reader_qos(topic.qos, keep).get(), nullptr),
                 fmt::format("creating the reader of {}", topic.name)),
@@ -190,6 +174,12 @@ class DdsReader final : public Reader<M> {
     return static_cast<int>(status.alive_count);
   }
 
+  int known_writers() const override {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader_, &status);
+    return static_cast<int>(status.current_count);
+  }
+
   std::uint64_t invalid() const override { return invalid_; }
 
  private:
@@ -211,9 +201,9 @@ class DdsBus final : public Bus {
       : lease_ms_(settings.lease_ms),
         place_(dds_place(settings)),
         domain_(join_domain(settings)),
-        participant_(dds_create_participant(static_cast<dds_domainid_t>(settings.domain), nullptr, nullptr),
-                     fmt::format("joining domain {}", settings.domain)),
-        waitset_(dds_create_waitset(participant_), "creating a wait set") {}
+        participant_(make_participant(settings), fmt::format("joining domain {}", settings.domain)),
+        waitset_(dds_create_waitset(participant_), "creating a wait set"),
+        versions_(participant_) {}
 
 #define PALPATE_DDS_PORTS(M)                                                     \
   std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {            \
@@ -226,6 +216,7 @@ class DdsBus final : public Bus {
 #undef PALPATE_DDS_PORTS
 
   std::string place() const override { return place_; }
+  std::vector<std::string> misfits() override { return versions_.look(); }
 
   bool wait(std::chrono::nanoseconds timeout) override {
     return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;
@@ -236,6 +227,7 @@ class DdsBus final : public Bus {
   std::string place_;
   std::shared_ptr<Domain> domain_;
   Entity participant_, waitset_;
+  VersionWatch versions_;
 };
 
 }  // namespace

@@ -33,7 +33,7 @@
   X(ToolState)              \
   X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) \
   X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord) \
-  X(ClockProbe) X(ClockAnswer) X(PictureState)
+  X(ClockProbe) X(ClockAnswer) X(PictureState) X(HeldTopology)
 
 namespace palpate {
 
@@ -53,6 +53,7 @@ PALPATE_FIELDS(PictureState, node, run, seq, step, sense_ns, publish_ns)
 PALPATE_FIELDS(HapticKeyframe, run, seq, step, dt, code_path, state, publish_ns)
 PALPATE_FIELDS(SceneText, run, seq, scene_hash, text, version, code_path, publish_ns)
 PALPATE_FIELDS(TopologyChange, body, run, seq, tick, cause, removed, publish_ns)
+PALPATE_FIELDS(HeldTopology, node, body, run, seq, removed, publish_ns)
 PALPATE_FIELDS(LocalContact, body, grasped, position, normal, force, stiffness)
 PALPATE_FIELDS(LocalNode, body, node, position, velocity, stiffness)
 PALPATE_FIELDS(LocalTriangle, a, b, c)

@@ -9,7 +9,9 @@ namespace palpate {
 /// The key field as text; empty for messages without a key.
 template <class M>
 std::string key_of(const M& message) {
-  if constexpr (requires { message.tool; }) {
+  if constexpr (requires { message.node; message.body; }) {
+    return message.node + " " + std::to_string(message.body);
+  } else if constexpr (requires { message.tool; }) {
     return std::to_string(message.tool);
   } else if constexpr (requires { message.body; }) {
     return std::to_string(message.body);

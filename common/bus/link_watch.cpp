@@ -7,7 +7,9 @@ namespace palpate {
 std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t now_ns) {
   std::vector<std::string> said;
   if (company_ns_ == 0) company_ns_ = now_ns;
-  for (const auto& [node, status] : presence.peers()) {
+  std::erase_if(heard_, [&](const auto& entry) { return !presence.peers().contains(entry.first); });
+  for (const auto& [node, peer] : presence.peers()) {
+    const NodeStatus& status = peer.status;
     Heard& heard = heard_[node];
     if (status.seq != heard.seq) {
       if (heard.silent) said.push_back(fmt::format("{} is back", node));

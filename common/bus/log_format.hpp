@@ -12,7 +12,7 @@ namespace palpate {
 /// First event of a log.
 struct LogHeader {
   std::string scene_hash;
-  std::string scene;      ///< resolved scene as TOML; empty if no haptic node was there
+  std::string scene;      ///< resolved scene as TOML; a recorder leaves it and what belongs to it empty, see LogReader::header()
   std::string schema;     ///< schema_text() of the program that wrote the log
   std::string version;    ///< software version of the recorder
   std::string code_path;  ///< of the haptic step: vector width and libraries; empty as above

@@ -39,12 +39,15 @@ struct Event {
 
 class LogWriter::Impl {
  public:
-  Impl(const std::filesystem::path& file, std::size_t queue_bytes)
-      : log_(lcm_eventlog_create(file.c_str(), "w")),
-        queue_limit_(queue_bytes),
-        wall_offset_(wall_ns() - now_ns()) {
-    if (!log_)
-      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header)
+      : queue_limit_(queue_bytes), wall_offset_(wall_ns() - now_ns()) {
+    const bool named_later = header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file));
+    const std::filesystem::path part = named_later ? file.string() + ".part" : file.string();
+    log_ = lcm_eventlog_create(part.c_str(), "w");
+    if (!log_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+    std::setvbuf(log_->f, nullptr, _IOFBF, flush_bytes);
+    if (header) begin(*header);
+    if (named_later) give_name(part, file);
     thread_ = std::thread([this] { run(); });
   }
 
@@ -84,8 +87,24 @@ class LogWriter::Impl {
   }
 
  private:
+  /// Once the header is on its way to the disk.
+  void give_name(const std::filesystem::path& part, const std::filesystem::path& file) {
+    std::string why = status_.error;
+    if (status_.lost == 0 && std::rename(part.c_str(), file.c_str()) != 0) why = std::strerror(errno);
+    if (why.empty()) return;
+    lcm_eventlog_destroy(log_);
+    std::filesystem::remove(part);
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));
+  }
+
+  void begin(const LogHeader& header) {
+    Bytes payload;
+    encode(header, payload);
+    append({header_channel, header.start_monotonic_ns, envelope::wrap(header_channel, header.start_monotonic_ns, payload)});
+    flush();
+  }
+
   void run() {
-    std::setvbuf(log_->f, nullptr, _IOFBF, flush_bytes);
     for (bool more = true; more;) {
       std::deque<Event> batch;
       {
@@ -164,7 +183,7 @@ class LogWriter::Impl {
     status_.error = why;
   }
 
-  lcm_eventlog_t* log_;
+  lcm_eventlog_t* log_ = nullptr;
   std::size_t queue_limit_;
   std::int64_t wall_offset_;
 
@@ -183,7 +202,8 @@ class LogWriter::Impl {
 };
 
 LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
-    : impl_(std::make_unique<Impl>(file, queue_bytes)) {}
+    : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr)) {}
+LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header) : impl_(std::make_unique<Impl>(file, queue_limit, &header)) {}
 LogWriter::~LogWriter() = default;
 
 void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {

@@ -107,7 +107,7 @@ class MemoryWriter final : public Writer<M> {
   void keep_for_late_joiners(const M& message) {
     auto& kept = channel_.kept[{this, key_of(message)}];
     kept.push_back(message);
-    if (qos_.depth != keep_all && kept.size() > static_cast<std::size_t>(qos_.depth)) kept.pop_front();
+    if (qos_.depth != keep_all && kept.size() > 1) kept.pop_front();
   }
 
   std::shared_ptr<MemoryNetwork> network_;
@@ -146,6 +146,7 @@ class MemoryReader final : public Reader<M> {
     const std::lock_guard lock(network_->mutex);
     return channel_.writers;
   }
+  int known_writers() const override { return writers(); }
   std::uint64_t invalid() const override { return 0; }  // writers refuse invalid samples
 
  private:
@@ -170,6 +171,7 @@ class MemoryBus final : public Bus {
 #undef PALPATE_MEMORY_PORTS
 
   std::string place() const override { return "this process"; }
+  std::vector<std::string> misfits() override { return {}; }
 
   bool wait(std::chrono::nanoseconds timeout) override {
     std::unique_lock lock(network_->mutex);

@@ -181,7 +181,19 @@ struct TopologyChange {
   std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal, those that followed included
   std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
-enum RemovalCause : std::uint32_t { cut = 0, torn = 1, fell_away = 2 };
+/// `gone_before`: the first message of a run for each body, with what had gone before it; mostly empty.
+enum RemovalCause : std::uint32_t { cut = 0, torn = 1, fell_away = 2, gone_before = 3 };
+
+/// What a node knows a body to have lost, for a deformation node that returns. Each node that follows the changes says so at
+/// its start and after each.
+struct HeldTopology {
+  std::string node;        ///< key: who remembers
+  std::uint32_t body = 0;  ///< key
+  std::uint64_t run = 0;   ///< start of the deform node whose changes these are; 0: none was heard of
+  std::uint64_t seq = 0;   ///< from 1 in each run
+  std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal
+  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+};
 
 /// A place where a tool holds moving tissue, as it was with the tool's pose in the message.
 struct LocalContact {
@@ -227,8 +239,10 @@ struct LocalContactModel {
 struct ConsumedStep {
   std::uint32_t tool = 0;
   std::uint64_t run = 0;   ///< start of the haptic loop
-  std::uint64_t step = 0;
+  std::uint64_t step = 0;  ///< or tool_left
 };
+/// In place of a step: the tool's haptic node has ended, and the tool is gone.
+inline constexpr std::uint64_t tool_left = ~std::uint64_t{0};
 
 /// Journal of the deform node's moving tissue: what one tick consumed and where it led.
 struct DeformStep {

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
 namespace {
+
+constexpr std::int64_t forgotten_after_ns = 600 * ns_per_s;
 
 std::string node_name(const std::string& role) {
   char host[256] = "localhost";
@@ -19,7 +22,7 @@ std::string node_name(const std::string& role) {
 }  // namespace
 
 Presence::Presence(Bus& bus, std::string role, std::uint64_t run, std::string scene_hash, std::string archive_hash)
-    : writer_(bus.writer(topics::node_status)), reader_(bus.reader(topics::node_status)) {
+    : bus_(&bus), writer_(bus.writer(topics::node_status)), reader_(bus.reader(topics::node_status)) {
   status_.node = node_name(role);
   status_.role = std::move(role);
   status_.run = run;
@@ -53,38 +56,46 @@ bool Presence::same_scene(const NodeStatus& peer) const {
   return agree(peer.scene_hash, status_.scene_hash) && agree(peer.archive_hash, status_.archive_hash);
 }
 
+std::string Presence::meet(const NodeStatus& peer) const {
+  if (same_scene(peer)) return "met " + peer.node;
+  const auto differs = [&](const char* what, const std::string& theirs, const std::string& ours) {
+    return fmt::format("refusing {}: {} (its hash {} differs from {} here)", peer.node, what, theirs.substr(0, 12), ours.substr(0, 12));
+  };
+  if (peer.scene_hash != status_.scene_hash) return differs("it runs another scene", peer.scene_hash, status_.scene_hash);
+  return differs("its archive is of another mesh, material or fixation", peer.archive_hash, status_.archive_hash);
+}
+
 std::vector<std::string> Presence::watch() {
-  std::vector<std::string> said;
-  while (const auto status = reader_->take()) {
+  std::vector<std::string> said = bus_->misfits();
+  const std::int64_t now = now_ns();
+  while (auto status = reader_->take()) {
     if (status->node == status_.node) continue;
-    const auto known = peers_.find(status->node);
-    const bool news = known == peers_.end() || known->second.run != status->run || known->second.scene_hash != status->scene_hash ||
-                      known->second.archive_hash != status->archive_hash;
-    peers_[status->node] = *status;
+    Peer& peer = peers_[status->node];
+    const NodeStatus& before = peer.status;
+    const bool news = before.node.empty() || before.run != status->run || before.scene_hash != status->scene_hash || before.archive_hash != status->archive_hash;
+    peer.status = std::move(*status);
+    peer.heard_ns = now;
     if (!news) continue;
-    if (same_scene(*status)) {
-      said.push_back(fmt::format("met {}", status->node));
-    } else if (status->scene_hash != status_.scene_hash) {
-      said.push_back(fmt::format("refusing {}: it runs another scene (its hash {} differs from {} here)", status->node,
-                                 status->scene_hash.substr(0, 12), status_.scene_hash.substr(0, 12)));
-    } else {
-      said.push_back(fmt::format("refusing {}: its archive is of another mesh, material or fixation (its hash {} differs from {} here)",
-                                 status->node, status->archive_hash.substr(0, 12), status_.archive_hash.substr(0, 12)));
-    }
+    peer.met_ns = now;
+    peer.accepted = same_scene(peer.status);
+    said.push_back(meet(peer.status));
   }
+  std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.heard_ns > forgotten_after_ns; });
   return said;
 }
 
 bool Presence::accepts(std::uint64_t run) const {
-  for (const auto& [node, status] : peers_)
-    if (status.role == "haptic" && status.run == run) return same_scene(status);
-  return false;
+  return std::ranges::any_of(peers_, [&](const auto& entry) {
+    const Peer& peer = entry.second;
+    return peer.accepted && peer.status.role == "haptic" && peer.status.run == run;
+  });
 }
 
-bool Presence::matched(const std::string& role) const {
-  for (const auto& [node, status] : peers_)
-    if (status.role == role && same_scene(status)) return true;
-  return false;
+const Presence::Peer* Presence::last_met(const std::string& role) const {
+  const Peer* last = nullptr;
+  for (const auto& [name, peer] : peers_)
+    if (peer.accepted && peer.status.role == role && (!last || peer.met_ns >= last->met_ns)) last = &peer;
+  return last;
 }
 
 }  // namespace palpate

@@ -24,23 +24,35 @@ class Presence {
   void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us, const std::string& text = "");
 
   /// Takes what has come and returns a sentence for the operator for each node that is new, gone over to another
-  /// run, or refused because its scene or archive differs.
+  /// run, or refused because its scene, archive or messages differ.
   std::vector<std::string> watch();
 
   /// True if the haptic loop with this run is known and has the same scene and archives.
   bool accepts(std::uint64_t run) const;
   /// True if a node of this role is known that has the same scene and archives.
-  bool matched(const std::string& role) const;
-  const std::map<std::string, NodeStatus>& peers() const { return peers_; }
+  bool matched(const std::string& role) const { return last_met(role) != nullptr; }
+
+  struct Peer {
+    NodeStatus status;          ///< as it announced itself last
+    std::int64_t met_ns = 0;    ///< when it was first heard of, or began another run; own clock
+    std::int64_t heard_ns = 0;  ///< when it was heard of last
+    bool accepted = false;      ///< it has the same scene and archives
+  };
+  /// The accepted node of this role that was met last; nullptr if there is none.
+  const Peer* last_met(const std::string& role) const;
+  /// Those heard of within the last ten minutes, by name.
+  const std::map<std::string, Peer>& peers() const { return peers_; }
 
  private:
   bool same_scene(const NodeStatus& peer) const;
+  std::string meet(const NodeStatus& status) const;
 
+  Bus* bus_;
   std::unique_ptr<Writer<NodeStatus>> writer_;
   std::unique_ptr<Reader<NodeStatus>> reader_;
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
-  std::map<std::string, NodeStatus> peers_;
+  std::map<std::string, Peer> peers_;
 };
 
 }  // namespace palpate

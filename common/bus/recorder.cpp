@@ -36,29 +36,23 @@ auto make_tracks(Bus& bus, const std::tuple<Topic<M>...>& all) {
 }
 using Tracks = decltype(make_tracks(std::declval<Bus&>(), topics::all));
 
-struct Held {
-  std::string channel;
-  std::int64_t receive_ns;
-  Bytes payload;
-};
+LogHeader make_header(const RecorderSettings& settings) {
+  LogHeader header;
+  header.schema = schema_text();
+  header.version = settings.version;
+  header.host = host_name();
+  header.start_wall_ns = wall_ns();
+  header.start_monotonic_ns = now_ns();
+  return header;
+}
 
 }  // namespace
 
 class Recorder::Impl {
  public:
   Impl(Bus& bus, const RecorderSettings& settings)
-      : bus_(bus),
-        settings_(settings),
-        log_(settings.file),
-        tracks_(make_tracks(bus, topics::all)),
-        status_writer_(bus.writer(topics::node_status)),
-        start_ns_(now_ns()) {
-    header_.schema = schema_text();
-    header_.version = settings.version;
-    header_.host = host_name();
-    header_.start_wall_ns = wall_ns();
-    header_.start_monotonic_ns = start_ns_;
-    status_.node = fmt::format("recorder {}@{}", getpid(), header_.host);
+      : bus_(bus), log_(settings.file, make_header(settings)), tracks_(make_tracks(bus, topics::all)), status_writer_(bus.writer(topics::node_status)) {
+    status_.node = fmt::format("recorder {}@{}", getpid(), host_name());
     status_.role = "recorder";
     status_.version = settings.version;
   }
@@ -66,11 +60,7 @@ class Recorder::Impl {
   void step(std::chrono::nanoseconds timeout) {
     bus_.wait(timeout);
     drain();
-    const std::int64_t now = now_ns();
-    if (!begun_ &&
-        (has_scene_ || now - start_ns_ > std::chrono::nanoseconds(settings_.scene_patience).count()))
-      begin();
-    if (now >= next_status_ns_) publish_status(now);
+    if (const std::int64_t now = now_ns(); now >= next_status_ns_) publish_status(now);
   }
 
   LogStatus log_status() const { return log_.status(); }
@@ -78,7 +68,7 @@ class Recorder::Impl {
   RecorderReport report() const {
     RecorderReport report;
     report.log = log_.status();
-    report.has_scene = has_scene_;
+    report.has_scene = !status_.scene_hash.empty();
     std::apply(
         [&](const auto&... track) {
           const auto add = [&](const auto& t) {
@@ -93,7 +83,6 @@ class Recorder::Impl {
 
   RecorderReport finish() {
     drain();
-    if (!begun_) begin();
     RecorderReport result = report();
     result.log = log_.finish();
     return result;
@@ -110,38 +99,15 @@ class Recorder::Impl {
       const std::int64_t receive_ns = now_ns();
       track.sequence.add(*message);
       ++track.samples;
-      if constexpr (std::same_as<M, SceneText>) take_scene(*message);
-      Bytes payload;
-      encode(*message, payload);
-      if (begun_) {
-        log_.write_payload(track.topic.name, receive_ns, payload);
-      } else {
-        held_.push_back({track.topic.name, receive_ns, std::move(payload)});
-      }
+      if constexpr (std::same_as<M, SceneText>) status_.scene_hash = message->scene_hash;
+      log_.write(track.topic.name, receive_ns, *message);
     }
-  }
-
-  void take_scene(const SceneText& scene) {
-    has_scene_ = true;
-    header_.scene_hash = scene.scene_hash;
-    header_.scene = scene.text;
-    header_.code_path = scene.code_path;
-  }
-
-  /// Writes the header, then what was held back for it.
-  void begin() {
-    log_.write(header_channel, header_.start_monotonic_ns, header_);
-    for (const Held& held : held_) log_.write_payload(held.channel, held.receive_ns, held.payload);
-    held_.clear();
-    held_.shrink_to_fit();
-    begun_ = true;
   }
 
   void publish_status(std::int64_t now) {
     next_status_ns_ = now + ns_per_s;
     ++status_.seq;
     status_.stamp_ns = now;
-    status_.scene_hash = header_.scene_hash;
     std::apply([&](const auto&... track) { status_.ticks = (track.samples + ...); }, tracks_);
     const LogStatus log = log_.status();
     status_.missed = log.lost;
@@ -150,15 +116,11 @@ class Recorder::Impl {
   }
 
   Bus& bus_;
-  RecorderSettings settings_;
   LogWriter log_;
   Tracks tracks_;
   std::unique_ptr<Writer<NodeStatus>> status_writer_;
-  LogHeader header_;
   NodeStatus status_;
-  std::vector<Held> held_;
-  std::int64_t start_ns_, next_status_ns_ = 0;
-  bool begun_ = false, has_scene_ = false;
+  std::int64_t next_status_ns_ = 0;
 };
 
 Recorder::Recorder(Bus& bus, const RecorderSettings& settings)

@@ -14,8 +14,6 @@ namespace palpate {
 struct RecorderSettings {
   std::filesystem::path file;
   std::string version;  ///< software version, for the header
-  /// How long the first samples are held back for the scene to arrive, since it stands in the log's header.
-  std::chrono::milliseconds scene_patience{1500};
 };
 
 struct RecordedTopic {
@@ -34,7 +32,7 @@ struct RecorderReport {
 /// Writes every sample of every topic of a bus into a log, and tells the others how it fares (NodeStatus).
 class Recorder {
  public:
-  /// Throws std::runtime_error if the file cannot be created.
+  /// Throws std::runtime_error if the file cannot be created; afterwards it is a log that opens, whatever becomes of this process.
   Recorder(Bus& bus, const RecorderSettings& settings);
   ~Recorder();
 

@@ -78,7 +78,10 @@ inline bool sizes_fit(const DeformKeyframe& m) {
   return m.dt > 0 && m.state.size() <= Limits::keyframe_bytes;
 }
 inline bool sizes_fit(const TopologyChange& m) {
-  return m.seq > 0 && m.cause <= fell_away && m.removed.size() <= Limits::tetrahedra;
+  return m.seq > 0 && m.cause <= gone_before && m.removed.size() <= Limits::tetrahedra;
+}
+inline bool sizes_fit(const HeldTopology& m) {
+  return !m.node.empty() && m.seq > 0 && m.removed.size() <= Limits::tetrahedra;
 }
 inline bool sizes_fit(const LocalContactModel& m) {
   if (m.seq == 0 || m.contacts.size() > Limits::local_contacts || m.nodes.size() > Limits::local_nodes ||

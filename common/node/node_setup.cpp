@@ -17,14 +17,18 @@ void add_node_options(CLI::App& app, NodeOptions& o) {
   app.add_option("--domain", o.domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
   app.add_option("--interface", o.interface, "Network interface in place of the scene's");
   app.add_option("--peer", o.peers, "Host to look for peers on, in place of the scene's; may be repeated");
+  app.add_option("--keys", o.keys, "Folder of keys in place of the scene's");
   app.add_flag("--supervised", o.supervised, "For `palpate run`: print 'ready' and a JSON summary on standard output");
 }
 
-BusSettings bus_settings(const Scene& scene, const NodeOptions& o) {
+BusSettings bus_settings(const Scene& scene, const NodeOptions& o, const std::string& role) {
   BusSettings settings;
   settings.domain = o.domain >= 0 ? o.domain : scene.network.domain;
   settings.interface = o.interface.empty() ? scene.network.interface : o.interface;
   settings.peers = o.peers.empty() ? scene.network.peers : o.peers;
+  if (scene.network.security) settings.keys = scene.network.security->keys;
+  if (!o.keys.empty()) settings.keys = o.keys;
+  settings.role = role;
   return settings;
 }
 

@@ -11,7 +11,7 @@
 namespace palpate {
 
 struct NodeOptions {
-  std::string scene, interface;
+  std::string scene, interface, keys;
   std::vector<std::string> peers;
   double seconds = 0;       ///< 0: no limit
   int domain = -1;          ///< -1: the scene's
@@ -20,8 +20,8 @@ struct NodeOptions {
 
 void add_node_options(CLI::App& app, NodeOptions& options);
 
-/// The scene's network section with what the command line replaces.
-BusSettings bus_settings(const Scene& scene, const NodeOptions& options);
+/// The scene's network section with what the command line replaces. `role`: of roles.hpp, for the keys.
+BusSettings bus_settings(const Scene& scene, const NodeOptions& options, const std::string& role);
 
 /// A scene with the archives of its bodies, and the hashes by which nodes know each other.
 struct LoadedScene {

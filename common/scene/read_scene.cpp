@@ -39,6 +39,8 @@ Network read_network(const TableReader& table) {
   table.integer("domain", network.domain, 0, 230);
   table.text("interface", network.interface);
   table.texts("peers", network.peers);
+  if (const auto security = table.table("security", "[network.security]"))
+    security->path("keys", network.security.emplace().keys, Need::required);
   return network;
 }
 

@@ -171,10 +171,16 @@ struct Passivity {
   double reserve = 0.01;    ///< [J] that may be taken out beyond what was put in
 };
 
+/// Only who has keys of one authority takes part, and what crosses the network is encrypted.
+struct Security {
+  std::filesystem::path keys;  ///< folder that `palpate keys` made, or that of one role in it
+};
+
 struct Network {
   int domain = 0;
   std::string interface;            ///< empty: loopback
   std::vector<std::string> peers;
+  std::optional<Security> security; ///< absent: open to all, and nothing of it is loaded
 };
 
 struct Rates {

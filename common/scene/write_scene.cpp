@@ -222,6 +222,9 @@ void write(Writer& out, const Network& network) {
   std::vector<std::string> peers;
   for (const std::string& peer : network.peers) peers.push_back(toml_string(peer));
   if (!peers.empty()) out.line("peers", list(peers));
+  if (!network.security) return;
+  out.table("[network.security]");
+  out.write("keys", network.security->keys);
 }
 
 void write(Writer& out, const Render& render) {

@@ -71,6 +71,7 @@ TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
   expect_round_trip(topics::haptic_keyframe, keyframe_sample());
   expect_round_trip(topics::scene, scene_sample());
   expect_round_trip(topics::topology_change, topology_sample());
+  expect_round_trip(topics::held_topology, held_topology_sample());
   expect_round_trip(topics::local_contact_model, local_model_sample());
   expect_round_trip(topics::local_contact_model, local_model_sample(32, 128));
   expect_round_trip(topics::deform_step, deform_step_sample());
@@ -96,7 +97,7 @@ TEST_P(BusContract, ALateReaderGetsEveryChangeOfTopologyInOrder) {
     ASSERT_EQ(change->seq, seq);
   }
   TopologyChange unknown = topology_sample(changes + 1);
-  unknown.cause = fell_away + 1;
+  unknown.cause = gone_before + 1;
   EXPECT_FALSE(writer->write(unknown));
   ASSERT_TRUE(writer->write(topology_sample(changes + 1)));
   EXPECT_EQ(take_within(*b, *late)->seq, changes + 1);

@@ -85,14 +85,17 @@ TEST(Idl, SaysUnitFrameAndMeaningOfEveryField) {
 }
 
 TEST(Idl, KeysAreTheFirstFieldsThatNameAToolABodyOrANode) {
-  for (const auto& [name, idl_fields] : read_idl())
+  for (const auto& [name, idl_fields] : read_idl()) {
+    bool leading = true;
     for (std::size_t i = 0; i < idl_fields.size(); ++i) {
       const std::string& field = idl_fields[i].name;
-      const bool expected = i == 0 && (field == "tool" || field == "body" || field == "node") &&
+      const bool expected = leading && (field == "tool" || field == "body" || field == "node") &&
                             name != "NodalForce" && name != "HeldContact" && name != "LocalContact" &&
                             name != "LocalNode" && name != "ConsumedStep" && name != "ShellForce";
       EXPECT_EQ(idl_fields[i].key, expected) << name << "." << field;
+      leading = expected;
     }
+  }
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_F(PlayedLog, ComesBackInOrderAtItsOwnPace) {
   EXPECT_EQ(report.played, 200u);
   EXPECT_EQ(report.skipped, 0u);
   EXPECT_NEAR(report.seconds, 0.199, 1e-9);
-  EXPECT_LT(report.late.percentile(0.5), ms);
+  EXPECT_LT(report.pace.percentile(0.5), ms);
   SceneText scene = *scenes->take();
   EXPECT_GT(scene.publish_ns, start - 50 * ms);  // moved to the time of the replay
   scene.publish_ns = scene_sample().publish_ns;

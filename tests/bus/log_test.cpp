@@ -243,6 +243,26 @@ TEST_F(Log, FilesThatAreNoLogAreRefusedInWords) {
   EXPECT_THROW(LogWriter(folder_ / "no" / "such" / "folder"), std::runtime_error);
 }
 
+TEST_F(Log, HasItsNameOnlyOnceItsHeaderIsInIt) {
+  {
+    const LogWriter writer(file_, header());
+    EXPECT_EQ(LogReader(file_).header().schema, schema_text()) << "at once";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "and nothing lies beside it";
+  }
+  EXPECT_EQ(LogReader(file_).header().version, header().version);
+  fs::remove(file_);
+
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before;
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit tight = before;
+  tight.rlim_cur = 100;
+  setrlimit(RLIMIT_FSIZE, &tight);
+  EXPECT_THROW(LogWriter(file_, header()), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_TRUE(fs::is_empty(folder_)) << "a header that does not fit leaves no file";
+}
+
 TEST_F(Log, AFullDiskIsCountedAndSaid) {
   LogWriter writer("/dev/full");
   for (std::uint64_t i = 0; i < 500; ++i) writer.write(topics::tool_state.name, 1, tool_sample(i));

@@ -72,6 +72,10 @@ inline TopologyChange topology_sample(std::uint64_t seq = 3) {
   return {1, 2, seq, 4, fell_away, {17, 5, 4000001}, 5};
 }
 
+inline HeldTopology held_topology_sample(std::uint32_t body = 1) {
+  return {"render 7@there", body, 2, 3, {17, 5, 4000001}, 6};
+}
+
 inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uint32_t triangles = 3) {
   LocalContactModel m;
   m.tool = 1, m.run = 2, m.seq = 3, m.tick = 4, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7, m.publish_ns = 8;

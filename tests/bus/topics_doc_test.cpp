@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+std::string for_recorders(const Qos& qos) { return qos.recorder_depth > 0 ? fmt::format("; {} for recorders", qos.recorder_depth) : ""; }
+
 std::string table() {
   std::string text =
       "| topic | message | delivery | kept per key | late joiners | rate | writer | readers | content |\n"
@@ -18,8 +20,8 @@ std::string table() {
   topics::for_each([&](const auto& t) {
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} | {} |\n", t.name, t.message,
                         t.qos.reliable ? "reliable" : "best effort",
-                        t.qos.depth == keep_all ? "all" : std::to_string(t.qos.depth),
-                        t.qos.transient_local ? "get what is kept" : "-", t.rate, t.writer, t.readers,
+                        t.qos.depth == keep_all ? "all" : std::to_string(t.qos.depth) + for_recorders(t.qos),
+                        !t.qos.transient_local ? "-" : t.qos.depth == keep_all ? "get all" : "get the newest", t.rate, t.writer, t.readers,
                         t.description);
   });
   return text;

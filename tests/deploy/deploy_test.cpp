@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <regex>
+#include <set>
 #include <thread>
 
 #include "common/bus/dds_bus.hpp"
 #include "tests/deploy/ssh_host.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/network/hosts_or_skip.hpp"
+#include "tools/keys/key_folder.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -54,9 +56,9 @@ class Deploy : public ::testing::Test {
   bool said(const std::string& words) const { return said_.find(words) != std::string::npos; }
 
   /// Waits on host A for a surface that a haptic node on the same host caused.
-  bool surface_comes() const {
+  bool surface_comes(const fs::path& keys = {}) const {
     const Inside here(hosts_->a());
-    const auto bus = make_dds_bus({.domain = domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}});
+    const auto bus = make_dds_bus({.domain = domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}, .keys = keys, .role = "observer"});
     const auto surfaces = bus->reader(topics::surface_state);
     const auto limit = std::chrono::steady_clock::now() + 10s;
     while (std::chrono::steady_clock::now() < limit) {
@@ -108,6 +110,38 @@ TEST_F(Deploy, ALaterCallReplacesTheNodesItNamesAndStopsNoOthers) {
   EXPECT_TRUE(somebody_runs(far_->home() / "palpate/bin/deform_node"));
   EXPECT_EQ(deploy("--remove"), 0);
   EXPECT_FALSE(somebody_runs(far_->home()));
+}
+
+TEST_F(Deploy, OfTheKeysAHostGetsThoseOfItsNodesAlone) {
+  const fs::path keys = block_.folder() / "keys", there = far_->home() / "palpate/scene/keys";
+  block_.replace("[render]", "[network.security]\nkeys = \"keys\"\n\n[render]");
+  EXPECT_EQ(deploy(scene()), 1);
+  EXPECT_TRUE(said("keys/deform is not there: palpate keys makes it"));
+  constexpr std::time_t month = 30 * 24 * 60 * 60;
+  keys::make_folder(keys, {std::time(nullptr) - 60, std::time(nullptr) + month});
+  fs::permissions(keys / "deform/key.pem", fs::perms::others_read, fs::perm_options::add);
+  EXPECT_EQ(deploy(scene()), 1);
+  EXPECT_TRUE(said("key.pem may be read by others"));
+  fs::permissions(keys / "deform/key.pem", fs::perms::others_read, fs::perm_options::remove);
+  const auto altered = far_->ssh_through("altering", "LC_ALL=C sed 's/<grant name=\"deform\">/<grant name=\"haptic\">/'");
+  EXPECT_EQ(deploy(scene(), altered), 1);
+  EXPECT_TRUE(said("scene/keys/deform/permissions.p7s: FAILED")) << said_;
+  EXPECT_EQ(far_->listing(), "");
+
+  ASSERT_EQ(deploy(scene() + "-- --seconds 25"), 0);
+  std::set<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(there))
+    files.insert(fmt::format("{} {:o}", fs::relative(entry.path(), there).string(), static_cast<unsigned>(entry.status().permissions())));
+  EXPECT_EQ(files, (std::set<std::string>{"deform 700", "deform/authority.pem 600", "deform/certificate.pem 600", "deform/governance.p7s 600", "deform/key.pem 600",
+                                          "deform/permissions.p7s 600"}));
+  const std::string near = fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"), block_.scene(),
+                                       domain, TwoHosts::device, TwoHosts::address_b);
+  const Inside here(hosts_->a());
+  ChildProcess haptic("haptic_node", {"/bin/sh", "-c", near});
+  EXPECT_TRUE(surface_comes(keys));
+  haptic.interrupt();
+  EXPECT_EQ(deploy("--remove"), 0);
+  EXPECT_EQ(far_->listing(), "");
 }
 
 TEST_F(Deploy, FilesBesideTheSceneKeepTheirPlaces) {

@@ -16,9 +16,9 @@ bool all_finite(const ForceState& f) {
 
 }  // namespace
 
-Observer::Observer(const TwoHosts& hosts) {
+Observer::Observer(const TwoHosts& hosts, const std::filesystem::path& keys) {
   const Inside here(hosts.a());
-  bus_ = make_dds_bus({.domain = Nodes::domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}});
+  bus_ = make_dds_bus({.domain = Nodes::domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}, .keys = keys, .role = "observer"});
   tools_ = bus_->reader(topics::tool_state);
   forces_ = bus_->reader(topics::force_state, Keep::all);
   surface_reader_ = bus_->reader(topics::surface_state);

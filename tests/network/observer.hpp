@@ -16,7 +16,8 @@ namespace palpate::testing {
 /// deformation node on host B have crossed it.
 class Observer {
  public:
-  explicit Observer(const TwoHosts& hosts);
+  /// `keys`: a folder with those of the role observer, for nodes that have keys.
+  explicit Observer(const TwoHosts& hosts, const std::filesystem::path& keys = {});
 
   /// Listens until `enough` says so, false if that is not within the limit.
   bool listen(std::chrono::milliseconds limit, const std::function<bool()>& enough);

@@ -19,6 +19,17 @@ struct TissueScene : CutScene {
 class TissueOverRelay : public NodesTest<TissueScene, TwoHosts::Link::relay> {
  protected:
   bool stale() const { return (observer_->force.flags & stale_model) != 0; }
+  /// Surface nodes [m] before any tool has come.
+  std::vector<float> surface_at_rest() {
+    observer_->listen(20s, [&] { return !observer_->surface.position.empty(); });
+    return observer_->surface.position;
+  }
+  /// Largest distance [m] of what is shown now from that.
+  double deepest(const std::vector<float>& rest) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i) largest = std::max<double>(largest, std::abs(observer_->surface.position[i] - rest[i]));
+    return largest;
+  }
   bool fresh_within(std::chrono::milliseconds limit) {
     return observer_->listen(limit, [&] { return !stale() && observer_->force.force[2] > 0; });
   }
@@ -34,11 +45,18 @@ TEST_F(TissueOverRelay, ItsForceFadesInACutAndComesBackWithoutAJump) {
 
   hosts_->impair("both cut 1");
   EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; })) << "nothing is felt that nobody computes";
+  observer_->listen(1500ms);
   hosts_->impair("both cut 0");
   const std::int64_t back = now_ns();
   EXPECT_TRUE(fresh_within(5s));
   fmt::print("force back after {:.1f} ms\n", 1e-6 * static_cast<double>(now_ns() - back));
-  observer_->listen(300ms);
+  double largest = 0;
+  observer_->listen(300ms, [&] {
+    largest = std::max(largest, observer_->force.force[2]);
+    return false;
+  });
+  EXPECT_LT(largest, 1.05 * force) << "the tissue was held meanwhile: nothing strikes the tool";
+  EXPECT_NEAR(observer_->force.force[2], force, 0.02 * force);
 
   // The models of the newest steps get through without repair.
   hosts_->impair("both loss 0.3");
@@ -64,6 +82,38 @@ TEST_F(TissueOverRelay, ItsForceFadesInACutAndComesBackWithoutAJump) {
   EXPECT_LT(observer_->largest_jump, 0.5 * before) << "it fades over several steps";
   EXPECT_TRUE(observer_->finite);
   EXPECT_GE(observer_->least_energy, -0.01);
+}
+
+TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
+  ChildProcess deform = nodes_->on_b("deform_node");
+  ChildProcess recorder = nodes_->recorder_on_b("left.lcmlog");
+  ChildProcess haptic = nodes_->on_a("haptic_node");
+  const std::vector<float> rest = surface_at_rest();
+  ASSERT_TRUE(joined());
+  observer_->listen(1500ms);
+  const double force = observer_->force.force[2], depth = deepest(rest);
+  ASSERT_GT(force, 0.1);
+  ASSERT_GT(depth, 0.005);
+
+  kill(haptic.pid(), SIGSTOP);
+  observer_->listen(2s);
+  EXPECT_NEAR(deepest(rest), depth, 0.01 * depth) << "its tool is where it was";
+  observer_->largest_jump = 0;
+  kill(haptic.pid(), SIGCONT);
+  observer_->listen(1s);
+  EXPECT_LT(observer_->largest_jump, 0.05 * force);
+  EXPECT_NEAR(observer_->force.force[2], force, 0.02 * force);
+
+  haptic.interrupt();
+  ASSERT_TRUE(haptic.wait(5s));
+  EXPECT_TRUE(observer_->listen(5s, [&] { return deepest(rest) < 0.1 * depth; })) << deepest(rest) << " of " << depth;
+  deform.interrupt();
+  ASSERT_TRUE(deform.wait(5s));
+  recorder.interrupt();
+  ASSERT_TRUE(recorder.wait(5s));
+  std::string output;
+  EXPECT_EQ(run_command(program("palpate") + " replay " + (scene_.folder() / "left.lcmlog").string() + " --verify", &output), 0) << output;
+  EXPECT_NE(output.find("ticks of the tissue end in the recorded state, bit for bit"), std::string::npos) << output;
 }
 
 }  // namespace

@@ -244,6 +244,9 @@ domain = 7
 interface = "eth0"
 peers = ["10.0.0.1", "10.0.0.2"]
 
+[network.security]
+keys = "keys"
+
 [rates]
 haptic_hz = 2000
 visual_hz = 90.5

@@ -55,6 +55,8 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(scene.contact.bucket_size, 0.01);
   EXPECT_EQ(scene.network.domain, 7);
   EXPECT_EQ(scene.network.peers.size(), 2u);
+  ASSERT_TRUE(scene.network.security);
+  EXPECT_EQ(scene.network.security->keys, folder / "keys") << "which need not be there to read the scene";
   EXPECT_EQ(scene.rates.visual_hz, 90.5);
   EXPECT_EQ(scene.record->file, folder / "out/session.lcmlog");
   EXPECT_EQ(scene.render->camera.field_of_view, 60);
@@ -235,6 +237,7 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_FALSE(changed([](Scene& s) { s.bodies[4].hybrid->mesh = "/elsewhere/coarse.msh"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));
+  EXPECT_FALSE(changed([](Scene& s) { s.network.security = std::nullopt; }));
   EXPECT_FALSE(changed([](Scene& s) { s.record.reset(); }));
   EXPECT_FALSE(changed([](Scene& s) { s.render.reset(); }));
   EXPECT_FALSE(changed([](Scene& s) { s.tools[0].device = "log"; }));

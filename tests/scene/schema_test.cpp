@@ -31,7 +31,9 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         const std::string plain = "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n";
         const std::string shell = plain + "model = \"modal_shell\"\n";
         const std::string held = plain + "fixed = [{ group = \"a\" }]\n";
-        if (key == "camera") {
+        if (key == "security") {
+          text = body + "[network]\n" + line;
+        } else if (key == "camera") {
           text = body + "[render]\n" + line;
         } else if (key == "rotations") {
           text = shell + "shell = { thickness = 1 }\n[[body.fixed]]\nnodes = [1]\n" + line;

@@ -45,6 +45,7 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"((.*/)?toml(\+\+)?/.*|toml\.hpp)", {"common/scene"}},
       {R"(dds/.*)", {"common/bus", "idl"}},
       {R"(lcm/.*)", {"common/bus"}},
+      {R"(openssl/.*)", {"tools/keys"}},
       {R"(GL/.*)", {"render_node"}},
       {R"((.*/)?png\.h)", {"render_node"}},
       {R"((.*/)?ft2build\.h)", {"render_node"}},

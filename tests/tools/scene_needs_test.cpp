@@ -9,7 +9,7 @@
 #include <set>
 #include <thread>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds_entity.hpp"
 #include "common/scene/scene.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
@@ -26,8 +26,9 @@ using testing::text_of;
 /// Joins a domain as a stranger and lists the topics that anybody writes or reads there.
 class TopicSpy {
  public:
-  explicit TopicSpy(int domain) : domain_(dds_create_domain(domain, dds_configuration({.domain = domain}).c_str())) {
-    const dds_entity_t me = dds_create_participant(domain, nullptr, nullptr);
+  /// `keys`: a folder with those of an observer; empty: none.
+  TopicSpy(int domain, const fs::path& keys) : domain_(dds_create_domain(domain, dds_configuration({.domain = domain}).c_str())) {
+    const dds_entity_t me = make_participant({.domain = domain, .keys = keys, .role = "observer"});
     for (const dds_entity_t topic : {DDS_BUILTIN_TOPIC_DCPSPUBLICATION, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION})
       readers_.push_back(dds_create_reader(me, topic, nullptr, nullptr));
   }
@@ -101,7 +102,7 @@ struct Needs {
     if (moving) add(programs, {"deform_node"});
     if (scene.record) add(programs, {"palpate"});
     if (scene.render || moving) add(topics, {"held_contacts"});
-    if (moving) add(topics, {"surface_state", "topology_change", "local_contact_model", "deform_step", "deform_keyframe"});
+    if (moving) add(topics, {"surface_state", "surface_state/all", "topology_change", "held_topology", "local_contact_model", "deform_step", "deform_keyframe"});
     if (shell) add(topics, {"modal_state"});
     if (catheter) add(topics, {"catheter_state", "task_record"});
     if (on_bus) add(topics, {"device_state"});
@@ -119,8 +120,14 @@ TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
   const auto made = testing::run_program(program("palpate") + " precompute " + file.string());
   ASSERT_EQ(made.status, 0) << made.err;
 
-  TopicSpy spy(domain);
-  ChildProcess run("palpate", {program("palpate"), "run", file, "--seconds", "1", "--domain", std::to_string(domain), "--summary", folder / "summary.json"});
+  std::vector<std::string> command{program("palpate"), "run", file, "--seconds", "1", "--domain", std::to_string(domain), "--summary", folder / "summary.json"};
+  const fs::path keys = load_scene(file).network.security ? folder / "keys" : "";
+  if (!keys.empty()) {
+    ASSERT_EQ(testing::run_program(program("palpate") + " keys " + keys.string()).status, 0);
+    command.insert(command.end(), {"--keys", keys});
+  }
+  TopicSpy spy(domain, keys);
+  ChildProcess run("palpate", command);
   Names programs, topics, files;
   int threads = 0;
   for (const auto limit = std::chrono::steady_clock::now() + 60s; run.running() && std::chrono::steady_clock::now() < limit;) {

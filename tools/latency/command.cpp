@@ -61,6 +61,7 @@ std::vector<std::string> with_network(std::vector<std::string> command, const Bu
   command.insert(command.end(), {"--domain", std::to_string(network.domain)});
   if (!network.interface.empty()) command.insert(command.end(), {"--interface", network.interface});
   for (const std::string& peer : network.peers) command.insert(command.end(), {"--peer", peer});
+  if (!network.keys.empty()) command.insert(command.end(), {"--keys", network.keys});
   return command;
 }
 
@@ -69,6 +70,12 @@ std::optional<ChildProcess> answerer_here(const Options& o) {
   if (!o.network.peers.empty()) return std::nullopt;
   return ChildProcess("latency --answer",
                       with_network({sibling_program("palpate"), "latency", "--answer", "--json", "--udp-port", std::to_string(o.port)}, o.network));
+}
+
+std::vector<std::string> run_command(const Options& o) {
+  std::vector<std::string> command{sibling_program("palpate"), "run", o.scene, "--processes", "3", "--domain", std::to_string(o.network.domain)};
+  if (!o.network.keys.empty()) command.insert(command.end(), {"--keys", o.network.keys});
+  return command;
 }
 
 void find_other_side(std::array<std::unique_ptr<RoundTrips>, names.size()>& ways, const Options& o) {
@@ -109,8 +116,7 @@ Result measure(const Options& o) {
   std::optional<ChildProcess> simulation;
   if (o.attach || !o.scene.empty()) observer.emplace(*bus);
   if (!o.scene.empty() && !o.attach)
-    simulation.emplace("run", std::vector<std::string>{sibling_program("palpate"), "run", o.scene, "--processes", "3", "--domain",
-                                                       std::to_string(o.network.domain)});
+    simulation.emplace("run", run_command(o));
   if (observer) {
     for (const std::int64_t limit = now_ns() + 30 * ns_per_s; observer->times().force().count() < 100 && !shutdown_requested();) {
       observer->take();
@@ -169,6 +175,7 @@ Json json_of(const Options& o, const Result& r) {
   json["lost"] = r.trips[0].lost;
   json["reordered"] = r.trips[0].reordered;
   json["jitter_us"] = 1e-3 * r.trips[0].jitter_ns;
+  json["keys"] = !o.network.keys.empty();
   json["rate_hz"] = o.rate;
   json["seconds"] = o.seconds;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -215,7 +222,10 @@ void print_text(const Result& r) {
 
 void run(Options& o) {
   if (o.answer) return answer(o);
-  if (!o.scene.empty()) (void)load_scene(o.scene);
+  if (!o.scene.empty()) {
+    const Scene scene = load_scene(o.scene);
+    if (scene.network.security && o.network.keys.empty()) o.network.keys = scene.network.security->keys;
+  }
   if (!o.network.interface.empty() && o.network.peers.empty())
     throw std::runtime_error("latency: with --interface, name the other host by --peer");
   catch_shutdown_signals();
@@ -248,7 +258,7 @@ void add_latency_command(CLI::App& app) {
   command->add_option("--udp-port", o->port, "Port of the bare UDP messages")->check(CLI::Range(1024, 65535))->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
   command->add_option("-o,--output", o->out, "Folder for latency.json and its plot");
-  add_network_options(*command, o->network);
+  add_network_options(*command, o->network, "latency");
   command->callback([o] { run(*o); });
 }
 

@@ -1,0 +1,73 @@
+#include "common/bus/version_watch.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "common/bus/log_format.hpp"
+
+namespace palpate {
+namespace {
+
+const char* const program = "palpate";
+
+std::string messages_hash() {
+  const std::string schema = schema_text();
+  return fmt::format("{:016x}", XXH3_64bits(schema.data(), schema.size()));
+}
+
+std::vector<std::string> split(const std::string& words) {
+  std::vector<std::string> parts{""};
+  for (const char c : words)
+    if (c == ';')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+/// What stands in a sentence for the operator came from outside.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (c < 0x20 || c > 0x7e) c = '?';
+  return text.substr(0, 80);
+}
+
+}  // namespace
+
+std::string participant_words() {
+  char host[256] = "localhost";
+  gethostname(host, sizeof host - 1);
+  return fmt::format("{};{};{};{}@{}", program, PALPATE_VERSION, messages_hash(), getpid(), host);
+}
+
+std::string version_fault(const std::string& words) {
+  const std::vector<std::string> parts = split(words);
+  if (parts.size() != 4 || parts[0] != program || parts[2] == messages_hash()) return {};
+  return fmt::format("cannot talk with process {}: its palpate {} has other messages (version {}) than this {} (version {}); install the same on both",
+                     printable(parts[3]), printable(parts[1]), printable(parts[2]), PALPATE_VERSION, messages_hash());
+}
+
+VersionWatch::VersionWatch(dds_entity_t participant) : reader_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr)) {}
+
+VersionWatch::~VersionWatch() { dds_delete(reader_); }
+
+std::vector<std::string> VersionWatch::look() {
+  std::vector<std::string> sentences;
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (dds_take(reader_, &sample, &info, 1, 1) > 0) {
+    void* data = nullptr;
+    std::size_t size = 0;
+    if (info.valid_data && dds_qget_userdata(static_cast<dds_builtintopic_participant_t*>(sample)->qos, &data, &size) && data) {
+      const std::string sentence = version_fault({static_cast<const char*>(data), size});
+      if (!sentence.empty() && said_.insert(sentence).second) sentences.push_back(sentence);
+      dds_free(data);
+    }
+    dds_return_loan(reader_, &sample, 1);
+    sample = nullptr;
+  }
+  return sentences;
+}
+
+}  // namespace palpate

@@ -1,0 +1,81 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "tests/loopback/loopback_scene.hpp"
+#include "tests/network/hosts_or_skip.hpp"
+#include "tools/child_process.hpp"
+#include "tools/keys/key_folder.hpp"
+
+namespace palpate::testing {
+
+inline keys::Period this_month() {
+  constexpr std::time_t day = 24 * 60 * 60;
+  return {std::time(nullptr) - day, std::time(nullptr) + 30 * day};
+}
+
+/// What a secured_peer did.
+struct Outcome {
+  std::uint64_t wrote = 0;
+  int readers = 0;                              ///< that matched at the same time, at most
+  std::map<unsigned, std::uint64_t> heard;      ///< samples by tool
+  std::string refusal;                          ///< the sentence by which it was refused, if it was
+  std::uint64_t of(unsigned tool) const { return heard.contains(tool) ? heard.at(tool) : 0; }
+};
+
+/// What one secured_peer is to do.
+struct PeerTask {
+  std::filesystem::path keys;  ///< "-": none
+  std::string role, writes, reads;
+  unsigned tool;
+  std::string environment = "";
+};
+
+/// A secured_peer that runs.
+class Peer {
+ public:
+  Peer(const PeerTask& task, int domain, const std::string& device, const std::string& other, double seconds)
+      : process_("secured_peer", {"/bin/sh", "-c",
+                                  fmt::format("{} exec {} {} {} {} {} {} {} {} {} {}", task.environment, program("secured_peer"), domain, device, other,
+                                              task.keys.string(), task.role, task.writes, task.reads, task.tool, seconds)}) {}
+
+  /// Waits for its end.
+  Outcome outcome() {
+    EXPECT_TRUE(process_.wait(std::chrono::seconds(30)));
+    Outcome o;
+    for (const std::string& line : process_.take_lines()) {
+      unsigned tool = 0;
+      unsigned long long samples = 0, wrote = 0;
+      int readers = 0;
+      if (std::sscanf(line.c_str(), "wrote %llu to %d readers", &wrote, &readers) == 2)
+        o.wrote = wrote, o.readers = readers;
+      else if (std::sscanf(line.c_str(), "tool %u: %llu samples", &tool, &samples) == 2)
+        o.heard[tool] = samples;
+      else if (line != "ready")
+        o.refusal = line;
+    }
+    return o;
+  }
+
+ private:
+  ChildProcess process_;
+};
+
+/// A copy of the middleware in a folder of its own, with the plugins that a test wants.
+class OwnMiddleware {
+ public:
+  explicit OwnMiddleware(const std::filesystem::path& folder);
+  /// The plugins, their access control being that of lenient_access.c.
+  void add_lenient_plugins() const;
+  /// What to set in the environment of a program that is to use it.
+  std::string environment() const;
+
+ private:
+  std::filesystem::path library_, folder_;
+};
+
+}  // namespace palpate::testing

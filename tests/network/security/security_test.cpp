@@ -1,0 +1,177 @@
+#include <arpa/inet.h>
+#include <linux/if_ether.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "tests/network/security/secured_test.hpp"
+
+/// Who may not take part neither reads nor writes: samples counted at both ends, beside some who may.
+namespace palpate::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int domain = 7;
+constexpr double seconds = 4;
+constexpr unsigned tool = 1, driver = 2, intruder = 9;
+constexpr std::uint64_t many = 100;  ///< of about 800 that are sent
+
+class Secured : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    PALPATE_TWO_HOSTS_OR_SKIP(hosts_, TwoHosts::Link::veth)
+    fs::remove_all(folder_);
+    keys::make_folder(keys_, this_month());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Peer on_a(const PeerTask& task, double time = seconds) const {
+    const Inside here(hosts_->a());
+    return Peer(task, domain, TwoHosts::device, TwoHosts::address_b, time);
+  }
+  Peer on_b(const PeerTask& task, double time = seconds) const {
+    const Inside here(hosts_->b());
+    return Peer(task, domain, TwoHosts::device, TwoHosts::address_a, time);
+  }
+
+  /// A haptic node's topics on host A, a driver and a render node on host B, and an intruder beside them, all at once.
+  void run(const PeerTask& task) {
+    Peer other = on_b(task);
+    Peer haptic = on_a({keys_, "haptic", "tool_state,force_state", "device_state", tool});
+    Peer drives = on_b({keys_, "driver", "device_state", "force_state", driver});
+    Peer render = on_b({keys_, "render", "-", "tool_state,force_state", 0});
+    haptic_ = haptic.outcome();
+    driver_ = drives.outcome();
+    render_ = render.outcome();
+    intruder_ = other.outcome();
+    EXPECT_GT(haptic_.of(driver), many) << haptic_.refusal;
+    EXPECT_GT(driver_.of(tool), many) << driver_.refusal;
+    EXPECT_GT(render_.of(tool), many) << render_.refusal;
+  }
+  void expect_nothing_from_the_intruder(int of_its_kind = 0) const {
+    EXPECT_EQ(intruder_.refusal, "");
+    EXPECT_GT(intruder_.wrote, many) << "it did send";
+    EXPECT_EQ(intruder_.readers, of_its_kind);
+    for (const Outcome* honest : {&haptic_, &driver_, &render_}) EXPECT_EQ(honest->of(intruder), 0u);
+  }
+  /// The intruder's middleware lets it do anything.
+  std::string lenient() const {
+    const OwnMiddleware own(folder_ / "middleware");
+    own.add_lenient_plugins();
+    return own.environment();
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / fmt::format("palpate-security-{}", getpid());
+  const fs::path keys_ = folder_ / "keys";
+  std::unique_ptr<TwoHosts> hosts_;
+  Outcome haptic_, driver_, render_, intruder_;
+};
+
+TEST_F(Secured, WhoHasNoCertificateNeitherReadsNorWrites) {
+  run({"-", "-", "tool_state,force_state,device_state", "tool_state,force_state,device_state", intruder});
+  expect_nothing_from_the_intruder();
+  EXPECT_EQ(intruder_.heard.size(), 0u);
+}
+
+TEST_F(Secured, WhoHasAForeignCertificateNeitherReadsNorWrites) {
+  keys::make_folder(folder_ / "foreign", this_month());
+  Peer listener = on_b({folder_ / "foreign", "observer", "-", "tool_state,force_state,device_state", 0});
+  run({folder_ / "foreign", "player", "tool_state,force_state,device_state", "-", intruder});
+  expect_nothing_from_the_intruder(1);
+  const Outcome heard = listener.outcome();
+  EXPECT_EQ(heard.refusal, "");
+  EXPECT_EQ(heard.of(tool), 0u);
+  EXPECT_EQ(heard.of(driver), 0u);
+  EXPECT_GT(heard.of(intruder), many) << "it hears its own kind";
+}
+
+TEST_F(Secured, TheWrongRoleIsRefusedByItsOwnMiddleware) {
+  for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", intruder}, PeerTask{keys_, "render", "tool_state", "-", intruder}})
+    EXPECT_EQ(on_b(task).outcome().refusal, fmt::format("network: creating the writer of palpate/{} is not permitted to the role of these keys", task.writes));
+  EXPECT_EQ(on_b({keys_, "render", "-", "device_state", intruder}).outcome().refusal,
+            "network: creating topic palpate/device_state is not permitted to the role of these keys");
+}
+
+TEST_F(Secured, AnObserverWritesNothingEvenWhereItsOwnMiddlewareWouldLetIt) {
+  run({keys_, "observer", "tool_state,force_state,device_state", "tool_state,force_state", intruder, lenient()});
+  expect_nothing_from_the_intruder();
+  EXPECT_GT(intruder_.of(tool), many) << "it may read";
+}
+
+TEST_F(Secured, ARenderNodeNeitherWritesNorReadsWhatIsNotItsBusiness) {
+  run({keys_, "render", "tool_state,force_state,device_state", "device_state", intruder, lenient()});
+  expect_nothing_from_the_intruder();
+  EXPECT_EQ(intruder_.heard.size(), 0u) << "a render node reads no devices";
+}
+
+/// That the two tests above would see an intruder: with the same middleware, the role that may write is heard.
+TEST_F(Secured, TheRightRoleIsHeardFromTheSameMiddleware) {
+  run({keys_, "haptic", "tool_state,force_state", "device_state", intruder, lenient()});
+  EXPECT_GT(render_.of(intruder), many) << intruder_.refusal;
+  EXPECT_GT(driver_.of(intruder), many);
+  EXPECT_GT(intruder_.of(driver), many);
+  EXPECT_GT(intruder_.readers, 0);
+}
+
+/// Frames on host B's end of the link while a tool's state crosses it, and how many of them show its depth.
+struct Seen {
+  int frames = 0, readable = 0;
+};
+
+Seen listen_on(const NetworkNamespace& host, double time, Peer& writer, Peer& reader) {
+  const Inside here(host);
+  const int wire = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, htons(ETH_P_ALL));
+  EXPECT_GE(wire, 0);
+  const double depth = 0.0123456789;
+  Seen seen;
+  std::vector<char> frame(65536);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time - 0.3);
+  while (std::chrono::steady_clock::now() < end) {
+    pollfd waiting{wire, POLLIN, 0};
+    if (poll(&waiting, 1, 50) != 1) continue;
+    const ssize_t size = recv(wire, frame.data(), frame.size(), 0);
+    if (size <= 0) continue;
+    ++seen.frames;
+    seen.readable += memmem(frame.data(), static_cast<std::size_t>(size), &depth, sizeof depth) != nullptr;
+  }
+  close(wire);
+  EXPECT_GT(reader.outcome().of(tool), many);
+  EXPECT_GT(writer.outcome().wrote, many);
+  return seen;
+}
+
+TEST_F(Secured, NobodyOnTheWireCanReadIt) {
+  {
+    Peer writer = on_a({"-", "-", "tool_state", "-", tool}, 2), reader = on_b({"-", "-", "-", "tool_state", 0}, 2);
+    const Seen open = listen_on(hosts_->b(), 2, writer, reader);
+    EXPECT_GT(open.readable, static_cast<int>(many)) << "without keys it can be read";
+  }
+  Peer writer = on_a({keys_, "haptic", "tool_state", "-", tool}), reader = on_b({keys_, "render", "-", "tool_state", 0});
+  const Seen secured = listen_on(hosts_->b(), seconds, writer, reader);
+  EXPECT_GT(secured.frames, static_cast<int>(many));
+  EXPECT_EQ(secured.readable, 0);
+}
+
+TEST_F(Secured, KeysThatEndCutOffWhoeverHasThem) {
+  const std::time_t now = std::time(nullptr);
+  keys::add_keys(keys_, "render", "brief", {now - 60, now + 4});
+  Peer haptic = on_a({keys_, "haptic", "tool_state", "-", tool}, 7);
+  Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}, 7), brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0}, 7);
+  const std::uint64_t all = lasting.outcome().of(tool), until_the_end = brief.outcome().of(tool);
+  EXPECT_EQ(haptic.outcome().refusal, "");
+  EXPECT_GT(until_the_end, many);
+  EXPECT_GT(all, until_the_end + 300) << "of 600 that follow";
+}
+
+TEST_F(Secured, MissingPluginsAreNamedWithTheirPackage) {
+  const OwnMiddleware bare(folder_ / "middleware");
+  const std::string said = on_b({keys_, "observer", "-", "tool_state", 0, bare.environment()}).outcome().refusal;
+  EXPECT_NE(said.find("libdds_security_auth.so"), said.npos) << said;
+  EXPECT_NE(said.find("Debian's package libddsc0debian has them"), said.npos) << said;
+}
+
+}  // namespace
+}  // namespace palpate::testing
