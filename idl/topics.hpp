@@ -40,10 +40,6 @@ namespace topics {
 
 /// Two seconds at 1 kHz: how far a recorder may fall behind before it loses samples.
 inline constexpr int step_depth = 2048;
-/// One second at 1 kHz, of larger messages.
-inline constexpr int model_depth = 1024;
-/// Half a second at 1 kHz, of the largest.
-inline constexpr int frame_depth = 512;
 
 // clang-format off
 inline constexpr Topic<ToolState> tool_state{
@@ -59,7 +55,7 @@ inline constexpr Topic<ContactState> contact_state{
     "every haptic step", "haptic", "deform, render",
     "touched nodes with their forces, and the contacts that one tool holds"};
 inline constexpr Topic<ContactState> held_contacts{
-    "palpate/held_contacts", "ContactState", {true, model_depth, true},
+    "palpate/held_contacts", "ContactState", {true, step_depth, true},
     "when a haptic node dies", "deform, render", "haptic",
     "last contacts of a haptic node that died, for the one that returns"};
 inline constexpr Topic<ForceState> force_state{
@@ -67,11 +63,11 @@ inline constexpr Topic<ForceState> force_state{
     "every haptic step", "haptic", "driver, render",
     "force and torque on one tool after the safety chain"};
 inline constexpr Topic<SurfaceState> surface_state{
-    "palpate/surface_state", "SurfaceState", {true, 1, false, frame_depth},
+    "palpate/surface_state", "SurfaceState", {true, 1, false, step_depth},
     "visual rate and on contact", "deform", "render",
     "deformed visible surface of one body"};
 inline constexpr Topic<NodeStatus> node_status{
-    "palpate/node_status", "NodeStatus", {true, model_depth, true},
+    "palpate/node_status", "NodeStatus", {true, step_depth, true},
     "1 Hz and on change", "all", "all",
     "who is there, what it runs and how well it keeps up"};
 inline constexpr Topic<ClockProbe> clock_probe{
@@ -87,11 +83,11 @@ inline constexpr Topic<PictureState> picture_state{
     "visual rate", "render", "-",
     "which haptic step a picture shows, and when it was done"};
 inline constexpr Topic<HapticKeyframe> haptic_keyframe{
-    "palpate/haptic_keyframe", "HapticKeyframe", {true, frame_depth, false},
+    "palpate/haptic_keyframe", "HapticKeyframe", {true, step_depth, false},
     "1 Hz", "haptic", "-",
     "state of the haptic loop, from which a replay starts"};
 inline constexpr Topic<SceneText> scene{
-    "palpate/scene", "SceneText", {true, frame_depth, true},
+    "palpate/scene", "SceneText", {true, step_depth, true},
     "once per run", "haptic", "-",
     "the resolved scene, for recorders that have no scene file"};
 inline constexpr Topic<TopologyChange> topology_change{
@@ -99,11 +95,11 @@ inline constexpr Topic<TopologyChange> topology_change{
     "on each cut or tear", "deform", "haptic, render",
     "tetrahedra that a body has lost; read all, in order"};
 inline constexpr Topic<HeldTopology> held_topology{
-    "palpate/held_topology", "HeldTopology", {true, frame_depth, true},
+    "palpate/held_topology", "HeldTopology", {true, step_depth, true},
     "after each cut or tear", "haptic, render", "deform",
     "all that a body is known to have lost, for a deform node that returns"};
 inline constexpr Topic<LocalContactModel> local_contact_model{
-    "palpate/local_contact_model", "LocalContactModel", {true, model_depth, false},
+    "palpate/local_contact_model", "LocalContactModel", {true, step_depth, false},
     "every deform tick near a tool", "deform", "haptic",
     "moving tissue around one tool: its contacts, near surface and stiffness"};
 inline constexpr Topic<DeformStep> deform_step{
@@ -111,7 +107,7 @@ inline constexpr Topic<DeformStep> deform_step{
     "every deform tick", "deform", "-",
     "journal of moving tissue: inputs consumed and hash of the state"};
 inline constexpr Topic<DeformKeyframe> deform_keyframe{
-    "palpate/deform_keyframe", "DeformKeyframe", {true, frame_depth, false},
+    "palpate/deform_keyframe", "DeformKeyframe", {true, step_depth, false},
     "1 Hz", "deform", "-",
     "state of moving tissue, from which a replay starts"};
 inline constexpr Topic<ModalState> modal_state{
@@ -123,7 +119,7 @@ inline constexpr Topic<CatheterState> catheter_state{
     "250 Hz", "haptic", "deform, render",
     "particles of one catheter"};
 inline constexpr Topic<TaskRecord> task_record{
-    "palpate/task_record", "TaskRecord", {true, model_depth, true},
+    "palpate/task_record", "TaskRecord", {true, step_depth, true},
     "10 Hz and at the end", "haptic", "render",
     "how the task with one catheter goes"};
 // clang-format on

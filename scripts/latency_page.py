@@ -13,6 +13,8 @@ import sys
 import tempfile
 import time
 
+import delay_section
+
 root = pathlib.Path(__file__).resolve().parent.parent
 arguments = [a for a in sys.argv[1:] if a != "--quick"]
 seconds = "3" if "--quick" in sys.argv else "20"
@@ -174,5 +176,5 @@ document = ["# Latency", "",
             "(`common/realtime/clock_offset.hpp`). It holds for ways of unequal delay: with 10 ms there and 30 ms back, a second of offset and 100 ppm of drift",
             "the true offset lies within the stated uncertainty at all times, as a test shows. Nodes announce offset, uncertainty and drift in `NodeStatus`;",
             "`palpate latency`, `info` and `top` use them. On one machine all nodes share one clock, and the offset is zero.", "",
-            "Force error and the largest stable stiffness against delay: [local_contact.md](local_contact.md), [stability.md](stability.md).", ""]
+            *delay_section.section(bin_folder, root / "docs/pictures")]
 (root / "docs/latency.md").write_text("\n".join(document))

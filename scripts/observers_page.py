@@ -68,9 +68,9 @@ axes[0].set_ylabel("haptic step, p99 [µs]")
 axes[1].set_ylabel("processor time a step [µs]")
 for a in axes:
     a.set_xlabel("observers")
-    a.set_ylim(bottom=0)
+    a.set_ylim(0, 1.45 * max(y for line in a.lines for y in line.get_ydata()))
     a.grid(True, color="0.92")
-    a.legend(frameon=False)
+    a.legend(frameon=False, loc="upper left")
     for side in ("top", "right"):
         a.spines[side].set_visible(False)
 figure.tight_layout()

@@ -1,5 +1,6 @@
 #include "common/bus/log_writer.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <lcm/eventlog.h>
 #include <stdio_ext.h>
@@ -22,6 +23,7 @@ namespace {
 constexpr std::chrono::milliseconds flush_period{100};
 constexpr std::int64_t retry_period_ns = ns_per_s;
 constexpr std::size_t flush_bytes = 1u << 20;
+constexpr long hand_bytes = 8 << 20;
 
 std::string reason_for(int error) {
   if (error == ENOSPC || error == EDQUOT) return "no space left";
@@ -161,8 +163,21 @@ class LogWriter::Impl {
     }
     unflushed_ = 0;
     safe_end_ = std::ftell(log_->f);
+    hand_to_disk();
     const std::lock_guard lock(mutex_);
     status_.bytes = safe_end_ > 0 ? static_cast<std::uint64_t>(safe_end_) : 0;
+  }
+
+  /// Has the disk write steadily, and takes what it has out of the page cache: a log of many gigabytes would fill the
+  /// memory, and then every program waits for room.
+  void hand_to_disk() {
+    if (safe_end_ - handed_end_ < hand_bytes) return;
+    const int file = fileno(log_->f);
+    sync_file_range(file, handed_end_, safe_end_ - handed_end_, SYNC_FILE_RANGE_WRITE);
+    sync_file_range(file, handed_begin_, handed_end_ - handed_begin_, SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+    posix_fadvise(file, handed_begin_, handed_end_ - handed_begin_, POSIX_FADV_DONTNEED);
+    handed_begin_ = handed_end_;
+    handed_end_ = safe_end_;
   }
 
   /// Cuts the file back to the end of the last event that is known to be complete. `failed`: events besides
@@ -197,6 +212,7 @@ class LogWriter::Impl {
   // Of the writing thread alone:
   std::uint64_t unflushed_ = 0;
   long safe_end_ = 0;
+  long handed_begin_ = 0, handed_end_ = 0;  ///< what the disk was given last
   std::int64_t retry_at_ = 0;
   std::thread thread_;
 };

@@ -1,5 +1,5 @@
-/// Writes every topic at 1 kHz, for a recorder to keep up with: full_rate SECONDS DOMAIN [INTERFACE PEER]. It waits until every
-/// topic has a reader, and at the end until all is delivered; then it prints what it wrote, as JSON.
+/// Writes every topic, for a recorder to keep up with: full_rate HZ SECONDS DOMAIN [INTERFACE [PEER]]. It waits until every topic
+/// has a reader, and at the end until all is delivered; then it prints what it wrote, as JSON.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -48,7 +48,7 @@ bool wait_for(const Condition& condition) {
   return condition();
 }
 
-int run(double seconds, const BusSettings& settings) {
+int run(double rate_hz, double seconds, const BusSettings& settings) {
   const auto bus = make_dds_bus(settings);
   auto streams = make_streams(*bus, topics::all);
   const auto each = [&](const auto& f) { std::apply([&](auto&... stream) { (f(stream), ...); }, streams); };
@@ -57,10 +57,10 @@ int run(double seconds, const BusSettings& settings) {
 
   sleep_until_ns(now_ns() + ns_per_s);  // the readers find their writers a moment later than these find them
   request_realtime({.priority = 40, .lock_memory = false});
-  PeriodicTimer timer(1000);
-  const auto most = static_cast<std::uint64_t>(1000 * seconds);
+  PeriodicTimer timer(rate_hz);
+  const auto most = static_cast<std::uint64_t>(rate_hz * seconds);
   std::uint64_t seq = 0;
-  // A tick that the machine skipped is made up for: the number of messages is that of 1 kHz.
+  // A tick that the machine skipped is made up for: the number of messages is that of the rate.
   while (heard && seq < most && !shutdown_requested())
     for (const std::uint64_t due = std::min(timer.wait(), most); seq < due;) {
       ++seq;
@@ -84,9 +84,10 @@ int run(double seconds, const BusSettings& settings) {
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc != 3 && argc != 5) return 2;
+  if (argc < 4 || argc > 6) return 2;
   catch_shutdown_signals();
-  BusSettings settings{.domain = std::atoi(argv[2])};
-  if (argc == 5) settings.interface = argv[3], settings.peers = {argv[4]};
-  return testing::run(std::atof(argv[1]), settings);
+  BusSettings settings{.domain = std::atoi(argv[3])};
+  if (argc > 4) settings.interface = argv[4];
+  if (argc > 5) settings.peers = {argv[5]};
+  return testing::run(std::atof(argv[1]), std::atof(argv[2]), settings);
 }

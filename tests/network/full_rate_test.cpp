@@ -30,7 +30,7 @@ struct Counted {
   std::int64_t last_ns = 0;
 };
 
-/// Of the process with this key or run alone, where a topic has several writers: the recorder announces itself too.
+/// Without the statuses of the recorder, which announces itself too.
 Counted count(const fs::path& file) {
   LogReader log(file);
   Counted all;
@@ -47,7 +47,7 @@ Counted count(const fs::path& file) {
       all.sequence[topic.name].add(message);
     });
   }
-  EXPECT_TRUE(log.damage().empty()) << log.damage_text();
+  for (const LogDamage& damage : log.damage()) EXPECT_TRUE(damage.tail) << log.damage_text();
   return all;
 }
 
@@ -56,6 +56,8 @@ bool kept_for_late_joiners(const std::string& topic) {
   topics::for_each([&](const auto& t) { kept = kept || (topic == t.name && t.qos.transient_local); });
   return kept;
 }
+
+constexpr double rate_hz = sanitized ? 50 : 1000;
 
 enum class Way { loopback, veth };
 
@@ -71,9 +73,9 @@ class FullRate : public ::testing::TestWithParam<Way> {
     const std::string domain = std::to_string(own_domain());
     return hosts_ ? fmt::format("{} {} {}", domain, TwoHosts::device, peer) : domain;
   }
-  ChildProcess publisher(double seconds) const {
+  ChildProcess publisher(double seconds, double rate = rate_hz) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->a()) : nullptr;
-    return start("full_rate", fmt::format("{} {} {}", program("full_rate"), seconds, network(TwoHosts::address_b)));
+    return start("full_rate", fmt::format("{} {} {} {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
   }
   ChildProcess recorder(const fs::path& file) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->b()) : nullptr;
@@ -98,7 +100,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
     EXPECT_EQ(summary["lost"], 0) << summary;
 
     const Counted recorded = count(log());
-    const auto expected = static_cast<std::uint64_t>(1000 * seconds);
+    const auto expected = static_cast<std::uint64_t>(rate_hz * seconds);
     std::uint64_t bytes = 0;
     topics::for_each([&](const auto& topic) {
       const json& of = written["topics"][topic.name];
@@ -112,8 +114,8 @@ class FullRate : public ::testing::TestWithParam<Way> {
       EXPECT_EQ(recorded.sequence.at(topic.name).missing(), 0u) << topic.name;
       EXPECT_EQ(recorded.sequence.at(topic.name).repeated(), 0u) << topic.name;
     });
-    fmt::print("{} topics at 1 kHz for {} s, {:.1f} MB/s: {} messages recorded, {} missing; the publisher skipped {} ticks\n", recorded.samples.size(), seconds,
-               1e-3 * static_cast<double>(bytes), summary["messages"].dump(), summary["missing"].dump(), written["skipped"].dump());
+    fmt::print("{} topics at {} Hz for {} s, {:.1f} MB/s: {} messages recorded, {} missing; the publisher skipped {} ticks\n", recorded.samples.size(), rate_hz, seconds,
+               1e-6 * rate_hz * static_cast<double>(bytes), summary["messages"].dump(), summary["missing"].dump(), written["skipped"].dump());
   }
 
   fs::path log() const { return folder_ / "full.lcmlog"; }
@@ -127,22 +129,22 @@ TEST_P(FullRate, EveryTopicIsRecordedWithoutALostMessage) {
 }
 
 // A recorder is kept from running now and then: by the disk, by other programs, by the machine below.
-TEST_P(FullRate, ARecorderThatStandsStillForATenthOfASecondLosesNothing) {
+TEST_P(FullRate, ARecorderThatStandsStillForAFifthOfASecondLosesNothing) {
   expect_nothing_lost(3, [&](pid_t recorder) {
-    const auto begun = [&] { return fs::exists(log()) && fs::file_size(log()) > 10'000'000; };
+    const auto begun = [&] { return fs::exists(log()) && fs::file_size(log()) > 400'000; };
     for (int i = 0; i < 2000 && !begun(); ++i) std::this_thread::sleep_for(5ms);
     for (int i = 0; i < 3; ++i) {
       kill(recorder, SIGSTOP);
-      std::this_thread::sleep_for(100ms);
+      std::this_thread::sleep_for(200ms);
       kill(recorder, SIGCONT);
-      std::this_thread::sleep_for(400ms);
+      std::this_thread::sleep_for(500ms);
     }
   });
 }
 
 class KilledRecorder : public FullRate {};
 
-// Whatever a killed recorder leaves opens: nothing at all in its first moment, and then all but its last tenth of a second.
+// Whatever a killed recorder leaves opens, if it is only a header.
 TEST_P(KilledRecorder, LeavesALogThatOpensWhateverTheMoment) {
   ChildProcess writing = publisher(600);
   std::mt19937 random(7);
@@ -161,7 +163,6 @@ TEST_P(KilledRecorder, LeavesALogThatOpensWhateverTheMoment) {
     ChildProcess listening = recorder(log());
     ASSERT_TRUE(!ready || says_ready(listening));
     std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-    const std::int64_t killed = now_ns();
     kill(listening.pid(), SIGKILL);
     ASSERT_TRUE(listening.wait(5s));
     EXPECT_TRUE(fs::exists(log()) || !ready);
@@ -185,14 +186,25 @@ TEST_P(KilledRecorder, LeavesALogThatOpensWhateverTheMoment) {
     std::ifstream in(table);
     EXPECT_EQ(std::count(std::istreambuf_iterator<char>(in), {}, '\n'), static_cast<std::ptrdiff_t>(forces + 1)) << ms;
     most = std::max(most, forces);
-    if (forces == 0) continue;
-    LogReader log_file(log());
-    std::int64_t last = 0;
-    for (LogEvent event; log_file.next(event);) last = event.receive_ns;
-    EXPECT_GT(last, killed - 500'000'000) << ms << " ms: what was older is on the disk";
   }
   EXPECT_GE(opened, 5);
-  EXPECT_GT(most, 200u);
+  EXPECT_GT(most, sanitized ? 10u : 200u);
+}
+
+// Where little comes, no buffer fills: it is the clock that brings it to the disk.
+TEST_P(KilledRecorder, HadWrittenAllButTheLastTenthOfASecond) {
+  ChildProcess writing = publisher(600, 20);
+  for (const auto span : {600ms, 730ms, 860ms}) {
+    fs::remove(log());
+    ChildProcess listening = recorder(log());
+    ASSERT_TRUE(says_ready(listening));
+    for (int i = 0; i < 1000 && fs::file_size(log()) < 100'000; ++i) std::this_thread::sleep_for(5ms);  // the writer is heard
+    std::this_thread::sleep_for(span);
+    kill(listening.pid(), SIGKILL);
+    const std::int64_t killed = now_ns();
+    ASSERT_TRUE(listening.wait(5s));
+    EXPECT_GT(count(log()).last_ns, killed - 400'000'000) << "a tenth of a second, the publisher's period, and this machine's load";
+  }
 }
 
 std::string name_of_way(const ::testing::TestParamInfo<Way>& way) { return way.param == Way::loopback ? "Loopback" : "Veth"; }

@@ -102,7 +102,8 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
   const json report = json::parse(said);
   EXPECT_TRUE(report["complete"].get<bool>());
   EXPECT_EQ(report["skipped"], 0);
-  EXPECT_LT(report["pace_us"]["p50"].get<double>(), 100) << said;
+  constexpr double bound_us = sanitized ? 1000 : 100;
+  EXPECT_LT(report["pace_us"]["p50"].get<double>(), bound_us) << said;
   EXPECT_GT(report["pace_us"]["p50"].get<double>(), 0) << said;
 
   // As heard by another process: the distances in time are those of the log.
@@ -117,7 +118,7 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
   std::ranges::sort(error);
   fmt::print("replay: handed to the bus {:.1f} us (p99 {:.1f} us) after the recorded times; another process hears it {:.1f} us (median) off the even pace\n",
              report["pace_us"]["p50"].get<double>(), report["pace_us"]["p99"].get<double>(), 1e6 * at_share(error, 0.5));
-  EXPECT_LT(at_share(error, 0.5), 100e-6);
+  EXPECT_LT(at_share(error, 0.5), 1e-6 * bound_us);
 }
 
 TEST_F(LogOfQuasiStatic, AGapIsNamedAndNotPassedOver) {
@@ -151,7 +152,7 @@ class LogOfMoving : public LogOf<Scene> {
     std::string said;
     EXPECT_EQ(this->verify(this->log(), said), 0) << said;
     EXPECT_EQ(this->number_before(said, " forces of"), this->forces_in_log()) << said;
-    EXPECT_GT(this->number_before(said, " ticks of the tissue"), 1000u) << said;
+    EXPECT_GT(this->number_before(said, " ticks of the tissue"), 300u) << said;
 
     ToolState used;
     LogReader log(this->log());
