@@ -23,15 +23,16 @@ TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::ve
   tell(now_ns());
 }
 
-// The first change of a run has all that was gone before it.
+// The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it would
+// come again and again.
 bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
-  if (!std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; })) return false;
+  const bool fits = std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
   if (change.seq == 1) body.removed.clear();
-  body.removed.insert(body.removed.end(), change.removed.begin(), change.removed.end());
+  if (fits) body.removed.insert(body.removed.end(), change.removed.begin(), change.removed.end());
   body.run = change.run;
   body.seq = change.seq;
   body.news = true;
-  return true;
+  return fits;
 }
 
 void TopologyMemory::take_changes(std::vector<int>& changed) {

@@ -74,8 +74,9 @@ TEST_F(TopologyMemoryTest, RefusesWhatDoesNotFitTheArchives) {
   change(5, 1, {1}, 17);
   EXPECT_EQ(take(), Changed{});
   EXPECT_EQ(memory_->refused(), 3u);
-  change(5, 1, {99});
-  EXPECT_EQ(take(), Changed{1});
+  change(5, 2, {99});
+  EXPECT_EQ(take(), Changed{1}) << "it is not asked for again for ever";
+  EXPECT_EQ(memory_->removed(1), List{99});
 }
 
 TEST_F(TopologyMemoryTest, HoldsOnToWhatItKnowsUntilAnotherRunSaysWhatIsGone) {
