@@ -23,8 +23,7 @@ CatheterSettings lying(int particles, double inside) {
 }
 
 void measure(const std::string& name, int particles, int modes, double inside, int count) {
-  TubeWall wall(
-      {.length = kDuct, .around = 24, .rings = 137, .twisted = false, .modes = modes, .residual = 0.01});
+  TubeWall wall({.length = kDuct, .around = 24, .rings = 137, .twisted = false, .modes = modes, .residual = 0.01});
   CatheterBody body(lying(particles, inside), &wall);
   const ChainPoint held = body.nearest({0, 0, -0.01});
   Eigen::Isometry3d jaw = Eigen::Isometry3d::Identity();
@@ -60,8 +59,7 @@ int main(int argc, char** argv) {
   measure("reference", 60, 50, 0.09, count);
   for (const int particles : {20, 40, 60, 120, 240})
     measure(fmt::format("particles{}", particles), particles, 50, 0.09, count);
-  for (const int modes : {0, 10, 20, 50, 100, 200})
-    measure(fmt::format("modes{}", modes), 60, modes, 0.09, count);
+  for (const int modes : {0, 10, 20, 50, 100, 200}) measure(fmt::format("modes{}", modes), 60, modes, 0.09, count);
   for (const int depth : {0, 30, 60, 90, 120, 150})
     measure(fmt::format("inserted_mm{}", depth), 60, 50, 1e-3 * depth, count);
 }

@@ -94,8 +94,8 @@ class Collision {
       const int count = buckets_.query(p0.cwiseMin(p1), p0.cwiseMax(p1), 0, found_);
       double earliest = 2;
       for (int i = 0; i < count; ++i) {
-        const auto hit = sweep_point(p0, p1, organ_.corners(organ_.previous, found_[i]),
-                                     organ_.corners(organ_.position, found_[i]));
+        const auto hit =
+            sweep_point(p0, p1, organ_.corners(organ_.previous, found_[i]), organ_.corners(organ_.position, found_[i]));
         if (hit && hit->time < earliest) earliest = hit->time;
       }
       hits += earliest <= 1;

@@ -45,8 +45,7 @@ MatrixXd moved_to_end(const MatrixXd& a, int first) {
 }
 
 struct Factor {
-  explicit Factor(int n)
-      : n(n), ld(kernels::leading_dimension(n)), floor(n, 1e-20), l(ld * n), scratch(3 * ld) {}
+  explicit Factor(int n) : n(n), ld(kernels::leading_dimension(n)), floor(n, 1e-20), l(ld * n), scratch(3 * ld) {}
 
   void load(const MatrixXd& a) {
     for (int j = 0; j < n; ++j) std::copy_n(a.col(j).data(), n, l.data() + j * ld);
@@ -109,10 +108,9 @@ int run(bool quick) {
   int info = 0;
   openblas_set_num_threads(1);
 
-  const double own = fresh(
-      factor, a, repeat, [&] { table.cholesky(factor.l.data(), factor.n, factor.ld, factor.floor.data()); });
-  const double lapack =
-      fresh(factor, a, repeat, [&] { dpotrf_("L", &factor.n, factor.l.data(), &ld, &info); });
+  const double own =
+      fresh(factor, a, repeat, [&] { table.cholesky(factor.l.data(), factor.n, factor.ld, factor.floor.data()); });
+  const double lapack = fresh(factor, a, repeat, [&] { dpotrf_("L", &factor.n, factor.l.data(), &ld, &info); });
   Eigen::LLT<MatrixXd> llt(factor.n);
   const double eigen = fresh(factor, a, repeat, [&] { llt.compute(a); });
   double error = 0;

@@ -33,8 +33,7 @@ inline void add_disc(const std::array<Eigen::Vector2d, 3>& x, const Eigen::Matri
     add_disc({m[0], m[1], m[2]}, columns(ab, bc, ca), depth - 1, count, sum);
     return;
   }
-  const double size =
-      0.5 * std::abs((x[1] - x[0]).x() * (x[2] - x[0]).y() - (x[1] - x[0]).y() * (x[2] - x[0]).x());
+  const double size = 0.5 * std::abs((x[1] - x[0]).x() * (x[2] - x[0]).y() - (x[1] - x[0]).y() * (x[2] - x[0]).x());
   for (int q = 0; q < 3; ++q) {
     const Eigen::Vector3d l = (at.col(q) + at.col((q + 1) % 3)) / 2;
     for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
-// What does a haptic step cost with duct, catheter and two forceps, through the whole scripted insertion; and how does it grow
-// with modes, with particles, and with the depth of the catheter in the duct?
+// What does a haptic step cost with duct, catheter and two forceps, through the whole scripted insertion; and how does
+// it grow with modes, with particles, and with the depth of the catheter in the duct?
 #include <map>
 
 #include "bench/report.hpp"
@@ -31,8 +31,8 @@ struct Insertion {
 };
 
 struct Timed {
-  bench::Samples inside;                    ///< steps with more than 5 mm of catheter in the duct
-  std::map<int, bench::Samples> by_depth;   ///< all, by whole millimetres inserted
+  bench::Samples inside;                   ///< steps with more than 5 mm of catheter in the duct
+  std::map<int, bench::Samples> by_depth;  ///< all, by whole millimetres inserted
 };
 
 Timed run(const Insertion& whole, int modes, int particles, int every) {
@@ -77,10 +77,13 @@ int main(int argc, char** argv) {
   bench::report("duct_step", "insertion", "p999", 1e6 * whole.inside.p999(), "us");
   bench::report("duct_step", "insertion", "max", 1e6 * whole.inside.max(), "us");
   for (const auto& [depth, samples] : whole.by_depth)
-    if (samples.size() >= 20) bench::report("duct_step", fmt::format("depth{:02}mm", depth), "p50", 1e6 * samples.median(), "us");
+    if (samples.size() >= 20)
+      bench::report("duct_step", fmt::format("depth{:02}mm", depth), "p50", 1e6 * samples.median(), "us");
   if (quick) return 0;
   for (int modes : {10, 25, 50, 100, 150, 200})
-    bench::report("duct_step", fmt::format("modes{:03}", modes), "p50", 1e6 * run(insertion, modes, 60, 1).inside.median(), "us");
+    bench::report("duct_step", fmt::format("modes{:03}", modes), "p50",
+                  1e6 * run(insertion, modes, 60, 1).inside.median(), "us");
   for (int particles : {30, 60, 90, 120, 180, 240})
-    bench::report("duct_step", fmt::format("particles{:03}", particles), "p50", 1e6 * run(insertion, 50, particles, 1).inside.median(), "us");
+    bench::report("duct_step", fmt::format("particles{:03}", particles), "p50",
+                  1e6 * run(insertion, 50, particles, 1).inside.median(), "us");
 }

@@ -16,8 +16,7 @@ class ElementLoop {
   ElementLoop(const ElasticMesh& mesh, double damping, const Eigen::Vector3d& gravity)
       : tetrahedra_(mesh.tetrahedra), damping_(static_cast<Scalar>(damping)) {
     const std::size_t n = 3 * mesh.rest.size();
-    for (Vector* v :
-         {&u_, &v_, &inverse_mass_, &load_, &force_, &stage_u_, &stage_v_, &rate_, &sum_u_, &sum_v_})
+    for (Vector* v : {&u_, &v_, &inverse_mass_, &load_, &force_, &stage_u_, &stage_v_, &rate_, &sum_u_, &sum_v_})
       v->setZero(static_cast<Eigen::Index>(n));
     std::vector<double> mass(mesh.rest.size(), 0);
     for (std::size_t t = 0; t < tetrahedra_.size(); ++t) {
@@ -65,11 +64,9 @@ class ElementLoop {
     force_ = load_;
     for (std::size_t t = 0; t < tetrahedra_.size(); ++t) {
       Corners u;
-      for (int c = 0; c < 4; ++c)
-        u.template segment<3>(3 * c) = stage_u_.template segment<3>(3 * tetrahedra_[t][c]);
+      for (int c = 0; c < 4; ++c) u.template segment<3>(3 * c) = stage_u_.template segment<3>(3 * tetrahedra_[t][c]);
       const Corners f = stiffness_[t] * u;
-      for (int c = 0; c < 4; ++c)
-        force_.template segment<3>(3 * tetrahedra_[t][c]) -= f.template segment<3>(3 * c);
+      for (int c = 0; c < 4; ++c) force_.template segment<3>(3 * tetrahedra_[t][c]) -= f.template segment<3>(3 * c);
     }
   }
 

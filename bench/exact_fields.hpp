@@ -36,8 +36,8 @@ inline std::vector<Eigen::Vector3d> solve_held(const FineProblem& problem, const
     for (int axis = 0; axis < 3; ++axis)
       if (problem.dofs.index(static_cast<int>(node), axis) == DofMap::kFixed)
         held[node][axis] = exact(problem.space.nodes[node])[axis];
-  const auto force = internal_force(problem.space, problem.materials,
-                                    problem.pressures ? &*problem.pressures : nullptr, held);
+  const auto force =
+      internal_force(problem.space, problem.materials, problem.pressures ? &*problem.pressures : nullptr, held);
   for (std::size_t node = 0; node < load.size(); ++node) load[node] -= force[node];
   auto moved = solve_fine_loads(problem, load);
   for (std::size_t node = 0; node < held.size(); ++node) moved[node] += held[node];

@@ -70,9 +70,7 @@ struct PointAnswer {
 inline PointAnswer point_force(int n, const Offline& offline, double poisson, bool in_infinite_body) {
   const auto mesh = make_block(Vector3d::Zero(), Vector3d::Ones(), {n, n, n});
   const auto problem = quarter_space(mesh, poisson, offline, in_infinite_body);
-  const auto exact = [=](const Vector3d& x) {
-    return in_infinite_body ? kelvin(x, poisson) : boussinesq(x, poisson);
-  };
+  const auto exact = [=](const Vector3d& x) { return in_infinite_body ? kelvin(x, poisson) : boussinesq(x, poisson); };
   std::vector<Vector3d> load(problem.space.nodes.size(), Vector3d::Zero());
   load[node_at(problem.space, Vector3d::Zero())].z() = in_infinite_body ? 0.125 : 0.25;
   const auto moved = solve_held(problem, exact, load);

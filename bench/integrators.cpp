@@ -102,9 +102,7 @@ double error(const std::vector<Field>& samples, const std::vector<Field>& refere
 
 /// The fewest steps per interval, at least `fewest`, that keep the error.
 int steps_within(const Case& c, Integrator integrator, const std::vector<Field>& reference, int fewest) {
-  const auto good = [&](int steps) {
-    return error(trajectory<float>(c, integrator, steps), reference) <= 1e-3;
-  };
+  const auto good = [&](int steps) { return error(trajectory<float>(c, integrator, steps), reference) <= 1e-3; };
   int bad = fewest - 1, enough = fewest;
   while (!good(enough)) bad = enough, enough *= 2;
   while (enough - bad > std::max(1, bad / 50)) {
@@ -132,14 +130,12 @@ Result measure(const Case& c, const std::string& name, Integrator integrator, co
                const std::vector<Field>& reference) {
   Result result;
   result.step = largest_stable_step(c, mode, integrator);
-  const int steps =
-      steps_within(c, integrator, reference, static_cast<int>(std::ceil(c.interval / result.step)));
+  const int steps = steps_within(c, integrator, reference, static_cast<int>(std::ceil(c.interval / result.step)));
   result.wall = step_time(c, integrator) * steps / c.interval;
   const std::string row = c.name + "_" + name;
   bench::report("integrators", row, "largest_step", 1e3 * result.step, "ms");
   const double bound = TensorMass<double>(c.mesh, integrator, 0).frequency_bound();
-  bench::report("integrators", row, "step_from_bound", 1e3 * largest_step(integrator, bound, c.damping),
-                "ms");
+  bench::report("integrators", row, "step_from_bound", 1e3 * largest_step(integrator, bound, c.damping), "ms");
   bench::report("integrators", row, "step_at_equal_error", 1e3 * c.interval / steps, "ms");
   bench::report("integrators", row, "wall_per_second", result.wall, "s");
   return result;
@@ -149,8 +145,7 @@ void compare(const Case& c) {
   const Field mode = fastest_mode(c);
   const double bound = TensorMass<double>(c.mesh, Integrator::rk4, 0).frequency_bound();
   const auto reference = trajectory<double>(
-      c, Integrator::rk4,
-      static_cast<int>(10 * c.interval / largest_step(Integrator::rk4, bound, c.damping)) + 1);
+      c, Integrator::rk4, static_cast<int>(10 * c.interval / largest_step(Integrator::rk4, bound, c.damping)) + 1);
   const Result rk4 = measure(c, "rk4", Integrator::rk4, mode, reference);
   const Result semi = measure(c, "semi_implicit", Integrator::semi_implicit, mode, reference);
   const Result forward = measure(c, "forward_euler", Integrator::forward_euler, mode, reference);

@@ -120,8 +120,7 @@ void measure_bus(bench::Samples& samples, int domain, int count) {
   BusPort port(domain);
   port.open();
   ping(
-      samples, count, [&](std::uint64_t seq) { port.send(seq); },
-      [&](auto timeout) { return port.receive(timeout); });
+      samples, count, [&](std::uint64_t seq) { port.send(seq); }, [&](auto timeout) { return port.receive(timeout); });
 }
 
 int answer_bare(int domain, std::size_t back) {
@@ -147,8 +146,7 @@ int run(int argc, char** argv) {
   const int count = bench::quick(argc, argv) ? 1000 : 5000;
   const int domain = getpid() % 200;
   // One contact there, the surface of the 1,400-node liver back.
-  const std::size_t there = size_option(argc, argv, "--there", 320),
-                    back = size_option(argc, argv, "--back", 20'000);
+  const std::size_t there = size_option(argc, argv, "--there", 320), back = size_option(argc, argv, "--back", 20'000);
   bench::Samples sized, bare, bus;
   measure_bare(sized, 1 + domain, count, there, back);
   report_all("loopback_bare_dds", sized);
@@ -156,7 +154,8 @@ int run(int argc, char** argv) {
   // By turns, so that a change of the host's load meets both.
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, BareDds::as_tool_state, BareDds::as_force_state);
+    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, BareDds::as_tool_state,
+                 BareDds::as_force_state);
     measure_bus(bus, 1 + (domain + 2 * round + 2) % 200, count / rounds);
   }
   report_all("loopback_bare_dds_step", bare);

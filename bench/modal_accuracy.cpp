@@ -68,8 +68,7 @@ MatrixXd full_motion(const ShellSystem& system, int dof, const Motion& motion, i
 }
 
 /// The same by the first r modes; `residual` [m/N]: column of the residual flexibility, or zero.
-MatrixXd modal_motion(const Modes& modes, int r, const VectorXd& residual, int dof, const Motion& motion,
-                      int steps) {
+MatrixXd modal_motion(const Modes& modes, int r, const VectorXd& residual, int dof, const Motion& motion, int steps) {
   const VectorXd omega = modes.omega.head(r), share = modes.shape.row(dof).head(r);
   ModalNewmark newmark(view(omega), modal_damping(view(omega), 0, kDamping), kStep);
   const VectorXd none = VectorXd::Zero(r);
@@ -78,19 +77,16 @@ MatrixXd modal_motion(const Modes& modes, int r, const VectorXd& residual, int d
   for (int i = 0; i < steps; ++i) {
     const double force = motion.force((i + 1) * kStep);
     newmark.step(view(force * share));
-    path.col(i) =
-        modes.shape.leftCols(r) * Eigen::Map<const VectorXd>(newmark.position().data(), r) + force * residual;
+    path.col(i) = modes.shape.leftCols(r) * Eigen::Map<const VectorXd>(newmark.position().data(), r) + force * residual;
   }
   return path;
 }
 
-void error_rows(const std::string& name, const std::string& what, const MatrixXd& path,
-                const MatrixXd& reference, int dof) {
+void error_rows(const std::string& name, const std::string& what, const MatrixXd& path, const MatrixXd& reference,
+                int dof) {
   const MatrixXd difference = path - reference;
-  row(name, what + "_point",
-      difference.row(dof).cwiseAbs().maxCoeff() / reference.row(dof).cwiseAbs().maxCoeff(), "1");
-  row(name, what + "_field", difference.colwise().norm().maxCoeff() / reference.colwise().norm().maxCoeff(),
-      "1");
+  row(name, what + "_point", difference.row(dof).cwiseAbs().maxCoeff() / reference.row(dof).cwiseAbs().maxCoeff(), "1");
+  row(name, what + "_field", difference.colwise().norm().maxCoeff() / reference.colwise().norm().maxCoeff(), "1");
 }
 
 void accuracy(int around, int along, int steps) {
@@ -114,8 +110,7 @@ void accuracy(int around, int along, int steps) {
 
   for (int r : {5, 10, 20, 50, 100, n}) {
     const std::string name = r == n ? "all" : fmt::format("r{}", r);
-    const VectorXd share = modes.shape.row(dof).head(r),
-                   soft = modes.omega.head(r).cwiseAbs2().cwiseInverse();
+    const VectorXd share = modes.shape.row(dof).head(r), soft = modes.omega.head(r).cwiseAbs2().cwiseInverse();
     const VectorXd by_modes = modes.shape.leftCols(r) * soft.cwiseProduct(share);
     const VectorXd none = VectorXd::Zero(n), residual = column - by_modes;
     error_rows(name, "static", by_modes, column, dof);
@@ -124,8 +119,8 @@ void accuracy(int around, int along, int steps) {
     for (std::size_t m = 0; m < motions().size(); ++m) {
       const Motion& motion = motions()[m];
       error_rows(name, motion.name, modal_motion(modes, r, none, dof, motion, steps), references[m], dof);
-      error_rows(name, motion.name + "_residual", modal_motion(modes, r, residual, dof, motion, steps),
-                 references[m], dof);
+      error_rows(name, motion.name + "_residual", modal_motion(modes, r, residual, dof, motion, steps), references[m],
+                 dof);
     }
   }
 }
@@ -206,8 +201,7 @@ void condensed_statics(int around, int along, int samples) {
   MatrixXd condensed;
   row("condensed", "translations", n, "1");
   row("condensed", "factor_sparse", 1e3 * seconds_of([&] { sparse->factorise(system.stiffness); }), "ms");
-  row("condensed", "condensing",
-      1e3 * seconds_of([&] { condensed = condense_rotations(system.stiffness, n); }), "ms");
+  row("condensed", "condensing", 1e3 * seconds_of([&] { condensed = condense_rotations(system.stiffness, n); }), "ms");
   const MatrixXd whole = MatrixXd(system.stiffness).selfadjointView<Eigen::Lower>();
   std::optional<Eigen::LLT<MatrixXd>> of_whole, of_condensed;
   row("condensed", "factor_full", 1e3 * seconds_of([&] { of_whole.emplace(whole); }), "ms");
@@ -237,8 +231,7 @@ int main(int argc, char** argv) {
   accuracy(16, few ? 16 : 24, few ? 200 : 500);
   const auto system = duct(16, few ? 16 : 24);
   cost_of_modes(lowest_modes(system.stiffness, system.mass, system.translations()), few ? 100 : 400);
-  for (const auto& [around, along] :
-       {std::pair{8, 8}, {8, 16}, {12, 20}, {16, 30}, {20, 40}, {32, 60}, {48, 80}})
+  for (const auto& [around, along] : {std::pair{8, 8}, {8, 16}, {12, 20}, {16, 30}, {20, 40}, {32, 60}, {48, 80}})
     if (!few || along <= 40) cost_over_size(around, along, along <= 40, few ? 40 : 200);
   condensed_statics(16, 24, few ? 20 : 100);
 }

@@ -23,8 +23,7 @@ void frequencies(const std::string& name, const ShellSystem& system, double shif
                  const std::vector<double>& hertz) {
   const int count = rigid + static_cast<int>(hertz.size());
   Modes modes;
-  const double seconds =
-      seconds_of([&] { modes = lowest_modes(system.stiffness, system.mass, count, shift); });
+  const double seconds = seconds_of([&] { modes = lowest_modes(system.stiffness, system.mass, count, shift); });
   double worst = 0;
   for (std::size_t i = 0; i < hertz.size(); ++i) {
     const double found = modes.omega[rigid + static_cast<int>(i)] / (2 * pi);
@@ -41,8 +40,7 @@ void frequencies(const std::string& name, const ShellSystem& system, double shif
 
 /// sqrt(D / rho t) / (2 pi) of the plate [m^2/s].
 double plate_unit() {
-  const double rigidity =
-      kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
+  const double rigidity = kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
   return std::sqrt(rigidity / (kSteel.density * kSteel.thickness)) / (2 * pi);
 }
 
@@ -80,7 +78,8 @@ void known_frequencies() {
   frequencies("tapered_membrane", tapered_membrane(28), 0, 0, {44.623, 130.03, 162.70, 246.05, 379.90, 391.44});
   std::vector<double> bending;
   for (double root : {1.87510, 4.69409, 7.85476})
-    bending.push_back(root * root / (2 * pi) * std::sqrt(kStrip.young * std::pow(kStrip.thickness, 2) / 12 / kStrip.density) /
+    bending.push_back(root * root / (2 * pi) *
+                      std::sqrt(kStrip.young * std::pow(kStrip.thickness, 2) / 12 / kStrip.density) /
                       std::pow(kStripLength, 2));
   frequencies("cantilever_strip", cantilever_strip(28), 0, 0, bending);
 }

@@ -1,9 +1,10 @@
-// What do observers cost the haptic node? On two hosts made of network namespaces: haptic_node on A; deform_node and 0 to 16
-// observers on B, of which one draws (render_node), every fourth records, and the others check the sequence numbers of all
-// that they hear (listener). With peers, where every reader is sent a copy of its own, and with multicast. The cases are taken
-// in turn, in another order each round, so that a change of the machine's load meets all alike; rows are medians over rounds.
-// Each host has half of the cores. Two references tell what is the machine's: all processes on all cores (shared); and what
-// a bare UDP message costs its sender with so many receivers, since the hosts share a kernel, which delivers in the sender's time.
+// What do observers cost the haptic node? On two hosts made of network namespaces: haptic_node on A; deform_node and 0
+// to 16 observers on B, of which one draws (render_node), every fourth records, and the others check the sequence
+// numbers of all that they hear (listener). With peers, where every reader is sent a copy of its own, and with
+// multicast. The cases are taken in turn, in another order each round, so that a change of the machine's load meets all
+// alike; rows are medians over rounds. Each host has half of the cores. Two references tell what is the machine's: all
+// processes on all cores (shared); and what a bare UDP message costs its sender with so many receivers, since the hosts
+// share a kernel, which delivers in the sender's time.
 #include <sched.h>
 
 #include <algorithm>
@@ -26,10 +27,10 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
+using nlohmann::json;
 using testing::Inside;
 using testing::NetworkNamespace;
 using testing::TwoHosts;
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 const std::string scene = PALPATE_SCENES "/liver.toml";
@@ -39,7 +40,9 @@ struct Case {
   int observers;
   bool multicast;
   bool shared = false;  ///< all processes on all cores
-  std::string name() const { return fmt::format("{}_{}", shared ? "shared" : multicast ? "multicast" : "peers", observers); }
+  std::string name() const {
+    return fmt::format("{}_{}", shared ? "shared" : multicast ? "multicast" : "peers", observers);
+  }
 };
 
 /// While it lives, this thread and the programs it starts keep to a part of the cores.
@@ -74,8 +77,10 @@ ThreadTimes times_of(pid_t process) {
     std::istringstream after_name(text.substr(text.rfind(')') + 1));
     constexpr int place_of_priority = 40 - 2;  // of the fields that follow the name
     for (int i = 0; i < place_of_priority; ++i) after_name >> field;
-    if (field == std::to_string(publisher_priority)) times.publisher += 1e-9 * ns;
-    else if (thread.path().filename() != std::to_string(process)) times.middleware += 1e-9 * ns;
+    if (field == std::to_string(publisher_priority))
+      times.publisher += 1e-9 * ns;
+    else if (thread.path().filename() != std::to_string(process))
+      times.middleware += 1e-9 * ns;
   }
   return times;
 }
@@ -97,15 +102,18 @@ double sent_by_host_of(pid_t process) {
 
 /// What one run of a case measured.
 struct Run {
-  json haptic;                                    ///< its summary
-  double publisher_us = 0, middleware_us = 0;     ///< processor time per step
-  double datagrams = 0;                           ///< that left the haptic node's host, per step
-  double heard = 0, missing = 0;                  ///< samples, of all observers that check
+  json haptic;                                 ///< its summary
+  double publisher_us = 0, middleware_us = 0;  ///< processor time per step
+  double datagrams = 0;                        ///< that left the haptic node's host, per step
+  double heard = 0, missing = 0;               ///< samples, of all observers that check
 };
 
 class Bench {
  public:
-  Bench(bool quick) : seconds_(quick ? 2 : 5), rounds_(quick ? 1 : 5), counts_(quick ? std::vector<int>{0, 2, 16} : std::vector<int>{0, 1, 2, 4, 8, 16}) {
+  Bench(bool quick)
+      : seconds_(quick ? 2 : 5),
+        rounds_(quick ? 1 : 5),
+        counts_(quick ? std::vector<int>{0, 2, 16} : std::vector<int>{0, 1, 2, 4, 8, 16}) {
     for (const NetworkNamespace* host : {&hosts_.a(), &hosts_.b()}) {
       host->ip(fmt::format("link set {} multicast on", TwoHosts::device));
       host->ip(fmt::format("route add 224.0.0.0/4 dev {}", TwoHosts::device));
@@ -124,8 +132,8 @@ class Bench {
       std::ranges::shuffle(cases, random);
       for (const Case& c : cases) {
         runs_[c.name()].push_back(run(c));
-        std::fprintf(stderr, "round %d, %s: step p99 %.1f us, %.0f missing\n", round + 1, c.name().c_str(), runs_[c.name()].back().haptic["step_us_p99"].get<double>(),
-                     runs_[c.name()].back().missing);
+        std::fprintf(stderr, "round %d, %s: step p99 %.1f us, %.0f missing\n", round + 1, c.name().c_str(),
+                     runs_[c.name()].back().haptic["step_us_p99"].get<double>(), runs_[c.name()].back().missing);
       }
     }
     for (const bool multicast : {false, true})
@@ -133,13 +141,15 @@ class Bench {
     for (const int n : shared_) print({n, false, true});
     for (const int n : counts_)
       for (const bool multicast : {false, true}) {
-        const double us = 1e6 * bench::bare_udp_cost(hosts_.a(), hosts_.b(), n + 1, multicast);  // the deformation node listens too
+        const double us =
+            1e6 * bench::bare_udp_cost(hosts_.a(), hosts_.b(), n + 1, multicast);  // the deformation node listens too
         bench::report("observers", Case{n, multicast}.name(), "bare_udp", us, "us/message");
       }
   }
 
  private:
-  ChildProcess start(const NetworkNamespace& host, const char* peer, const Case& c, const std::string& name, std::vector<std::string> words) const {
+  ChildProcess start(const NetworkNamespace& host, const char* peer, const Case& c, const std::string& name,
+                     std::vector<std::string> words) const {
     words.insert(words.begin(), sibling_program(name));
     words.insert(words.end(), {"--domain", c.multicast ? "97" : "96", "--interface", TwoHosts::device});
     if (!c.multicast) words.insert(words.end(), {"--peer", peer});
@@ -149,15 +159,19 @@ class Bench {
     const OnCores own(on_b && !c.shared ? half : 0, on_a && !c.shared ? half : cores);
     return ChildProcess(name, words);
   }
-  ChildProcess on_b(const Case& c, const std::string& name, const std::vector<std::string>& words) const { return start(hosts_.b(), TwoHosts::address_a, c, name, words); }
+  ChildProcess on_b(const Case& c, const std::string& name, const std::vector<std::string>& words) const {
+    return start(hosts_.b(), TwoHosts::address_a, c, name, words);
+  }
   ChildProcess observer(const Case& c, int i) const {
     if (i == 0) return on_b(c, "render_node", {scene, "--supervised"});
-    if (i % 4 == 1) return on_b(c, "palpate", {"record", "--supervised", "-o", (folder_ / fmt::format("{}.lcmlog", i)).string()});
+    if (i % 4 == 1)
+      return on_b(c, "palpate", {"record", "--supervised", "-o", (folder_ / fmt::format("{}.lcmlog", i)).string()});
     return on_b(c, "listener", {});
   }
   static void await_ready(ChildProcess& process) {
     while (process.take_lines().empty()) {
-      if (!process.running()) throw std::runtime_error(fmt::format("{} ended with status {}", process.name(), process.status()));
+      if (!process.running())
+        throw std::runtime_error(fmt::format("{} ended with status {}", process.name(), process.status()));
       std::this_thread::sleep_for(5ms);
     }
   }
@@ -168,7 +182,8 @@ class Bench {
     for (int i = 0; i < c.observers; ++i) others.push_back(observer(c, i));
     for (ChildProcess& process : others) await_ready(process);
     std::this_thread::sleep_for(1s);
-    ChildProcess haptic = start(hosts_.a(), TwoHosts::address_b, c, "haptic_node", {scene, "--supervised", "--seconds", fmt::format("{}", seconds_ + 2)});
+    ChildProcess haptic = start(hosts_.a(), TwoHosts::address_b, c, "haptic_node",
+                                {scene, "--supervised", "--seconds", fmt::format("{}", seconds_ + 2)});
     await_ready(haptic);
     std::this_thread::sleep_for(1500ms);  // the peers have met, and the loop runs
     const auto begin = std::chrono::steady_clock::now();
@@ -204,17 +219,24 @@ class Bench {
       for (const Run& r : of) samples.add(value(r));
       bench::report("observers", c.name(), metric, samples.median(), unit);
     };
-    const auto of_haptic = [](const char* key) { return [key](const Run& r) { return r.haptic.at(key).template get<double>(); }; };
-    for (const char* share : {"p50", "p99", "p999"}) row(fmt::format("step_{}", share).c_str(), of_haptic(fmt::format("step_us_{}", share).c_str()), "us");
+    const auto of_haptic = [](const char* key) {
+      return [key](const Run& r) { return r.haptic.at(key).template get<double>(); };
+    };
+    for (const char* share : {"p50", "p99", "p999"})
+      row(fmt::format("step_{}", share).c_str(), of_haptic(fmt::format("step_us_{}", share).c_str()), "us");
     row("late_p99", of_haptic("late_us_p99"), "us");
     row("missed", of_haptic("missed"), "steps");
     row("rate", of_haptic("rate_hz"), "Hz");
     row("ring_to_wire_p50", of_haptic("ring_to_wire_us_p50"), "us");
     row("ring_to_wire_p99", of_haptic("ring_to_wire_us_p99"), "us");
-    row("publisher", [](const Run& r) { return r.publisher_us; }, "us/step");
-    row("middleware", [](const Run& r) { return r.middleware_us; }, "us/step");
-    row("datagrams", [](const Run& r) { return r.datagrams; }, "1/step");
-    row("heard", [](const Run& r) { return r.heard; }, "samples");
+    row(
+        "publisher", [](const Run& r) { return r.publisher_us; }, "us/step");
+    row(
+        "middleware", [](const Run& r) { return r.middleware_us; }, "us/step");
+    row(
+        "datagrams", [](const Run& r) { return r.datagrams; }, "1/step");
+    row(
+        "heard", [](const Run& r) { return r.heard; }, "samples");
     double missing = 0;
     for (const Run& r : of) missing += r.missing;
     bench::report("observers", c.name(), "missing", missing, "samples");
@@ -239,7 +261,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   try {
-    for (const palpate::Body& body : palpate::load_scene(palpate::scene).bodies) palpate::ensure_archive(palpate::load_scene(palpate::scene), body);
+    for (const palpate::Body& body : palpate::load_scene(palpate::scene).bodies)
+      palpate::ensure_archive(palpate::load_scene(palpate::scene), body);
     palpate::Bench(palpate::bench::quick(argc, argv)).measure();
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_observers: {}\n", error.what());

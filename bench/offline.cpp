@@ -15,8 +15,10 @@ Archive compute(const Scene& scene, std::optional<Offline> offline, const char* 
   const auto mesh = load_tet_mesh(body.mesh, body.scale);
   const auto begin = std::chrono::steady_clock::now();
   Archive archive = precompute(body, mesh);
-  bench::report("offline", name, "precompute", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "s");
-  bench::report("offline", name, "tensors", static_cast<double>(archive.touchable_compliance.size() * sizeof(double)), "B");
+  bench::report("offline", name, "precompute",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "s");
+  bench::report("offline", name, "tensors", static_cast<double>(archive.touchable_compliance.size() * sizeof(double)),
+                "B");
   return archive;
 }
 

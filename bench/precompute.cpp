@@ -79,9 +79,7 @@ void measure_conjugate_gradients(const Case& one, const std::string& text, doubl
   solver.setTolerance(tolerance);
 
   const auto& columns = archive.touchable_dofs;
-  const auto free_index = [&](const Dof& dof) {
-    return dofs.index(archive.surface.node_number[dof.node], dof.axis);
-  };
+  const auto free_index = [&](const Dof& dof) { return dofs.index(archive.surface.node_number[dof.node], dof.axis); };
   double error = 0;
   Samples samples;
   for (int s = 0; s < sample; ++s) {

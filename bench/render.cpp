@@ -66,12 +66,10 @@ Frame make_frame(const Shape& organ, const Shape& wall) {
   InstrumentView tool;
   tool.tip.translation() = Eigen::Vector3d(0.02, -0.01, 0.034);
   tool.tip.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.5, 0.2, -0.8))
-          .toRotationMatrix();
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.5, 0.2, -0.8)).toRotationMatrix();
   frame.instruments.push_back(tool);
   frame.overlay =
-      Overlay{{"haptic 1000 Hz   visual 60 Hz", "tool to picture 9.1 ms (p99 12.3)", "probe  1.83 N"},
-              Gauge{1.83, 5}};
+      Overlay{{"haptic 1000 Hz   visual 60 Hz", "tool to picture 9.1 ms (p99 12.3)", "probe  1.83 N"}, Gauge{1.83, 5}};
   return frame;
 }
 

@@ -47,8 +47,7 @@ inline ShellSystem make_system(const ShellMesh& mesh, const ShellMaterial& mater
 inline ShellSystem supported_plate(int cells) {
   return make_system(square_plate(cells), kSteel, [](const Eigen::Vector3d& x, int dof) {
     const bool edge_x = x[0] == 0 || x[0] == kSide, edge_y = x[1] == 0 || x[1] == kSide;
-    return dof <= 1 || dof == 5 || (dof == 2 && (edge_x || edge_y)) || (dof == 3 && edge_x) ||
-           (dof == 4 && edge_y);
+    return dof <= 1 || dof == 5 || (dof == 2 && (edge_x || edge_y)) || (dof == 3 && edge_x) || (dof == 4 && edge_y);
   });
 }
 
@@ -85,10 +84,9 @@ constexpr ShellMaterial kCylinder{200e9, 0.3, 8000, 0.01};
 constexpr double kCylinderRadius = 1, kCylinderLength = 4;
 
 inline ShellSystem cylinder(int around, int along) {
-  return make_system(make_tube(kCylinderRadius, kCylinderLength, around, along), kCylinder,
-                   [](const Eigen::Vector3d& x, int dof) {
-                     return dof <= 1 && (x[2] < 1e-9 || x[2] > kCylinderLength - 1e-9);
-                   });
+  return make_system(
+      make_tube(kCylinderRadius, kCylinderLength, around, along), kCylinder,
+      [](const Eigen::Vector3d& x, int dof) { return dof <= 1 && (x[2] < 1e-9 || x[2] > kCylinderLength - 1e-9); });
 }
 
 /// Wall-clock time of one call.

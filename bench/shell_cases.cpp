@@ -53,8 +53,8 @@ void converge(const Published& kind, Bending bending, int finest, std::ostream& 
     ShellCase shell = kind.make(n);
     const ShellAnswer answer = solve(shell, bending);
     error = answer.value / shell.target - 1;
-    table << fmt::format("{},{},{},{},{:.8g},{:.8g},{:.4g}\n", kind.name, element, n, answer.size,
-                         answer.value, shell.target, error);
+    table << fmt::format("{},{},{},{},{:.8g},{:.8g},{:.4g}\n", kind.name, element, n, answer.size, answer.value,
+                         shell.target, error);
   }
   const std::string suffix = bending == Bending::polynomial ? "_polynomial" : "";
   report("shell_cases", kind.name + suffix, fmt::format("error_n{}", finest), error, "1");
@@ -75,8 +75,8 @@ void condensation(int n, int count) {
   ShellCase shell = pinched_cylinder(n, Diagonals::alike);
   shell.dofs.number();
   const int translations = shell.dofs.translations();
-  const auto lower = assemble_shell_stiffness(shell.mesh, shell.material, Bending::discrete_kirchhoff,
-                                              shell.dofs, "cylinder");
+  const auto lower =
+      assemble_shell_stiffness(shell.mesh, shell.material, Bending::discrete_kirchhoff, shell.dofs, "cylinder");
   const Eigen::VectorXd load = load_vector(shell), forces = load.head(translations);
   Factorisation sparse(lower);
   sparse.factorise(lower);
@@ -84,11 +84,9 @@ void condensation(int n, int count) {
   Samples condensing;
   Eigen::MatrixXd condensed;
   condensing.measure(0, 3, [&](int) { condensed = condense_rotations(lower, translations); });
-  const Eigen::LLT<Eigen::MatrixXd> full(Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>()),
-      small(condensed);
+  const Eigen::LLT<Eigen::MatrixXd> full(Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>()), small(condensed);
   const Eigen::VectorXd reference = sparse.solve(load).col(0).head(translations);
-  const double difference =
-      (small.solve(forces) - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
+  const double difference = (small.solve(forces) - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 
   const double full_time = solution_time(count, [&] { return full.solve(load).eval(); });
   const double small_time = solution_time(count, [&] { return small.solve(forces).eval(); });

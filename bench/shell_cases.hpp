@@ -139,8 +139,7 @@ inline ShellCase twisted_beam(int n, bool in_plane, double thickness = 0.32,
   shell.fix([](auto& x) { return near(x.x(), 0); }, {0, 1, 2, 3, 4, 5});
   const Eigen::Vector3d along = in_plane ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
   const int row = 3 * n + 1;
-  for (int j = 0; j <= n; ++j)
-    shell.load[row * j + 3 * n] = (j % n ? 1.0 : 0.5) / n * (thin ? 1e-6 : 1.0) * along;
+  for (int j = 0; j <= n; ++j) shell.load[row * j + 3 * n] = (j % n ? 1.0 : 0.5) / n * (thin ? 1e-6 : 1.0) * along;
   const double target = in_plane ? (thin ? 5.256e-3 : 5.42453e-3) : (thin ? 1.294e-3 : 1.75325e-3);
   shell.watch(row * (n / 2) + 3 * n, along, target);
   return shell;
@@ -148,8 +147,7 @@ inline ShellCase twisted_beam(int n, bool in_plane, double thickness = 0.32,
 
 /// Square plate on simple supports, a quarter of it, under pressure or a force at its centre; `aspect` 1
 /// or 5.
-inline ShellCase square_plate(int n, bool pressed, double aspect = 1,
-                              Diagonals diagonals = Diagonals::alternating) {
+inline ShellCase square_plate(int n, bool pressed, double aspect = 1, Diagonals diagonals = Diagonals::alternating) {
   const auto plate = [=](double u, double v) -> Eigen::Vector3d { return {u, aspect * v, 0}; };
   ShellCase shell(shell_grid(n, n, plate, diagonals), {1.7472e7, 0.3, 0, 1e-4});
   shell.mirror([](auto& x) { return near(x.x(), 0); }, 0);

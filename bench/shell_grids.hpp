@@ -38,8 +38,7 @@ inline ShellMesh sphere_octant(int n, double radius) {
   ShellMesh mesh;
   const auto node = [n](int i, int j) { return j * (n + 1) - j * (j - 1) / 2 + i; };
   for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n - j; ++i)
-      mesh.nodes.push_back(radius * Eigen::Vector3d(n - i - j, i, j).normalized());
+    for (int i = 0; i <= n - j; ++i) mesh.nodes.push_back(radius * Eigen::Vector3d(n - i - j, i, j).normalized());
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n - j; ++i) {
       mesh.triangles.push_back({node(i, j), node(i + 1, j), node(i, j + 1)});

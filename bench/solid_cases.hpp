@@ -62,7 +62,8 @@ inline SolidAnswer mean_along_load(const SolidCase& solid, const Offline& offlin
 /// The traction of a resultant over the face that `on` accepts, whose area is given.
 template <class On>
 Traction on_face(On on, const Vector3d& force, double area) {
-  return [=](const Vector3d& x, const Vector3d&) -> Vector3d { return on(x) ? Vector3d(force / area) : Vector3d::Zero(); };
+  return
+      [=](const Vector3d& x, const Vector3d&) -> Vector3d { return on(x) ? Vector3d(force / area) : Vector3d::Zero(); };
 }
 
 /// MacNeal and Harder's straight cantilever 6 x 0.2 x 0.1, E = 1e7, nu = 0.3, unit end load along axis 0, 1 or 2.
@@ -81,8 +82,8 @@ inline double twist_target() {
   return 6 * 2 * 1.3 / (1e7 * torsion);
 }
 
-/// The same beam under a unit torque, spread over its end in proportion to the distance from the axis: mean rotation there,
-/// conjugate to the torque. Target 0.03411; the source prints 0.03208.
+/// The same beam under a unit torque, spread over its end in proportion to the distance from the axis: mean rotation
+/// there, conjugate to the torque. Target 0.03411; the source prints 0.03208.
 inline SolidAnswer straight_beam_twist(int n, const Offline& offline) {
   SolidCase beam{make_block(Vector3d::Zero(), {6, 0.2, 0.1}, {15 * n, n, n}), {1e7, 0.3, 1}, {hold_face("x0")}, {}, 1};
   static constexpr double polar = 0.02 * (0.04 + 0.01) / 12;
@@ -96,7 +97,8 @@ inline SolidAnswer straight_beam_twist(int n, const Offline& offline) {
 /// radius or across the plane. Targets 0.08734 and 0.5022.
 inline SolidAnswer curved_beam(int n, const Offline& offline, bool in_plane) {
   constexpr double inner = 4.12, outer = 4.32, quarter = std::numbers::pi / 2;
-  SolidCase beam{make_block({inner, 0, 0}, {outer, quarter, 0.1}, {n, 15 * n, n}), {1e7, 0.25, 1}, {hold_face("y0")}, {}, 1};
+  SolidCase beam{
+      make_block({inner, 0, 0}, {outer, quarter, 0.1}, {n, 15 * n, n}), {1e7, 0.25, 1}, {hold_face("y0")}, {}, 1};
   for (auto& x : beam.mesh.nodes) x = {x.x() * std::cos(x.y()), x.x() * std::sin(x.y()), x.z()};
   const Vector3d force = in_plane ? Vector3d(Vector3d::UnitY()) : Vector3d(Vector3d::UnitZ());
   beam.traction = on_face([](const Vector3d& x) { return x.x() < 1e-9; }, force, 0.02);
@@ -106,8 +108,11 @@ inline SolidAnswer curved_beam(int n, const Offline& offline, bool in_plane) {
 /// Cook's membrane as a solid, 1 thick, the half above its middle plane: E = 1, nu = 1/3, unit shear on the right edge,
 /// the left edge clamped in the plane. The deflection of the right edge's middle; target 23.96.
 inline SolidAnswer cooks_membrane(int n, const Offline& offline) {
-  SolidCase solid{make_block({0, 0, 0}, {1, 1, 0.5}, {n, n, 1}), {1, 1. / 3, 1},
-                  {hold_face("x0", {true, true, false}), hold_face("z0", {false, false, true})}, {}, 1};
+  SolidCase solid{make_block({0, 0, 0}, {1, 1, 0.5}, {n, n, 1}),
+                  {1, 1. / 3, 1},
+                  {hold_face("x0", {true, true, false}), hold_face("z0", {false, false, true})},
+                  {},
+                  1};
   for (auto& x : solid.mesh.nodes) x = {48 * x.x(), 44 * x.x() + x.y() * (44 - 28 * x.x()), x.z()};
   solid.traction = on_face([](const Vector3d& x) { return x.x() > 48 - 1e-9; }, Vector3d(0, 1, 0), 16);
   const auto state = solve_case(solid, offline);
@@ -122,14 +127,17 @@ inline double thick_cylinder_target(double poisson) {
 /// there. Targets 5.0399e-3, 5.0602e-3 and 5.0623e-3 for nu = 0.49, 0.499 and 0.4999.
 inline SolidAnswer thick_cylinder(int n, const Offline& offline, double poisson) {
   constexpr double quarter = std::numbers::pi / 2;
-  SolidCase solid{make_block({3, 0, 0}, {9, quarter, 1}, {n, n, 1}), {1000, poisson, 1},
+  SolidCase solid{make_block({3, 0, 0}, {9, quarter, 1}, {n, n, 1}),
+                  {1000, poisson, 1},
                   {hold_face("y0", {false, true, false}), hold_face("y1", {true, false, false}),
-                   hold_face("z0", {false, false, true}), hold_face("z1", {false, false, true})}, {}, 3 * quarter};
+                   hold_face("z0", {false, false, true}), hold_face("z1", {false, false, true})},
+                  {},
+                  3 * quarter};
   for (auto& x : solid.mesh.nodes) x = {x.x() * std::cos(x.y()), x.x() * std::sin(x.y()), x.z()};
   const double across = std::cos(0.5 * quarter / n);  // chords of the inner circle lie this much nearer to the axis
   solid.traction = [=](const Vector3d& x, const Vector3d& normal) -> Vector3d {
-    const bool inside = x.head<2>().norm() < 3 * (1 + 1e-9) && x.head<2>().norm() > 3 * across - 1e-9 && std::abs(normal.z()) < 0.5 &&
-                        normal.head<2>().dot(x.head<2>()) < -2;
+    const bool inside = x.head<2>().norm() < 3 * (1 + 1e-9) && x.head<2>().norm() > 3 * across - 1e-9 &&
+                        std::abs(normal.z()) < 0.5 && normal.head<2>().dot(x.head<2>()) < -2;
     return inside ? Vector3d(-normal) : Vector3d::Zero();
   };
   return mean_along_load(solid, offline);
@@ -139,9 +147,12 @@ inline SolidAnswer thick_cylinder(int n, const Offline& offline, double poisson)
 /// Target -5.38e6. n elements along the radius, 2 n along the angle, n (even) through the thickness.
 inline SolidAnswer nafems_le10(int n, const Offline& offline) {
   constexpr double quarter = std::numbers::pi / 2;
-  SolidCase solid{make_block({0, 0, 0}, {1, quarter, 0.6}, {n, 2 * n, n}), {210e9, 0.3, 1},
+  SolidCase solid{make_block({0, 0, 0}, {1, quarter, 0.6}, {n, 2 * n, n}),
+                  {210e9, 0.3, 1},
                   {hold_face("y0", {false, true, false}), hold_face("y1", {true, false, false}),
-                   hold_face("x1", {true, true, false})}, {}, 1};
+                   hold_face("x1", {true, true, false})},
+                  {},
+                  1};
   FixedRegion edge;
   edge.axes = {false, false, true};
   for (int i = 0; i < static_cast<int>(solid.mesh.nodes.size()); ++i) {

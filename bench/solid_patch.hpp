@@ -22,9 +22,7 @@ inline PatchErrors solid_patch(const Offline& offline, double poisson, unsigned 
   const Eigen::Matrix3d strain =
       ((1 + poisson) * stress - poisson * stress.trace() * Eigen::Matrix3d::Identity()) / young;
   const auto exact = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return strain * x; };
-  const auto on_face = [](const Eigen::Vector3d& x, int) {
-    return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9;
-  };
+  const auto on_face = [](const Eigen::Vector3d& x, int) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; };
   const auto mesh = palpate::testing::make_jittered_block({1, 1, 1}, {4, 4, 4}, 0.2, seed);
   const auto problem = make_held_problem(mesh, {young, poisson, 1}, offline, on_face);
   const auto& space = problem.space;
@@ -35,8 +33,7 @@ inline PatchErrors solid_patch(const Offline& offline, double poisson, unsigned 
   PatchErrors errors{0, 0, problem.dofs.size()};
   double largest = 0;
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    errors.displacement =
-        std::max(errors.displacement, (moved[i] - exact(space.nodes[i])).cwiseAbs().maxCoeff());
+    errors.displacement = std::max(errors.displacement, (moved[i] - exact(space.nodes[i])).cwiseAbs().maxCoeff());
     largest = std::max(largest, moved[i].cwiseAbs().maxCoeff());
   }
   errors.displacement /= largest * rounding;
@@ -44,8 +41,8 @@ inline PatchErrors solid_patch(const Offline& offline, double poisson, unsigned 
   if (problem.pressures) pressure = (*problem.pressures)(moved);
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
     for (int c = 0; c < 4; ++c) {
-      const auto found = fine_stress(space, problem.materials, pressure.size() ? &pressure : nullptr, moved,
-                                     e, Eigen::Vector4d::Unit(c));
+      const auto found = fine_stress(space, problem.materials, pressure.size() ? &pressure : nullptr, moved, e,
+                                     Eigen::Vector4d::Unit(c));
       errors.stress = std::max(errors.stress, (found - stress).cwiseAbs().maxCoeff() / (2000 * rounding));
     }
   return errors;

@@ -17,8 +17,7 @@ template <class Scalar>
 struct Columns {
   Columns(std::ptrdiff_t rows, int count)
       : stride((rows + 15) / 16 * 16), data(new (std::align_val_t(64)) Scalar[stride * count]) {
-    for (std::ptrdiff_t i = 0; i < stride * count; ++i)
-      data[i] = Scalar(1e-4) * static_cast<Scalar>(i % 1013);
+    for (std::ptrdiff_t i = 0; i < stride * count; ++i) data[i] = Scalar(1e-4) * static_cast<Scalar>(i % 1013);
   }
   ~Columns() { ::operator delete[](data, std::align_val_t(64)); }
   Columns(const Columns&) = delete;
@@ -43,8 +42,7 @@ double superpose(const Columns<Scalar>& compliance, std::ptrdiff_t rows, int con
   for (int set = 0; set < sets; ++set)
     for (int k = 0; k < contacts; ++k) {
       const int node = static_cast<int>(random() % nodes);
-      for (int axis = 0; axis < 3; ++axis)
-        columns.push_back(compliance.data + compliance.stride * (3 * node + axis));
+      for (int axis = 0; axis < 3; ++axis) columns.push_back(compliance.data + compliance.stride * (3 * node + axis));
     }
   std::vector<Scalar> force(3 * contacts, Scalar(0.5)), out(rows);
   bench::Samples samples;

@@ -1,7 +1,7 @@
 // TVCG99 table 1, measured: the time to deform a liver of 1,400 nodes under one contact, by solving the whole system
-// ("normal": here one sparse factorisation and solve) and from precomputed tensors ("accelerated"), with linear elasticity
-// and with the quasi non-linear correction. The paper: 15 s and 7 ms, over 50 s and 8 ms. Conjugate gradients, which the
-// paper solves by, stand in the rows of bench_precompute.
+// ("normal": here one sparse factorisation and solve) and from precomputed tensors ("accelerated"), with linear
+// elasticity and with the quasi non-linear correction. The paper: 15 s and 7 ms, over 50 s and 8 ms. Conjugate
+// gradients, which the paper solves by, stand in the rows of bench_precompute.
 #include <Eigen/Dense>
 
 #include "bench/report.hpp"
@@ -34,7 +34,8 @@ void measure(const std::string& scene_file, const std::string& name, bool quick)
   std::optional<QuasiNonlinear> correction;
   if (body.nonlinear) correction = make_quasi_nonlinear(body, archives[0]);
   std::vector<Constraint> holds;
-  for (int axis = 0; axis < 3; ++axis) holds.push_back(hold(archives[0].surface.node_number[contact], axis, imposed[axis]));
+  for (int axis = 0; axis < 3; ++axis)
+    holds.push_back(hold(archives[0].surface.node_number[contact], axis, imposed[axis]));
   bench::Samples normal;
   normal.measure(1, quick ? 3 : 9, [&](int) {
     StaticSolution solution = solve_direct(problem, holds);

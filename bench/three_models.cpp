@@ -58,8 +58,7 @@ void speed_precomputed(const ElasticMesh& mesh, int steps) {
   HeldPoints held(touched, 1);
   std::vector<float> u(shown.stride());
   const std::array hold{Hold::all};
-  const std::array<Eigen::Vector3d, 1> normal{-Eigen::Vector3d::UnitZ()},
-      target{Eigen::Vector3d(0, 0, -0.002)};
+  const std::array<Eigen::Vector3d, 1> normal{-Eigen::Vector3d::UnitZ()}, target{Eigen::Vector3d(0, 0, -0.002)};
   Samples samples;
   samples.measure(100, steps, [&](int i) {
     const int node = (i + 100) * 37 % archive.surface.touchable;
@@ -67,8 +66,7 @@ void speed_precomputed(const ElasticMesh& mesh, int steps) {
     held.clear();
     held.add({{node, node, node}, Eigen::Vector3d::UnitX()});
     held.solve(hold, normal, target, force.data());
-    const std::array<const float*, 3> columns{shown.column(node, 0), shown.column(node, 1),
-                                              shown.column(node, 2)};
+    const std::array<const float*, 3> columns{shown.column(node, 0), shown.column(node, 1), shown.column(node, 2)};
     const std::array<float, 3> weight{static_cast<float>(force[0]), static_cast<float>(force[1]),
                                       static_cast<float>(force[2])};
     kernels::active().combine_f(columns.data(), weight.data(), 3, 3 * shown.row_nodes(), u.data());
@@ -123,16 +121,14 @@ void questions(std::string_view name, const Answer& answer) {
 
 template <class Model>
 Answer dynamic_answer() {
-  return
-      [](const LoadedSolid& solid, std::span<const int> cut) { return rest_field<Model>(solid, cut, 1e-7); };
+  return [](const LoadedSolid& solid, std::span<const int> cut) { return rest_field<Model>(solid, cut, 1e-7); };
 }
 
 void rotation() {
   const auto solid = make_loaded_solid(Meshing::five, {2e3, 0.25, 1000});
   row("precomputed", "false_force",
-      false_force(
-          solid.mesh,
-          [&](const Field& u) { return internal_force(solid.problem.mesh, solid.problem.materials, u); }),
+      false_force(solid.mesh,
+                  [&](const Field& u) { return internal_force(solid.problem.mesh, solid.problem.materials, u); }),
       "1");
   row("tensor_mass", "false_force", false_force_of<TensorMass<double>>(solid.mesh), "1");
   row("spring_mass", "false_force", false_force_of<SpringMass<double>>(solid.mesh), "1");
@@ -153,8 +149,7 @@ int main(int argc, char** argv) {
   speed<Corotational<float>>("corotational", "corotational_rk4", box, steps / 4);
   step_time<SpringMass<double>>(box, "spring_mass_rk4", "box760_double", steps);
   step_time<SpringMass<float>>(make_box10648(kTissue), "spring_mass_rk4", "box10648", steps / 10);
-  questions("precomputed",
-            [](const LoadedSolid& solid, std::span<const int>) { return superposed_field(solid); });
+  questions("precomputed", [](const LoadedSolid& solid, std::span<const int>) { return superposed_field(solid); });
   questions("tensor_mass", dynamic_answer<TensorMass<double>>());
   questions("spring_mass", dynamic_answer<SpringMass<double>>());
   questions("corotational", dynamic_answer<Corotational<double>>());

@@ -16,13 +16,15 @@ void measure(double seconds) {
   const auto bus = make_dds_bus({.domain = 99});
   const auto surfaces = bus->reader(topics::surface_state);
   ChildProcess deform("deform_node", {sibling_program("deform_node"), scene, "--domain", domain});
-  ChildProcess haptic("haptic_node", {sibling_program("haptic_node"), scene, "--domain", domain, "--seconds", fmt::format("{}", seconds)});
+  ChildProcess haptic("haptic_node", {sibling_program("haptic_node"), scene, "--domain", domain, "--seconds",
+                                      fmt::format("{}", seconds)});
   bench::Samples latency;
   std::uint64_t last_step = 0;
   while (haptic.running()) {
     bus->wait(std::chrono::milliseconds(5));
     while (const auto surface = surfaces->take()) {
-      if (surface->run != 0 && surface->step > last_step) latency.add(1e-9 * static_cast<double>(now_ns() - surface->sense_ns));
+      if (surface->run != 0 && surface->step > last_step)
+        latency.add(1e-9 * static_cast<double>(now_ns() - surface->sense_ns));
       last_step = surface->step;
     }
   }
@@ -35,4 +37,6 @@ void measure(double seconds) {
 }  // namespace
 }  // namespace palpate
 
-int main(int argc, char** argv) { palpate::measure(palpate::bench::quick(argc, argv) ? 5 : 10); }
+int main(int argc, char** argv) {
+  palpate::measure(palpate::bench::quick(argc, argv) ? 5 : 10);
+}

@@ -16,9 +16,10 @@
 
 namespace palpate::bench {
 
-/// Processor time [s] that the sender of one message of 200 bytes needs for `receivers` sockets on another host, each with a
-/// thread that waits for it: one datagram to a multicast group, or one to each.
-inline double bare_udp_cost(const testing::NetworkNamespace& from, const testing::NetworkNamespace& to, int receivers, bool multicast) {
+/// Processor time [s] that the sender of one message of 200 bytes needs for `receivers` sockets on another host, each
+/// with a thread that waits for it: one datagram to a multicast group, or one to each.
+inline double bare_udp_cost(const testing::NetworkNamespace& from, const testing::NetworkNamespace& to, int receivers,
+                            bool multicast) {
   constexpr int messages = 1000, first_port = 5000;
   constexpr const char* group = "239.255.77.1";
   const auto address_of = [&](int i) {
@@ -40,8 +41,10 @@ inline double bare_udp_cost(const testing::NetworkNamespace& from, const testing
       ip_mreq membership{};
       inet_pton(AF_INET, group, &membership.imr_multiaddr);
       inet_pton(AF_INET, testing::TwoHosts::address_b, &membership.imr_interface);
-      const bool joined = !multicast || setsockopt(s, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
-      if (!joined || bind(s, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) throw std::runtime_error("a socket for bare UDP cannot be had");
+      const bool joined =
+          !multicast || setsockopt(s, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+      if (!joined || bind(s, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0)
+        throw std::runtime_error("a socket for bare UDP cannot be had");
       threads.emplace_back([s, &over] {
         std::array<char, 256> message;
         for (pollfd ready{s, POLLIN, 0}; !over; ready.revents = 0)
@@ -67,7 +70,9 @@ inline double bare_udp_cost(const testing::NetworkNamespace& from, const testing
   threads.clear();
   for (const int s : sockets) close(s);
   close(out);
-  return (static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec)) / messages;
+  return (static_cast<double>(after.tv_sec - before.tv_sec) +
+          1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec)) /
+         messages;
 }
 
 }  // namespace palpate::bench

@@ -75,7 +75,8 @@ void published_values(Table& table, bool quick) {
 
 /// Kelvin and Boussinesq halfway to the far faces, and on the finest mesh over the distance.
 void point_forces(Table& table, const std::vector<int>& meshes) {
-  for (const auto& [name, infinite] : {std::pair{std::string("kelvin"), true}, std::pair{std::string("boussinesq"), false}})
+  for (const auto& [name, infinite] :
+       {std::pair{std::string("kelvin"), true}, std::pair{std::string("boussinesq"), false}})
     for (const auto& element : kElements)
       for (int n : meshes) {
         const auto found = point_force(n, element.offline, 0.3, infinite);
@@ -84,7 +85,8 @@ void point_forces(Table& table, const std::vector<int>& meshes) {
         table.compare(name + "_beside", element, n, found.unknowns, found.beside[half], found.exact_beside[half]);
         for (int k = 1; n == meshes.back() && k < n; ++k) {
           table.add(name + "_ahead_profile", element, k, found.unknowns, found.ahead[k - 1], found.exact_ahead[k - 1]);
-          table.add(name + "_beside_profile", element, k, found.unknowns, found.beside[k - 1], found.exact_beside[k - 1]);
+          table.add(name + "_beside_profile", element, k, found.unknowns, found.beside[k - 1],
+                    found.exact_beside[k - 1]);
         }
       }
 }
@@ -101,12 +103,14 @@ void pressed_discs(Table& table, const std::vector<int>& meshes) {
 
 /// Largest errors over three irregular cubes, in units of rounding; nothing to be compared with but zero.
 void patches(Table& table) {
-  for (const auto& [name, poisson] : {std::pair{std::string("patch_025"), 0.25}, std::pair{std::string("patch_04999"), 0.4999}})
+  for (const auto& [name, poisson] :
+       {std::pair{std::string("patch_025"), 0.25}, std::pair{std::string("patch_04999"), 0.4999}})
     for (const auto& element : kElements) {
       PatchErrors worst{};
       for (unsigned seed : {1, 2, 3}) {
         const auto found = solid_patch(element.offline, poisson, seed);
-        worst = {std::max(worst.displacement, found.displacement), std::max(worst.stress, found.stress), found.unknowns};
+        worst = {std::max(worst.displacement, found.displacement), std::max(worst.stress, found.stress),
+                 found.unknowns};
       }
       table.add(name + "_displacement", element, 4, worst.unknowns, worst.displacement, 0);
       table.add(name + "_stress", element, 4, worst.unknowns, worst.stress, 0);

@@ -36,7 +36,8 @@ void DeformLoop::publish(bool all) {
   }
   for (int b = 0; b < deformer_.bodies(); ++b)
     if (all || deformer_.changed(b))
-      surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
+      surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal,
+                        {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
 }
 
@@ -46,9 +47,11 @@ void DeformLoop::keep_house(std::int64_t now) {
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < 1'000'000'000) return;
-  const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
-  presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)), 1e-3 * static_cast<double>(report_.latency.percentile(0.99)),
-                     link_.silence("haptic", now));
+  const double rate = last_status_ns_ == 0 ? 0
+                                           : 1e9 * static_cast<double>(report_.frames - last_frames_) /
+                                                 static_cast<double>(now - last_status_ns_);
+  presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)),
+                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)), link_.silence("haptic", now));
   last_status_ns_ = now;
   last_frames_ = report_.frames;
 }

@@ -16,12 +16,12 @@ struct DeformReport {
   double seconds = 0;
   std::uint64_t frames = 0;
   std::uint64_t refused = 0;  ///< messages of other scenes
-  Histogram latency;  ///< [ns] sense time of the step to the surface being published
-  Histogram deform;   ///< [ns] rebuilding the fields, correction and normals
+  Histogram latency;          ///< [ns] sense time of the step to the surface being published
+  Histogram deform;           ///< [ns] rebuilding the fields, correction and normals
 };
 
-/// Takes contacts and reduced states, rebuilds the shapes and publishes: what has changed at once when a message comes, and
-/// everything at least at the visual rate.
+/// Takes contacts and reduced states, rebuilds the shapes and publishes: what has changed at once when a message comes,
+/// and everything at least at the visual rate.
 class DeformLoop {
  public:
   DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz);

@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 constexpr std::uint64_t reminder_ticks = 64;
-constexpr int loop_priority = 50;         // below the haptic loop, above the picture
+constexpr int loop_priority = 50;  // below the haptic loop, above the picture
 
 std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
   std::vector<std::size_t> nodes;
@@ -20,8 +20,8 @@ std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
 
 }  // namespace
 
-DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence,
-                         const Scene& scene, std::uint64_t run, std::string code_path)
+DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus,
+                         Presence& presence, const Scene& scene, std::uint64_t run, std::string code_path)
     : world_(world),
       deformer_(deformer),
       presence_(presence),
@@ -58,12 +58,14 @@ void DynamicLoop::take_tools() {
 
 void DynamicLoop::begin_tissue(std::int64_t now) {
   if (!earlier_.complete(presence_, now)) return;
-  if (!earlier_.in_time()) spdlog::warn("not every node has told what had been cut before: what those know that have is taken");
+  if (!earlier_.in_time())
+    spdlog::warn("not every node has told what had been cut before: what those know that have is taken");
   for (int i = 0; i < world_.organs(); ++i) {
     const int body = world_.bodies()[i];
     const HeldTopology* held = whole_ ? nullptr : earlier_.of(body);
     if (held && world_.organ(i).begin_without(held->removed))
-      spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(), held->node);
+      spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(),
+                   held->node);
     publish_change(i, gone_before, world_.organ(i).removed(), 0);
   }
   begun_ = true;
@@ -100,7 +102,8 @@ void DynamicLoop::tick() {
 
 void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vector<int>& removed, std::uint64_t tick) {
   const int body = world_.bodies()[organ];
-  TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = tick, .cause = cause};
+  TopologyChange m{
+      .body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = tick, .cause = cause};
   m.removed.assign(removed.begin(), removed.end());
   changes_->write(m);
 }
@@ -156,7 +159,8 @@ void DynamicLoop::publish_frames() {
     surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
   }
   ++report_.frames;
-  if (newest.sense_ns != shown_sense_ns_) report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
+  if (newest.sense_ns != shown_sense_ns_)
+    report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
   shown_sense_ns_ = newest.sense_ns;
 }
 
@@ -165,7 +169,9 @@ void DynamicLoop::keep_house(std::int64_t now) {
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < ns_per_s) return;
-  const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(report_.ticks - last_ticks_) / static_cast<double>(now - last_status_ns_);
+  const double rate = last_status_ns_ == 0 ? 0
+                                           : 1e9 * static_cast<double>(report_.ticks - last_ticks_) /
+                                                 static_cast<double>(now - last_status_ns_);
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
   presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99), link_.silence("haptic", now));
   last_status_ns_ = now;

@@ -19,24 +19,24 @@ namespace palpate {
 
 /// What a run of the loop measured.
 struct DynamicReport {
-  double seconds = 0;                  ///< since the first tick
+  double seconds = 0;  ///< since the first tick
   std::uint64_t ticks = 0, frames = 0;
-  std::uint64_t refused = 0;           ///< tool states of other scenes
+  std::uint64_t refused = 0;                    ///< tool states of other scenes
   std::uint64_t cut = 0, torn = 0, fallen = 0;  ///< tetrahedra
-  Histogram tick;     ///< [ns] advancing the tissue
-  Histogram latency;  ///< [ns] sense time of the tool's step to the surface being published
+  Histogram tick;                               ///< [ns] advancing the tissue
+  Histogram latency;                            ///< [ns] sense time of the tool's step to the surface being published
   PeriodStatistics period;
 };
 
 /// Advances moving tissue in real time: takes the tools' newest states, ticks the world, journals, sends local contact
 /// models and cuts, and publishes all surfaces at the visual rate. A tick that comes late is left out: time in the
-/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of, and others have
-/// told what it had lost before this node started.
+/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of, and others
+/// have told what it had lost before this node started.
 class DynamicLoop {
  public:
   /// `deformer`: of the scene's quasi-static bodies.
-  DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence, const Scene& scene,
-              std::uint64_t run, std::string code_path);
+  DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence,
+              const Scene& scene, std::uint64_t run, std::string code_path);
 
   /// Begins with whole bodies, whatever others know of them.
   void forget_earlier_cuts() { whole_ = true; }

@@ -17,8 +17,8 @@
 namespace palpate {
 namespace {
 
-constexpr double bound_share = 0.9;       // of the largest stable step that is used where the scene names none
-constexpr double lost_beyond = 3;         // diagonals from its place, beyond which a part that floats is taken away
+constexpr double bound_share = 0.9;           // of the largest stable step that is used where the scene names none
+constexpr double lost_beyond = 3;             // diagonals from its place, beyond which a part that floats is taken away
 constexpr int most_cuts = 4, most_tears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 double bucket_size(const Scene& scene, const ElasticMesh& mesh) {
@@ -38,7 +38,9 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const Scene& scene, int body)
       shown_(archive.surface.triangles, topology_),
       surface_(topology_, mesh_.rest, bucket_size(scene, mesh_)),
       model_(make_dynamic_model(mesh_, body_)),
-      still_(archive.hybrid ? std::make_unique<HybridTouch>(archive, scene, body_.dynamic.precision == "single", *model_) : nullptr),
+      still_(archive.hybrid
+                 ? std::make_unique<HybridTouch>(archive, scene, body_.dynamic.precision == "single", *model_)
+                 : nullptr),
       contacts_(mesh_, topology_, shown_, surface_, *model_, scene.contact.friction),
       jaws_closed_(scene.tools.size(), 0),
       position_(mesh_.rest),
@@ -49,9 +51,11 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const Scene& scene, int body)
   if (still_) topology_.join(shown_.joints());
   const double bound = palpate::largest_step(integrator_of(body_), model_->frequency_bound(), body_.dynamic.damping);
   if (body_.dynamic.step > bound)
-    throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", body_.name, body_.dynamic.step, bound));
+    throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
+                                         body_.name, body_.dynamic.step, bound));
   largest_step_ = body_.dynamic.step > 0 ? body_.dynamic.step : bound_share * bound;
-  if (body_.tearing) tearing_.emplace(mesh_, tear_criterion(body_.tearing->criterion), body_.tearing->threshold, most_tears);
+  if (body_.tearing)
+    tearing_.emplace(mesh_, tear_criterion(body_.tearing->criterion), body_.tearing->threshold, most_tears);
   Eigen::Vector3d low = mesh_.rest[0], high = low;
   for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
   diagonal_ = (high - low).norm();
@@ -60,7 +64,9 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const Scene& scene, int body)
 
 DynamicOrgan::~DynamicOrgan() = default;
 
-int DynamicOrgan::steps_in(double dt) const { return std::max(1, static_cast<int>(std::ceil(dt / largest_step_ - 1e-9))); }
+int DynamicOrgan::steps_in(double dt) const {
+  return std::max(1, static_cast<int>(std::ceil(dt / largest_step_ - 1e-9)));
+}
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
@@ -84,7 +90,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
     for (std::size_t t = 0; t < moving_.size(); ++t) {
       const Eigen::Isometry3d &a = moving_[t].before, &b = moving_[t].now;
       poses_[t].translation() = (1 - share) * a.translation() + share * b.translation();
-      poses_[t].linear() = Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+      poses_[t].linear() =
+          Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
     }
     for (std::size_t t = 0; t < moving_.size(); ++t) in_step_[t].now = poses_[t];
     if (still_) still_->hold(in_step_);
@@ -100,7 +107,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
 }
 
 bool DynamicOrgan::begin_without(std::span<const std::uint32_t> removed) {
-  if (!std::ranges::all_of(removed, [&](std::uint32_t t) { return t < static_cast<std::uint32_t>(topology_.size()); })) return false;
+  if (!std::ranges::all_of(removed, [&](std::uint32_t t) { return t < static_cast<std::uint32_t>(topology_.size()); }))
+    return false;
   topology_.erase(std::vector<int>(removed.begin(), removed.end()));
   std::vector<char> listed(topology_.size(), 0);
   for (const std::uint32_t t : removed)
@@ -133,7 +141,9 @@ void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
   }
 }
 
-bool DynamicOrgan::holds(int tool) const { return contacts_.grasping(tool) || (still_ && still_->grasping(tool)); }
+bool DynamicOrgan::holds(int tool) const {
+  return contacts_.grasping(tool) || (still_ && still_->grasping(tool));
+}
 
 // Cautery takes the tetrahedra whose visible facets the glowing sphere touches.
 void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
@@ -189,7 +199,8 @@ void DynamicOrgan::follow_change() {
     const int part = part_of_[t];
     if (part < 0) continue;
     if (first[part] < 0) first[part] = t;
-    for (int node : topology_.tetrahedron(t)) held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
+    for (int node : topology_.tetrahedron(t))
+      held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
     for (int f = 0; f < 4; ++f) held[part] |= is_joint(4 * t + f);
   }
   loose_.clear();
@@ -249,10 +260,12 @@ void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const 
     const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < tools[c.tool].size();
     return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
   };
-  const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() && jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
+  const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() &&
+                    jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
                     previous.size() == position_.size() && present.size() == position_.size() &&
                     std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
-  if (!fits || !removed_.empty()) throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", body_.name));
+  if (!fits || !removed_.empty())
+    throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", body_.name));
   removed_ = removed;
   topology_.erase(removed_);
   surface_.follow();

@@ -47,8 +47,8 @@ class DynamicOrgan {
     if (still_) still_->forget_factor();
   }
 
-  double largest_step() const { return largest_step_; }   ///< [s] that the bound allows, or the scene gives
-  int steps_in(double dt) const;                          ///< steps of the integrator in a tick of dt [s]
+  double largest_step() const { return largest_step_; }  ///< [s] that the bound allows, or the scene gives
+  int steps_in(double dt) const;                         ///< steps of the integrator in a tick of dt [s]
   const CutMesh& topology() const { return topology_; }
   const CutSurface& surface() const { return surface_; }
   const DynamicModel& model() const { return *model_; }
@@ -98,13 +98,13 @@ class DynamicOrgan {
   TissueContacts contacts_;
   std::optional<TearSearch> tearing_;
   double largest_step_;
-  double diagonal_;                        ///< [m] of the body at rest
-  Eigen::Vector3d middle_;                 ///< [m] of the body at rest
-  std::vector<char> jaws_closed_;          ///< per tool
-  std::vector<Eigen::Vector3d> position_;  ///< [m] per node
+  double diagonal_;                                      ///< [m] of the body at rest
+  Eigen::Vector3d middle_;                               ///< [m] of the body at rest
+  std::vector<char> jaws_closed_;                        ///< per tool
+  std::vector<Eigen::Vector3d> position_;                ///< [m] per node
   std::vector<Eigen::Isometry3d> poses_, poses_before_;  ///< at the end and beginning of a step, per tool
-  std::vector<MovingTool> moving_, in_step_;  ///< in_step_: now is the pose at a step's end
-  std::vector<int> removed_, part_of_, loose_;  ///< loose_: one tetrahedron of each part that floats
+  std::vector<MovingTool> moving_, in_step_;             ///< in_step_: now is the pose at a step's end
+  std::vector<int> removed_, part_of_, loose_;           ///< loose_: one tetrahedron of each part that floats
   std::vector<Change> changes_;
 };
 

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double gone_after = 120;  // [s] of silence, as the network forgets a participant
 
-ToolDofs dofs_of(const ToolState& s) { return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal}; }
+ToolDofs dofs_of(const ToolState& s) {
+  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
+}
 
 /// One tool in a keyframe.
 struct ToolMemory {
@@ -118,7 +120,8 @@ std::vector<std::uint8_t> DynamicWorld::save() const {
 void DynamicWorld::restore(std::span<const std::uint8_t> state) {
   const auto ticks = state_bytes::take<std::uint64_t>(state);
   const auto tools = state_bytes::take<ToolMemory>(state);
-  if (ticks.size() != 1 || tools.size() != tools_.size()) throw std::runtime_error("the recorded state is of another scene");
+  if (ticks.size() != 1 || tools.size() != tools_.size())
+    throw std::runtime_error("the recorded state is of another scene");
   ticks_ = ticks[0];
   for (std::size_t t = 0; t < tools.size(); ++t) {
     tools_[t].moving.now.matrix() = tools[t].pose;

@@ -32,8 +32,8 @@ class DynamicWorld {
   bool take(const ToolState& state);
   /// The tool's haptic node has ended: from the next tick on it is gone, with what it held.
   void leave(int tool);
-  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut, for two
-  /// minutes.
+  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut, for
+  /// two minutes.
   void tick();
 
   std::uint64_t ticks() const { return ticks_; }

@@ -12,14 +12,15 @@
 
 namespace palpate {
 
-/// What other nodes know the bodies to have lost when the deformation node starts. Tissue does not heal, so that of several
-/// who know the one is right who knows of most.
+/// What other nodes know the bodies to have lost when the deformation node starts. Tissue does not heal, so that of
+/// several who know the one is right who knows of most.
 class EarlierCuts {
  public:
   static constexpr std::int64_t patience_ns = 2'000'000'000;
 
   /// `bodies`: those that can be cut.
-  EarlierCuts(Bus& bus, std::vector<int> bodies) : reader_(bus.reader(topics::held_topology, Keep::all)), bodies_(std::move(bodies)) {}
+  EarlierCuts(Bus& bus, std::vector<int> bodies)
+      : reader_(bus.reader(topics::held_topology, Keep::all)), bodies_(std::move(bodies)) {}
 
   /// True once every known haptic and render node of the same scene has told of all bodies, or the patience is over.
   /// Call again until then.

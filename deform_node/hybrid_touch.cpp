@@ -56,7 +56,8 @@ void HybridTouch::find(std::span<const MovingTool> tools) {
 void HybridTouch::hold(std::span<const MovingTool> tools) {
   contacts_.aim(tools);
   part_.hold();
-  for (std::size_t k = 0; k < part_.connection().size(); ++k) model_.set_load(part_.connection()[k], part_.load(static_cast<int>(k)));
+  for (std::size_t k = 0; k < part_.connection().size(); ++k)
+    model_.set_load(part_.connection()[k], part_.load(static_cast<int>(k)));
 }
 
 void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::Vector3f> position) {

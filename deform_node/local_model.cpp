@@ -8,11 +8,14 @@
 namespace palpate {
 namespace {
 
-constexpr double softening = 0.02;  // of a contact's own compliance: contacts that nearly depend on one another stay finite
-constexpr int asked_each = 8;       // ticks from one look at what stiffness is wanted to the next
-constexpr int condensed_for = 16;   // ticks for which the contacts' stiffness holds while they stay the same
+constexpr double softening =
+    0.02;                      // of a contact's own compliance: contacts that nearly depend on one another stay finite
+constexpr int asked_each = 8;  // ticks from one look at what stiffness is wanted to the next
+constexpr int condensed_for = 16;  // ticks for which the contacts' stiffness holds while they stay the same
 
-void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) { std::copy_n(from.data(), 3, to.begin()); }
+void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
+  std::copy_n(from.data(), 3, to.begin());
+}
 
 void copy(const Eigen::Matrix3d& from, std::array<double, 9>& to) {
   for (int r = 0; r < 3; ++r)
@@ -43,7 +46,8 @@ CondensedPart condensed_part(const Archive& archive) {
   };
   for (std::size_t i = 0, k = 0; i < h.dofs.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j, ++k)
-      part.stiffness(place(h.dofs[i]), place(h.dofs[j])) = part.stiffness(place(h.dofs[j]), place(h.dofs[i])) = h.stiffness[k];
+      part.stiffness(place(h.dofs[i]), place(h.dofs[j])) = part.stiffness(place(h.dofs[j]), place(h.dofs[i])) =
+          h.stiffness[k];
   return part;
 }
 
@@ -54,7 +58,8 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
     const ElasticMesh& mesh = world.organ(i).mesh();
     double edges = 0;
     for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
-    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]])), .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
+    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]])),
+                       .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
   }
 }
 
@@ -99,12 +104,13 @@ void LocalModels::refresh() {
   }
 }
 
-// K_i = sum over the same tool's contacts j of (A^-1)_ij, A = P C P^T over everything that all tools hold: three rows for
-// what sticks, the normal alone for what slides. It is how the force at i grows when that tool moves.
+// K_i = sum over the same tool's contacts j of (A^-1)_ij, A = P C P^T over everything that all tools hold: three rows
+// for what sticks, the normal alone for what slides. It is how the force at i grows when that tool moves.
 void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   const auto contacts = organ.contacts();
   std::vector<std::array<int, 5>> shape;
-  for (const TissueContact& c : contacts) shape.push_back({c.tool, c.sticking, c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
+  for (const TissueContact& c : contacts)
+    shape.push_back({c.tool, c.sticking, c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
   if (shape == own.shape && ++own.age < condensed_for) return;
   own.shape = std::move(shape);
   own.age = 0;
@@ -168,7 +174,9 @@ void LocalModels::add_surface(int tool, int i, LocalContactModel& model) {
     const Segment axis = t.moving.axis(p);
     const double radius = t.moving.radius(p);
     for (int facet : organ.surface().find(axis.start, axis.end, radius + organs_[i].look_ahead))
-      if (!organ.is_joint(facet)) by_distance_.emplace_back(std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
+      if (!organ.is_joint(facet))
+        by_distance_.emplace_back(
+            std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
   add_triangles(
@@ -191,7 +199,8 @@ void LocalModels::add_triangles(int i, Corners&& corners, Fill&& fill, LocalCont
   const auto body = static_cast<std::uint32_t>(world_.bodies()[i]);
   const auto place = [&](int node) -> std::uint32_t {
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
-      if (model.nodes[n].body == body && model.nodes[n].node == static_cast<std::uint32_t>(node)) return static_cast<std::uint32_t>(n);
+      if (model.nodes[n].body == body && model.nodes[n].node == static_cast<std::uint32_t>(node))
+        return static_cast<std::uint32_t>(n);
     LocalNode& out = model.nodes.emplace_back();
     out.body = body;
     out.node = static_cast<std::uint32_t>(node);
@@ -200,7 +209,9 @@ void LocalModels::add_triangles(int i, Corners&& corners, Fill&& fill, LocalCont
   };
   seen_.clear();
   for (const auto& [distance, triangle] : by_distance_) {
-    if (static_cast<int>(model.triangles.size()) == most_triangles || static_cast<int>(model.nodes.size()) + 3 > most_nodes) break;
+    if (static_cast<int>(model.triangles.size()) == most_triangles ||
+        static_cast<int>(model.nodes.size()) + 3 > most_nodes)
+      break;
     if (std::find(seen_.begin(), seen_.end(), triangle) != seen_.end()) continue;
     seen_.push_back(triangle);
     const auto nodes = corners(triangle);
@@ -222,7 +233,10 @@ void LocalModels::add_still_contacts(int tool, int i, LocalContactModel& model) 
     copy(still.force(static_cast<int>(k)), out.force);
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
     for (int v = 0; v < 3; ++v) stiffness += c.anchor.weights[v] * still.part().stiffness(c.anchor.nodes[v]);
-    copy(c.touch == Touch::sliding ? Eigen::Matrix3d(c.normal * c.normal.dot(stiffness * c.normal) * c.normal.transpose()) : stiffness, out.stiffness);
+    copy(c.touch == Touch::sliding
+             ? Eigen::Matrix3d(c.normal * c.normal.dot(stiffness * c.normal) * c.normal.transpose())
+             : stiffness,
+         out.stiffness);
   }
 }
 
@@ -235,7 +249,8 @@ void LocalModels::add_still_surface(int tool, int i, LocalContactModel& model) {
     const Segment axis = t.moving.axis(p);
     const double radius = t.moving.radius(p);
     for (int triangle : surface.find(axis, axis, radius + organs_[i].look_ahead))
-      by_distance_.emplace_back(std::sqrt(closest_points(axis, surface.corners(triangle)).squared_distance) - radius, triangle);
+      by_distance_.emplace_back(std::sqrt(closest_points(axis, surface.corners(triangle)).squared_distance) - radius,
+                                triangle);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
   add_triangles(

@@ -26,9 +26,9 @@ class LocalModels {
  private:
   struct OfOrgan {
     std::unique_ptr<LocalStiffness> stiffness;
-    double look_ahead;                       ///< [m] beyond a sphere's surface
-    std::vector<Eigen::Matrix3d> contact;    ///< [N/m] per contact of the organ
-    std::vector<std::array<int, 5>> shape;   ///< what they were worked out for
+    double look_ahead;                      ///< [m] beyond a sphere's surface
+    std::vector<Eigen::Matrix3d> contact;   ///< [N/m] per contact of the organ
+    std::vector<std::array<int, 5>> shape;  ///< what they were worked out for
     std::vector<int> wanted;
     int age = 0;
   };

@@ -18,17 +18,20 @@ namespace {
 constexpr double floating_hz = 0.2;  // far below an organ's lowest frequency
 
 // K + w^2 M over the free dofs of the remaining tetrahedra, with what is joined to it.
-SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs, const CondensedPart& joined) {
+SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
+                           const CondensedPart& joined) {
   SparseMatrix k = assemble_stiffness(mesh, materials, dofs);
   std::vector<Eigen::Triplet<double, std::int64_t>> extra;
   const double w = 2 * std::numbers::pi * floating_hz;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const auto& tet = mesh.tetrahedra[t];
-    const double volume = tet_gradients({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]}).volume;
+    const double volume =
+        tet_gradients({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]}).volume;
     for (int node : tet)
       for (int axis = 0; axis < 3; ++axis)
         if (dofs.is_free(node, axis))
-          extra.emplace_back(dofs.index(node, axis), dofs.index(node, axis), w * w * materials.at(static_cast<int>(t)).density * volume / 4);
+          extra.emplace_back(dofs.index(node, axis), dofs.index(node, axis),
+                             w * w * materials.at(static_cast<int>(t)).density * volume / 4);
   }
   const int n = 3 * static_cast<int>(joined.nodes.size());
   for (int i = 0; i < n; ++i)
@@ -123,7 +126,8 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
   const Eigen::MatrixXd x = factor.solve(unit);
   for (Eigen::Index i = 0; i < n; ++i)
     for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(answer.nodes[i], axis)) answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
+      if (dofs.is_free(answer.nodes[i], axis))
+        answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
   return answer;
 }
 

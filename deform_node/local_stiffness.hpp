@@ -26,10 +26,10 @@ class LocalStiffness {
   static constexpr int most_nodes = 64;
 
   struct Answer {
-    std::vector<int> nodes;       ///< ascending
-    Eigen::MatrixXd compliance;   ///< [m/N] 3n x 3n among them; rows of fixed axes are zero
-    std::uint64_t topology = 0;   ///< cuts that it knows of
-    int find(int node) const;     ///< place of a node, or -1
+    std::vector<int> nodes;      ///< ascending
+    Eigen::MatrixXd compliance;  ///< [m/N] 3n x 3n among them; rows of fixed axes are zero
+    std::uint64_t topology = 0;  ///< cuts that it knows of
+    int find(int node) const;    ///< place of a node, or -1
     Eigen::Matrix3d block(int i, int j) const { return compliance.block<3, 3>(3 * i, 3 * j); }
   };
 

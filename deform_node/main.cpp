@@ -16,9 +16,13 @@ namespace {
 
 bool whole = false;  // begin with whole bodies
 
-double us(const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); }
+double us(const Histogram& h, double share) {
+  return 1e-3 * static_cast<double>(h.percentile(share));
+}
 
-double rate(std::uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; }
+double rate(std::uint64_t count, double seconds) {
+  return seconds > 0 ? static_cast<double>(count) / seconds : 0.0;
+}
 
 nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "deform"));
@@ -27,8 +31,8 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
   DeformLoop loop(deformer, *bus, presence, loaded.scene.rates.visual_hz);
   say_ready(o);
   const DeformReport& r = loop.run(o.seconds);
-  spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames, rate(r.frames, r.seconds), us(r.latency, 0.5),
-               us(r.latency, 0.99));
+  spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames,
+               rate(r.frames, r.seconds), us(r.latency, 0.5), us(r.latency, 0.99));
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},
@@ -48,14 +52,18 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   Presence presence(*bus, "deform", run, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
   for (int i = 0; i < world.organs(); ++i)
-    spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each", loaded.scene.bodies[world.bodies()[i]].name,
-                 world.organ(i).topology().alive_count(), world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
+    spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each",
+                 loaded.scene.bodies[world.bodies()[i]].name, world.organ(i).topology().alive_count(),
+                 world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
   DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
   if (whole) loop.forget_earlier_cuts();
   say_ready(o);
   const DynamicReport& r = loop.run(o.seconds);
-  spdlog::info("{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} fallen away",
-               rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped, r.cut, r.torn, r.fallen);
+  spdlog::info(
+      "{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} "
+      "fallen away",
+      rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped, r.cut, r.torn,
+      r.fallen);
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},

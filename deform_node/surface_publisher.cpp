@@ -15,7 +15,8 @@ SurfacePublisher::SurfacePublisher(Bus& bus, std::span<const std::size_t> nodes)
   }
 }
 
-void SurfacePublisher::publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal, const Origin& origin) {
+void SurfacePublisher::publish(int body, std::span<const Eigen::Vector3f> position,
+                               std::span<const Eigen::Vector3f> normal, const Origin& origin) {
   SurfaceState& m = messages_[body];
   std::memcpy(m.position.data(), position.data(), m.position.size() * sizeof(float));
   std::memcpy(m.normal.data(), normal.data(), m.normal.size() * sizeof(float));

@@ -19,7 +19,8 @@ class SurfacePublisher {
     std::uint64_t run = 0, step = 0;
     std::int64_t sense_ns = 0;
   };
-  void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal, const Origin& origin);
+  void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
+               const Origin& origin);
   std::int64_t last_publish_ns() const { return last_ns_; }
   bool delivered() const { return writer_->delivered(); }  ///< every viewer has what was published
 

@@ -14,14 +14,16 @@ constexpr int sweeps = 8;             // Gauss-Seidel over the contacts: more th
 constexpr double margin_share = 0.1;  // of a part's radius: what is this near is watched before it is touched
 
 // From a part's axis to a surface point, on the side from which the surface may be touched.
-Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre, const Eigen::Vector3d& outward) {
+Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre,
+                             const Eigen::Vector3d& outward) {
   const Eigen::Vector3d d = point - centre;
   return d.dot(outward) < 0 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d(-outward);
 }
 
 }  // namespace
 
-TissueContacts::TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown, const CutSurface& surface, DynamicModel& model, double friction)
+TissueContacts::TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown,
+                               const CutSurface& surface, DynamicModel& model, double friction)
     : mesh_(mesh), topology_(topology), shown_(shown), surface_(surface), model_(model), friction_(friction) {
   contacts_.reserve(most);
   before_.reserve(most);
@@ -58,14 +60,18 @@ void TissueContacts::drop_tool(int tool) {
 }
 
 void TissueContacts::let_go(int tool) {
-  std::erase_if(contacts_, [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
+  std::erase_if(contacts_,
+                [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
 }
 
 bool TissueContacts::grasping(int tool) const {
-  return std::ranges::any_of(contacts_, [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
+  return std::ranges::any_of(
+      contacts_, [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
 }
 
-void TissueContacts::set_list(std::span<const TissueContact> contacts) { contacts_.assign(contacts.begin(), contacts.end()); }
+void TissueContacts::set_list(std::span<const TissueContact> contacts) {
+  contacts_.assign(contacts.begin(), contacts.end());
+}
 
 void TissueContacts::find(std::span<const MovingTool> tools) {
   before_.clear();
@@ -127,7 +133,8 @@ void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, s
       const Eigen::Vector3d &x = surface_.positions()[node], centre = nearest_point(axis, x);
       if ((x - centre).squaredNorm() > reach * reach) continue;
       const bool taken = std::ranges::any_of(contacts_, [&](const TissueContact& c) {
-        return c.tool == tool && !c.face && c.anchor.nodes[0] == node && (c.sample == sample || c.sample == TissueContact::in_jaws);
+        return c.tool == tool && !c.face && c.anchor.nodes[0] == node &&
+               (c.sample == sample || c.sample == TissueContact::in_jaws);
       });
       if (taken) continue;
       TissueContact c{.tool = tool, .sample = sample};
@@ -150,14 +157,16 @@ void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, st
     const ClosestOfTriangle p = closest_points(axis, corners);
     const Eigen::Vector3d centre = axis.at(p.share);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
-    if (p.squared_distance >= least || shown_.is_joint(facet) || (centre - at).dot(surface_.normal(facet)) <= 0) continue;
+    if (p.squared_distance >= least || shown_.is_joint(facet) || (centre - at).dot(surface_.normal(facet)) <= 0)
+      continue;
     least = p.squared_distance;
     nearest = facet;
     c.anchor = {topology_.facet(facet), p.weights};
     c.normal = direction_to(at, centre, surface_.normal(facet));
   }
   // In its own dent the part's axis may have come behind every facet: what it touched before goes on.
-  const auto held = std::ranges::find_if(before_, [&](const TissueContact& b) { return b.tool == tool && b.sample == sample && b.face; });
+  const auto held = std::ranges::find_if(
+      before_, [&](const TissueContact& b) { return b.tool == tool && b.sample == sample && b.face; });
   const bool goes_on = held != before_.end() && anchored(*held) && held->force.dot(held->normal) > 0;
   if (goes_on && (nearest < 0 || held->sticking)) {
     const Eigen::Vector3d at = anchor_position(held->anchor, surface_.positions()), centre = nearest_point(axis, at);
@@ -173,7 +182,8 @@ void TissueContacts::add(const TissueContact& contact, const MovingTool& tool) {
   if (contacts_.size() == most) return;
   TissueContact& c = contacts_.emplace_back(contact);
   const auto old = std::ranges::find_if(before_, [&](const TissueContact& b) {
-    return b.tool == c.tool && b.sample == c.sample && b.face == c.face && (c.face || b.anchor.nodes[0] == c.anchor.nodes[0]);
+    return b.tool == c.tool && b.sample == c.sample && b.face == c.face &&
+           (c.face || b.anchor.nodes[0] == c.anchor.nodes[0]);
   });
   const bool goes_on = old != before_.end() && old->force.dot(old->normal) > 0;
   c.sticking = goes_on ? old->sticking : 1;
@@ -192,7 +202,8 @@ bool TissueContacts::grasp(int tool, const Eigen::Isometry3d& pose, double lengt
     contacts_.push_back(c);
   };
   for (int n = 0; n < mesh_.nodes(); ++n)
-    if (topology_.has_node(n) && between_jaws(to_tip * surface_.positions()[n], length, width)) take({{n, n, n}, Eigen::Vector3d::UnitX()}, false);
+    if (topology_.has_node(n) && between_jaws(to_tip * surface_.positions()[n], length, width))
+      take({{n, n, n}, Eigen::Vector3d::UnitX()}, false);
   if (contacts_.size() > first) return true;
   // Coarser than the jaws: they hold the surface point nearest to their middle.
   const Eigen::Vector3d middle = pose * Eigen::Vector3d(0, 0, 0.5 * length);
@@ -229,7 +240,8 @@ void TissueContacts::move(const Anchor& a, const Eigen::Vector3d& push, const Ei
     if (a.weights[v] == 0) continue;
     const int node = a.nodes[v];
     const Eigen::Vector3d per_mass = a.weights[v] * inverse_mass(node);
-    model_.set_motion(node, model_.displacement(node) + per_mass.cwiseProduct(push), model_.velocity(node) + per_mass.cwiseProduct(impulse));
+    model_.set_motion(node, model_.displacement(node) + per_mass.cwiseProduct(push),
+                      model_.velocity(node) + per_mass.cwiseProduct(impulse));
   }
 }
 
@@ -245,8 +257,8 @@ void TissueContacts::load_tissue() {
     }
 }
 
-void TissueContacts::step(std::span<const MovingTool> tools, std::span<const Eigen::Isometry3d> begin, std::span<const Eigen::Isometry3d> end,
-                          double dt) {
+void TissueContacts::step(std::span<const MovingTool> tools, std::span<const Eigen::Isometry3d> begin,
+                          std::span<const Eigen::Isometry3d> end, double dt) {
   load_tissue();
   model_.step(dt);
   for (const auto& [node, load] : other_load_) model_.set_load(node, load);
@@ -292,7 +304,8 @@ void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const E
 }
 
 // Its velocity: that of the tool, along the normal alone where it slides.
-void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt) {
+void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& begin,
+                                 const Eigen::Isometry3d& end, double dt) {
   const bool in_jaws = c.sample == TissueContact::in_jaws;
   if (!in_jaws && c.force.dot(c.normal) <= 0) return;
   const Eigen::Vector3d mobile = mobility(c.anchor);
@@ -310,7 +323,8 @@ void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool,
 
 void TissueContacts::end_tick(std::span<const MovingTool> tools) {
   for (TissueContact& c : contacts_)
-    if (c.sample != TissueContact::in_jaws && !c.sticking) c.offset = tools[c.tool].to_part(c.sample, position(c.anchor));
+    if (c.sample != TissueContact::in_jaws && !c.sticking)
+      c.offset = tools[c.tool].to_part(c.sample, position(c.anchor));
 }
 
 }  // namespace palpate

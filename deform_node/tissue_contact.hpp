@@ -22,10 +22,11 @@ struct TissueContact {
   std::int32_t face = 0;    ///< 1: anchored within a facet; 0: at the node anchor.nodes[0]
   std::int32_t sticking = 1;
   Anchor anchor;
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< [m] where the anchor sticks to the tool: the part's frame, in jaws the tip's
+  Eigen::Vector3d offset =
+      Eigen::Vector3d::Zero();  ///< [m] where the anchor sticks to the tool: the part's frame, in jaws the tip's
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue: a load within each step
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();     ///< [kg m] force times the step squared, while a step is put right
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();  ///< [kg m] force times the step squared, while a step is put right
 };
 
 /// Contacts of tools with a dynamic body. Their forces are loads within each step; after it the touched points are put
@@ -36,7 +37,8 @@ class TissueContacts {
  public:
   static constexpr int most = 32;
 
-  TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown, const CutSurface& surface, DynamicModel& model, double friction);
+  TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown, const CutSurface& surface,
+                 DynamicModel& model, double friction);
 
   std::span<const TissueContact> list() const { return contacts_; }
 
@@ -51,7 +53,8 @@ class TissueContacts {
 
   /// One step of `dt` [s] of the tissue under the contacts' forces, and what they have to put right after it. `poses`:
   /// the tools' at its beginning and end.
-  void step(std::span<const MovingTool> tools, std::span<const Eigen::Isometry3d> begin, std::span<const Eigen::Isometry3d> end, double dt);
+  void step(std::span<const MovingTool> tools, std::span<const Eigen::Isometry3d> begin,
+            std::span<const Eigen::Isometry3d> end, double dt);
   /// After the last step of a tick: sliding points let their anchors follow.
   void end_tick(std::span<const MovingTool> tools);
   /// After a cut: contacts on what is gone are dropped.
@@ -74,7 +77,8 @@ class TissueContacts {
   void load_tissue();
   static Eigen::Vector3d held_at(const TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& pose);
   void put_right(TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& pose);
-  void follow_tool(const TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, double dt);
+  void follow_tool(const TissueContact& contact, const MovingTool& tool, const Eigen::Isometry3d& begin,
+                   const Eigen::Isometry3d& end, double dt);
   void move(const Anchor& anchor, const Eigen::Vector3d& push, const Eigen::Vector3d& impulse);
 
   const ElasticMesh& mesh_;

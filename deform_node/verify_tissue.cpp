@@ -45,7 +45,8 @@ Recorded read_all(LogReader& log) {
 
 class TissueVerifier {
  public:
-  TissueVerifier(const Scene& scene, const std::vector<Archive>& archives, const Recorded& recorded, TissueReport& report)
+  TissueVerifier(const Scene& scene, const std::vector<Archive>& archives, const Recorded& recorded,
+                 TissueReport& report)
       : scene_(scene), archives_(archives), recorded_(recorded), report_(report) {}
 
   void verify(const RecordedTissue& run) {
@@ -64,13 +65,15 @@ class TissueVerifier {
     for (; tick <= last; ++tick) {
       const auto step = run.steps.find(tick);
       if (step == run.steps.end() || !take(world, step->second)) {
-        report_.gaps.push_back(fmt::format("cannot verify tick {} of the tissue: what it consumed is not in the log", tick));
+        report_.gaps.push_back(
+            fmt::format("cannot verify tick {} of the tissue: what it consumed is not in the log", tick));
         return tick;
       }
       world.tick();
       ++report_.ticks;
       if (world.hash() == step->second.hash) continue;
-      report_.mismatch = fmt::format("tick {}: recorded state {:016x}, computed {:016x}", tick, step->second.hash, world.hash());
+      report_.mismatch =
+          fmt::format("tick {}: recorded state {:016x}, computed {:016x}", tick, step->second.hash, world.hash());
       return tick;
     }
     return tick;

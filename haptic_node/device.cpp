@@ -15,7 +15,9 @@ namespace {
 
 class ScriptedDevice : public Device {
  public:
-  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) { check_grip(trajectory_, tool); }
+  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) {
+    check_grip(trajectory_, tool);
+  }
   DeviceSample read(double seconds) override { return {trajectory_.at(seconds), 0}; }
   bool finished(double seconds) const override { return seconds > trajectory_.duration(); }
 
@@ -37,11 +39,13 @@ class LogDevice : public Device {
       if (state.step < first) continue;
       const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal};
       // A step whose sample was lost repeats the one before it.
-      while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < max_samples) samples_.push_back(samples_.back());
+      while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < max_samples)
+        samples_.push_back(samples_.back());
       if (samples_.size() < max_samples) samples_.push_back({dofs, state.seq});
     }
     if (samples_.empty())
-      throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})", tool.trajectory.string(), tool.name, index));
+      throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})",
+                                           tool.trajectory.string(), tool.name, index));
   }
   DeviceSample read(double seconds) override { return samples_[std::min(at(seconds), samples_.size() - 1)]; }
   bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }
@@ -84,19 +88,23 @@ struct BusDevices::Target {
 
 BusDevices::BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices) {
   for (std::size_t t = 0; t < devices.size(); ++t)
-    if (auto* device = dynamic_cast<BusDevice*>(devices[t].get())) targets_.push_back({static_cast<std::uint32_t>(t), device});
+    if (auto* device = dynamic_cast<BusDevice*>(devices[t].get()))
+      targets_.push_back({static_cast<std::uint32_t>(t), device});
   if (needed()) reader_ = bus.reader(topics::device_state);
 }
 
 BusDevices::~BusDevices() = default;
 
-bool BusDevices::needed() const { return !targets_.empty(); }
+bool BusDevices::needed() const {
+  return !targets_.empty();
+}
 
 void BusDevices::take() {
   while (const auto sample = reader_->take())
     for (const Target& target : targets_)
       if (target.tool == sample->tool)
-        target.device->put({{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal}, sample->seq});
+        target.device->put(
+            {{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal}, sample->seq});
 }
 
 }  // namespace palpate

@@ -10,7 +10,9 @@ namespace palpate {
 ForcepsHand::ForcepsHand(int tool, const Tool& settings, double dt)
     : tool_(tool),
       shape_(*forceps_shape(settings)),
-      law_{.most_open = settings.jaws->most_open, .stiffness = settings.jaws->grip_stiffness, .friction = settings.jaws->friction},
+      law_{.most_open = settings.jaws->most_open,
+           .stiffness = settings.jaws->grip_stiffness,
+           .friction = settings.jaws->friction},
       dt_(dt),
       compliance_(settings.compliance) {
   obstacles_.reserve(most_obstacles);
@@ -55,12 +57,14 @@ ForcepsHand::Found ForcepsHand::find_catheter(const CatheterBody& catheter, cons
     if ((x[i] - pose.translation()).squaredNorm() > reach * reach) continue;
     const Segment piece{pose.inverse() * x[i], pose.inverse() * x[i + 1]};
     const double opening = opening_at_contact(shape_, piece, catheter.radius());
-    if (opening > most.opening) most = {opening, nearest_point(piece, Eigen::Vector3d(0, 0, shape_.jaw_length / 2)).norm()};
+    if (opening > most.opening)
+      most = {opening, nearest_point(piece, Eigen::Vector3d(0, 0, shape_.jaw_length / 2)).norm()};
   }
   return most;
 }
 
-// Where the plane in which the jaws turn cuts the surface, edge by edge: nodes alone would miss what passes between them.
+// Where the plane in which the jaws turn cuts the surface, edge by edge: nodes alone would miss what passes between
+// them.
 ForcepsHand::Found ForcepsHand::find_tissue(const TouchBody& body, const Eigen::Isometry3d& pose) {
   obstacles_.clear();
   double distance = 0;
@@ -80,7 +84,8 @@ ForcepsHand::Found ForcepsHand::find_tissue(const TouchBody& body, const Eigen::
     }
   }
   if (obstacles_.empty()) return {};
-  return {opening_at_contact(shape_, obstacles_, state_.grip.opening), distance / static_cast<double>(obstacles_.size())};
+  return {opening_at_contact(shape_, obstacles_, state_.grip.opening),
+          distance / static_cast<double>(obstacles_.size())};
 }
 
 double ForcepsHand::load(const Graspable& within) const {

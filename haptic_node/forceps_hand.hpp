@@ -14,9 +14,9 @@ struct Graspable {
   std::span<const std::unique_ptr<CatheterBody>> catheters;
 };
 
-/// One forceps at work: finds what lies between its jaws, closes them until they touch it, takes hold, and lets go when the
-/// handle opens or the load slips out of the jaws. What slips while the handle is being opened is let go, not dropped. What
-/// has been dropped is not taken again before the handle has opened.
+/// One forceps at work: finds what lies between its jaws, closes them until they touch it, takes hold, and lets go when
+/// the handle opens or the load slips out of the jaws. What slips while the handle is being opened is let go, not
+/// dropped. What has been dropped is not taken again before the handle has opened.
 class ForcepsHand {
  public:
   ForcepsHand(int tool, const Tool& settings, double dt);
@@ -26,7 +26,7 @@ class ForcepsHand {
   /// One step. `pose`: tip frame at the step's begin, as `within` stands.
   GripEvent work(double commanded, const Eigen::Isometry3d& pose, const Graspable& within);
 
-  double opening() const { return state_.grip.opening; }      ///< [rad] between the jaws
+  double opening() const { return state_.grip.opening; }            ///< [rad] between the jaws
   double torque() const { return grip_torque(state_.grip, law_); }  ///< [N m] on the handle, opens the jaws
   const ForcepsShape& shape() const { return shape_; }
 

@@ -20,8 +20,8 @@ constexpr int loop_priority = 80, publisher_priority = 40;
 
 }  // namespace
 
-HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
-                       std::string code_path)
+HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence,
+                       std::uint64_t run, std::string code_path)
     : haptic_(haptic),
       devices_(devices),
       presence_(presence),
@@ -159,7 +159,9 @@ void HapticLoop::report_status(std::int64_t now) {
   if (now - last_status_ns_ < 1'000'000'000) return;
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   const std::uint64_t ticks = shown_ticks_.load(std::memory_order_relaxed);
-  const double rate = last_status_ns_ == 0 ? 0 : 1e9 * static_cast<double>(ticks - last_status_ticks_) / static_cast<double>(now - last_status_ns_);
+  const double rate = last_status_ns_ == 0 ? 0
+                                           : 1e9 * static_cast<double>(ticks - last_status_ticks_) /
+                                                 static_cast<double>(now - last_status_ns_);
   const bool stale = shown_stale_.exchange(false, std::memory_order_relaxed);
   presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0,
                      stale ? "the force of moving tissue fades: its local contact models come too late" : "");

@@ -24,21 +24,22 @@ namespace palpate {
 struct LoopReport {
   double seconds = 0;
   std::uint64_t ticks = 0;
-  std::uint64_t dropped = 0;         ///< step records that found the ring full
-  Histogram step, push;              ///< [ns] whole tick; hand-over to the publisher
-  Histogram wire;                    ///< [ns] from there until the bus has all messages of a step
+  std::uint64_t dropped = 0;  ///< step records that found the ring full
+  Histogram step, push;       ///< [ns] whole tick; hand-over to the publisher
+  Histogram wire;             ///< [ns] from there until the bus has all messages of a step
   PeriodStatistics period;
-  double largest_force = 0;          ///< [N]
+  double largest_force = 0;                                                       ///< [N]
   std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
-  double least_energy = 0;           ///< [J] of all tools together
+  double least_energy = 0;                                                        ///< [J] of all tools together
 };
 
 /// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and
-/// a pump for devices elsewhere and local contact models. The tick itself reads devices and models, steps, and pushes into a ring: no more.
+/// a pump for devices elsewhere and local contact models. The tick itself reads devices and models, steps, and pushes
+/// into a ring: no more.
 class HapticLoop {
  public:
-  HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence, std::uint64_t run,
-             std::string code_path);
+  HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence,
+             std::uint64_t run, std::string code_path);
   ~HapticLoop();
 
   /// What has been cut, kept for a deformation node that returns.

@@ -29,8 +29,9 @@ double least_slew(const Scene& scene) {
 
 }  // namespace
 
-HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives) 
-    : dt_(1.0 / scene.rates.haptic_hz), passivity_(scene.passivity, static_cast<int>(scene.tools.size()), most_force(scene), least_slew(scene), dt_) {
+HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
+    : dt_(1.0 / scene.rates.haptic_hz),
+      passivity_(scene.passivity, static_cast<int>(scene.tools.size()), most_force(scene), least_slew(scene), dt_) {
   for (const Tool& tool : scene.tools) {
     const bool forceps = tool.kind == "forceps";
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
@@ -44,7 +45,8 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     if (forceps) hands_.back().emplace(static_cast<int>(hands_.size()) - 1, tool, dt_);
   }
   parts_before_ = parts_;
-  for (std::size_t t = 0; t < parts_.size(); ++t) moving_.push_back({.parts_before = parts_before_[t], .parts = parts_[t]});
+  for (std::size_t t = 0; t < parts_.size(); ++t)
+    moving_.push_back({.parts_before = parts_before_[t], .parts = parts_[t]});
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     const int index = static_cast<int>(b);
@@ -63,7 +65,8 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
   }
   build_catheters(scene);
   if (std::ranges::count(dynamic_, 1) > 0)
-    for (const Trocar& trocar : trocars_) local_.push_back(std::make_unique<LocalBody>(trocar, scene.contact.friction, dt_));
+    for (const Trocar& trocar : trocars_)
+      local_.push_back(std::make_unique<LocalBody>(trocar, scene.contact.friction, dt_));
   loads_.resize(moving_.size());
   output_.resize(moving_.size());
   motion_.resize(moving_.size());
@@ -91,8 +94,8 @@ void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
         if (!bodies_[b]) continue;
         const double depth = bodies_[b]->penetration(moving_[t].axis(p), moving_[t].radius(p));
         if (depth > 0)
-          throw std::runtime_error(fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it", tool_names_[t],
-                                               body_names_[b], part_name(t, p), 1e3 * depth));
+          throw std::runtime_error(fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it",
+                                               tool_names_[t], body_names_[b], part_name(t, p), 1e3 * depth));
       }
 }
 
@@ -103,12 +106,14 @@ const char* HapticStep::part_name(int tool, int part) const {
 }
 
 void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
-  const bool fits = tool < moving_.size() && held.body < bodies_.size() && bodies_[held.body] && held.sample < parts_[tool].size();
+  const bool fits =
+      tool < moving_.size() && held.body < bodies_.size() && bodies_[held.body] && held.sample < parts_[tool].size();
   if (!fits) throw std::runtime_error("a peer keeps a contact of a tool or body that this scene does not have");
   TouchContact c{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)};
   const int nodes = static_cast<int>(bodies_[held.body]->surface().positions().size());
   for (int v = 0; v < 3; ++v) {
-    if (static_cast<int>(held.nodes[v]) >= nodes) throw std::runtime_error("a peer keeps a contact on a node that the body lacks");
+    if (static_cast<int>(held.nodes[v]) >= nodes)
+      throw std::runtime_error("a peer keeps a contact on a node that the body lacks");
     c.anchor.nodes[v] = static_cast<int>(held.nodes[v]);
     c.anchor.weights[v] = held.weights[v];
     c.offset[v] = held.offset[v];
@@ -192,8 +197,9 @@ void HapticStep::count_energy() {
   passivity_.observe(motion_);
 }
 
-// From what the tissue asks for to what the hand gets. Damping comes after the force limit, so that it knows what it damps, and
-// before the slew limit and a second force limit, which have the last word; the energy counts what they leave.
+// From what the tissue asks for to what the hand gets. Damping comes after the force limit, so that it knows what it
+// damps, and before the slew limit and a second force limit, which have the last word; the energy counts what they
+// leave.
 void HapticStep::limit_forces(std::span<const ToolDofs> dofs, bool healthy, std::uint32_t flags) {
   for (int t = 0; t < tools(); ++t) {
     asked_[t] = {output_[t].force, output_[t].torque, hands_[t] ? hands_[t]->torque() : 0.0};
@@ -243,7 +249,8 @@ std::size_t HapticStep::state_size() const {
   for (const auto& catheter : catheters_)
     if (catheter) size += catheter->state_size();
   for (const auto& local : local_) size += local->state_size();
-  return size + passivity_.state_size() + handle_.size() * sizeof(double) + sizeof step_ + tasks_.size() * (sizeof(Task) + sizeof(int));
+  return size + passivity_.state_size() + handle_.size() * sizeof(double) + sizeof step_ +
+         tasks_.size() * (sizeof(Task) + sizeof(int));
 }
 
 void HapticStep::save(std::span<std::uint8_t> to) {
@@ -280,7 +287,8 @@ void HapticStep::forget_factors() {
 }
 
 void HapticStep::restore(std::span<const std::uint8_t> from) {
-  if (from.size() != state_size()) throw std::runtime_error("the recorded state is of another scene (its size differs)");
+  if (from.size() != state_size())
+    throw std::runtime_error("the recorded state is of another scene (its size differs)");
   const std::uint8_t* p = from.data();
   const auto get = [&p](void* to, std::size_t size) {
     std::memcpy(to, p, size);

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/bus/messages.hpp"
+#include "common/catheter/catheter_body.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/archive.hpp"
-#include "common/catheter/catheter_body.hpp"
 #include "common/tool/kinematics.hpp"
 #include "haptic_node/forceps_hand.hpp"
 #include "haptic_node/local_body.hpp"
@@ -27,8 +27,9 @@ struct ReducedBody {
 };
 
 /// One tick of the haptic loop as a function of the tools' degrees of freedom and of its own state:
-/// sense, collide, hold, force. Jaws close, catheters move against the walls as they stand, then tools meet the bodies. It allocates nothing, takes no lock and does no I/O after construction, and gives
-/// the same bits for the same inputs on the same code path.
+/// sense, collide, hold, force. Jaws close, catheters move against the walls as they stand, then tools meet the bodies.
+/// It allocates nothing, takes no lock and does no I/O after construction, and gives the same bits for the same inputs
+/// on the same code path.
 class HapticStep {
  public:
   /// One archive per body, read with ArchivePart::touchable; those of dynamic bodies are not looked at.
@@ -62,9 +63,13 @@ class HapticStep {
   std::uint32_t flags(int tool) const { return output_[tool].flags; }
   const Eigen::Vector3d& press(int tool) const { return output_[tool].press; }
   const Eigen::Isometry3d& pose(int tool) const { return moving_[tool].now; }
-  double opening(int tool) const { return hands_[tool] ? hands_[tool]->opening() : 0.0; }    ///< [rad] between a forceps' jaws
+  double opening(int tool) const {
+    return hands_[tool] ? hands_[tool]->opening() : 0.0;
+  }                                                                  ///< [rad] between a forceps' jaws
   double grip_torque(int tool) const { return output_[tool].grip; }  ///< [N m] on the handle, opens the jaws
-  const Eigen::Vector3d& trocar_force(int tool) const { return output_[tool].trocar; }       ///< [N] of the trocar on the shaft
+  const Eigen::Vector3d& trocar_force(int tool) const {
+    return output_[tool].trocar;
+  }  ///< [N] of the trocar on the shaft
   bool is_touch_body(int b) const { return bodies_[b] != nullptr; }
   const TouchBody& body(int b) const { return *bodies_[b]; }  ///< a quasi-static or modal one
 
@@ -111,18 +116,18 @@ class HapticStep {
   std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
   std::vector<double> shaft_length_, tool_compliance_;
   std::vector<MovingTool> moving_;
-  std::vector<std::unique_ptr<TouchBody>> bodies_;  ///< null where the body is dynamic or a catheter
-  std::vector<ModalBody*> modal_;                   ///< those of bodies_ that are; null else
+  std::vector<std::unique_ptr<TouchBody>> bodies_;        ///< null where the body is dynamic or a catheter
+  std::vector<ModalBody*> modal_;                         ///< those of bodies_ that are; null else
   std::vector<std::unique_ptr<CatheterBody>> catheters_;  ///< null where the body is none
-  std::vector<ModalBody*> ducts_;                   ///< per body: what a catheter is led into, null for none
+  std::vector<ModalBody*> ducts_;                         ///< per body: what a catheter is led into, null for none
   std::vector<ReducedBody> modal_bodies_, catheter_bodies_;
   std::vector<CatheterTool> catheter_tools_;
   std::vector<Eigen::Isometry3d> jaw_poses_;
   std::vector<Task> tasks_;
-  std::vector<int> wall_contacts_;                  ///< per catheter, in the last step
+  std::vector<int> wall_contacts_;  ///< per catheter, in the last step
   std::vector<std::uint8_t> held_before_;
   std::vector<std::uint8_t> dynamic_;
-  std::vector<std::unique_ptr<LocalBody>> local_;   ///< one per tool; none without a dynamic body
+  std::vector<std::unique_ptr<LocalBody>> local_;  ///< one per tool; none without a dynamic body
   std::uint64_t step_ = 0;
   PassivityGuard passivity_;
   std::vector<SafetyChain> safety_;
@@ -133,7 +138,7 @@ class HapticStep {
   std::vector<Output> output_;
   std::vector<PortMotion> motion_;  ///< per tool, of this step
   std::vector<PortForce> asked_;
-  std::vector<double> handle_;      ///< [rad] per tool: the handle in the last step
+  std::vector<double> handle_;  ///< [rad] per tool: the handle in the last step
 };
 
 }  // namespace palpate

@@ -7,7 +7,9 @@ namespace palpate {
 namespace {
 
 // A probe meets a catheter with its tip and its shaft; a forceps with its three segments.
-int parts_against_catheters(const MovingTool& tool, bool forceps) { return forceps ? tool.size() : 2; }
+int parts_against_catheters(const MovingTool& tool, bool forceps) {
+  return forceps ? tool.size() : 2;
+}
 
 CatheterTool part_of(const MovingTool& tool, int part, bool forceps) {
   CatheterTool out{.part = part};
@@ -50,7 +52,8 @@ void HapticStep::build_catheters(const Scene& scene) {
   if (tasks_.empty()) return;
   for (int t = 0; t < tools(); ++t)
     for (int p = 0; p < parts_against_catheters(moving_[t], hands_[t].has_value()); ++p)
-      catheter_tools_.push_back({.tool = t, .part = p, .compliance = tool_compliance_[t], .friction = scene.contact.friction});
+      catheter_tools_.push_back(
+          {.tool = t, .part = p, .compliance = tool_compliance_[t], .friction = scene.contact.friction});
   jaw_poses_.resize(moving_.size(), Eigen::Isometry3d::Identity());
 }
 

@@ -15,7 +15,9 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double own_reach = 1.25;  // of a part's radius: a contact this near to its axis is its own
 
-Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) { return Eigen::Map<const Vector3d>(a.data()); }
+Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
+  return Eigen::Map<const Vector3d>(a.data());
+}
 
 // What a contact can bear: it never pulls, and friction is a share of its pressure.
 Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {
@@ -93,7 +95,8 @@ void LocalBody::extrapolate(double seconds) {
   for (int n = 0; n < m.nodes; ++n) position_[n] = vector(m.node[n].position) + seconds * vector(m.node[n].velocity);
   for (int t = 0; t < m.triangles; ++t) {
     const auto& [a, b, c] = m.triangle[t];
-    box_[t] = {position_[a].cwiseMin(position_[b]).cwiseMin(position_[c]), position_[a].cwiseMax(position_[b]).cwiseMax(position_[c])};
+    box_[t] = {position_[a].cwiseMin(position_[b]).cwiseMin(position_[c]),
+               position_[a].cwiseMax(position_[b]).cwiseMax(position_[c])};
   }
 }
 
@@ -134,7 +137,8 @@ bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) cons
   const double distance = std::sqrt(at.squared_distance), side = facing >= 0 ? 1 : -1;
   const Vector3d corner = position_[nodes[0]];
   const Vector3d outward = (position_[nodes[1]] - corner).cross(position_[nodes[2]] - corner).normalized();
-  const Vector3d into = distance > 1e-6 * radius ? Vector3d(side * (touched.at - axis.at(at.share)) / distance) : Vector3d(-outward);
+  const Vector3d into =
+      distance > 1e-6 * radius ? Vector3d(side * (touched.at - axis.at(at.share)) / distance) : Vector3d(-outward);
   const double along = into.dot(stiffness * into), depth = radius - side * distance;
   touched.force = depth * along * into;
   return depth > 0 && along > 0;
@@ -148,14 +152,17 @@ bool LocalBody::holds(const Segment& axis, double radius, int part, int held) co
   });
 }
 
-void LocalBody::save(unsigned char* to) const { std::memcpy(to, &state_, sizeof state_); }
+void LocalBody::save(unsigned char* to) const {
+  std::memcpy(to, &state_, sizeof state_);
+}
 
 void LocalBody::restore(const unsigned char* from) {
   State state;
   std::memcpy(&state, from, sizeof state);
   const LocalModel& m = state.model;
   const auto within = [](int count, int most) { return count >= 0 && count <= most; };
-  bool good = within(m.contacts, LocalModel::max_contacts) && within(m.nodes, LocalModel::max_nodes) && within(m.triangles, LocalModel::max_triangles);
+  bool good = within(m.contacts, LocalModel::max_contacts) && within(m.nodes, LocalModel::max_nodes) &&
+              within(m.triangles, LocalModel::max_triangles);
   for (int t = 0; good && t < m.triangles; ++t)
     for (const std::uint32_t n : m.triangle[t]) good = good && n < static_cast<std::uint32_t>(m.nodes);
   if (!good) throw std::runtime_error("the recorded state holds a local contact model that cannot be");

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Brings local contact models from the bus to the haptic step without locks. take() runs on a thread of its own, give()
-/// in the haptic loop. Subscribes to nothing in a scene without moving tissue.
+/// Brings local contact models from the bus to the haptic step without locks. take() runs on a thread of its own,
+/// give() in the haptic loop. Subscribes to nothing in a scene without moving tissue.
 class LocalFeed {
  public:
   /// `run`: of the haptic loop; models for another one are passed over.

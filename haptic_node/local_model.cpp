@@ -6,7 +6,8 @@ namespace palpate {
 
 bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dynamic, LocalModel& to) {
   const auto known = [&](const auto& part) { return part.body < dynamic.size() && dynamic[part.body]; };
-  if (!valid(from) || !std::ranges::all_of(from.contacts, known) || !std::ranges::all_of(from.nodes, known)) return false;
+  if (!valid(from) || !std::ranges::all_of(from.contacts, known) || !std::ranges::all_of(from.nodes, known))
+    return false;
   to.run = from.run;
   to.seq = from.seq;
   to.tool_step = from.tool_step;
@@ -18,8 +19,10 @@ bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dyn
     const LocalContact& c = from.contacts[i];
     to.contact[i] = {c.position, c.normal, c.force, c.stiffness, c.grasped};
   }
-  for (int i = 0; i < to.nodes; ++i) to.node[i] = {from.nodes[i].position, from.nodes[i].velocity, from.nodes[i].stiffness};
-  for (int i = 0; i < to.triangles; ++i) to.triangle[i] = {from.triangles[i].a, from.triangles[i].b, from.triangles[i].c};
+  for (int i = 0; i < to.nodes; ++i)
+    to.node[i] = {from.nodes[i].position, from.nodes[i].velocity, from.nodes[i].stiffness};
+  for (int i = 0; i < to.triangles; ++i)
+    to.triangle[i] = {from.triangles[i].a, from.triangles[i].b, from.triangles[i].c};
   return true;
 }
 

@@ -37,7 +37,9 @@ struct LocalModel {
   std::array<Node, max_nodes> node{};
   std::array<std::array<std::uint32_t, 3>, max_triangles> triangle{};
 
-  ToolDofs pose() const { return {.yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll, .grip = dofs.grip}; }
+  ToolDofs pose() const {
+    return {.yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll, .grip = dofs.grip};
+  }
 };
 static_assert(std::is_trivially_copyable_v<LocalModel>);
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "common/realtime/shutdown.hpp"
-#include "common/node/node_setup.hpp"
 #include "common/kernels/code_path.hpp"
+#include "common/node/node_setup.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "haptic_node/haptic_loop.hpp"
 
 namespace palpate {
@@ -72,10 +72,12 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
                      {"grasps", task.grasps},
                      {"drops", task.drops},
                      {"held_s", task.held_s}});
-    spdlog::info("task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} N, {} wall contacts, "
-                 "{} grasps, {} drops, held for {:.1f} s",
-                 body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.largest_force, task.wall_contacts, task.grasps, task.drops,
-                 task.held_s);
+    spdlog::info(
+        "task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} "
+        "N, {} wall contacts, "
+        "{} grasps, {} drops, held for {:.1f} s",
+        body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.largest_force, task.wall_contacts,
+        task.grasps, task.drops, task.held_s);
   }
   return tasks;
 }
@@ -112,7 +114,8 @@ void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::touchable, ArchivePart::header);
   const Scene& scene = loaded.scene;
   if (scene.tools.size() > StepRecord::max_tools)
-    throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(), StepRecord::max_tools));
+    throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(),
+                                         StepRecord::max_tools));
   HapticStep haptic(scene, loaded.archives);
   std::vector<std::unique_ptr<Device>> devices;
   for (std::size_t t = 0; t < scene.tools.size(); ++t) devices.push_back(make_device(scene, static_cast<int>(t)));
@@ -124,7 +127,12 @@ void run(const NodeOptions& o) {
   if (haptic.has_moving_tissue()) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   const auto scene_writer = bus->writer(topics::scene);
-  scene_writer->write({.run = run_id, .seq = 1, .scene_hash = loaded.scene_hash, .text = to_toml(scene), .version = PALPATE_VERSION, .code_path = code_path()});
+  scene_writer->write({.run = run_id,
+                       .seq = 1,
+                       .scene_hash = loaded.scene_hash,
+                       .text = to_toml(scene),
+                       .version = PALPATE_VERSION,
+                       .code_path = code_path()});
   catch_shutdown_signals();
   say_ready(o);
   wait_for_devices(devices, *bus);
@@ -148,12 +156,12 @@ void run(const NodeOptions& o) {
   nlohmann::json summary = summary_of(report);
   if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);
   if (report.damped > 0)
-    spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most", report.damped,
-                 -1e3 * report.least_energy);
+    spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
+                 report.damped, -1e3 * report.least_energy);
   if (o.supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
-               summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(), summary["step_us_p999"].get<double>(),
-               report.period.skipped, report.largest_force);
+               summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(),
+               summary["step_us_p999"].get<double>(), report.period.skipped, report.largest_force);
 }
 
 }  // namespace

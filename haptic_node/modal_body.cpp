@@ -39,7 +39,8 @@ std::vector<double> softness_of(const Scene& scene) {
 }  // namespace
 
 ModalBody::ModalBody(const Archive& archive, const Scene& scene, int body)
-    : ModalBody(archive, scene, body, constants_of(*archive.modal, *scene.bodies[body].shell, 1 / scene.rates.haptic_hz)) {}
+    : ModalBody(archive, scene, body,
+                constants_of(*archive.modal, *scene.bodies[body].shell, 1 / scene.rates.haptic_hz)) {}
 
 ModalBody::ModalBody(const Archive& archive, const Scene& scene, int body, ModalConstants constants)
     : TouchBody(archive.surface, step_compliance(archive, constants, scene.bodies[body].shell->residual), scene,
@@ -66,12 +67,14 @@ ModalBody::ModalBody(const Archive& archive, const Scene& scene, int body, Modal
 void ModalBody::update_surface(std::span<const MovingTool> tools) {
   columns_.clear();
   for (int m = 0; m < modes(); ++m) columns_.push_back(shape_.data() + all_.size() * m);
-  kernels::active().combine_d(columns_.data(), x_.data(), modes(), static_cast<std::ptrdiff_t>(all_.size()), all_.data());
+  kernels::active().combine_d(columns_.data(), x_.data(), modes(), static_cast<std::ptrdiff_t>(all_.size()),
+                              all_.data());
   const std::span<const int> near = contacts().mark(tools);
   if (residual_) add_residual(near);
   const std::span<const int> marked = contacts().mark_all();
   displacement_.resize(3 * marked.size());
-  for (std::size_t i = 0; i < marked.size(); ++i) std::copy_n(all_.data() + 3 * marked[i], 3, displacement_.data() + 3 * i);
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    std::copy_n(all_.data() + 3 * marked[i], 3, displacement_.data() + 3 * i);
   contacts().move_marked(displacement_);
   pushed_.clear();
   std::ranges::fill(wall_force_, 0.0);
@@ -91,8 +94,8 @@ void ModalBody::add_residual(std::span<const int> near) {
   });
   if (static_cast<int>(columns_.size()) == modes()) return;
   near_displacement_.resize(3 * near.size());
-  kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()), near.data(),
-                                    static_cast<int>(near.size()), near_displacement_.data());
+  kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()),
+                                    near.data(), static_cast<int>(near.size()), near_displacement_.data());
   for (std::size_t i = 0; i < near.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) all_[3 * near[i] + axis] += near_displacement_[3 * i + axis];
 }
@@ -134,7 +137,8 @@ void ModalBody::add_modal_force(int node, const Eigen::Vector3d& force, std::vec
 }
 
 Eigen::Vector3d ModalBody::modal_displacement(int node, const std::vector<double>& coordinates) const {
-  const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> rows(rows_.data() + 3 * coordinates.size() * node, 3, modes());
+  const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> rows(
+      rows_.data() + 3 * coordinates.size() * node, 3, modes());
   return rows * Eigen::Map<const Eigen::VectorXd>(coordinates.data(), modes());
 }
 
@@ -189,7 +193,8 @@ Eigen::Matrix3d ModalBody::residual(const Anchor& anchor) const {
 
 double ModalBody::penetration(const Segment& axis, double radius) const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < surface().triangle_count(); ++t) nearest = std::min(nearest, closest_points(axis, surface().corners(t)).squared_distance);
+  for (int t = 0; t < surface().triangle_count(); ++t)
+    nearest = std::min(nearest, closest_points(axis, surface().corners(t)).squared_distance);
   return std::max(0.0, radius + half_thickness_ - std::sqrt(nearest));
 }
 
@@ -199,7 +204,9 @@ double ModalBody::energy() const {
   return twice / 2;
 }
 
-std::size_t ModalBody::state_size() const { return TouchBody::state_size() + 3 * of_modes(); }
+std::size_t ModalBody::state_size() const {
+  return TouchBody::state_size() + 3 * of_modes();
+}
 
 void ModalBody::save(unsigned char* to) const {
   TouchBody::save(to);

@@ -5,13 +5,14 @@
 
 namespace palpate {
 
-/// One thin-walled duct under the hand, moved by its lowest modes (BHS01 sec. V-C-1 f-i), and the wall that catheters meet.
+/// One thin-walled duct under the hand, moved by its lowest modes (BHS01 sec. V-C-1 f-i), and the wall that catheters
+/// meet.
 ///
 /// The modes move by the trapezoidal rule, which is Newmark's average acceleration. Contacts are met at the step's end
 /// velocity: what the law calls a position is p* = x + h v(t+h), and forces held over the step change it by
 ///   C* = R + Phi diag(4 / K^) Phi^T,   R = C - Phi Omega^-2 Phi^T,   K^ = omega^2 + 2 d/h + 4/h^2,
-/// so that a touched body comes to rest on the tool. Meeting them in the end position by Phi K^^-1 Phi^T, as the paper's
-/// scheme suggests, makes the force alternate from step to step for as long as the contact lasts.
+/// so that a touched body comes to rest on the tool. Meeting them in the end position by Phi K^^-1 Phi^T, as the
+/// paper's scheme suggests, makes the force alternate from step to step for as long as the contact lasts.
 class ModalBody : public TouchBody, public CatheterWall {
  public:
   static constexpr int max_wall_forces = 512;  ///< of catheters in a step
@@ -39,8 +40,9 @@ class ModalBody : public TouchBody, public CatheterWall {
   std::span<const double> coordinates() const { return x_; }  ///< X [kg^1/2 m]
   double energy() const;                                      ///< [J] kinetic and elastic, of the modes
 
-  /// What the full field is rebuilt from, u = Phi X' + C f: fills X' = X - Omega^-2 Phi^T f (one number a mode) and calls
-  /// visit(node, f) for every node that carries a force [N]. Without residual flexibility X' = X, and there are none.
+  /// What the full field is rebuilt from, u = Phi X' + C f: fills X' = X - Omega^-2 Phi^T f (one number a mode) and
+  /// calls visit(node, f) for every node that carries a force [N]. Without residual flexibility X' = X, and there are
+  /// none.
   template <class Visit>
   void show(double* coordinates, Visit&& visit) const {
     std::copy(x_.begin(), x_.end(), coordinates);
@@ -59,7 +61,7 @@ class ModalBody : public TouchBody, public CatheterWall {
  private:
   ModalBody(const Archive& archive, const Scene& scene, int body, ModalConstants constants);
 
-    std::size_t of_modes() const { return x_.size() * sizeof(double); }
+  std::size_t of_modes() const { return x_.size() * sizeof(double); }
   void tabulate_residuals();
   void add_residual(std::span<const int> near);
   void add_modal_force(int node, const Eigen::Vector3d& force, std::vector<double>& modal) const;
@@ -73,15 +75,16 @@ class ModalBody : public TouchBody, public CatheterWall {
   ModalConstants constants_;
   bool residual_;
   double half_thickness_;
-  std::vector<double> shape_;                ///< column-major, as in the archive
-  std::vector<double> rows_;                 ///< the same by rows: 3 x modes a node
-  std::vector<int> first_triangle_;          ///< per node: where the triangles begin whose first corner it is
+  std::vector<double> shape_;        ///< column-major, as in the archive
+  std::vector<double> rows_;         ///< the same by rows: 3 x modes a node
+  std::vector<int> first_triangle_;  ///< per node: where the triangles begin whose first corner it is
   std::vector<TriangleResidual> residuals_;
   std::vector<std::vector<int>> mouths_;
-  std::vector<double> x_, v_;                ///< state, per mode
-  std::vector<double> tool_force_, wall_force_;  ///< [N kg^-1/2] modal forces of tools (last step's until hold()) and catheters
-  std::vector<WallForce> pushed_;            ///< the wall forces of the step
-  std::vector<double> free_, moved_;         ///< y of the coming step without the tools' new forces; x + y
+  std::vector<double> x_, v_;  ///< state, per mode
+  std::vector<double> tool_force_,
+      wall_force_;                    ///< [N kg^-1/2] modal forces of tools (last step's until hold()) and catheters
+  std::vector<WallForce> pushed_;     ///< the wall forces of the step
+  std::vector<double> free_, moved_;  ///< y of the coming step without the tools' new forces; x + y
   std::vector<double> all_, near_displacement_, displacement_, coefficients_;
   std::vector<const double*> columns_;
 };

@@ -7,19 +7,26 @@
 namespace palpate {
 namespace {
 
-bool finite(const PortForce& f) { return f.force.allFinite() && f.torque.allFinite() && std::isfinite(f.grip); }
+bool finite(const PortForce& f) {
+  return f.force.allFinite() && f.torque.allFinite() && std::isfinite(f.grip);
+}
 
 // Work [J] of one part of a port on the hand; 0 for a motion too small to have a direction.
 double work(const Eigen::Vector3d& force, const Eigen::Vector3d& motion) {
   return motion.norm() > PassivityGuard::still ? force.dot(motion) : 0;
 }
-double work(double torque, double motion) { return std::abs(motion) > PassivityGuard::still ? torque * motion : 0; }
+double work(double torque, double motion) {
+  return std::abs(motion) > PassivityGuard::still ? torque * motion : 0;
+}
 
-double work(const PortForce& f, const PortMotion& m) { return work(f.force, m.shift) + work(f.torque, m.turn) + work(f.grip, m.opening); }
+double work(const PortForce& f, const PortMotion& m) {
+  return work(f.force, m.shift) + work(f.torque, m.turn) + work(f.grip, m.opening);
+}
 
 // The same, of the parts that push along their motion alone.
 double push(const PortForce& f, const PortMotion& m) {
-  return std::max(0.0, work(f.force, m.shift)) + std::max(0.0, work(f.torque, m.turn)) + std::max(0.0, work(f.grip, m.opening));
+  return std::max(0.0, work(f.force, m.shift)) + std::max(0.0, work(f.torque, m.turn)) +
+         std::max(0.0, work(f.grip, m.opening));
 }
 
 // Takes this share of the component along the motion away, if it pushes.
@@ -29,7 +36,8 @@ void damp(Eigen::Vector3d& force, const Eigen::Vector3d& motion, double share) {
   force -= share * force.dot(along) * along;
 }
 
-// A reach after a change of motion was seen. So large a change that no hand makes it is a tool set elsewhere: nothing to expect again.
+// A reach after a change of motion was seen. So large a change that no hand makes it is a tool set elsewhere: nothing
+// to expect again.
 double grown(double reach, double fade, double least, double change) {
   constexpr double most_steps = 30;
   return std::max({least, fade * reach, change < most_steps * least ? change : 0.0});
@@ -54,7 +62,8 @@ PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double most
       motion_(tools),
       resisting_(tools, 0.0),
       limited_(tools, 0) {
-  const double shift = std::min(most_acceleration * dt * dt, most_force > 0 ? settings.reserve / (2 * most_force) : 0.0);
+  const double shift =
+      std::min(most_acceleration * dt * dt, most_force > 0 ? settings.reserve / (2 * most_force) : 0.0);
   least_reach_ = {shift, shift / lever, shift / lever};
   reach_.assign(tools, least_reach_);
 }
@@ -114,11 +123,13 @@ void PassivityGuard::control(std::span<PortForce> asked) {
   resist(asked);
 }
 
-// A damper d that is turned round within the reach r gives at most d r^2 / 4. After a jump that no one could foresee it damps fully.
+// A damper d that is turned round within the reach r gives at most d r^2 / 4. After a jump that no one could foresee it
+// damps fully.
 double PassivityGuard::affordable_resistance(double left) const {
   if (left < 0) return 1;
   double worst = 0;
-  for (const Reach& r : reach_) worst += most_per_shift_ * r.shift * r.shift / 4 * (1 + most_per_shift_ * r.shift / (2 * slew_));
+  for (const Reach& r : reach_)
+    worst += most_per_shift_ * r.shift * r.shift / 4 * (1 + most_per_shift_ * r.shift / (2 * slew_));
   const double kept = std::min(left, for_resisting * reserve_);
   return worst > kept ? kept / worst : 1;
 }

@@ -30,36 +30,41 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
 /// haptic interfaces", IEEE Trans. Robotics and Automation 18(1), 2002) over the ports of all tools together: one tool
 /// may take out what another has put in.
 ///
-/// Observer: the force given at a tick is held until the next, so the energy put into the tissue grows by -F_k . (x_{k+1} - x_k),
-/// exactly, however the hand moves in between. Controller: the next motion is unknown, but differs from the last one by no more
-/// than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks that the slew limit needs to let it fall.
-/// If that could bring the energy below -reserve, first the parts that push along their motion are damped, then the whole force
-/// is made smaller. A force that resists is left at least as large as a sampled damper of most_damping / dt, as far as a share of
-/// the reserve that is kept for it allows; so a force that was taken away earns its return. The energy falls below -reserve
-/// only where a motion changes by more than the reach, by that jump times the force.
-/// Never allocates after construction.
+/// Observer: the force given at a tick is held until the next, so the energy put into the tissue grows by -F_k .
+/// (x_{k+1} - x_k), exactly, however the hand moves in between. Controller: the next motion is unknown, but differs
+/// from the last one by no more than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks
+/// that the slew limit needs to let it fall. If that could bring the energy below -reserve, first the parts that push
+/// along their motion are damped, then the whole force is made smaller. A force that resists is left at least as large
+/// as a sampled damper of most_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
+/// that was taken away earns its return. The energy falls below -reserve only where a motion changes by more than the
+/// reach, by that jump times the force. Never allocates after construction.
 class PassivityGuard {
  public:
-  static constexpr double most_damping = 0.02;      ///< [kg] damping times tick: well below twice the mass of a hand on a device
+  static constexpr double most_damping =
+      0.02;  ///< [kg] damping times tick: well below twice the mass of a hand on a device
   static constexpr double most_acceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
-  static constexpr double memory = 0.1;             ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
-  static constexpr double lever = 0.3;              ///< [m] from reach to angular reach
-  static constexpr double for_resisting = 0.05;     ///< share of the reserve that is kept for resisting while all else is gone
-  static constexpr double still = 1e-12;            ///< [m, rad] less is no motion
+  static constexpr double memory =
+      0.1;  ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
+  static constexpr double lever = 0.3;  ///< [m] from reach to angular reach
+  static constexpr double for_resisting =
+      0.05;                               ///< share of the reserve that is kept for resisting while all else is gone
+  static constexpr double still = 1e-12;  ///< [m, rad] less is no motion
 
-  /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is most_acceleration dt^2,
-  /// or less where that times most_force were over half the reserve, or the largest change seen lately.
+  /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is
+  /// most_acceleration dt^2, or less where that times most_force were over half the reserve, or the largest change seen
+  /// lately.
   PassivityGuard(const Passivity& settings, int tools, double most_force, double slew, double dt);
 
   /// A tick begins: counts the energy of what hold() gave over this motion, one entry per tool.
   void observe(std::span<const PortMotion> motion);
-  /// Damps and limits what is asked for, one entry per tool, where the energy could fall too low. Entries that are not finite are left.
+  /// Damps and limits what is asked for, one entry per tool, where the energy could fall too low. Entries that are not
+  /// finite are left.
   void control(std::span<PortForce> asked);
   /// What the tool's hand really gets until the next tick.
   void hold(int tool, const PortForce& given) { held_[tool] = given; }
 
-  double energy() const { return energy_; }                       ///< [J] put in by all tools; negative: taken out
-  bool limited(int tool) const { return limited_[tool] != 0; }    ///< by the last control()
+  double energy() const { return energy_; }                     ///< [J] put in by all tools; negative: taken out
+  bool limited(int tool) const { return limited_[tool] != 0; }  ///< by the last control()
 
   /// Everything that the next tick depends on, as bytes.
   std::size_t state_size() const { return sizeof(double) + held_.size() * (7 + 7 + 3) * sizeof(double); }
@@ -86,7 +91,8 @@ class PassivityGuard {
   void visit_state(Visit&& visit);
 
   bool controller_;
-  double reserve_, slew_, most_per_shift_, fade_, energy_ = 0;  ///< slew_ [N] per tick; most_per_shift_ [N/m] on the motion of a tick
+  double reserve_, slew_, most_per_shift_, fade_,
+      energy_ = 0;  ///< slew_ [N] per tick; most_per_shift_ [N/m] on the motion of a tick
   Reach least_reach_;
   std::vector<PortForce> held_;
   std::vector<PortMotion> motion_;

@@ -43,11 +43,32 @@ void Publisher::publish(const StepRecord& r) {
     OfTool& state = of_tool_[t];
     const auto tool = static_cast<std::uint32_t>(t);
     publish_contacts(r, t);  // first: the picture waits for it
-    force_->write({.tool = tool, .run = run_, .seq = ++state.force_seq, .step = r.step, .sense_ns = r.sense_ns, .force = from.force,
-                   .torque = from.torque, .grip = from.grip_torque, .trocar = from.trocar, .energy = r.energy, .flags = from.flags});
-    tool_->write({.tool = tool, .run = run_, .seq = ++state.tool_seq, .step = r.step, .sense_ns = r.sense_ns, .device_seq = from.device_seq,
-                  .yaw = from.dofs.yaw, .pitch = from.dofs.pitch, .depth = from.dofs.depth, .roll = from.dofs.roll, .grip = from.dofs.grip,
-                  .opening = from.opening, .pedal = from.dofs.pedal, .local_model_run = from.model_run, .local_model_seq = from.model_seq});
+    force_->write({.tool = tool,
+                   .run = run_,
+                   .seq = ++state.force_seq,
+                   .step = r.step,
+                   .sense_ns = r.sense_ns,
+                   .force = from.force,
+                   .torque = from.torque,
+                   .grip = from.grip_torque,
+                   .trocar = from.trocar,
+                   .energy = r.energy,
+                   .flags = from.flags});
+    tool_->write({.tool = tool,
+                  .run = run_,
+                  .seq = ++state.tool_seq,
+                  .step = r.step,
+                  .sense_ns = r.sense_ns,
+                  .device_seq = from.device_seq,
+                  .yaw = from.dofs.yaw,
+                  .pitch = from.dofs.pitch,
+                  .depth = from.dofs.depth,
+                  .roll = from.dofs.roll,
+                  .grip = from.dofs.grip,
+                  .opening = from.opening,
+                  .pedal = from.dofs.pedal,
+                  .local_model_run = from.model_run,
+                  .local_model_seq = from.model_seq});
   }
   if (r.has_shapes) publish_shapes(r);
   if (!task_) return;

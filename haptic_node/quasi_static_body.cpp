@@ -40,8 +40,8 @@ void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
     superpose(-1, of_tool_);
     for (std::size_t i = 0; i < marked.size(); ++i)
       for (const TouchContact& c : law().contacts())
-        if (c.touch != Touch::open && (c.anchor.nodes[0] == marked[i] || (c.face && (c.anchor.nodes[1] == marked[i] ||
-                                                                                              c.anchor.nodes[2] == marked[i]))))
+        if (c.touch != Touch::open && (c.anchor.nodes[0] == marked[i] ||
+                                       (c.face && (c.anchor.nodes[1] == marked[i] || c.anchor.nodes[2] == marked[i]))))
           std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
   }
   contacts().move_marked(displacement_);
@@ -63,12 +63,13 @@ void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
   displacement.resize(3 * marked.size());
   // Reading whole columns beats picking from them once a good part of the nodes is asked for.
   if (marked.size() * whole_columns_from < static_cast<std::size_t>(map().touchable)) {
-    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(), static_cast<int>(marked.size()),
-                                      displacement.data());
+    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(),
+                                      static_cast<int>(marked.size()), displacement.data());
     return;
   }
   kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map().touchable, whole_.data());
-  for (std::size_t i = 0; i < marked.size(); ++i) std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
 }
 
 void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {

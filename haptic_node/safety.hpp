@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// The last thing before the hand: finite check, limits of force and torque, slew limits. After a fault the force ramps to zero
-/// within ramp_seconds and stays there.
+/// The last thing before the hand: finite check, limits of force and torque, slew limits. After a fault the force ramps
+/// to zero within ramp_seconds and stays there.
 class SafetyChain {
  public:
   static constexpr double ramp_seconds = 0.005;

@@ -5,7 +5,9 @@
 namespace palpate {
 namespace {
 
-std::array<double, 3> plain(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> plain(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
 
 }  // namespace
 
@@ -28,19 +30,21 @@ void fill_shapes(const HapticStep& haptic, StepRecord& r) {
     haptic.modal(b.body).show(coordinates, [&](int node, const Eigen::Vector3d& f) {
       if (r.on_shell.size() == r.on_shell.capacity()) return;
       r.on_shell.push_back({static_cast<std::uint32_t>(b.body),
-                            {static_cast<std::uint32_t>(node), {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}}});
+                            {static_cast<std::uint32_t>(node),
+                             {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}}});
     });
     coordinates += b.size;
   }
   double* particles = r.particles.data();
   for (const ReducedBody& b : haptic.catheters())
-    for (const Eigen::Vector3d& p : haptic.catheter(b.body).positions()) particles = std::copy_n(p.data(), 3, particles);
+    for (const Eigen::Vector3d& p : haptic.catheter(b.body).positions())
+      particles = std::copy_n(p.data(), 3, particles);
 }
 
 }  // namespace
 
-void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step, std::int64_t sense_ns,
-                 StepRecord& r) {
+void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step,
+                 std::int64_t sense_ns, StepRecord& r) {
   r.step = step;
   r.sense_ns = sense_ns;
   r.energy = haptic.energy();

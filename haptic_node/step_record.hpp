@@ -28,7 +28,7 @@ struct StepRecord {
   std::uint64_t step;
   std::int64_t sense_ns;
   std::int64_t pushed_ns;  ///< when it was put into the ring
-  double energy;  ///< [J] put in by all tools
+  double energy;           ///< [J] put in by all tools
   int tools, contacts, forces;
   std::array<OfTool, max_tools> of_tool;
   std::array<HeldContact, max_contacts> contact;
@@ -46,7 +46,7 @@ struct StepRecord {
   bool has_shapes = false;
   std::vector<double> coordinates, particles;  ///< of all modal bodies; of all catheters
   std::vector<OnShell> on_shell;
-  std::vector<Task> tasks;                     ///< one a catheter
+  std::vector<Task> tasks;  ///< one a catheter
 };
 
 /// Makes room in a slot of the ring for the bodies of a scene.
@@ -59,7 +59,7 @@ struct DeviceSample {
 };
 
 /// Copies a finished step into `record`. No allocation.
-void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step, std::int64_t sense_ns,
-                 StepRecord& record);
+void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step,
+                 std::int64_t sense_ns, StepRecord& record);
 
 }  // namespace palpate

@@ -17,7 +17,8 @@ ContactLaw::Rule rule_of(const Contact& contact) {
 
 }  // namespace
 
-TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const Scene& scene, ToolContacts::Options options)
+TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const Scene& scene,
+                     ToolContacts::Options options)
     : map_(map),
       compliance_(std::move(compliance)),
       unloaded_(map_.position),
@@ -33,7 +34,8 @@ LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
 
 bool TouchBody::grasp(int tool, const Eigen::Isometry3d& pose, const ForcepsShape& shape, double opening) {
   const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(shape, opening, p); };
-  return contacts_.take_nodes(tool, pose, between, [](int) { return true; }) || contacts_.grasp_nearest(tool, pose, shape.jaw_length);
+  return contacts_.take_nodes(tool, pose, between, [](int) { return true; }) ||
+         contacts_.grasp_nearest(tool, pose, shape.jaw_length);
 }
 
 double TouchBody::grasp_load(int tool) const {
@@ -64,7 +66,8 @@ void TouchBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> load
 
 double TouchBody::penetration(const Segment& axis, double radius) const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < surface().triangle_count(); ++t) nearest = std::min(nearest, closest_points(axis, surface().corners(t)).squared_distance);
+  for (int t = 0; t < surface().triangle_count(); ++t)
+    nearest = std::min(nearest, closest_points(axis, surface().corners(t)).squared_distance);
   nearest = std::sqrt(nearest);
   const bool inside = surface().encloses(axis.start) || surface().encloses(axis.end);
   return inside ? radius + nearest : std::max(0.0, radius - nearest);

@@ -58,13 +58,16 @@ class TouchBody {
   virtual void restore(const unsigned char* from, std::span<const MovingTool> tools) { contacts_.restore(from, tools); }
 
  protected:
-  TouchBody(const SurfaceMap& map, Compliance<double> compliance, const Scene& scene, ToolContacts::Options options = {});
+  TouchBody(const SurfaceMap& map, Compliance<double> compliance, const Scene& scene,
+            ToolContacts::Options options = {});
 
   const SurfaceMap& map() const { return map_; }
   const Compliance<double>& compliance() const { return compliance_; }
   ToolContacts& contacts() { return contacts_; }
   /// Where the contact law takes a node to be without contact forces: displacement [m] from rest.
-  void move_rest(int node, const Eigen::Vector3d& displacement) { unloaded_[node] = map_.position[node] + displacement; }
+  void move_rest(int node, const Eigen::Vector3d& displacement) {
+    unloaded_[node] = map_.position[node] + displacement;
+  }
   Eigen::Vector3d press_of(int tool) const;
 
  private:

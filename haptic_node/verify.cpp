@@ -9,10 +9,10 @@
 
 #include "common/bus/fields.hpp"
 #include "common/bus/log_reader.hpp"
+#include "common/kernels/code_path.hpp"
 #include "common/kernels/kernels.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/find_archive.hpp"
-#include "common/kernels/code_path.hpp"
 #include "haptic_node/haptic_step.hpp"
 #include "haptic_node/publisher.hpp"
 #include "haptic_node/recorded_models.hpp"
@@ -70,17 +70,21 @@ Recorded read_log(LogReader& log) {
   return recorded;
 }
 
-bool same_bits(const Eigen::Vector3d& a, const std::array<double, 3>& b) { return std::memcmp(a.data(), b.data(), sizeof b) == 0; }
+bool same_bits(const Eigen::Vector3d& a, const std::array<double, 3>& b) {
+  return std::memcmp(a.data(), b.data(), sizeof b) == 0;
+}
 
 /// Takes up the code path that a keyframe names; the software must be this one.
 void take_code_path(const std::string& recorded) {
   const auto [kernels_name, software] = split_code_path(recorded);
   if (software != this_software())
-    throw std::runtime_error(fmt::format("the log was made by {}; this is {}, whose arithmetic may differ", software, this_software()));
+    throw std::runtime_error(
+        fmt::format("the log was made by {}; this is {}, whose arithmetic may differ", software, this_software()));
   try {
     kernels::use(kernels_name);
   } catch (const std::exception& error) {
-    throw std::runtime_error(fmt::format("the log was made on code path {}, which cannot run here: {}", kernels_name, error.what()));
+    throw std::runtime_error(
+        fmt::format("the log was made on code path {}, which cannot run here: {}", kernels_name, error.what()));
   }
 }
 
@@ -109,13 +113,17 @@ class RunVerifier {
     const std::uint64_t last = run.steps.empty() ? step : run.steps.rbegin()->first;
     for (; step <= last && report_.mismatch.empty(); ++step) {
       const auto recorded = run.steps.find(step);
-      const bool whole = recorded != run.steps.end() && static_cast<int>(recorded->second.dofs.size()) == haptic.tools();
+      const bool whole =
+          recorded != run.steps.end() && static_cast<int>(recorded->second.dofs.size()) == haptic.tools();
       const std::string missing = whole ? feed_models(haptic, recorded->second) : "input";
       if (!missing.empty()) {
         const auto next = run.keyframes.upper_bound(step);
-        report_.gaps.push_back(next == run.keyframes.end()
-                                   ? fmt::format("cannot verify from step {}: its {} is not in the log, and no keyframe follows", step, missing)
-                                   : fmt::format("cannot verify steps {} to {}: the {} of step {} is not in the log", step, next->first - 1, missing, step));
+        report_.gaps.push_back(
+            next == run.keyframes.end()
+                ? fmt::format("cannot verify from step {}: its {} is not in the log, and no keyframe follows", step,
+                              missing)
+                : fmt::format("cannot verify steps {} to {}: the {} of step {} is not in the log", step,
+                              next->first - 1, missing, step));
         return next == run.keyframes.end() ? last + 1 : next->first - 1;
       }
       for (const auto& [tool, d] : recorded->second.dofs)
@@ -145,20 +153,23 @@ class RunVerifier {
     for (int t = 0; t < haptic.tools() && report_.mismatch.empty(); ++t) {
       const auto force = recorded.force.find(static_cast<std::uint32_t>(t));
       if (force == recorded.force.end()) {
-        report_.gaps.push_back(fmt::format("cannot verify the force of tool {} at step {}: it is not in the log", t, step));
+        report_.gaps.push_back(
+            fmt::format("cannot verify the force of tool {} at step {}: it is not in the log", t, step));
         continue;
       }
       const bool grip_agrees = haptic.grip_torque(t) == force->second.grip;
       const bool energy_agrees = haptic.energy() == force->second.energy;
-      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque) && grip_agrees &&
-          energy_agrees) {
+      if (same_bits(haptic.force(t), force->second.force) && same_bits(haptic.torque(t), force->second.torque) &&
+          grip_agrees && energy_agrees) {
         ++report_.forces;
         continue;
       }
       const auto& f = force->second.force;
-      report_.mismatch = fmt::format("step {}, tool {}: recorded force ({:a}, {:a}, {:a}) N, computed ({:a}, {:a}, {:a}) N; energy {:a} and {:a} J",
-                                       step, t, f[0], f[1], f[2], haptic.force(t)[0], haptic.force(t)[1], haptic.force(t)[2],
-                                       force->second.energy, haptic.energy());
+      report_.mismatch = fmt::format(
+          "step {}, tool {}: recorded force ({:a}, {:a}, {:a}) N, computed ({:a}, {:a}, {:a}) N; energy {:a} and {:a} "
+          "J",
+          step, t, f[0], f[1], f[2], haptic.force(t)[0], haptic.force(t)[1], haptic.force(t)[2], force->second.energy,
+          haptic.energy());
     }
   }
 
@@ -172,9 +183,10 @@ class RunVerifier {
         ++report_.tasks;
         continue;
       }
-      report_.mismatch = fmt::format("step {}, body {}: recorded task with {:a} m inserted, {} contacts and {} drops, computed {:a} m, {} and {}", step,
-                                     found->first, found->second.inserted, found->second.wall_contacts, found->second.drops, computed.inserted,
-                                     computed.wall_contacts, computed.drops);
+      report_.mismatch = fmt::format(
+          "step {}, body {}: recorded task with {:a} m inserted, {} contacts and {} drops, computed {:a} m, {} and {}",
+          step, found->first, found->second.inserted, found->second.wall_contacts, found->second.drops,
+          computed.inserted, computed.wall_contacts, computed.drops);
     }
   }
 
@@ -190,7 +202,9 @@ VerifyReport verify_log(const std::filesystem::path& file) {
   LogReader log(file);
   const Recorded recorded = read_log(log);
   const auto& runs = recorded.runs;
-  if (log.header().scene.empty()) throw std::runtime_error(fmt::format("{}: the log holds no scene, so its steps cannot be computed again", file.string()));
+  if (log.header().scene.empty())
+    throw std::runtime_error(
+        fmt::format("{}: the log holds no scene, so its steps cannot be computed again", file.string()));
   const Scene scene = parse_scene(log.header().scene, file);
   VerifyReport report;
   report.damage = log.damage_text();
@@ -198,7 +212,8 @@ VerifyReport verify_log(const std::filesystem::path& file) {
     if (!d.tail) report.gaps.push_back(fmt::format("{} bytes at byte {} are damaged", d.bytes, d.offset));
   for (const auto& [id, run] : runs)
     if (!run.keyframes.empty()) report.code_path = run.keyframes.begin()->second.code_path;
-  if (report.code_path.empty()) throw std::runtime_error(fmt::format("{}: the log holds no keyframe to start from", file.string()));
+  if (report.code_path.empty())
+    throw std::runtime_error(fmt::format("{}: the log holds no keyframe to start from", file.string()));
   take_code_path(report.code_path);
 
   std::vector<Archive> archives;

@@ -8,20 +8,20 @@ namespace palpate {
 
 /// What a log proves about its haptic steps.
 struct VerifyReport {
-  std::uint64_t steps = 0;            ///< steps computed again
-  std::uint64_t forces = 0;           ///< recorded forces that were compared, and equal bit for bit
-  std::uint64_t tasks = 0;            ///< recorded task records, likewise
-  std::vector<std::string> gaps;      ///< places that cannot be verified, and why
-  std::string mismatch;               ///< the first force that differs; empty if none does
-  std::string damage;                 ///< what of the file cannot be read; empty if all can
+  std::uint64_t steps = 0;        ///< steps computed again
+  std::uint64_t forces = 0;       ///< recorded forces that were compared, and equal bit for bit
+  std::uint64_t tasks = 0;        ///< recorded task records, likewise
+  std::vector<std::string> gaps;  ///< places that cannot be verified, and why
+  std::string mismatch;           ///< the first force that differs; empty if none does
+  std::string damage;             ///< what of the file cannot be read; empty if all can
   std::string code_path;
 
   bool verified() const { return mismatch.empty() && gaps.empty() && forces > 0; }
 };
 
 /// Feeds the recorded inputs of every haptic step to the haptic step, from the first keyframe of each run, on the code
-/// path that made the log, and compares the forces and the records of tasks bit for bit. Throws std::runtime_error in one sentence if the log
-/// cannot be verified at all: no scene, no keyframe, a code path or archive that is not here.
+/// path that made the log, and compares the forces and the records of tasks bit for bit. Throws std::runtime_error in
+/// one sentence if the log cannot be verified at all: no scene, no keyframe, a code path or archive that is not here.
 VerifyReport verify_log(const std::filesystem::path& file);
 
 }  // namespace palpate

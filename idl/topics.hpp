@@ -12,10 +12,11 @@ inline constexpr int keep_all = 0;
 
 /// Quality of service of a topic. Every writer also asserts a liveliness lease, so that its death shows.
 struct Qos {
-  bool reliable = true;  ///< lost datagrams are repeated; the writer never waits for a reader
-  int depth = 1;         ///< samples that a writer keeps per key for repair; or keep_all
+  bool reliable = true;          ///< lost datagrams are repeated; the writer never waits for a reader
+  int depth = 1;                 ///< samples that a writer keeps per key for repair; or keep_all
   bool transient_local = false;  ///< a reader that joins late gets the newest sample of each key, or all that are kept
-  int recorder_depth = 0;  ///< not 0: recorders have a stream of their own, which keeps so many, so that viewers never wait for old ones
+  int recorder_depth =
+      0;  ///< not 0: recorders have a stream of their own, which keeps so many, so that viewers never wait for old ones
 };
 
 template <class M>
@@ -124,10 +125,10 @@ inline constexpr Topic<TaskRecord> task_record{
     "how the task with one catheter goes"};
 // clang-format on
 
-inline constexpr auto all =
-    std::tuple{tool_state,  device_state,    contact_state, held_contacts,       force_state,
-               surface_state, node_status,   clock_probe, clock_answer, picture_state, haptic_keyframe, scene,
-               topology_change, held_topology, local_contact_model, deform_step, deform_keyframe, modal_state, catheter_state, task_record};
+inline constexpr auto all = std::tuple{
+    tool_state,          device_state, contact_state,   held_contacts,   force_state,    surface_state,   node_status,
+    clock_probe,         clock_answer, picture_state,   haptic_keyframe, scene,          topology_change, held_topology,
+    local_contact_model, deform_step,  deform_keyframe, modal_state,     catheter_state, task_record};
 
 /// Calls f(topic) for every row.
 template <class F>

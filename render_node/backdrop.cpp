@@ -39,8 +39,7 @@ Backdrop sort_backdrop(const TriangleMesh& mesh) {
     if (count == 1) open[parts.of(edge.first)] = true;
 
   Backdrop sorted{{mesh.nodes, {}}, {mesh.nodes, {}}};
-  for (const auto& t : mesh.triangles)
-    (open[parts.of(t[0])] ? sorted.lining : sorted.bones).triangles.push_back(t);
+  for (const auto& t : mesh.triangles) (open[parts.of(t[0])] ? sorted.lining : sorted.bones).triangles.push_back(t);
   return sorted;
 }
 

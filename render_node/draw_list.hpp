@@ -12,9 +12,10 @@
 /// What one picture shows, as plain values without any OpenGL. Lengths in metres, world frame.
 namespace palpate {
 
-/// How a mesh reflects light; only the outer side is drawn. Bone and lining (the smooth, moist wall of a cavity) are backdrop:
-/// they stand still. Duct and mucosa: outer and inner side of a thin-walled tube. Plastic: a catheter with marks. For these
-/// three `rest` is along the straightened tube: z is the distance along it, of a catheter minus that from its tip.
+/// How a mesh reflects light; only the outer side is drawn. Bone and lining (the smooth, moist wall of a cavity) are
+/// backdrop: they stand still. Duct and mucosa: outer and inner side of a thin-walled tube. Plastic: a catheter with
+/// marks. For these three `rest` is along the straightened tube: z is the distance along it, of a catheter minus that
+/// from its tip.
 enum class Finish { tissue, bone, lining, duct, mucosa, plastic };
 
 /// Whether meshes of this finish stand still behind the others.
@@ -31,16 +32,16 @@ struct MeshView {
   std::span<const Eigen::Vector3f> rest;           ///< [m] per vertex: what the texture sticks to
   std::span<const Eigen::Vector3f> position;       ///< [m] per vertex
   std::span<const Eigen::Vector3f> normal;         ///< unit, outward, per vertex
-  std::span<const float> scalar;  ///< [m] per vertex, coloured by Frame::legend; empty: own colour
-  std::span<const std::array<int, 3>> triangles;  ///< vertex indices, outward by the right-hand rule
-  bool moving = true;                             ///< false: uploaded once per shape
+  std::span<const float> scalar;                   ///< [m] per vertex, coloured by Frame::legend; empty: own colour
+  std::span<const std::array<int, 3>> triangles;   ///< vertex indices, outward by the right-hand rule
+  bool moving = true;                              ///< false: uploaded once per shape
 };
 
 /// A rigid instrument: a probe, whose spherical tip on a shaft opens into two jaws, or a forceps.
 struct InstrumentView {
   Eigen::Isometry3d tip =
       Eigen::Isometry3d::Identity();  ///< z from handle to tip; origin at the tip's centre, of a forceps at the hinge
-  double tip_radius = 0.004;    ///< of a probe
+  double tip_radius = 0.004;          ///< of a probe
   double shaft_radius = 0.0025;
   double shaft_length = 0.3;  ///< from the origin back along the shaft
   double jaw_opening = 0;     ///< [rad] between the jaws

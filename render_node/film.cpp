@@ -84,8 +84,7 @@ int spawn_ffmpeg(const std::vector<std::string>& arguments, int input, int error
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &all);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   pid_t pid = -1;
   const int result = posix_spawnp(&pid, "ffmpeg", &files, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
@@ -112,8 +111,8 @@ void Film::start() {
   int ends[2];
   complaints_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
   if (complaints_ < 0 || ::pipe2(ends, O_CLOEXEC) != 0) fail(std::strerror(errno));
-  const int error = spawn_ffmpeg(ffmpeg_arguments(width_, height_, rate_, temporary_.string()), ends[0],
-                                 complaints_, ffmpeg_);
+  const int error =
+      spawn_ffmpeg(ffmpeg_arguments(width_, height_, rate_, temporary_.string()), ends[0], complaints_, ffmpeg_);
   ::close(ends[0]);
   pipe_ = ends[1];
   if (error != 0) {
@@ -144,8 +143,7 @@ bool Film::full() const {
 
 void Film::add(const Image& image, int times) {
   if (image.width != width_ || image.height != height_)
-    fail(fmt::format("a film of {} x {} cannot take a picture of {} x {}", width_, height_, image.width,
-                     image.height));
+    fail(fmt::format("a film of {} x {} cannot take a picture of {} x {}", width_, height_, image.width, image.height));
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return queue_.size() < queue_length || broken_; });
   if (broken_) {
@@ -189,8 +187,7 @@ void Film::write_entries() {
     Entry& entry = queue_.front();
     lock.unlock();
     bool good = true;
-    for (int i = 0; i < entry.times && good; ++i)
-      good = write_all(entry.image.rgba.data(), entry.image.rgba.size());
+    for (int i = 0; i < entry.times && good; ++i) good = write_all(entry.image.rgba.data(), entry.image.rgba.size());
     lock.lock();
     spare_.push_back(std::move(entry.image));
     queue_.pop_front();

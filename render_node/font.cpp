@@ -26,8 +26,7 @@ FontAtlas::FontAtlas(const std::filesystem::path& file, int pixels) {
   const Library library(raw_library);
   FT_Face raw_face = nullptr;
   if (FT_New_Face(library.get(), file.c_str(), 0, &raw_face))
-    throw std::runtime_error(
-        fmt::format("{}: not a readable font (package fonts-dejavu-core)", file.string()));
+    throw std::runtime_error(fmt::format("{}: not a readable font (package fonts-dejavu-core)", file.string()));
   const Face face(raw_face);
   FT_Set_Pixel_Sizes(face.get(), 0, pixels);
   line_height_ = static_cast<int>(face->size->metrics.height >> 6);
@@ -45,8 +44,7 @@ FontAtlas::FontAtlas(const std::filesystem::path& file, int pixels) {
       y += row_height + gap;
       row_height = 0;
     }
-    glyphs_[code] = {
-        x, y, w, h, slot->bitmap_left, slot->bitmap_top, static_cast<float>(slot->advance.x) / 64};
+    glyphs_[code] = {x, y, w, h, slot->bitmap_left, slot->bitmap_top, static_cast<float>(slot->advance.x) / 64};
     height_ = std::max(height_, y + h + gap);
     coverage_.resize(static_cast<std::size_t>(width_) * height_, 0);
     for (int row = 0; row < h; ++row)
@@ -54,8 +52,7 @@ FontAtlas::FontAtlas(const std::filesystem::path& file, int pixels) {
     x += w + gap;
     row_height = std::max(row_height, h);
   }
-  if (height_ < 2)
-    throw std::runtime_error(fmt::format("{}: the font has no Latin characters", file.string()));
+  if (height_ < 2) throw std::runtime_error(fmt::format("{}: the font has no Latin characters", file.string()));
   for (const int pixel : {0, 1, width_, width_ + 1}) coverage_[pixel] = 255;
 }
 

@@ -25,9 +25,7 @@ class FontAtlas {
   int ascent() const { return ascent_; }
   int width() const { return width_; }
   int height() const { return height_; }
-  const std::vector<std::uint8_t>& coverage() const {
-    return coverage_;
-  }  ///< height x width, upper row first
+  const std::vector<std::uint8_t>& coverage() const { return coverage_; }  ///< height x width, upper row first
 
  private:
   std::array<Glyph, 256> glyphs_{};

@@ -11,8 +11,8 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-/// A patch with smooth normals: rows x columns points, each cell split in two; looks to where the turn from "next row" to
-/// "next column" points.
+/// A patch with smooth normals: rows x columns points, each cell split in two; looks to where the turn from "next row"
+/// to "next column" points.
 template <class F>
 void add_patch(InstrumentPart& part, int rows, int columns, F&& point) {
   InstrumentPart patch;
@@ -72,7 +72,11 @@ void add_turned(InstrumentPart& part, const std::vector<Eigen::Vector2f>& corner
 /// Shaft, and the fork that holds the jaws: two cheeks with a pin across at the hinge.
 InstrumentPart make_shaft(float radius, float length) {
   InstrumentPart part;
-  add_turned(part, {{-1.6f * radius, 0}, {-1.6f * radius, 0.86f * radius}, {-1.9f * radius, radius}, {-length, radius}, {-length, 0}});
+  add_turned(part, {{-1.6f * radius, 0},
+                    {-1.6f * radius, 0.86f * radius},
+                    {-1.9f * radius, radius},
+                    {-length, radius},
+                    {-length, 0}});
   std::vector<Eigen::Vector2f> cheek{{-0.5f * radius, -1.8f * radius}, {0.5f * radius, -1.8f * radius}};
   for (int k = 0; k <= 12; ++k) {
     const float angle = std::numbers::pi_v<float> * static_cast<float>(k) / 12;
@@ -97,7 +101,8 @@ struct Section {
 /// From behind the hinge to the rounded nose. The teeth's tops touch what the jaw's capsule touches.
 std::vector<Section> jaw_sections(float radius, float length, float shaft) {
   std::vector<Section> sections;
-  const float neck = std::min(0.45f * shaft, 1.5f * radius), root = 0.5f * shaft, begin = std::min(0.9f * shaft, 0.3f * length);
+  const float neck = std::min(0.45f * shaft, 1.5f * radius), root = 0.5f * shaft,
+              begin = std::min(0.9f * shaft, 0.3f * length);
   const auto body = [&](float z, float bite) {
     const float t = std::clamp(z / length, 0.0f, 1.0f), open = std::clamp((z - 0.3f * begin) / begin, 0.0f, 1.0f);
     const float width = neck + (radius * (1.5f - 0.5f * t) - neck) * open * open * (3 - 2 * open);
@@ -108,10 +113,12 @@ std::vector<Section> jaw_sections(float radius, float length, float shaft) {
   body(0.5f * begin, -0.6f * radius);
   const int teeth = std::max(4, static_cast<int>(std::lround((length - begin) / (0.62f * radius))));
   for (int k = 0; k <= 2 * teeth; ++k)
-    body(begin + (length - begin) * static_cast<float>(k) / static_cast<float>(2 * teeth), radius * (k % 2 ? -0.97f : -0.68f));
+    body(begin + (length - begin) * static_cast<float>(k) / static_cast<float>(2 * teeth),
+         radius * (k % 2 ? -0.97f : -0.68f));
   for (const float turn : {0.4f, 0.8f, 1.15f, 1.4f}) {
     const float shrink = std::cos(turn);
-    sections.push_back({length + 0.9f * radius * std::sin(turn), radius * shrink, 0.9f * radius * shrink, -0.68f * radius * shrink});
+    sections.push_back(
+        {length + 0.9f * radius * std::sin(turn), radius * shrink, 0.9f * radius * shrink, -0.68f * radius * shrink});
   }
   return sections;
 }

@@ -45,11 +45,9 @@ GLuint GlContext::compile(const std::string& name, GLenum stage, const std::stri
   throw std::runtime_error(fmt::format("shader {} does not compile: {}", name, words));
 }
 
-GLuint GlContext::link_program(const std::string& name, const std::string& vertex,
-                               const std::string& fragment) {
+GLuint GlContext::link_program(const std::string& name, const std::string& vertex, const std::string& fragment) {
   const GLuint program = gl.CreateProgram();
-  for (const GLuint shader :
-       {compile(name, GL_VERTEX_SHADER, vertex), compile(name, GL_FRAGMENT_SHADER, fragment)}) {
+  for (const GLuint shader : {compile(name, GL_VERTEX_SHADER, vertex), compile(name, GL_FRAGMENT_SHADER, fragment)}) {
     gl.AttachShader(program, shader);
     gl.DeleteShader(shader);
   }

@@ -27,8 +27,8 @@ void GpuMesh::release() {
 }
 
 bool GpuMesh::holds(const MeshView& mesh) const {
-  return array_ && shape_ == mesh.shape && vertices_ == mesh.position.size() &&
-         triangles_ == mesh.triangles.size() && scalars_ == mesh.scalar.size();
+  return array_ && shape_ == mesh.shape && vertices_ == mesh.position.size() && triangles_ == mesh.triangles.size() &&
+         scalars_ == mesh.scalar.size();
 }
 
 void GpuMesh::build(const MeshView& mesh) {
@@ -51,8 +51,7 @@ void GpuMesh::build(const MeshView& mesh) {
     gl_->EnableVertexArrayAttrib(array_, slot);
     gl_->VertexArrayAttribFormat(array_, slot, components, GL_FLOAT, GL_FALSE, 0);
     gl_->VertexArrayAttribBinding(array_, slot, slot);
-    gl_->VertexArrayVertexBuffer(array_, slot, buffer_[slot], 0,
-                                 components * static_cast<int>(sizeof(float)));
+    gl_->VertexArrayVertexBuffer(array_, slot, buffer_[slot], 0, components * static_cast<int>(sizeof(float)));
   }
   gl_->VertexArrayElementBuffer(array_, buffer_[index]);
 }
@@ -60,8 +59,7 @@ void GpuMesh::build(const MeshView& mesh) {
 void GpuMesh::update(const MeshView& mesh) {
   gl_->NamedBufferSubData(buffer_[position], 0, mesh.position.size_bytes(), mesh.position.data());
   gl_->NamedBufferSubData(buffer_[normal], 0, mesh.normal.size_bytes(), mesh.normal.data());
-  if (!mesh.scalar.empty())
-    gl_->NamedBufferSubData(buffer_[scalar], 0, mesh.scalar.size_bytes(), mesh.scalar.data());
+  if (!mesh.scalar.empty()) gl_->NamedBufferSubData(buffer_[scalar], 0, mesh.scalar.size_bytes(), mesh.scalar.data());
 }
 
 void GpuMesh::draw() const {
@@ -75,8 +73,7 @@ GpuQuads::GpuQuads(GlContext& context) : gl_(&context.gl) {
   const struct {
     int components;
     std::size_t offset;
-  } attributes[] = {
-      {2, offsetof(FlatVertex, x)}, {2, offsetof(FlatVertex, u)}, {4, offsetof(FlatVertex, red)}};
+  } attributes[] = {{2, offsetof(FlatVertex, x)}, {2, offsetof(FlatVertex, u)}, {4, offsetof(FlatVertex, red)}};
   for (GLuint slot = 0; slot < 3; ++slot) {
     gl_->EnableVertexArrayAttrib(array_, slot);
     gl_->VertexArrayAttribFormat(array_, slot, attributes[slot].components, GL_FLOAT, GL_FALSE,
@@ -94,8 +91,7 @@ GpuQuads::~GpuQuads() {
 void GpuQuads::draw(std::span<const FlatVertex> vertices) {
   if (vertices.size() > capacity_) {
     capacity_ = 2 * vertices.size();
-    gl_->NamedBufferData(buffer_, static_cast<GLsizeiptr>(capacity_ * sizeof(FlatVertex)), nullptr,
-                         GL_STREAM_DRAW);
+    gl_->NamedBufferData(buffer_, static_cast<GLsizeiptr>(capacity_ * sizeof(FlatVertex)), nullptr, GL_STREAM_DRAW);
   }
   gl_->NamedBufferSubData(buffer_, 0, vertices.size_bytes(), vertices.data());
   gl_->BindVertexArray(array_);

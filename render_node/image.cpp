@@ -38,8 +38,8 @@ struct PngWriter {
   png_structp png;
   png_infop info;
   explicit PngWriter(const std::filesystem::path& file)
-      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, const_cast<std::filesystem::path*>(&file),
-                                    on_error, on_warning)),
+      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, const_cast<std::filesystem::path*>(&file), on_error,
+                                    on_warning)),
         info(png_create_info_struct(png)) {}
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };

@@ -10,9 +10,7 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
 
-  const std::uint8_t* pixel(int x, int y) const {
-    return &rgba[4 * (static_cast<std::size_t>(y) * width + x)];
-  }
+  const std::uint8_t* pixel(int x, int y) const { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
 };
 
 /// Writes beside `file` under a temporary name, then renames: a reader never sees half a picture.

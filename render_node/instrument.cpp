@@ -41,8 +41,7 @@ std::vector<OutlinePoint> tip_outline(double tip_radius, double shaft_radius, do
 }
 
 /// Turns an outline (from tip to handle) about z over [from, from + sweep].
-void revolve(InstrumentPart& part, const std::vector<OutlinePoint>& outline, double from, double sweep,
-             int steps) {
+void revolve(InstrumentPart& part, const std::vector<OutlinePoint>& outline, double from, double sweep, int steps) {
   const int first = static_cast<int>(part.position.size());
   for (const OutlinePoint& p : outline)
     for (int j = 0; j <= steps; ++j) {

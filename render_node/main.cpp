@@ -34,8 +34,7 @@ Stage make_stage(const LoadedScene& loaded) {
   for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
   TriangleMesh backdrop;
   const auto& render = loaded.scene.render;
-  if (render && !render->backdrop.empty())
-    backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
+  if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
   return Stage(loaded.scene, surfaces, backdrop);
 }
 
@@ -48,9 +47,7 @@ void write_still(const Stage& stage, int width, int height) {
 }
 
 void summarise(const RenderReport& r, const Film* film, bool supervised) {
-  const auto us = [](const Histogram& h, double share) {
-    return 1e-3 * static_cast<double>(h.percentile(share));
-  };
+  const auto us = [](const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); };
   const nlohmann::json summary{{"node", "render"},
                                {"seconds", r.seconds},
                                {"frames", r.frames},
@@ -64,8 +61,8 @@ void summarise(const RenderReport& r, const Film* film, bool supervised) {
                                {"force_max_n", r.greatest_force},
                                {"film_frames", film ? film->frames() : 0}};
   if (supervised) fmt::print("{}\n", summary.dump());
-  spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms",
-               r.frames, summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
+  spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms", r.frames,
+               summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
                1e-3 * us(r.latency, 0.99));
 }
 
@@ -111,11 +108,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
   app.add_option("--still", o.still, "Write a picture (PNG) of the moment of the greatest force, at the end");
-  app.add_option("--samples", o.samples,
-                 "Samples per pixel of the film: 4 smooths edges and takes twice the time")
+  app.add_option("--samples", o.samples, "Samples per pixel of the film: 4 smooths edges and takes twice the time")
       ->check(CLI::IsMember({1, 4}))
       ->capture_default_str();
-  app.add_option("--threads", o.threads, "Threads that draw; default: one per core")
-      ->check(CLI::Range(1, 64));
+  app.add_option("--threads", o.threads, "Threads that draw; default: one per core")->check(CLI::Range(1, 64));
   return palpate::node_main("render_node", argc, argv, app, palpate::run, node);
 }

@@ -40,8 +40,7 @@ class Sheet {
 
   void area(float x, float y, float w, float h, const Paint& p) {
     const float u = 1.0f / font_.width(), v = 1.0f / font_.height();  // between the atlas's full pixels
-    quad({x, y, u, v, p.red, p.green, p.blue, p.alpha},
-         {x + w, y + h, u, v, p.red, p.green, p.blue, p.alpha});
+    quad({x, y, u, v, p.red, p.green, p.blue, p.alpha}, {x + w, y + h, u, v, p.red, p.green, p.blue, p.alpha});
   }
 
   /// A vertical run of the colour scale, its first colour at the bottom.
@@ -59,9 +58,9 @@ class Sheet {
       const Glyph& g = font_.glyph(static_cast<unsigned char>(c));
       const float left = std::round(x) + g.left, top = y - g.top;
       const float u = 1.0f / font_.width(), v = 1.0f / font_.height();
-      quad({left, top, g.x * u, g.y * v, p.red, p.green, p.blue, p.alpha},
-           {left + g.width, top + g.height, (g.x + g.width) * u, (g.y + g.height) * v, p.red, p.green, p.blue,
-            p.alpha});
+      quad(
+          {left, top, g.x * u, g.y * v, p.red, p.green, p.blue, p.alpha},
+          {left + g.width, top + g.height, (g.x + g.width) * u, (g.y + g.height) * v, p.red, p.green, p.blue, p.alpha});
       x += g.advance;
     }
   }

@@ -6,7 +6,8 @@
 #include <unordered_map>
 
 namespace palpate {
-Refinement::Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels, std::span<const Eigen::Vector3f> rest)
+Refinement::Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels,
+                       std::span<const Eigen::Vector3f> rest)
     : coarse_(vertices), crease_(vertices, 0), triangles_(triangles.begin(), triangles.end()) {
   if (!rest.empty()) mark_creases(rest);
   for (int level = 0; level < levels; ++level) split();

@@ -15,7 +15,8 @@ class Refinement {
   /// `vertices`: number of coarse vertices. Vertex order: the coarse ones, then those of each level. With `rest`
   /// positions of the coarse vertices, what lies at a crease (faces that meet at more than 50 degrees) stays flat:
   /// a sharp edge has no normal to bend by.
-  Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels, std::span<const Eigen::Vector3f> rest = {});
+  Refinement(std::span<const std::array<int, 3>> triangles, int vertices, int levels,
+             std::span<const Eigen::Vector3f> rest = {});
 
   int vertices() const { return coarse_ + static_cast<int>(edges_.size()); }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }

@@ -26,8 +26,10 @@ std::string describe(const std::string& tool, const ForceState& f) {
 }
 
 void describe(const TaskRecord& task, std::vector<std::string>& lines) {
-  lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s));
-  lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops, task.largest_force));
+  lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted,
+                              1e3 * task.deepest, task.inserting_s));
+  lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops,
+                              task.largest_force));
 }
 
 }  // namespace
@@ -47,7 +49,8 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
       latest_force_(scene.tools.size()) {
   presence_.set_clock(&clock_);
   picture_.node = presence.node();
-  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return body.catheter.has_value(); })) tasks_ = bus.reader(topics::task_record);
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return body.catheter.has_value(); }))
+    tasks_ = bus.reader(topics::task_record);
 }
 
 void RenderLoop::take() {
@@ -57,15 +60,15 @@ void RenderLoop::take() {
     const SurfaceSource::Shape shape = source_.shape(static_cast<int>(b));
     stage_.set_surface(static_cast<int>(b), shape.position, shape.normal);
   }
-  while (const auto tool = tools_->take())
-    report_.refused += !(presence_.accepts(tool->run) && stage_.set_tool(*tool));
+  while (const auto tool = tools_->take()) report_.refused += !(presence_.accepts(tool->run) && stage_.set_tool(*tool));
   while (const auto force = forces_->take()) {
     const bool good = force->tool < latest_force_.size() && presence_.accepts(force->run);
     if (good) latest_force_[force->tool] = *force;
     report_.refused += !good;
   }
   while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
-    const bool good = task->body < scene_.bodies.size() && scene_.bodies[task->body].catheter && presence_.accepts(task->run);
+    const bool good =
+        task->body < scene_.bodies.size() && scene_.bodies[task->body].catheter && presence_.accepts(task->run);
     if (good) latest_task_[task->body] = *task;
     report_.refused += !good;
   }
@@ -84,7 +87,8 @@ void RenderLoop::write_overlay() {
   for (const char* role : {"haptic", "deform"})
     if (const std::string silence = link_.silence(role, now_ns()); !silence.empty()) lines.push_back(silence);
   lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
-  lines.push_back(shown_steps_ > 0 ? fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50, 1e-3 * shown_latency_.p99)
+  lines.push_back(shown_steps_ > 0 ? fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
+                                                 1e-3 * shown_latency_.p99)
                                    : std::string("nothing new to show"));
   for (const auto& [body, task] : latest_task_) describe(task, lines);
   double strongest = 0, full = 1;
@@ -103,8 +107,7 @@ void RenderLoop::write_overlay() {
 }
 
 void RenderLoop::add_to_film(std::int64_t since_begin) {
-  const long due =
-      static_cast<long>(1e-9 * static_cast<double>(since_begin) * film_->rate()) + 1 - film_->frames();
+  const long due = static_cast<long>(1e-9 * static_cast<double>(since_begin) * film_->rate()) + 1 - film_->frames();
   if (due > 0 && !film_->full()) film_->add(image_, static_cast<int>(due));
 }
 
@@ -112,11 +115,11 @@ void RenderLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   if (now - last_status_ns_ < ns_per_s) return;
-  rate_hz_ =
-      1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
+  rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
   shown_steps_ = recent_latency_.count();
-  presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99, link_.silence("haptic", now));
+  presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99,
+                     link_.silence("haptic", now));
   recent_latency_.clear();
   last_status_ns_ = now;
   last_frames_ = report_.frames;

@@ -29,8 +29,7 @@ struct RenderReport {
 /// Takes the latest of everything at the visual rate and draws it.
 class RenderLoop {
  public:
-  RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence,
-             Renderer& renderer);
+  RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence, Renderer& renderer);
 
   /// The film takes its frames from now on, in real time: a picture that comes late stands for those it
   /// missed.
@@ -68,8 +67,8 @@ class RenderLoop {
   TopologyFeed* topology_ = nullptr;
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Reader<ForceState>> forces_;
-  std::unique_ptr<Reader<TaskRecord>> tasks_;  ///< null: no catheter
-  std::vector<ForceState> latest_force_;       ///< by tool
+  std::unique_ptr<Reader<TaskRecord>> tasks_;        ///< null: no catheter
+  std::vector<ForceState> latest_force_;             ///< by tool
   std::map<std::uint32_t, TaskRecord> latest_task_;  ///< by catheter
   bool news_ = false;
   Image image_;

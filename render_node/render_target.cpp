@@ -35,18 +35,16 @@ RenderTarget::Layer RenderTarget::make(int samples) {
   gl_->NamedRenderbufferStorageMultisample(layer.depth, stored, GL_DEPTH_COMPONENT32F, width_, height_);
   gl_->NamedFramebufferRenderbuffer(layer.frame, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, layer.colour);
   gl_->NamedFramebufferRenderbuffer(layer.frame, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, layer.depth);
-  const bool complete =
-      gl_->CheckNamedFramebufferStatus(layer.frame, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  const bool complete = gl_->CheckNamedFramebufferStatus(layer.frame, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   if (gl_->GetError() != GL_NO_ERROR || !complete)
-    throw std::runtime_error(fmt::format("OpenGL cannot hold a picture of {} x {} pixels with {} samples",
-                                         width_, height_, samples));
+    throw std::runtime_error(
+        fmt::format("OpenGL cannot hold a picture of {} x {} pixels with {} samples", width_, height_, samples));
   return layer;
 }
 
 void RenderTarget::resize(int width, int height) {
   if (width < 16 || height < 16 || width > 8192 || height > 8192)
-    throw std::runtime_error(
-        fmt::format("a picture has 16 to 8192 pixels a side, not {} x {}", width, height));
+    throw std::runtime_error(fmt::format("a picture has 16 to 8192 pixels a side, not {} x {}", width, height));
   release();
   width_ = width;
   height_ = height;

@@ -42,7 +42,8 @@ struct Renderer::Impl {
   GlFunctions& gl = context.gl;
   RenderTarget target;
   GLuint bone, lining, metal, cavity, flat;
-  std::map<std::tuple<Finish, bool, std::size_t>, GLuint> soft;  ///< by (finish, coloured by scalar, number of instruments)
+  std::map<std::tuple<Finish, bool, std::size_t>, GLuint>
+      soft;  ///< by (finish, coloured by scalar, number of instruments)
   GLuint block = 0, empty_array = 0, glyph_texture = 0;
   std::optional<FontAtlas> font;
   int font_size = 0;
@@ -58,8 +59,7 @@ struct Renderer::Impl {
   std::array<Eigen::Vector4f, 6> backdrop_view{};  ///< and from where
 };
 
-Renderer::Impl::Impl(int width, int height, int samples)
-    : target(context, width, height, samples), quads(context) {
+Renderer::Impl::Impl(int width, int height, int samples) : target(context, width, height, samples), quads(context) {
   const std::string scene = head + shaders::scene;
   const std::string lit = scene + "#define TOOLS 0\n" + shaders::noise + shaders::light;
   const std::string rigid = scene + shaders::rigid_vert;
@@ -67,8 +67,7 @@ Renderer::Impl::Impl(int width, int height, int samples)
   lining = context.link_program("lining", rigid, lit + shaders::lining_frag);
   metal = context.link_program("metal", rigid, lit + shaders::metal_frag);
   cavity = context.link_program("cavity", scene + shaders::cavity_vert, lit + shaders::cavity_frag);
-  flat =
-      context.link_program("flat", scene + shaders::flat_vert, head + shaders::colours + shaders::flat_frag);
+  flat = context.link_program("flat", scene + shaders::flat_vert, head + shaders::colours + shaders::flat_frag);
   gl.CreateBuffers(1, &block);
   gl.NamedBufferData(block, sizeof(SceneBlock), nullptr, GL_DYNAMIC_DRAW);
   gl.CreateVertexArrays(1, &empty_array);
@@ -91,11 +90,9 @@ void Renderer::Impl::check(const Frame& frame) const {
   for (const MeshView& mesh : frame.meshes) {
     const std::size_t n = mesh.position.size();
     if (mesh.rest.size() != n || mesh.normal.size() != n || (!mesh.scalar.empty() && mesh.scalar.size() != n))
-      throw std::runtime_error(
-          fmt::format("mesh {}: rest, position, normal and scalar differ in length", mesh.id));
+      throw std::runtime_error(fmt::format("mesh {}: rest, position, normal and scalar differ in length", mesh.id));
     if (!mesh.scalar.empty() && !(frame.legend && frame.legend->max > 0))
-      throw std::runtime_error(
-          fmt::format("mesh {}: colour by scalar needs a legend with a positive range", mesh.id));
+      throw std::runtime_error(fmt::format("mesh {}: colour by scalar needs a legend with a positive range", mesh.id));
   }
 }
 
@@ -114,12 +111,13 @@ GLuint Renderer::Impl::soft_program(Finish finish, bool by_scalar, std::size_t t
   if (by_scalar) finish = Finish::tissue;
   GLuint& program = soft[{finish, by_scalar, tools}];
   if (program) return program;
-  const std::string start = fmt::format("{}{}#define TOOLS {}\n{}", head,
-                                        by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
-                            shaders::noise;
+  const std::string start =
+      fmt::format("{}{}#define TOOLS {}\n{}", head, by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
+      shaders::noise;
   const std::string lit = start + shaders::light;
   if (finish == Finish::tissue)
-    program = context.link_program("tissue", start + shaders::tissue_vert, lit + shaders::colours + shaders::tissue_frag);
+    program =
+        context.link_program("tissue", start + shaders::tissue_vert, lit + shaders::colours + shaders::tissue_frag);
   else if (finish == Finish::duct)
     program = context.link_program("duct", start + shaders::wall_vert, lit + shaders::duct_frag);
   else if (finish == Finish::mucosa)
@@ -165,8 +163,10 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
   for (const InstrumentView& tool : frame.instruments) {
     const bool forceps = tool.jaw_length > 0;
-    gl.ProgramUniform4f(metal, 4, forceps ? satin : 1, 0, 0, forceps ? bare_fork * float(tool.shaft_radius) : bare_steel);
-    Instrument& made = instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
+    gl.ProgramUniform4f(metal, 4, forceps ? satin : 1, 0, 0,
+                        forceps ? bare_fork * float(tool.shaft_radius) : bare_steel);
+    Instrument& made =
+        instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
     if (made.parts.empty()) {
       made.shape = make_instrument(tool);
       for (const InstrumentPart& part : made.shape.parts) {
@@ -193,8 +193,7 @@ bool Renderer::Impl::backdrop_changed(const Frame& frame, const SceneBlock& bloc
   std::vector<std::uint64_t> now;
   for (const MeshView& mesh : frame.meshes)
     if (in_backdrop(mesh.finish)) now.insert(now.end(), {static_cast<std::uint64_t>(mesh.id), mesh.shape});
-  std::array<Eigen::Vector4f, 6> view{block.eye,     block.right, block.up,
-                                      block.forward, block.light, block.viewport};
+  std::array<Eigen::Vector4f, 6> view{block.eye, block.right, block.up, block.forward, block.light, block.viewport};
   view[2].w() = 0;  // the legend's range does not matter here
   const bool changed = now != backdrop_meshes || view != backdrop_view || !target.has_backdrop();
   backdrop_meshes = std::move(now);
@@ -230,8 +229,7 @@ void Renderer::Impl::draw_overlay(const Frame& frame) {
   gl.Enable(GL_DEPTH_TEST);
 }
 
-Renderer::Renderer(int width, int height, int samples)
-    : impl_(std::make_unique<Impl>(width, height, samples)) {}
+Renderer::Renderer(int width, int height, int samples) : impl_(std::make_unique<Impl>(width, height, samples)) {}
 Renderer::~Renderer() = default;
 int Renderer::width() const {
   return impl_->target.width();

@@ -25,8 +25,7 @@ Eigen::Matrix4d projection(double half_width, double half_height, double near, d
 }
 
 /// From the world to x right, y up, -z forward.
-Eigen::Matrix4d view_matrix(const Vector3d& eye, const Vector3d& right, const Vector3d& up,
-                            const Vector3d& forward) {
+Eigen::Matrix4d view_matrix(const Vector3d& eye, const Vector3d& right, const Vector3d& up, const Vector3d& forward) {
   Eigen::Matrix3d axes;
   axes << right.transpose(), up.transpose(), -forward.transpose();
   Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
@@ -46,9 +45,8 @@ SceneBlock::Tool tool_block(const InstrumentView& tool, const Vector3d& light) {
   Vector3d along = (to_end - to_end.dot(to_tip) / to_tip.squaredNorm() * to_tip).normalized();
   // n . to_tip = n . to_end = 1 in the plane: n is normal to the shaft, scaled by the shaft's distance.
   const Vector3d foot = to_tip - to_tip.dot(shaft) / shaft.squaredNorm() * shaft;
-  return {with_w(tip, tip_radius), with_w(shaft, tool.shaft_radius),
-          with_w(across, 1 / shaft.squaredNorm()), with_w(along, 0),
-          with_w(foot / std::max(foot.squaredNorm(), 1e-12), 0)};
+  return {with_w(tip, tip_radius), with_w(shaft, tool.shaft_radius), with_w(across, 1 / shaft.squaredNorm()),
+          with_w(along, 0), with_w(foot / std::max(foot.squaredNorm(), 1e-12), 0)};
 }
 
 }  // namespace
@@ -65,9 +63,9 @@ SceneBlock scene_block(const Frame& frame, int width, int height) {
   const double half_width = half_height * width / height;
 
   SceneBlock block{};
-  block.view_projection = (projection(half_width, half_height, 0.02 * reach, 20 * reach) *
-                           view_matrix(camera.eye, right, up, forward))
-                              .cast<float>();
+  block.view_projection =
+      (projection(half_width, half_height, 0.02 * reach, 20 * reach) * view_matrix(camera.eye, right, up, forward))
+          .cast<float>();
   block.eye = with_w(camera.eye, reach);
   block.right = with_w(half_width * right, 2 * half_height / height);
   block.up = with_w(half_height * up, frame.legend ? frame.legend->max : 1);
@@ -76,8 +74,7 @@ SceneBlock scene_block(const Frame& frame, int width, int height) {
   const Vector3d light = camera.eye + reach * (0.12 * up + 0.08 * right);
   block.light = with_w(light, 0);
   block.viewport = Eigen::Vector4f(width, height, 2.0f / height, 0);
-  for (std::size_t i = 0; i < frame.instruments.size(); ++i)
-    block.tools[i] = tool_block(frame.instruments[i], light);
+  for (std::size_t i = 0; i < frame.instruments.size(); ++i) block.tools[i] = tool_block(frame.instruments[i], light);
   return block;
 }
 

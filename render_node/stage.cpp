@@ -14,8 +14,8 @@ namespace {
 // Of one body after refinement: what 60 frames a second allow. A wall has them twice; a catheter comes smooth.
 constexpr std::size_t most_triangles_of_organ = 16000, most_triangles_of_wall = 6000, most_triangles_of_catheter = 0;
 // Linear RGB.
-constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165}, duct_colour{0.60, 0.29, 0.23},
-    mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
+constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165},
+    duct_colour{0.60, 0.29, 0.23}, mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3f> out;
@@ -34,7 +34,8 @@ double round_up(double value) {
 
 /// A catheter's rest shape seen along it: z is minus the distance from the tip.
 std::vector<Eigen::Vector3f> from_tip(const SurfaceMap& map, const Catheter& catheter) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(catheter.tip - catheter.tail, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond::FromTwoVectors(catheter.tip - catheter.tail, Eigen::Vector3d::UnitZ());
   std::vector<Eigen::Vector3f> out;
   for (const Eigen::Vector3d& p : map.position) out.push_back((turn * (p - catheter.tip)).cast<float>());
   return out;
@@ -50,7 +51,9 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     const Body& from = scene.bodies.at(b);
     Soft body;
     body.coarse = map.position.size();
-    body.most_triangles = from.shell ? most_triangles_of_wall : from.catheter ? most_triangles_of_catheter : most_triangles_of_organ;
+    body.most_triangles = from.shell      ? most_triangles_of_wall
+                          : from.catheter ? most_triangles_of_catheter
+                                          : most_triangles_of_organ;
     body.finish = from.shell ? Finish::duct : from.catheter ? Finish::plastic : Finish::tissue;
     const bool given = render_.tissue_colour != Render{}.tissue_colour;
     body.colour = from.catheter ? plastic_colour : from.shell && !given ? duct_colour : render_.tissue_colour;
@@ -91,7 +94,8 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
   body.rest.resize(body.refinement.vertices());
   normal.resize(body.refinement.vertices());
   body.refinement.apply(body.rest, normal);
-  if (render_.colour == "displacement" && body.finish != Finish::plastic) body.displacement.assign(body.rest.size(), 0.0f);
+  if (render_.colour == "displacement" && body.finish != Finish::plastic)
+    body.displacement.assign(body.rest.size(), 0.0f);
   ++body.shape;
 }
 
@@ -126,8 +130,7 @@ void Stage::add_backdrop(const TriangleMesh& mesh, Finish finish, const std::arr
   backdrop_.push_back(std::move(part));
 }
 
-void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position,
-                        std::span<const Eigen::Vector3f> normal) {
+void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal) {
   Soft& body = bodies_.at(index);
   if (position.size() != body.coarse || normal.size() != body.coarse) return;
   std::copy(position.begin(), position.end(), body.position.begin());
@@ -140,7 +143,8 @@ void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position,
     body.displacement[i] = (body.position[i] - body.rest[i]).norm();
     most = std::max(most, body.displacement[i]);
   }
-  for (std::size_t i = 0; i < body.inner_displacement.size(); ++i) body.inner_displacement[i] = body.displacement[body.wall.inner().from[i]];
+  for (std::size_t i = 0; i < body.inner_displacement.size(); ++i)
+    body.inner_displacement[i] = body.displacement[body.wall.inner().from[i]];
   if (most > legend_max_) legend_max_ = round_up(most);
 }
 

@@ -13,16 +13,15 @@
 
 namespace palpate {
 
-/// What is to be seen, as last heard: bodies, tools, backdrop and the overlay's words. Modal shells are walls with two sides,
-/// catheters smooth tubes. Copies are snapshots.
+/// What is to be seen, as last heard: bodies, tools, backdrop and the overlay's words. Modal shells are walls with two
+/// sides, catheters smooth tubes. Copies are snapshots.
 class Stage {
  public:
   /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty.
   Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop);
 
   /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is.
-  void set_surface(int body, std::span<const Eigen::Vector3f> position,
-                   std::span<const Eigen::Vector3f> normal);
+  void set_surface(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal);
   /// Another surface of one body over the same nodes, after a cut: outward triangles.
   void set_triangles(int body, std::span<const std::array<int, 3>> triangles);
   /// False (and nothing set) if the scene has no such tool.

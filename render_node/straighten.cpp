@@ -24,9 +24,9 @@ std::vector<Eigen::Vector3f> along_longest_extent(const SurfaceMap& surface) {
 
 /// A piece of the centre line with the frame that was carried along it.
 struct Piece {
-  Vector3d begin, along;     ///< [m], unit
-  double length, start;      ///< [m] its own; of the line before it
-  Vector3d x;                ///< unit, across
+  Vector3d begin, along;  ///< [m], unit
+  double length, start;   ///< [m] its own; of the line before it
+  Vector3d x;             ///< unit, across
 };
 
 std::vector<Piece> centre_line(const std::vector<TubeSection>& sections) {
@@ -37,8 +37,9 @@ std::vector<Piece> centre_line(const std::vector<TubeSection>& sections) {
     const double length = step.norm();
     if (!(length > 0)) continue;
     const Vector3d along = step / length;
-    const Vector3d x = pieces.empty() ? along.unitOrthogonal()
-                                      : Vector3d(Eigen::Quaterniond::FromTwoVectors(pieces.back().along, along) * pieces.back().x);
+    const Vector3d x = pieces.empty()
+                           ? along.unitOrthogonal()
+                           : Vector3d(Eigen::Quaterniond::FromTwoVectors(pieces.back().along, along) * pieces.back().x);
     pieces.push_back({sections[i].centre, along, length, start, x});
     start += length;
   }

@@ -1,8 +1,8 @@
 #include "render_node/surface_source.hpp"
 
-#include "common/models/contact_feed.hpp"
-
 #include <spdlog/spdlog.h>
+
+#include "common/models/contact_feed.hpp"
 
 namespace palpate {
 namespace {
@@ -43,8 +43,8 @@ class ReceivedSurfaces : public SurfaceSource {
 
  private:
   bool fits(const SurfaceState& s) const {
-    return s.body < nodes_.size() && s.position.size() == 3 * nodes_[s.body] &&
-           s.normal.size() == s.position.size() && (s.run == 0 || presence_.accepts(s.run));
+    return s.body < nodes_.size() && s.position.size() == 3 * nodes_[s.body] && s.normal.size() == s.position.size() &&
+           (s.run == 0 || presence_.accepts(s.run));
   }
 
   const Presence& presence_;
@@ -83,8 +83,7 @@ class OwnSurfaces : public SurfaceSource {
 
 }  // namespace
 
-std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence,
-                                                std::vector<std::size_t> nodes) {
+std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence, std::vector<std::size_t> nodes) {
   return std::make_unique<ReceivedSurfaces>(bus, presence, std::move(nodes));
 }
 

@@ -16,8 +16,8 @@ class SurfaceSource {
     std::span<const Eigen::Vector3f> normal;    ///< unit, outward
   };
   virtual ~SurfaceSource() = default;
-  virtual bool update() = 0;                  ///< takes what has come; true if a newer haptic step is shown
-  virtual Shape shape(int body) const = 0;    ///< empty spans: not known yet, so at rest
+  virtual bool update() = 0;                ///< takes what has come; true if a newer haptic step is shown
+  virtual Shape shape(int body) const = 0;  ///< empty spans: not known yet, so at rest
   /// The haptic step shown.
   struct Moment {
     std::uint64_t run = 0, step = 0;  ///< run 0: rest shape
@@ -28,8 +28,7 @@ class SurfaceSource {
 };
 
 /// Surfaces published by a deform node. `nodes`: surface nodes per body.
-std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence,
-                                                std::vector<std::size_t> nodes);
+std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence, std::vector<std::size_t> nodes);
 
 /// Superposes the received contacts in this process, and keeps them for a haptic node that dies and comes
 /// back.

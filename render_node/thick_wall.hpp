@@ -28,15 +28,16 @@ class ThickWall {
 
  private:
   struct Rim {
-    int vertex;        ///< of the middle surface
-    int before, after; ///< its neighbours along the opening, in the triangles' direction
+    int vertex;         ///< of the middle surface
+    int before, after;  ///< its neighbours along the opening, in the triangles' direction
   };
   void add_rims(std::span<const std::array<int, 3>> triangles);
 
   float half_ = 0;
   int vertices_ = 0;
   Side outer_, inner_;
-  std::vector<Rim> rims_;  ///< each has two vertices of the inner side, from 2 * its place on beyond the middle surface's
+  std::vector<Rim>
+      rims_;  ///< each has two vertices of the inner side, from 2 * its place on beyond the middle surface's
 };
 
 }  // namespace palpate

@@ -37,8 +37,8 @@ void print_fixation(const Body& body, const TetMesh& mesh) {
 }
 
 void print_material(const Body& body) {
-  fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young,
-             body.material.poisson, body.material.density);
+  fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young, body.material.poisson,
+             body.material.density);
   for (const MaterialRegion& region : body.materials)
     fmt::print("  in {}: young {} Pa, poisson {}, density {} kg/m3\n", describe(region.where, "elements"),
                region.material.young, region.material.poisson, region.material.density);
@@ -78,8 +78,7 @@ void print_archive(const Scene& scene, const Body& body) {
 }
 
 void print_memory(const std::vector<MemoryPart>& parts) {
-  for (const MemoryPart& part : parts)
-    fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
+  for (const MemoryPart& part : parts) fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
 }
 
 /// Loads and validates a body's mesh and everything that refers to it. A catheter has no surface before it
@@ -101,8 +100,8 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
   const SurfaceMap surface = make_surface_map(body, mesh, dofs);
   Archive moving;
   if (is_dynamic(body)) moving = dynamic_archive(scene, body, mesh);
-  fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", body.name,
-             mesh.nodes.size(), mesh.tetrahedra.size(), dofs.size(), body.model);
+  fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", body.name, mesh.nodes.size(),
+             mesh.tetrahedra.size(), dofs.size(), body.model);
   fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
              surface.triangles.size(), mean_edge(surface), surface.touchable);
   print_fixation(body, mesh);
@@ -139,13 +138,11 @@ void print_sections(const Scene& scene) {
   if (scene.network.security) print_keys(scene.network.security->keys);
   if (scene.record) fmt::print("record: {}\n", scene.record->file.string());
   if (!scene.render) return;
-  fmt::print("render: {} x {}, coloured by {}\n", scene.render->width, scene.render->height,
-             scene.render->colour);
+  fmt::print("render: {} x {}, coloured by {}\n", scene.render->width, scene.render->height, scene.render->colour);
   if (scene.render->backdrop.empty()) return;
   const TriangleMesh backdrop = load_triangle_mesh(scene.render->backdrop, scene.render->backdrop_scale);
-  fmt::print(
-      "  backdrop: {} triangles, {}\n", backdrop.triangles.size(),
-      human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
+  fmt::print("  backdrop: {} triangles, {}\n", backdrop.triangles.size(),
+             human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
 }
 
 void print_left_out(const Scene& scene) {
@@ -170,7 +167,8 @@ void print_left_out(const Scene& scene) {
   const bool driven = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
   if (!driven) fmt::print("  no tool on the bus: no device topic and no thread for it\n");
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
-  if (!scene.network.security) fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
+  if (!scene.network.security)
+    fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
   if (!scene.render) fmt::print("  no [render]: default picture\n");
   if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
   if (std::ranges::none_of(scene.bodies, is_dynamic))
@@ -209,8 +207,7 @@ void check(const Scene& scene) {
 }  // namespace
 
 void add_check_command(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("check", "Validate a scene and say what will be built, and what it takes");
+  auto* command = app.add_subcommand("check", "Validate a scene and say what will be built, and what it takes");
   auto file = std::make_shared<std::string>();
   command->add_option("SCENE", *file, "scene file")->required();
   command->callback([file] { check(load_scene(*file)); });

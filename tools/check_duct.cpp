@@ -85,8 +85,7 @@ void check_rest(const Scene& scene, const Body& body) {
       const auto closest = closest_points(Segment{body.catheter->tail, body.catheter->tip},
                                           Triangle{mesh.nodes[a], mesh.nodes[b], mesh.nodes[c]});
       if (closest.squared_distance < reach * reach)
-        throw std::runtime_error(
-            fmt::format("{}: at rest it sticks in the wall of '{}'", name_of(body), duct.name));
+        throw std::runtime_error(fmt::format("{}: at rest it sticks in the wall of '{}'", name_of(body), duct.name));
     }
   }
 }
@@ -99,13 +98,13 @@ SurfaceMap check_shell_body(const Scene& scene, const Body& body) {
   const ShellDofs dofs = shell_fixation(mesh, body, name_of(body));
   check_shell(body, mesh, dofs, name_of(body));
   const SurfaceMap surface = make_surface_map(body, mesh, dofs);
-  fmt::print("{}: {} nodes, {} triangles, {} degrees of freedom; model {}\n", name_of(body),
-             mesh.nodes.size(), mesh.triangles.size(), dofs.size(), body.model);
-  fmt::print("  surface: {} nodes, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
-             mean_edge(surface), surface.touchable);
+  fmt::print("{}: {} nodes, {} triangles, {} degrees of freedom; model {}\n", name_of(body), mesh.nodes.size(),
+             mesh.triangles.size(), dofs.size(), body.model);
+  fmt::print("  surface: {} nodes, mean edge {:.4g} m; {} nodes touchable\n", surface.size(), mean_edge(surface),
+             surface.touchable);
   print_fixation(body, mesh);
-  fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young,
-             body.material.poisson, body.material.density);
+  fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young, body.material.poisson,
+             body.material.density);
   print_wall(body, mesh);
   print_modes(scene, body, dofs.translations());
   return surface;
@@ -114,13 +113,12 @@ SurfaceMap check_shell_body(const Scene& scene, const Body& body) {
 std::vector<MemoryPart> shell_memory(const Scene& scene, const Body& body, const SurfaceMap& surface) {
   std::vector<MemoryPart> parts = body_memory(scene, body, surface, 0);
   const std::size_t modes = body.shell->modes, rows = 3 * surface.position.size();
-  parts.push_back(
-      {"disk", "archive: modes", sizeof(double) * (rows * modes + modes + surface.position.size())});
+  parts.push_back({"disk", "archive: modes", sizeof(double) * (rows * modes + modes + surface.position.size())});
   if (!scene.tools.empty()) {
     parts.push_back({"haptic_node", "modes, by mode and by node", 2 * sizeof(double) * rows * modes});
     if (body.shell->residual)
-      parts.push_back({"haptic_node", "residual flexibility of each triangle",
-                       81 * sizeof(double) * surface.triangles.size()});
+      parts.push_back(
+          {"haptic_node", "residual flexibility of each triangle", 81 * sizeof(double) * surface.triangles.size()});
   }
   parts.push_back({"render_node --deform", "modes, single precision", sizeof(float) * rows * modes});
   return parts;
@@ -128,8 +126,7 @@ std::vector<MemoryPart> shell_memory(const Scene& scene, const Body& body, const
 
 void check_catheter(const Scene& scene, const Body& body) {
   const Catheter& catheter = *body.catheter;
-  const CatheterSettings settings{catheter, body.material.young, body.material.density,
-                                  1 / scene.rates.haptic_hz};
+  const CatheterSettings settings{catheter, body.material.young, body.material.density, 1 / scene.rates.haptic_hz};
   const Chain chain(catheter, body.material.young, body.material.density);
   const double area = std::numbers::pi * catheter.radius * catheter.radius;
   fmt::print("{}: {} particles {:.4g} m apart, {:.4g} m long, {} m thick; model {}\n", name_of(body),
@@ -137,9 +134,8 @@ void check_catheter(const Scene& scene, const Body& body) {
              body.model);
   if (!catheter.inside.empty()) fmt::print("  led into '{}'\n", catheter.inside);
   if (catheter.sleeve > 0) fmt::print("  sleeve: {} m from its tail\n", catheter.sleeve);
-  fmt::print("  material: young {} Pa, density {} kg/m3; bending stiffness {:.4g} N m2\n",
-             body.material.young, body.material.density,
-             body.material.young * area * catheter.radius * catheter.radius / 4);
+  fmt::print("  material: young {} Pa, density {} kg/m3; bending stiffness {:.4g} N m2\n", body.material.young,
+             body.material.density, body.material.young * area * catheter.radius * catheter.radius / 4);
   int substeps = 1;
   try {
     substeps = CatheterBody(settings, nullptr).substeps();
@@ -149,9 +145,8 @@ void check_catheter(const Scene& scene, const Body& body) {
   fmt::print(
       "  springs: frequencies up to {:.4g} Hz; {}, {} step{} in each haptic one; damping {} 1/s, gravity {} "
       "{} {} m/s2\n",
-      chain.frequency_bound() / (2 * std::numbers::pi), catheter.integrator, substeps,
-      substeps == 1 ? "" : "s", catheter.damping, catheter.gravity.x(), catheter.gravity.y(),
-      catheter.gravity.z());
+      chain.frequency_bound() / (2 * std::numbers::pi), catheter.integrator, substeps, substeps == 1 ? "" : "s",
+      catheter.damping, catheter.gravity.x(), catheter.gravity.y(), catheter.gravity.z());
   check_rest(scene, body);
 }
 
@@ -176,12 +171,10 @@ std::vector<std::string> catheter_warnings(const Scene& scene, const Body& body)
                     "can pass between them",
                     body.name, spacing, 2 * catheter.radius));
   if (catheter.integrator != "implicit") {
-    const CatheterSettings settings{catheter, body.material.young, body.material.density,
-                                    1 / scene.rates.haptic_hz};
+    const CatheterSettings settings{catheter, body.material.young, body.material.density, 1 / scene.rates.haptic_hz};
     if (const int substeps = CatheterBody(settings, nullptr).substeps(); substeps > 8)
-      warnings.push_back(
-          fmt::format("catheter '{}' is stiff: {} needs {} steps in each haptic one; implicit takes one",
-                      body.name, catheter.integrator, substeps));
+      warnings.push_back(fmt::format("catheter '{}' is stiff: {} needs {} steps in each haptic one; implicit takes one",
+                                     body.name, catheter.integrator, substeps));
   }
   return warnings;
 }

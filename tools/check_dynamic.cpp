@@ -59,8 +59,7 @@ void print_step(const Body& body, const Archive& archive) {
                                          body.name, body.dynamic.step, largest));
   const std::string taken =
       body.dynamic.step > 0 ? fmt::format("{} s is taken", body.dynamic.step) : "one below is taken";
-  fmt::print("  step: stable up to {:.4g} s, for frequencies up to {:.4g} rad/s; {}\n", largest, bound,
-             taken);
+  fmt::print("  step: stable up to {:.4g} s, for frequencies up to {:.4g} rad/s; {}\n", largest, bound, taken);
 }
 
 /// Bytes that the process has from its heap.
@@ -104,8 +103,7 @@ Archive dynamic_archive(const Scene& scene, const Body& body, const TetMesh& mes
 
 void print_dynamic(const Body& body, const TetMesh& mesh, const Archive& archive) {
   const std::size_t moving = archive.tetrahedra.size();
-  fmt::print("  moving: {} nodes, {} tetrahedra, {} edges", moving_nodes(archive), moving,
-             edge_count(archive));
+  fmt::print("  moving: {} nodes, {} tetrahedra, {} edges", moving_nodes(archive), moving, edge_count(archive));
   if (archive.hybrid) {
     const bool own_mesh = !body.hybrid->mesh.empty();
     const double whole = static_cast<double>(mesh.tetrahedra.size() + (own_mesh ? moving : 0));
@@ -114,9 +112,8 @@ void print_dynamic(const Body& body, const TetMesh& mesh, const Archive& archive
     if (own_mesh) fmt::print(", gap at rest {:.3g} m", archive.hybrid->largest_gap);
   }
   const Dynamic& d = body.dynamic;
-  fmt::print("\n  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}\n", d.integrator,
-             d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
-             d.corotational ? ", corotational" : "");
+  fmt::print("\n  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}\n", d.integrator, d.precision,
+             d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(), d.corotational ? ", corotational" : "");
   print_step(body, archive);
   if (body.tearing) fmt::print("  tearing: {} above {}\n", body.tearing->criterion, body.tearing->threshold);
 }
@@ -129,8 +126,7 @@ std::vector<MemoryPart> dynamic_memory(const Scene& scene, const Body& body, con
   const std::size_t nodes = archive.surface.size(), triangles = archive.surface.triangles.size();
   const std::size_t tetrahedra = archive.tetrahedra.size();
   add("disk", "archive: tetrahedra, surface and numbering",
-      nodes * (3 * sizeof(double) + 4 * sizeof(int)) + 3 * triangles * sizeof(int) +
-          4 * tetrahedra * sizeof(int));
+      nodes * (3 * sizeof(double) + 4 * sizeof(int)) + 3 * triangles * sizeof(int) + 4 * tetrahedra * sizeof(int));
   if (archive.hybrid) {
     const HybridTensors& h = *archive.hybrid;
     add("disk", "archive: tensors of the connection nodes",
@@ -156,8 +152,7 @@ std::vector<MemoryPart> dynamic_memory(const Scene& scene, const Body& body, con
   const CutMesh topology(mesh.tetrahedra, mesh.nodes());
   const std::size_t of_topology = measured();
   add("deform_node", "topology that is cut", of_topology);
-  const double size =
-      scene.contact.bucket_size > 0 ? scene.contact.bucket_size : 2 * mean_edge(archive.surface);
+  const double size = scene.contact.bucket_size > 0 ? scene.contact.bucket_size : 2 * mean_edge(archive.surface);
   const CutSurface surface(topology, mesh.rest, size);
   add("deform_node", "surface and buckets", measured());
   add("render_node", "topology that is cut", of_topology);
@@ -170,17 +165,15 @@ std::vector<std::string> cutting_warnings(const Scene& scene) {
   const bool cuttable = std::ranges::any_of(scene.bodies, is_dynamic);
   for (const Tool& tool : scene.tools) {
     if (tool.cautery && !cuttable)
-      warnings.push_back(
-          fmt::format("tool '{}' has a cautery, and no body is dynamic: it cuts nothing", tool.name));
+      warnings.push_back(fmt::format("tool '{}' has a cautery, and no body is dynamic: it cuts nothing", tool.name));
     if (tool.device != "scripted") continue;
     const Trajectory trajectory = load_trajectory(tool.trajectory);
     if (tool.cautery && pedal_time(trajectory) == 0)
       warnings.push_back(
           fmt::format("tool '{}' has a cautery, and the pedal of its trajectory is never down", tool.name));
     if (tool.kind == "probe" && tool.jaws && !ever_closes(trajectory, tool.jaws->closed_below))
-      warnings.push_back(
-          fmt::format("tool '{}' has jaws, and the grip of its trajectory never falls below {} rad",
-                      tool.name, tool.jaws->closed_below));
+      warnings.push_back(fmt::format("tool '{}' has jaws, and the grip of its trajectory never falls below {} rad",
+                                     tool.name, tool.jaws->closed_below));
   }
   return warnings;
 }

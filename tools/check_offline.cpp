@@ -38,15 +38,17 @@ void print_offline(const Body& body, const TetMesh& mesh) try {
 std::vector<std::string> locking_warnings(const Body& body) {
   const double poisson = largest_poisson(body);
   if (body.shell || body.catheter || poisson < kLocking) return {};
-  const auto start = fmt::format("body '{}': linear elements lock at poisson = {} and are too stiff, by a tenth at {} and "
-                                 "several times at 0.4999: ",
-                                 body.name, poisson, kLocking);
+  const auto start = fmt::format(
+      "body '{}': linear elements lock at poisson = {} and are too stiff, by a tenth at {} and "
+      "several times at 0.4999: ",
+      body.name, poisson, kLocking);
   if (body.model == "quasi_static") {
     if (!has_linear_displacement(body.offline)) return {};
     return {start + "give it a [body.offline] with element = \"p2\" and formulation = \"locking_free\""};
   }
   if (body.model == "spring_mass") return {};
-  return {start + fmt::format("take {} for tissue that moves, which true incompressibility stiffens by 4 % only", kLocking)};
+  return {start +
+          fmt::format("take {} for tissue that moves, which true incompressibility stiffens by 4 % only", kLocking)};
 }
 
 }  // namespace palpate

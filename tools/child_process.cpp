@@ -23,9 +23,11 @@ std::string sibling_program(const std::string& name) {
 }
 
 ChildProcess::ChildProcess(std::string name, const std::vector<std::string>& arguments) : name_(std::move(name)) {
-  if (access(arguments[0].c_str(), X_OK) != 0) throw std::runtime_error(fmt::format("cannot start {}: {}", arguments[0], std::strerror(errno)));
+  if (access(arguments[0].c_str(), X_OK) != 0)
+    throw std::runtime_error(fmt::format("cannot start {}: {}", arguments[0], std::strerror(errno)));
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("cannot start {}: {}", name_, std::strerror(errno)));
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(fmt::format("cannot start {}: {}", name_, std::strerror(errno)));
   std::vector<char*> argv;
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);

@@ -32,7 +32,8 @@ class Output {
     std::fputc('\n', file_);
   }
   void finish() {
-    if (std::fflush(file_) != 0 || std::ferror(file_)) throw std::runtime_error(fmt::format("{}: cannot write", name_.empty() ? "standard output" : name_));
+    if (std::fflush(file_) != 0 || std::ferror(file_))
+      throw std::runtime_error(fmt::format("{}: cannot write", name_.empty() ? "standard output" : name_));
   }
 
  private:

@@ -34,8 +34,7 @@ std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const 
   };
   add("disk", "archive: compliance among touchable dofs", sizeof(double) * triangle_entries);
   if (dofs.other > 0)
-    add("disk", "archive: compliance of the rest of the surface",
-        sizeof(double) * dofs.other * dofs.touchable);
+    add("disk", "archive: compliance of the rest of the surface", sizeof(double) * dofs.other * dofs.touchable);
   add("disk", "archive: surface and numbering", numbering);
   if (!scene.tools.empty()) {
     add("haptic_node", "compliance, double precision",
@@ -47,8 +46,7 @@ std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const 
   }
   add("render_node --deform", "compliance, single precision",
       Compliance<float>::bytes_of(surface.size(), surface.touchable));
-  const int fields =
-      body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
+  const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   add("render_node --deform", "visible surface",
       nodes * (fields * sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector3d)) + triangles * 3 * sizeof(int));
   return parts;
@@ -61,11 +59,14 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
     const bool forceps = tool.kind == "forceps";
     const double radius = forceps ? tool.jaws->radius : tool.radius;
     const auto warn = [&](const char* than, const char* so) {
-      warnings.push_back(fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
-                                     forceps ? "jaws with a radius" : "a radius", radius, than, h, body.name, so));
+      warnings.push_back(
+          fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
+                      forceps ? "jaws with a radius" : "a radius", radius, than, h, body.name, so));
     };
-    if (radius < h) warn("", "the force is the mesh's, not the tissue's");
-    else if (radius < 2 * h) warn("twice ", "the force still depends on the mesh");
+    if (radius < h)
+      warn("", "the force is the mesh's, not the tissue's");
+    else if (radius < 2 * h)
+      warn("twice ", "the force still depends on the mesh");
   }
   Eigen::Vector3d low = surface.position[0], high = low;
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);

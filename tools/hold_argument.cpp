@@ -45,8 +45,7 @@ class Parser {
     if (text.starts_with('+')) text.remove_prefix(1);  // from_chars takes no plus sign
     Number value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size())
-      fail(fmt::format("'{}' is not {}", text, kind));
+    if (error != std::errc() || end != text.data() + text.size()) fail(fmt::format("'{}' is not {}", text, kind));
     return value;
   }
 
@@ -54,12 +53,10 @@ class Parser {
     Components result;
     for (int axis = 0; axis < 3; ++axis) {
       const auto comma = text.find(',');
-      if ((comma == std::string_view::npos) != (axis == 2))
-        fail("three components are needed, as in " + form_);
+      if ((comma == std::string_view::npos) != (axis == 2)) fail("three components are needed, as in " + form_);
       const auto part = trim(text.substr(0, comma));
       if (!part.empty()) result[axis] = number<double>(part, "a number");
-      if (result[axis] && !std::isfinite(*result[axis]))
-        fail(fmt::format("'{}' is not a finite number", part));
+      if (result[axis] && !std::isfinite(*result[axis])) fail(fmt::format("'{}' is not a finite number", part));
       if (axis < 2) text.remove_prefix(comma + 1);
     }
     return result;
@@ -104,9 +101,8 @@ std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int m
     for (const auto& one : parse_hold(text)) {
       const auto& [node, axis, weight] = one.terms[0];
       if (node < 0 || node >= mesh_nodes)
-        throw std::runtime_error(
-            fmt::format("--hold \"{}\": node {} is not in the mesh, which has {} nodes (0 to {})", text, node,
-                        mesh_nodes, mesh_nodes - 1));
+        throw std::runtime_error(fmt::format("--hold \"{}\": node {} is not in the mesh, which has {} nodes (0 to {})",
+                                             text, node, mesh_nodes, mesh_nodes - 1));
       if (!seen.insert({node, axis}).second)
         throw std::runtime_error(
             fmt::format("--hold \"{}\": axis {} of node {} is held twice", text, "xyz"[axis], node));
@@ -115,8 +111,7 @@ std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int m
   return all;
 }
 
-std::vector<Constraint> touch_constraints(const TouchArgument& touch,
-                                          const std::vector<Eigen::Vector3d>& position,
+std::vector<Constraint> touch_constraints(const TouchArgument& touch, const std::vector<Eigen::Vector3d>& position,
                                           const std::vector<int>& node_number,
                                           const std::vector<std::array<int, 3>>& triangles) {
   double best = std::numeric_limits<double>::infinity();
@@ -135,8 +130,7 @@ std::vector<Constraint> touch_constraints(const TouchArgument& touch,
     if (!touch.displacement[axis]) continue;
     Constraint constraint{{}, *touch.displacement[axis]};
     for (int corner = 0; corner < 3; ++corner)
-      if (weights[corner] > 0)
-        constraint.terms.push_back({node_number[corners[corner]], axis, weights[corner]});
+      if (weights[corner] > 0) constraint.terms.push_back({node_number[corners[corner]], axis, weights[corner]});
     constraints.push_back(constraint);
   }
   return constraints;

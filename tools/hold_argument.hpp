@@ -27,8 +27,7 @@ std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int m
 
 /// The bilateral barycentric rule: the surface point nearest to the touch moves by its displacement.
 /// Triangles index `position`; `node_number` gives mesh node numbers.
-std::vector<Constraint> touch_constraints(const TouchArgument& touch,
-                                          const std::vector<Eigen::Vector3d>& position,
+std::vector<Constraint> touch_constraints(const TouchArgument& touch, const std::vector<Eigen::Vector3d>& position,
                                           const std::vector<int>& node_number,
                                           const std::vector<std::array<int, 3>>& triangles);
 

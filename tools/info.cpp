@@ -66,11 +66,10 @@ std::string local_time(std::int64_t wall_ns) {
 }
 
 void print_table(const LogSummary& s) {
-  fmt::print("\n{:24} {:>9} {:>9} {:>6} {:>8} {:>8}  {:>28}\n", "topic", "samples", "Hz", "gaps", "missing",
-             "invalid", "sense to log [us] p50/p99/max");
+  fmt::print("\n{:24} {:>9} {:>9} {:>6} {:>8} {:>8}  {:>28}\n", "topic", "samples", "Hz", "gaps", "missing", "invalid",
+             "sense to log [us] p50/p99/max");
   for (const auto& [name, t] : s.topics) {
-    fmt::print("{:24} {:9} {:9.1f} {:6} {:8} {:8}", name, t.samples, t.rate_hz(), t.gaps, t.missing,
-               t.invalid);
+    fmt::print("{:24} {:9} {:9.1f} {:6} {:8} {:8}", name, t.samples, t.rate_hz(), t.gaps, t.missing, t.invalid);
     if (t.to_receive.count() > 0) {
       const Percentiles p = percentiles_us(t.to_receive);
       fmt::print("  {:>28}", fmt::format("{:.0f} / {:.0f} / {:.0f}", p.p50, p.p99, p.max));
@@ -90,11 +89,13 @@ void print_hops(const LogSummary& s) {
   print("tool to force", s.hops.force());
   print("tool to surface", s.hops.surface());
   print("tool to picture", s.hops.picture());
-  if (s.hops.uncertainty_ns() > 0) fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(s.hops.uncertainty_ns()));
+  if (s.hops.uncertainty_ns() > 0)
+    fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(s.hops.uncertainty_ns()));
 }
 
 void print_tasks(const LogSummary& s) {
-  for (const TaskRecord& task : s.tasks) fmt::print("\ntask of catheter {} in run {:016x}\n{}", task.body, task.run, task_text(task));
+  for (const TaskRecord& task : s.tasks)
+    fmt::print("\ntask of catheter {} in run {:016x}\n{}", task.body, task.run, task_text(task));
 }
 
 void print_text(const LogSummary& s, const std::string& file) {

@@ -41,8 +41,7 @@ std::set<std::string> topics_in(const std::filesystem::path& file, const std::ve
   LogReader reader(file);
   LogEvent event;
   while (reader.next(event)) {
-    const bool chosen =
-        wanted.empty() || std::find(wanted.begin(), wanted.end(), event.channel) != wanted.end();
+    const bool chosen = wanted.empty() || std::find(wanted.begin(), wanted.end(), event.channel) != wanted.end();
     if (chosen && known.contains(event.channel)) found.insert(event.channel);
   }
   return found;

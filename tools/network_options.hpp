@@ -13,8 +13,7 @@ inline void add_network_options(CLI::App& command, BusSettings& settings, const 
   command.add_option("--domain", settings.domain, "DDS domain of the running system")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
-  command.add_option("--interface", settings.interface,
-                     "Network interface, name or address (default: loopback)");
+  command.add_option("--interface", settings.interface, "Network interface, name or address (default: loopback)");
   command.add_option("--peer", settings.peers, "Host to ask for other nodes; may be repeated");
   command.add_option("--keys", settings.keys, "Folder of keys, where the system's scene has [network.security]");
 }

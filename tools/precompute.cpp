@@ -17,9 +17,8 @@ void show_stage(std::string_view stage, double seconds) {
 
 void describe(const Archive& archive, const ArchiveState& state) {
   const double megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(state.file));
-  fmt::print("  {} nodes, {} of them touchable; {} touchable dofs, {} others; {:.1f} MB\n",
-             archive.surface.size(), archive.surface.touchable, archive.touchable_dofs.size(),
-             archive.other_dofs.size(), megabytes);
+  fmt::print("  {} nodes, {} of them touchable; {} touchable dofs, {} others; {:.1f} MB\n", archive.surface.size(),
+             archive.surface.touchable, archive.touchable_dofs.size(), archive.other_dofs.size(), megabytes);
 }
 
 void describe_moving_part(const Archive& archive) {
@@ -52,8 +51,7 @@ void precompute_body(const Scene& scene, const Body& body) {
   if (state.up_to_date)
     fmt::print("body '{}': up to date: {}\n", body.name, state.file.string());
   else
-    fmt::print("body '{}': computed and written in {:.3f} s: {}\n", body.name, state.seconds,
-               state.file.string());
+    fmt::print("body '{}': computed and written in {:.3f} s: {}\n", body.name, state.seconds, state.file.string());
   const auto archive = read_archive(state.file, ArchivePart::header, {});
   describe(archive, state);
   describe_moving_part(archive);

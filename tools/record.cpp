@@ -75,8 +75,7 @@ void record(Options& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
   Recorder recorder(*bus, {.file = o.file, .version = PALPATE_VERSION});
-  fmt::print("{}\n",
-             o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
+  fmt::print("{}\n", o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
   std::fflush(stdout);
 
   const std::int64_t start = now_ns();
@@ -99,8 +98,7 @@ void record(Options& o) {
 
 void add_record_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("record", "Write every topic of a running system into an LCM event log");
+  CLI::App* command = app.add_subcommand("record", "Write every topic of a running system into an LCM event log");
   add_network_options(*command, o->network, "recorder");
   command->add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
   command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)")

@@ -27,35 +27,43 @@ void verify(const std::string& file) {
   const VerifyReport report = verify_log(file);
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
-  if (!report.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
+  if (!report.mismatch.empty())
+    throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
   if (!report.verified())
-    throw std::runtime_error(fmt::format("{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified",
-                                         file, report.forces, report.steps, report.gaps.size()));
-  fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces, report.steps, report.code_path);
+    throw std::runtime_error(fmt::format(
+        "{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified", file,
+        report.forces, report.steps, report.gaps.size()));
+  fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces,
+             report.steps, report.code_path);
   if (report.tasks > 0) fmt::print("{}: verified: {} records of the task are equal bit for bit\n", file, report.tasks);
   const TissueReport tissue = verify_tissue(file);  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
-  if (!tissue.mismatch.empty()) throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
+  if (!tissue.mismatch.empty())
+    throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
   if (!tissue.gaps.empty())
-    throw std::runtime_error(fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
-  if (tissue.ticks > 0) fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
+    throw std::runtime_error(
+        fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
+  if (tissue.ticks > 0)
+    fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
 }
 
 nlohmann::ordered_json json_of(const Options& o, const PlayReport& report) {
   const Percentiles pace = percentiles_us(report.pace);
-  return {{"file", o.file},
-          {"complete", report.complete},
-          {"seconds", report.seconds},
-          {"played", report.played},
-          {"skipped", report.skipped},
-          {"pace_us", {{"p50", pace.p50}, {"p90", pace.p90}, {"p99", pace.p99}, {"p999", pace.p999}, {"max", pace.max}}},
-          {"damage", report.damage}};
+  return {
+      {"file", o.file},
+      {"complete", report.complete},
+      {"seconds", report.seconds},
+      {"played", report.played},
+      {"skipped", report.skipped},
+      {"pace_us", {{"p50", pace.p50}, {"p90", pace.p90}, {"p99", pace.p99}, {"p999", pace.p999}, {"max", pace.max}}},
+      {"damage", report.damage}};
 }
 
 void play(const Options& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
-  request_realtime({.priority = player_priority, .lock_memory = false});  // where permitted; after the bus has made its threads
+  request_realtime(
+      {.priority = player_priority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const bool terminal = isatty(STDERR_FILENO);
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
     if (terminal) fmt::print(stderr, "\r{:9.2f} s", seconds);
@@ -68,8 +76,11 @@ void play(const Options& o) {
   }
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   const Percentiles pace = percentiles_us(report.pace);
-  fmt::print("{}: {} of {:.2f} s: {} messages to domain {}, {} left out\npaced: median {:.1f} us, p99 {:.1f} us after the recorded times\n", o.file,
-             report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain, report.skipped, pace.p50, pace.p99);
+  fmt::print(
+      "{}: {} of {:.2f} s: {} messages to domain {}, {} left out\npaced: median {:.1f} us, p99 {:.1f} us after the "
+      "recorded times\n",
+      o.file, report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain,
+      report.skipped, pace.p50, pace.p99);
 }
 
 }  // namespace
@@ -78,11 +89,15 @@ void add_replay_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("replay", "Play a topic log back to DDS, or verify it");
   command->add_option("log", o->file, "LCM event log")->required();
-  command->add_option("--speed", o->play.speed, "2 plays twice as fast")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--speed", o->play.speed, "2 plays twice as fast")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
   add_network_options(*command, o->network, "player");
   command->add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
-  command->add_flag("--verify", o->verify, "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
+  command
+      ->add_flag("--verify", o->verify,
+                 "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
       ->excludes("--speed", "--topic", "--json");
   command->callback([o] { o->verify ? verify(o->file) : play(*o); });
 }

@@ -38,7 +38,9 @@ struct Node {
 /// The nodes of one scene on this machine, in the order in which they start; the haptic node comes last.
 class Nodes {
  public:
-  void start(const std::string& role, const std::vector<std::string>& arguments) { nodes_.push_back({ChildProcess(role, arguments), Clock::now()}); }
+  void start(const std::string& role, const std::vector<std::string>& arguments) {
+    nodes_.push_back({ChildProcess(role, arguments), Clock::now()});
+  }
 
   /// Reads what the nodes print: "ready", and at the end one JSON line each.
   void read() {
@@ -59,7 +61,8 @@ class Nodes {
   void check() {
     for (Node& n : nodes_)
       if (!n.process.running() && n.process.status() != 0)
-        throw std::runtime_error(fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
+        throw std::runtime_error(
+            fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
   }
 
   void wait_ready() {
@@ -80,7 +83,8 @@ class Nodes {
   void stop() {
     for (auto n = nodes_.rbegin(); n != nodes_.rend(); ++n) {
       n->process.interrupt();
-      if (!n->process.wait(30s)) throw std::runtime_error(fmt::format("{} did not stop within 30 s", n->process.name()));
+      if (!n->process.wait(30s))
+        throw std::runtime_error(fmt::format("{} did not stop within 30 s", n->process.name()));
     }
     read();
   }
@@ -145,31 +149,43 @@ void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
 }
 
 void print_summary(const nlohmann::json& s) {
-  const auto number = [](const nlohmann::json& j, const char* key) { return j.is_object() && j.contains(key) ? j[key].get<double>() : 0.0; };
+  const auto number = [](const nlohmann::json& j, const char* key) {
+    return j.is_object() && j.contains(key) ? j[key].get<double>() : 0.0;
+  };
   const auto& haptic = s["haptic_node"];
   if (haptic.is_object())
-    fmt::print("haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest force {:.2f} N\n",
-               number(haptic, "rate_hz"), number(haptic, "step_us_p50"), number(haptic, "step_us_p99"), number(haptic, "step_us_p999"),
-               haptic.value("missed", 0), haptic.value("ticks", 0), number(haptic, "force_max_n"));
+    fmt::print(
+        "haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest "
+        "force {:.2f} N\n",
+        number(haptic, "rate_hz"), number(haptic, "step_us_p50"), number(haptic, "step_us_p99"),
+        number(haptic, "step_us_p999"), haptic.value("missed", 0), haptic.value("ticks", 0),
+        number(haptic, "force_max_n"));
   if (haptic.is_object() && haptic.contains("tasks"))
     for (const auto& task : haptic["tasks"])
-      fmt::print("task     {:8.1f} mm of '{}' inserted, {:.1f} mm at the deepest, {:.1f} s after it went in   largest force {:.2f} N   {} wall contacts, "
-                 "{} grasps, {} drops\n",
-                 1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"), number(task, "inserting_s"),
-                 number(task, "force_max_n"), task.value("wall_contacts", 0), task.value("grasps", 0), task.value("drops", 0));
+      fmt::print(
+          "task     {:8.1f} mm of '{}' inserted, {:.1f} mm at the deepest, {:.1f} s after it went in   largest force "
+          "{:.2f} N   {} wall contacts, "
+          "{} grasps, {} drops\n",
+          1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"),
+          number(task, "inserting_s"), number(task, "force_max_n"), task.value("wall_contacts", 0),
+          task.value("grasps", 0), task.value("drops", 0));
   if (s.contains("render_node") && s["render_node"].is_object())
-    fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n", number(s["render_node"], "rate_hz"),
-               1e-3 * number(s["render_node"], "latency_us_p50"), 1e-3 * number(s["render_node"], "latency_us_p99"),
-               s["render_node"].value("frames", 0));
+    fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n",
+               number(s["render_node"], "rate_hz"), 1e-3 * number(s["render_node"], "latency_us_p50"),
+               1e-3 * number(s["render_node"], "latency_us_p99"), s["render_node"].value("frames", 0));
   if (s.contains("deform_node") && s["deform_node"].contains("tick_hz")) {
     const auto& deform = s["deform_node"];
-    fmt::print("tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, {} fallen away\n",
-               number(deform, "tick_hz"), number(deform, "tick_us_p50"), number(deform, "tick_us_p99"), deform.value("missed", 0),
-               deform.value("ticks", 0), deform.value("tetrahedra_cut", 0), deform.value("tetrahedra_torn", 0), deform.value("tetrahedra_fallen", 0));
+    fmt::print(
+        "tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, "
+        "{} fallen away\n",
+        number(deform, "tick_hz"), number(deform, "tick_us_p50"), number(deform, "tick_us_p99"),
+        deform.value("missed", 0), deform.value("ticks", 0), deform.value("tetrahedra_cut", 0),
+        deform.value("tetrahedra_torn", 0), deform.value("tetrahedra_fallen", 0));
   }
   if (s.contains("deform_node") && s["deform_node"].is_object())
-    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(s["deform_node"], "rate_hz"),
-               number(s["deform_node"], "latency_us_p50"), number(s["deform_node"], "latency_us_p99"));
+    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n",
+               number(s["deform_node"], "rate_hz"), number(s["deform_node"], "latency_us_p50"),
+               number(s["deform_node"], "latency_us_p99"));
   if (s.contains("recorder") && s["recorder"].is_object())
     fmt::print("recorder {} messages, {} lost\n", s["recorder"].value("messages", 0), s["recorder"].value("lost", 0));
 }
@@ -208,14 +224,20 @@ void add_run_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
   CLI::App* run_command = app.add_subcommand("run", "Start the nodes that a scene needs on this machine");
   run_command->add_option("scene", o->scene, "Scene file")->required();
-  run_command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")->check(CLI::PositiveNumber);
+  run_command
+      ->add_option("--seconds", o->seconds,
+                   "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")
+      ->check(CLI::PositiveNumber);
   run_command->add_option("--record", o->record, "Write all topics to this LCM event log");
   run_command->add_option("--film", o->film, "Write a film (MP4)");
   run_command->add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
   run_command->add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
   run_command->add_option("--domain", o->domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
   run_command->add_option("--keys", o->keys, "Folder of keys in place of the scene's");
-  run_command->add_option("--processes", o->processes, "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")->check(CLI::IsMember({2, 3}));
+  run_command
+      ->add_option("--processes", o->processes,
+                   "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")
+      ->check(CLI::IsMember({2, 3}));
   run_command->callback([o] { run(*o); });
 }
 

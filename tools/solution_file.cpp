@@ -17,14 +17,13 @@ void write_text(const std::string& text, const std::filesystem::path& file) {
   std::FILE* stream = std::fopen(file.c_str(), "w");
   bool done = stream && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   if (stream) done = std::fclose(stream) == 0 && done;
-  if (!done)
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  if (!done) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
 }
 
 template <class Values>
 std::string data_array(const char* type, const char* name, int components, const Values& values) {
-  auto text = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
-                          type, name, components);
+  auto text = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", type,
+                          name, components);
   for (const auto& value : values) fmt::format_to(std::back_inserter(text), "{}\n", value);
   return text + "</DataArray>\n";
 }
@@ -63,19 +62,17 @@ void write_csv(const SolutionTable& table, const std::filesystem::path& file) {
 
 void write_vtu(const SolutionTable& table, const std::filesystem::path& file) {
   const std::size_t count = table.tetrahedra.size() + table.triangles.size();
-  const auto grid = table.triangles.empty() ? cells(table.tetrahedra, kVtkTetrahedron)
-                                            : cells(table.triangles, kVtkTriangle);
+  const auto grid =
+      table.triangles.empty() ? cells(table.tetrahedra, kVtkTetrahedron) : cells(table.triangles, kVtkTriangle);
   write_text(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n" +
-          fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", table.node.size(),
-                      count) +
+          fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", table.node.size(), count) +
           data_array("Float64", "position", 3, vectors(table.position)) + "</Points>\n" + grid +
           "<PointData Vectors=\"displacement\">\n" +
           data_array("Float64", "displacement", 3, vectors(table.displacement)) +
-          data_array("Float64", "force", 3, vectors(table.force)) +
-          data_array("Int32", "node", 1, table.node) +
+          data_array("Float64", "force", 3, vectors(table.force)) + data_array("Int32", "node", 1, table.node) +
           "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
       file);
 }

@@ -57,9 +57,8 @@ SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments)
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  const auto solution = is_finer(body.offline)
-                            ? solve_direct(make_fine_problem(body, mesh, *body.offline), constraints)
-                            : solve_direct(problem, constraints);
+  const auto solution = is_finer(body.offline) ? solve_direct(make_fine_problem(body, mesh, *body.offline), constraints)
+                                               : solve_direct(problem, constraints);
   table.displacement = solution.displacement;
   table.force = solution.force;
   return table;
@@ -70,8 +69,7 @@ SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments)
 SolutionTable sorted_table(const SurfaceMap& surface, const SurfaceSolution& solution) {
   std::vector<int> order(surface.size()), place(surface.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return surface.node_number[a] < surface.node_number[b]; });
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return surface.node_number[a] < surface.node_number[b]; });
   SolutionTable table;
   for (int i = 0; i < surface.size(); ++i) {
     place[order[i]] = i;
@@ -91,9 +89,8 @@ SolutionTable solve_by_tensors(const Scene& scene, const Body& body, const Solve
   ensure_archive(scene, body);
   const auto archive = find_archive(scene, body, ArchivePart::surface);
   const auto& surface = archive.surface;
-  return sorted_table(surface,
-                      solve_tensors(archive, constraints_of(arguments, archive.mesh_nodes, surface.position,
-                                                            surface.node_number, surface.triangles)));
+  return sorted_table(surface, solve_tensors(archive, constraints_of(arguments, archive.mesh_nodes, surface.position,
+                                                                     surface.node_number, surface.triangles)));
 }
 
 void summarise(const SolutionTable& table, const SolveArguments& arguments) {
@@ -103,9 +100,8 @@ void summarise(const SolutionTable& table, const SolveArguments& arguments) {
     if (table.displacement[i].norm() > table.displacement[furthest].norm()) furthest = i;
     largest_force = std::max(largest_force, table.force[i].norm());
   }
-  fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n",
-             arguments.method, table.node.size(), table.displacement[furthest].norm(), table.node[furthest],
-             largest_force);
+  fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n", arguments.method,
+             table.node.size(), table.displacement[furthest].norm(), table.node[furthest], largest_force);
 }
 
 /// A shell's rotations are condensed into its archive, and only there.
@@ -123,8 +119,8 @@ void solve(const SolveArguments& arguments) {
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
   check_model(body, arguments.method);
-  const auto table = arguments.method == "direct" ? solve_by_direct(body, arguments)
-                                                  : solve_by_tensors(scene, body, arguments);
+  const auto table =
+      arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
   if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
   summarise(table, arguments);
@@ -138,25 +134,20 @@ void add_solve_command(CLI::App& app) {
   command->add_option("SCENE", arguments->scene, "scene file")->required();
   command->add_option("--body", arguments->body, "name of the body; needed where the scene has several");
   command
-      ->add_option(
-          "--hold", arguments->holds,
-          "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
-          "component leaves that axis free")
+      ->add_option("--hold", arguments->holds,
+                   "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
+                   "component leaves that axis free")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--touch", arguments->touches,
-          "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
+      ->add_option("--touch", arguments->touches,
+                   "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
       ->allow_extra_args(false);
-  command
-      ->add_option("--method", arguments->method,
-                   "tensors: through the archive; direct: the full system afresh")
+  command->add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
       ->check(CLI::IsMember({"tensors", "direct"}))
       ->capture_default_str();
-  command->add_option(
-      "--csv", arguments->csv,
-      "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
-      "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
+  command->add_option("--csv", arguments->csv,
+                      "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
+                      "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
   command->add_option("--vtu", arguments->vtu, "write a file for ParaView");
   command->callback([arguments] { solve(*arguments); });
 }

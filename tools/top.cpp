@@ -83,17 +83,19 @@ class Board {
   static std::string clock(const NodeStatus& s) {
     if (s.clock_of.empty()) return s.role == "haptic" ? "the reference" : "-";
     if (s.clock_uncertainty_ns == 0) return "the same";
-    return fmt::format("{:+.3f} ± {:.3f} ms, {:+.1f} ppm", 1e-6 * static_cast<double>(s.clock_offset_ns), 1e-6 * static_cast<double>(s.clock_uncertainty_ns),
-                       s.clock_drift_ppm);
+    return fmt::format("{:+.3f} ± {:.3f} ms, {:+.1f} ppm", 1e-6 * static_cast<double>(s.clock_offset_ns),
+                       1e-6 * static_cast<double>(s.clock_uncertainty_ns), s.clock_drift_ppm);
   }
 
   std::string nodes_text() const {
     if (known_.empty()) return "no node is heard of\n";
-    std::string text = fmt::format("{:28} {:14} {:>9} {:>12} {:>9} {:>11} {:>11}  {}\n", "node", "link", "rate Hz", "ticks", "missed", "p50 us", "p99 us", "clock");
+    std::string text = fmt::format("{:28} {:14} {:>9} {:>12} {:>9} {:>11} {:>11}  {}\n", "node", "link", "rate Hz",
+                                   "ticks", "missed", "p50 us", "p99 us", "clock");
     for (const auto& [name, k] : known_) {
       const NodeStatus& s = k.status;
-      text += fmt::format("{:28} {:14} {:9.1f} {:12} {:9} {:11.1f} {:11.1f}  {}\n", name, link(1e-9 * static_cast<double>(now_ns() - k.heard_ns)), s.rate_hz,
-                          s.ticks, s.missed, s.latency_p50_us, s.latency_p99_us, clock(s));
+      text += fmt::format("{:28} {:14} {:9.1f} {:12} {:9} {:11.1f} {:11.1f}  {}\n", name,
+                          link(1e-9 * static_cast<double>(now_ns() - k.heard_ns)), s.rate_hz, s.ticks, s.missed,
+                          s.latency_p50_us, s.latency_p99_us, clock(s));
       if (!s.text.empty()) text += fmt::format("  {}\n", s.text);
     }
     return text;
@@ -103,8 +105,9 @@ class Board {
     std::string text;
     for (const auto& [tool, hand] : hands_) {
       const auto& f = hand.last.force;
-      text += fmt::format("tool {}   force {:6.3f} N now, {:6.3f} N at most   {:7.1f} steps a second{}{}\n", tool, std::hypot(f[0], f[1], f[2]), hand.strongest,
-                          static_cast<double>(hand.steps) / seconds, hand.last.flags & fault ? "   fault: force off" : "",
+      text += fmt::format("tool {}   force {:6.3f} N now, {:6.3f} N at most   {:7.1f} steps a second{}{}\n", tool,
+                          std::hypot(f[0], f[1], f[2]), hand.strongest, static_cast<double>(hand.steps) / seconds,
+                          hand.last.flags & fault ? "   fault: force off" : "",
                           hand.last.flags & (force_limited | slew_limited | passivity_limited) ? "   limited" : "");
     }
     if (sequence_.missing() > 0) text += fmt::format("{} forces never came here\n", sequence_.missing());
@@ -123,7 +126,8 @@ class Board {
     row("tool to force", hops_.force());
     row("tool to surface", hops_.surface());
     row("tool to picture", hops_.picture());
-    return text.empty() ? text : fmt::format("\n{:16} {:>10} {:>10} {:>10}\n", "one way [us]", "p50", "p99", "max") + text;
+    return text.empty() ? text
+                        : fmt::format("\n{:16} {:>10} {:>10} {:>10}\n", "one way [us]", "p50", "p99", "max") + text;
   }
 
   std::unique_ptr<Reader<NodeStatus>> nodes_;
@@ -149,7 +153,8 @@ void run(const Options& o) {
     board.take();
     const std::int64_t now = now_ns();
     if (now - last < interval) continue;
-    fmt::print("{}domain {}   Ctrl-C ends\n\n{}", terminal ? "\x1b[H\x1b[2J" : "", o.network.domain, board.look(1e-9 * static_cast<double>(now - last)));
+    fmt::print("{}domain {}   Ctrl-C ends\n\n{}", terminal ? "\x1b[H\x1b[2J" : "", o.network.domain,
+               board.look(1e-9 * static_cast<double>(now - last)));
     std::fflush(stdout);
     last = now;
     if (o.once) break;
@@ -160,8 +165,11 @@ void run(const Options& o) {
 
 void add_top_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
-  command->add_option("--interval", o->interval, "Time between two looks [s]")->check(CLI::Range(0.1, 60.0))->capture_default_str();
+  CLI::App* command =
+      app.add_subcommand("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
+  command->add_option("--interval", o->interval, "Time between two looks [s]")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
   command->add_flag("--once", o->once, "One look, then end");
   add_network_options(*command, o->network, "observer");
   command->callback([o] { run(*o); });

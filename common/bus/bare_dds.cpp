@@ -9,7 +9,8 @@
 
 namespace palpate {
 
-BareDds::BareDds(const BusSettings& settings, const std::string& out, const std::string& in) : domain_(make_dds_bus(settings)) {
+BareDds::BareDds(const BusSettings& settings, const std::string& out, const std::string& in)
+    : domain_(make_dds_bus(settings)) {
   participant_ = make_participant(settings);
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
@@ -22,11 +23,14 @@ BareDds::BareDds(const BusSettings& settings, const std::string& out, const std:
   dds_delete_qos(qos);
   waitset_ = dds_create_waitset(participant_);
   const dds_entity_t condition = dds_create_readcondition(reader_, DDS_ANY_STATE);
-  if (writer_ < 0 || reader_ < 0 || waitset_ < 0 || condition < 0) throw std::runtime_error("network: setting up bare DDS failed");
+  if (writer_ < 0 || reader_ < 0 || waitset_ < 0 || condition < 0)
+    throw std::runtime_error("network: setting up bare DDS failed");
   dds_waitset_attach(waitset_, condition, 0);
 }
 
-BareDds::~BareDds() { dds_delete(participant_); }
+BareDds::~BareDds() {
+  dds_delete(participant_);
+}
 
 void BareDds::send(std::uint64_t seq, std::vector<std::uint8_t>& bytes) {
   palpate_HapticKeyframe sample{};

@@ -18,9 +18,10 @@ class Writer {
   virtual ~Writer() = default;
   /// Never waits for a reader. False if the sample was not sent: it is invalid or the buffers are full.
   virtual bool write(const Message& message) = 0;
-  virtual int readers() const = 0;  ///< matched readers; over DDS one that was killed counts for two minutes
+  virtual int readers() const = 0;            ///< matched readers; over DDS one that was killed counts for two minutes
   virtual std::uint64_t refused() const = 0;  ///< samples for which write() was false
-  /// No reader that asks for repair still lacks something that was written; recorders with a stream of their own count where nobody else reads.
+  /// No reader that asks for repair still lacks something that was written; recorders with a stream of their own count
+  /// where nobody else reads.
   virtual bool delivered() const = 0;
 };
 
@@ -58,7 +59,8 @@ class Bus {
   /// Where it meets others, for a sentence: "domain 3 on eth0 (192.0.2.1)".
   virtual std::string place() const = 0;
 
-  /// A sentence about each program of another version that has come since the last call: its messages do not get through.
+  /// A sentence about each program of another version that has come since the last call: its messages do not get
+  /// through.
   virtual std::vector<std::string> misfits() = 0;
 
   /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be

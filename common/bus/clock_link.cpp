@@ -34,7 +34,10 @@ void ClockServer::answer() {
 }
 
 ClockFollower::ClockFollower(Bus& bus, std::string node, ClockReading clock)
-    : probes_(bus.writer(topics::clock_probe)), answers_(bus.reader(topics::clock_answer)), clock_(std::move(clock)), host_(boot_id()) {
+    : probes_(bus.writer(topics::clock_probe)),
+      answers_(bus.reader(topics::clock_answer)),
+      clock_(std::move(clock)),
+      host_(boot_id()) {
   probe_.node = std::move(node);
 }
 

@@ -37,7 +37,9 @@ class ClockFollower {
   const std::string& of() const { return of_; }  ///< node whose clock it is; empty: none yet
   ClockOffset::Estimate estimate() const;        ///< theirs minus own, now
   std::int64_t round_trip_ns() const { return round_trip_; }
-  std::int64_t to_own(std::int64_t theirs_ns) const { return theirs_ns - offset_; }  ///< a time of theirs on this node's clock
+  std::int64_t to_own(std::int64_t theirs_ns) const {
+    return theirs_ns - offset_;
+  }  ///< a time of theirs on this node's clock
 
  private:
   void take(const ClockAnswer& answer);

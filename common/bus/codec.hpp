@@ -12,8 +12,7 @@
 /// element after the other; strings and sequences after a u32 count. The schema text describes exactly this.
 namespace palpate {
 
-static_assert(std::endian::native == std::endian::little,
-              "the log encoding copies numbers as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "the log encoding copies numbers as they lie in memory");
 
 using Bytes = std::vector<std::uint8_t>;
 

@@ -30,14 +30,18 @@ std::shared_ptr<Domain> join_domain(const BusSettings& settings) {
   const std::string configuration = dds_configuration(settings);
   const std::lock_guard lock(mutex);
   if (auto domain = domains[settings.domain].lock()) {
-    if (domain->configuration == configuration && domain->keys == settings.keys && (settings.keys.empty() || domain->role == settings.role)) return domain;
+    if (domain->configuration == configuration && domain->keys == settings.keys &&
+        (settings.keys.empty() || domain->role == settings.role))
+      return domain;
     throw std::runtime_error(
         fmt::format("network: this process is already in domain {} with other settings", settings.domain));
   }
   const auto id = static_cast<dds_domainid_t>(settings.domain);
-  auto domain = std::shared_ptr<Domain>(new Domain{
-      configuration, settings.keys, settings.role,
-      {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
+  auto domain = std::shared_ptr<Domain>(
+      new Domain{configuration,
+                 settings.keys,
+                 settings.role,
+                 {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
   domains[settings.domain] = domain;
   return domain;
 }
@@ -52,8 +56,7 @@ using QosPtr = std::unique_ptr<dds_qos_t, QosDeleter>;
 QosPtr common_qos(const Qos& qos) {
   QosPtr q(dds_create_qos());
   dds_qset_reliability(q.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
-  dds_qset_durability(q.get(),
-                      qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_durability(q.get(), qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   return q;
 }
 
@@ -62,7 +65,8 @@ QosPtr writer_qos(const Qos& qos, int lease_ms) {
   const bool all = qos.depth == keep_all;
   const dds_history_kind_t kind = all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
   dds_qset_history(q.get(), kind, all ? DDS_LENGTH_UNLIMITED : qos.depth);
-  dds_qset_durability_service(q.get(), 0, kind, all ? DDS_LENGTH_UNLIMITED : 1, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_durability_service(q.get(), 0, kind, all ? DDS_LENGTH_UNLIMITED : 1, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_liveliness(q.get(), DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(lease_ms));
   dds_qset_writer_data_lifecycle(q.get(), false);
   return q;
@@ -89,9 +93,12 @@ QosPtr reader_qos(const Qos& qos, Keep keep) {
 /// A writer of the middleware, with its topic.
 class Outlet {
  public:
-  Outlet(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name, const Qos& qos, int lease_ms)
-      : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr), fmt::format("creating topic {}", name)),
-        writer_(dds_create_writer(participant, topic_, writer_qos(qos, lease_ms).get(), nullptr), fmt::format("creating the writer of {}", name)) {}
+  Outlet(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name, const Qos& qos,
+         int lease_ms)
+      : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr),
+               fmt::format("creating topic {}", name)),
+        writer_(dds_create_writer(participant, topic_, writer_qos(qos, lease_ms).get(), nullptr),
+                fmt::format("creating the writer of {}", name)) {}
 
   bool write(const void* sample) { return dds_write(writer_, sample) == DDS_RETCODE_OK; }
   bool delivered() const { return dds_wait_for_acks(writer_, 0) == DDS_RETCODE_OK; }
@@ -112,7 +119,8 @@ class DdsWriter final : public Writer<M> {
       : outlet_(participant, dds::Generated<M>::descriptor(), topic.name, topic.qos, lease_ms) {
     Qos deep = topic.qos;
     deep.depth = topic.qos.recorder_depth;
-    if (deep.depth > 0) for_recorders_.emplace(participant, dds::Generated<M>::descriptor(), recorders_name(topic), deep, lease_ms);
+    if (deep.depth > 0)
+      for_recorders_.emplace(participant, dds::Generated<M>::descriptor(), recorders_name(topic), deep, lease_ms);
   }
 
   bool write(const M& message) override {
@@ -130,7 +138,9 @@ class DdsWriter final : public Writer<M> {
   int readers() const override { return outlet_.readers() + (for_recorders_ ? for_recorders_->readers() : 0); }
   std::uint64_t refused() const override { return refused_; }
   /// A recorder that falls behind does not hold up viewers, but where it is alone it sets the pace.
-  bool delivered() const override { return for_recorders_ && outlet_.readers() == 0 ? for_recorders_->delivered() : outlet_.delivered(); }
+  bool delivered() const override {
+    return for_recorders_ && outlet_.readers() == 0 ? for_recorders_->delivered() : outlet_.delivered();
+  }
 
  private:
   Outlet outlet_;
@@ -148,7 +158,8 @@ template <class M>
 class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep)
-      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), stream_name(topic, keep).c_str(), nullptr, nullptr),
+      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), stream_name(topic, keep).c_str(),
+                                nullptr, nullptr),
                fmt::format("creating topic {}", topic.name)),
         reader_(dds_create_reader(participant, topic_, reader_qos(topic.qos, keep).get(), nullptr),
                 fmt::format("creating the reader of {}", topic.name)),
@@ -215,8 +226,12 @@ class DdsBus final : public Bus {
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
 
-  std::string place() const override { return place_; }
-  std::vector<std::string> misfits() override { return versions_.look(); }
+  std::string place() const override {
+    return place_;
+  }
+  std::vector<std::string> misfits() override {
+    return versions_.look();
+  }
 
   bool wait(std::chrono::nanoseconds timeout) override {
     return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;

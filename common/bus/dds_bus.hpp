@@ -14,8 +14,8 @@ struct BusSettings {
   std::string interface {};          ///< name or address of a network interface; empty: loopback
   std::vector<std::string> peers{};  ///< hosts to ask; with any given, multicast is not used
   int lease_ms = 200;                ///< a writer that is silent for so long is dead for its readers
-  std::filesystem::path keys{};      ///< folder of keys, see security.hpp; empty: open to all, and nothing of it is loaded
-  std::string role{};                ///< whose keys of those: a role of roles.hpp; means nothing without keys
+  std::filesystem::path keys{};  ///< folder of keys, see security.hpp; empty: open to all, and nothing of it is loaded
+  std::string role{};            ///< whose keys of those: a role of roles.hpp; means nothing without keys
 };
 
 /// The middleware's configuration for these settings, as XML text. Loopback: no multicast, large datagrams.
@@ -23,7 +23,8 @@ struct BusSettings {
 /// receiver's kernel. Throws std::runtime_error in one sentence for a bad domain, interface or peer name.
 std::string dds_configuration(const BusSettings& settings);
 
-/// Where these settings meet others, in words: domain, interface and address, first UDP port, who is asked for others, and keys.
+/// Where these settings meet others, in words: domain, interface and address, first UDP port, who is asked for others,
+/// and keys.
 std::string dds_place(const BusSettings& settings);
 
 /// Joins the network. Several buses of one process may share a domain if their settings are the same.

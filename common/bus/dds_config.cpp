@@ -73,8 +73,7 @@ Parts real_network(const BusSettings& settings) {
     throw std::runtime_error(
         fmt::format("network: this host has no interface '{}' with an IPv4 address", settings.interface));
   if (own.empty())
-    throw std::runtime_error(
-        fmt::format("network: no interface of this host has the address {}", settings.interface));
+    throw std::runtime_error(fmt::format("network: no interface of this host has the address {}", settings.interface));
   std::vector<std::string> peers = settings.peers;
   if (!peers.empty()) peers.push_back(own);
   return {fmt::format("<General><Interfaces><NetworkInterface "
@@ -88,10 +87,13 @@ Parts real_network(const BusSettings& settings) {
 
 std::string dds_place(const BusSettings& settings) {
   const bool loopback = settings.interface.empty();
-  const std::string interface = loopback ? "this host alone" : fmt::format("{} ({})", settings.interface, address_of(settings.interface));
-  const std::string asked = settings.peers.empty() ? (loopback ? "" : ", asking by multicast") : fmt::format(", asking {}", fmt::join(settings.peers, ", "));
+  const std::string interface =
+      loopback ? "this host alone" : fmt::format("{} ({})", settings.interface, address_of(settings.interface));
+  const std::string asked = settings.peers.empty() ? (loopback ? "" : ", asking by multicast")
+                                                   : fmt::format(", asking {}", fmt::join(settings.peers, ", "));
   const std::string keys = settings.keys.empty() ? "" : fmt::format(", with the keys in {}", settings.keys.string());
-  return fmt::format("domain {} on {}, UDP ports from {}{}{}", settings.domain, interface, 7400 + 250 * settings.domain, asked, keys);
+  return fmt::format("domain {} on {}, UDP ports from {}{}{}", settings.domain, interface, 7400 + 250 * settings.domain,
+                     asked, keys);
 }
 
 std::string dds_configuration(const BusSettings& settings) {
@@ -106,16 +108,18 @@ std::string dds_configuration(const BusSettings& settings) {
   // liveliness lease. Frequent heartbeats repair a lost datagram within milliseconds. The high
   // watermark lies above what any keep-last writer holds, so that such a writer is never throttled. A reader of a
   // stream forgets samples that lack a fragment once a newer one is complete; after as many of them in a row as it may
-  // put together at once it would take nothing more, so that this number is large. A reader that stood still for a tenth
-  // of a second at full rate lacks megabytes: it asks for a socket that holds them, keeps what comes after a gap, and the
-  // writer repeats it all at the first asking. Fragments are asked for one sample at a time, so that it asks often.
+  // put together at once it would take nothing more, so that this number is large. A reader that stood still for a
+  // tenth of a second at full rate lacks megabytes: it asks for a socket that holds them, keeps what comes after a gap,
+  // and the writer repeats it all at the first asking. Fragments are asked for one sample at a time, so that it asks
+  // often.
   return fmt::format(
       "<CycloneDDS><Domain Id=\"any\">{}"
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</"
       "MaxAutoParticipantIndex>"
       "<LeaseDuration>120 s</LeaseDuration><SPDPInterval>2 s</SPDPInterval>{}</Discovery>"
       "<Internal>{}<HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"50 ms\">5 ms</HeartbeatInterval>"
-      "<NackDelay>10 ms</NackDelay><SocketReceiveBufferSize max=\"8 MB\"/><PrimaryReorderMaxSamples>4096</PrimaryReorderMaxSamples>"
+      "<NackDelay>10 ms</NackDelay><SocketReceiveBufferSize max=\"8 "
+      "MB\"/><PrimaryReorderMaxSamples>4096</PrimaryReorderMaxSamples>"
       "<MaxQueuedRexmitBytes>8 MB</MaxQueuedRexmitBytes><MaxQueuedRexmitMessages>4096</MaxQueuedRexmitMessages>"
       "<MaxSampleSize>64 MB</MaxSampleSize><DefragReliableMaxSamples>2048</DefragReliableMaxSamples>"
       "<Watermarks><WhcLow>1 MB</WhcLow><WhcHigh>128 MB</WhcHigh><WhcHighInit>128 MB</WhcHighInit>"

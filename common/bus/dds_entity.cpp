@@ -49,13 +49,17 @@ class LastWords {
 
 }  // namespace
 
-void listen_to_middleware() { LastWords::instance(); }
+void listen_to_middleware() {
+  LastWords::instance();
+}
 
 Entity::Entity(dds_entity_t id, const std::string& what) : id_(id) {
   if (id_ >= 0) return;
-  if (id_ == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) throw std::runtime_error(fmt::format("network: {} is not permitted to the role of these keys", what));
+  if (id_ == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY)
+    throw std::runtime_error(fmt::format("network: {} is not permitted to the role of these keys", what));
   const std::string words = LastWords::instance().last();
-  throw std::runtime_error(fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_), words.empty() ? "" : ", ", words));
+  throw std::runtime_error(
+      fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_), words.empty() ? "" : ", ", words));
 }
 
 dds_entity_t make_participant(const BusSettings& settings) {

@@ -29,11 +29,15 @@
   }
 
 /// Calls X(M) for every message that a topic carries.
-#define PALPATE_MESSAGES(X) \
-  X(ToolState)              \
-  X(DeviceState) X(ContactState) X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) \
-  X(TopologyChange) X(LocalContactModel) X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord) \
-  X(ClockProbe) X(ClockAnswer) X(PictureState) X(HeldTopology)
+// clang-format off
+#define PALPATE_MESSAGES(X)                                                                                         \
+  X(ToolState)                                                                                                      \
+  X(DeviceState)                                                                                                    \
+  X(ContactState)                                                                                                   \
+  X(ForceState) X(SurfaceState) X(NodeStatus) X(HapticKeyframe) X(SceneText) X(TopologyChange) X(LocalContactModel) \
+      X(DeformStep) X(DeformKeyframe) X(ModalState) X(CatheterState) X(TaskRecord) X(ClockProbe) X(ClockAnswer)     \
+          X(PictureState) X(HeldTopology)
+// clang-format on
 
 namespace palpate {
 
@@ -45,8 +49,8 @@ PALPATE_FIELDS(DeviceState, tool, seq, sense_ns, yaw, pitch, depth, roll, grip, 
 PALPATE_FIELDS(ContactState, tool, run, seq, step, sense_ns, press, forces, contacts, publish_ns)
 PALPATE_FIELDS(ForceState, tool, run, seq, step, sense_ns, force, torque, grip, trocar, energy, flags, publish_ns)
 PALPATE_FIELDS(SurfaceState, body, run, seq, step, sense_ns, publish_ns, position, normal)
-PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_hash, version, rate_hz, ticks,
-               missed, latency_p50_us, latency_p99_us, clock_of, clock_offset_ns, clock_uncertainty_ns, clock_drift_ppm, text)
+PALPATE_FIELDS(NodeStatus, node, role, run, seq, stamp_ns, scene_hash, archive_hash, version, rate_hz, ticks, missed,
+               latency_p50_us, latency_p99_us, clock_of, clock_offset_ns, clock_uncertainty_ns, clock_drift_ppm, text)
 PALPATE_FIELDS(ClockProbe, node, seq, publish_ns)
 PALPATE_FIELDS(ClockAnswer, node, clock_of, host, seq, probe_ns, receive_ns, publish_ns)
 PALPATE_FIELDS(PictureState, node, run, seq, step, sense_ns, publish_ns)

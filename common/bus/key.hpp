@@ -9,7 +9,10 @@ namespace palpate {
 /// The key field as text; empty for messages without a key.
 template <class M>
 std::string key_of(const M& message) {
-  if constexpr (requires { message.node; message.body; }) {
+  if constexpr (requires {
+                  message.node;
+                  message.body;
+                }) {
     return message.node + " " + std::to_string(message.body);
   } else if constexpr (requires { message.tool; }) {
     return std::to_string(message.tool);

@@ -16,7 +16,8 @@ std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t 
       heard = {status.role, status.seq, now_ns, false};
     } else if (!heard.silent && now_ns - heard.last_ns > silent_after_ns) {
       heard.silent = true;
-      said.push_back(fmt::format("nothing from {} for {:.1f} s: it has ended, or the network is cut", node, 1e-9 * static_cast<double>(now_ns - heard.last_ns)));
+      said.push_back(fmt::format("nothing from {} for {:.1f} s: it has ended, or the network is cut", node,
+                                 1e-9 * static_cast<double>(now_ns - heard.last_ns)));
     }
     if (!heard.silent) company_ns_ = now_ns;
   }

@@ -19,7 +19,8 @@ class LinkWatch {
 
   /// Sentences about what has changed. Call a few times a second, after Presence::watch().
   std::vector<std::string> look(const Presence& presence, std::int64_t now_ns);
-  /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever was.
+  /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever
+  /// was.
   std::string silence(const std::string& role, std::int64_t now_ns) const;
 
  private:

@@ -24,8 +24,7 @@ namespace {
 
 constexpr char magic[4] = {'P', 'L', 'P', 'T'};
 
-std::uint32_t checksum(const std::string& channel, std::int64_t receive_ns,
-                       std::span<const std::uint8_t> payload) {
+std::uint32_t checksum(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload) {
   uLong crc = crc32(0, reinterpret_cast<const Bytef*>(channel.data()), static_cast<uInt>(channel.size()));
   crc = crc32(crc, reinterpret_cast<const Bytef*>(&receive_ns), sizeof receive_ns);
   // A null pointer would mean "initial value" to zlib.
@@ -59,8 +58,7 @@ bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std:
   in("", crc);
   in("", receive_ns);
   payload = in.in;
-  return in.good && found_version == version && reserved == 0 &&
-         crc == checksum(channel, receive_ns, payload);
+  return in.good && found_version == version && reserved == 0 && crc == checksum(channel, receive_ns, payload);
 }
 
 }  // namespace envelope

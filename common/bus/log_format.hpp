@@ -12,7 +12,8 @@ namespace palpate {
 /// First event of a log.
 struct LogHeader {
   std::string scene_hash;
-  std::string scene;      ///< resolved scene as TOML; a recorder leaves it and what belongs to it empty, see LogReader::header()
+  std::string
+      scene;  ///< resolved scene as TOML; a recorder leaves it and what belongs to it empty, see LogReader::header()
   std::string schema;     ///< schema_text() of the program that wrote the log
   std::string version;    ///< software version of the recorder
   std::string code_path;  ///< of the haptic step: vector width and libraries; empty as above
@@ -29,8 +30,7 @@ struct LogFooter {
   std::string error;          ///< last reason for that, empty if none
 };
 
-PALPATE_FIELDS(LogHeader, scene_hash, scene, schema, version, code_path, host, start_wall_ns,
-               start_monotonic_ns)
+PALPATE_FIELDS(LogHeader, scene_hash, scene, schema, version, code_path, host, start_wall_ns, start_monotonic_ns)
 PALPATE_FIELDS(LogFooter, stop_monotonic_ns, written, lost, error)
 
 inline constexpr const char* header_channel = "palpate/log_header";

@@ -28,8 +28,7 @@ std::uint32_t big_endian(const std::uint8_t* p) {
 }  // namespace
 
 LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "rb")) {
-  if (!file_)
-    throw std::runtime_error(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
+  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
   if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file");
   size_ = std::filesystem::file_size(file);
 
@@ -38,9 +37,8 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std
     const bool foreign = size_ >= 4 && std::equal(sync_word, sync_word + 4, fetch(0, 4));
     throw std::runtime_error(fmt::format("{}: {}", file.string(),
                                          size_ == 0 ? "is empty"
-                                         : foreign
-                                             ? "is an LCM log without a readable topic of this simulator"
-                                             : "is not a topic log"));
+                                         : foreign  ? "is an LCM log without a readable topic of this simulator"
+                                                    : "is not a topic log"));
   }
   has_header_ = first.channel == header_channel && decode(first.payload, header_);
   if (!has_header_) {
@@ -49,9 +47,8 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std
     damage_.clear();
   }
   if (has_header_ && header_.schema != schema_text())
-    throw std::runtime_error(
-        fmt::format("{}: was recorded by version {} with other messages than this program reads",
-                    file.string(), header_.version));
+    throw std::runtime_error(fmt::format("{}: was recorded by version {} with other messages than this program reads",
+                                         file.string(), header_.version));
 }
 
 const std::uint8_t* LogReader::fetch(std::uint64_t at, std::size_t size) {
@@ -62,9 +59,8 @@ const std::uint8_t* LogReader::fetch(std::uint64_t at, std::size_t size) {
     if (fseeko(file_.get(), static_cast<off_t>(at), SEEK_SET) != 0) window_.clear();
     window_.resize(std::fread(window_.data(), 1, window_.size(), file_.get()));
   }
-  return size <= window_.size() && at + size <= window_at_ + window_.size()
-             ? window_.data() + (at - window_at_)
-             : nullptr;
+  return size <= window_.size() && at + size <= window_at_ + window_.size() ? window_.data() + (at - window_at_)
+                                                                            : nullptr;
 }
 
 bool LogReader::parse(std::uint64_t at, LogEvent& event, std::uint64_t& end) {
@@ -78,8 +74,7 @@ bool LogReader::parse(std::uint64_t at, LogEvent& event, std::uint64_t& end) {
 
   event.channel.assign(reinterpret_cast<const char*>(whole + event_head), channel_length);
   std::span<const std::uint8_t> payload;
-  if (!envelope::unwrap(event.channel, {whole + event_head + channel_length, data_length}, event.receive_ns,
-                        payload))
+  if (!envelope::unwrap(event.channel, {whole + event_head + channel_length, data_length}, event.receive_ns, payload))
     return false;
   event.payload.assign(payload.begin(), payload.end());
   event.offset = at;
@@ -134,9 +129,8 @@ std::string LogReader::damage_text() const {
   if (damage_.size() == 1 && damage_.front().tail)
     return fmt::format("{}: the last event is cut off at byte {} ({} bytes unread)", path_.string(),
                        damage_.front().offset, damage_.front().bytes);
-  return fmt::format("{}: {} damaged place{}, the first at byte {} ({} bytes)", path_.string(),
-                     damage_.size(), damage_.size() == 1 ? "" : "s", damage_.front().offset,
-                     damage_.front().bytes);
+  return fmt::format("{}: {} damaged place{}, the first at byte {} ({} bytes)", path_.string(), damage_.size(),
+                     damage_.size() == 1 ? "" : "s", damage_.front().offset, damage_.front().bytes);
 }
 
 }  // namespace palpate

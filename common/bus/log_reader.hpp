@@ -38,8 +38,8 @@ class LogReader {
   /// was written with other messages than this program's.
   explicit LogReader(const std::filesystem::path& file);
 
-  /// Of the log's first event; empty if that is damaged. Scene, its hash and the code path, which the recorder learns later, are
-  /// filled in once the event of the scene is read.
+  /// Of the log's first event; empty if that is damaged. Scene, its hash and the code path, which the recorder learns
+  /// later, are filled in once the event of the scene is read.
   const LogHeader& header() const { return header_; }
   bool has_header() const { return has_header_; }
 

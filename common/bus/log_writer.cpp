@@ -102,7 +102,8 @@ class LogWriter::Impl {
   void begin(const LogHeader& header) {
     Bytes payload;
     encode(header, payload);
-    append({header_channel, header.start_monotonic_ns, envelope::wrap(header_channel, header.start_monotonic_ns, payload)});
+    append({header_channel, header.start_monotonic_ns,
+            envelope::wrap(header_channel, header.start_monotonic_ns, payload)});
     flush();
   }
 
@@ -128,8 +129,8 @@ class LogWriter::Impl {
     const LogFooter footer{now_ns(), now.written, now.lost, now.error};
     Bytes payload;
     encode(footer, payload);
-    append({footer_channel, footer.stop_monotonic_ns,
-            envelope::wrap(footer_channel, footer.stop_monotonic_ns, payload)});
+    append(
+        {footer_channel, footer.stop_monotonic_ns, envelope::wrap(footer_channel, footer.stop_monotonic_ns, payload)});
     flush();
   }
 
@@ -174,7 +175,8 @@ class LogWriter::Impl {
     if (safe_end_ - handed_end_ < hand_bytes) return;
     const int file = fileno(log_->f);
     sync_file_range(file, handed_end_, safe_end_ - handed_end_, SYNC_FILE_RANGE_WRITE);
-    sync_file_range(file, handed_begin_, handed_end_ - handed_begin_, SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+    sync_file_range(file, handed_begin_, handed_end_ - handed_begin_,
+                    SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
     posix_fadvise(file, handed_begin_, handed_end_ - handed_begin_, POSIX_FADV_DONTNEED);
     handed_begin_ = handed_end_;
     handed_end_ = safe_end_;
@@ -219,7 +221,8 @@ class LogWriter::Impl {
 
 LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
     : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr)) {}
-LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header) : impl_(std::make_unique<Impl>(file, queue_limit, &header)) {}
+LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header)
+    : impl_(std::make_unique<Impl>(file, queue_limit, &header)) {}
 LogWriter::~LogWriter() = default;
 
 void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {

@@ -119,8 +119,7 @@ class MemoryWriter final : public Writer<M> {
 template <class M>
 class MemoryReader final : public Reader<M> {
  public:
-  MemoryReader(std::shared_ptr<MemoryNetwork> network, std::shared_ptr<Bell> bell, const Topic<M>& topic,
-               Keep keep)
+  MemoryReader(std::shared_ptr<MemoryNetwork> network, std::shared_ptr<Bell> bell, const Topic<M>& topic, Keep keep)
       : network_(std::move(network)), channel_(network_->channel(topic)), queue_{std::move(bell), keep, {}} {
     const std::lock_guard lock(network_->mutex);
     channel_.queues.push_back(&queue_);
@@ -170,8 +169,12 @@ class MemoryBus final : public Bus {
   PALPATE_MESSAGES(PALPATE_MEMORY_PORTS)
 #undef PALPATE_MEMORY_PORTS
 
-  std::string place() const override { return "this process"; }
-  std::vector<std::string> misfits() override { return {}; }
+  std::string place() const override {
+    return "this process";
+  }
+  std::vector<std::string> misfits() override {
+    return {};
+  }
 
   bool wait(std::chrono::nanoseconds timeout) override {
     std::unique_lock lock(network_->mutex);

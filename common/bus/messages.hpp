@@ -5,7 +5,8 @@
 #include <vector>
 
 /// The messages that cross the bus, as plain values. idl/palpate.idl holds the same fields for DDS; the two are
-/// kept in step by a test. Times are CLOCK_MONOTONIC nanoseconds of the host that wrote them, sense_ns of the haptic node.
+/// kept in step by a test. Times are CLOCK_MONOTONIC nanoseconds of the host that wrote them, sense_ns of the haptic
+/// node.
 namespace palpate {
 
 /// One haptic step's input: the degrees of freedom of one tool, as the step consumed them.
@@ -24,7 +25,7 @@ struct ToolState {
   double pedal = 0;              ///< [1] 1 while the tool's pedal is down
   std::uint64_t local_model_run = 0;  ///< run and seq of the LocalContactModel that this step used for this tool;
   std::uint64_t local_model_seq = 0;  ///< 0: none
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;        ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// A driver elsewhere publishes this for a tool whose device is "bus".
@@ -38,8 +39,8 @@ struct DeviceState {
 
 /// Linear force on the tissue at one surface node.
 struct NodalForce {
-  std::uint32_t body = 0;  ///< position in the scene's body list
-  std::uint32_t node = 0;  ///< surface node index of that body's archive
+  std::uint32_t body = 0;         ///< position in the scene's body list
+  std::uint32_t node = 0;         ///< surface node index of that body's archive
   std::array<double, 3> force{};  ///< [N] on the tissue, world frame, before the non-linear correction
 };
 
@@ -62,8 +63,8 @@ struct ContactState {
   std::uint64_t seq = 0;
   std::uint64_t step = 0;
   std::int64_t sense_ns = 0;
-  std::array<double, 3> press{};      ///< unit, world: common direction of this tool's press on the tissue
-  std::vector<NodalForce> forces;     ///< f of u = C f, summed over the tool's contacts
+  std::array<double, 3> press{};   ///< unit, world: common direction of this tool's press on the tissue
+  std::vector<NodalForce> forces;  ///< f of u = C f, summed over the tool's contacts
   std::vector<HeldContact> contacts;
   std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
@@ -81,28 +82,35 @@ struct ForceState {
   std::array<double, 3> trocar{};  ///< [N] of the trocar on the shaft
   double energy = 0;               ///< [J] that all tools together have put into the tissue; negative: taken out
   std::uint32_t flags = 0;         ///< bits of ForceFlag
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;     ///< when it was handed to the bus; a writer fills in what is 0
 };
 /// `stale_model`: the force of moving tissue fades or is gone, because its local contact model comes too late.
 /// `passivity_limited`: damped, since the tools would take more energy out of the tissue than they put in.
-enum ForceFlag : std::uint32_t { force_limited = 1, slew_limited = 2, fault = 4, regularised = 8, stale_model = 16, passivity_limited = 32 };
+enum ForceFlag : std::uint32_t {
+  force_limited = 1,
+  slew_limited = 2,
+  fault = 4,
+  regularised = 8,
+  stale_model = 16,
+  passivity_limited = 32
+};
 
 /// Visible surface of one body.
 struct SurfaceState {
   std::uint32_t body = 0;  ///< key
   std::uint64_t run = 0;   ///< of the haptic loop whose contacts are shown; 0: rest shape
   std::uint64_t seq = 0;
-  std::uint64_t step = 0;         ///< newest haptic step included
-  std::int64_t sense_ns = 0;      ///< sense time of that step
+  std::uint64_t step = 0;     ///< newest haptic step included
+  std::int64_t sense_ns = 0;  ///< sense time of that step
   std::int64_t publish_ns = 0;
-  std::vector<float> position;    ///< [m] x,y,z per surface node, world
-  std::vector<float> normal;      ///< unit, x,y,z per surface node, outward
+  std::vector<float> position;  ///< [m] x,y,z per surface node, world
+  std::vector<float> normal;    ///< unit, x,y,z per surface node, outward
 };
 
 /// Who is there. Published on change and once a second.
 struct NodeStatus {
-  std::string node;          ///< key: role and process, "haptic 4711@host"
-  std::string role;          ///< haptic | deform | render | recorder | driver
+  std::string node;  ///< key: role and process, "haptic 4711@host"
+  std::string role;  ///< haptic | deform | render | recorder | driver
   std::uint64_t run = 0;
   std::uint64_t seq = 0;
   std::int64_t stamp_ns = 0;
@@ -113,11 +121,11 @@ struct NodeStatus {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   double latency_p50_us = 0, latency_p99_us = 0;  ///< haptic: step time; deform, render: sense to here
-  std::string clock_of;                 ///< node whose clock the next three are about; empty: none known
-  std::int64_t clock_offset_ns = 0;     ///< to add to this node's clock for that node's
-  std::int64_t clock_uncertainty_ns = 0;  ///< the true offset is within so much of it
-  double clock_drift_ppm = 0;           ///< by which that node's clock runs faster
-  std::string text;          ///< plain sentence for the operator, empty if all is well
+  std::string clock_of;                           ///< node whose clock the next three are about; empty: none known
+  std::int64_t clock_offset_ns = 0;               ///< to add to this node's clock for that node's
+  std::int64_t clock_uncertainty_ns = 0;          ///< the true offset is within so much of it
+  double clock_drift_ppm = 0;                     ///< by which that node's clock runs faster
+  std::string text;                               ///< plain sentence for the operator, empty if all is well
 };
 
 /// Asks the haptic node for its clock.
@@ -152,9 +160,9 @@ struct PictureState {
 struct HapticKeyframe {
   std::uint64_t run = 0;
   std::uint64_t seq = 0;
-  std::uint64_t step = 0;          ///< state before this step
-  double dt = 0;                   ///< [s] nominal period
-  std::string code_path;           ///< vector width and software version
+  std::uint64_t step = 0;  ///< state before this step
+  double dt = 0;           ///< [s] nominal period
+  std::string code_path;   ///< vector width and software version
   std::vector<std::uint8_t> state;
   std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
@@ -164,54 +172,54 @@ struct SceneText {
   std::uint64_t run = 0;
   std::uint64_t seq = 0;
   std::string scene_hash;
-  std::string text;       ///< TOML, every default written out
-  std::string version;    ///< software version
-  std::string code_path;  ///< vector width and libraries of the haptic step
+  std::string text;             ///< TOML, every default written out
+  std::string version;          ///< software version
+  std::string code_path;        ///< vector width and libraries of the haptic step
   std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
 };
 
-/// Tetrahedra that a body has lost: one cut or tear, or a part that fell away. Messages are numbered from 1 without gaps, so that a node knows
-/// that it has them all; applied in order they give the topology.
+/// Tetrahedra that a body has lost: one cut or tear, or a part that fell away. Messages are numbered from 1 without
+/// gaps, so that a node knows that it has them all; applied in order they give the topology.
 struct TopologyChange {
-  std::uint32_t body = 0;   ///< key
-  std::uint64_t run = 0;    ///< start of the deform node
-  std::uint64_t seq = 0;    ///< from 1
-  std::uint64_t tick = 0;   ///< of the deform node, after which they are gone
-  std::uint32_t cause = 0;  ///< a RemovalCause
+  std::uint32_t body = 0;              ///< key
+  std::uint64_t run = 0;               ///< start of the deform node
+  std::uint64_t seq = 0;               ///< from 1
+  std::uint64_t tick = 0;              ///< of the deform node, after which they are gone
+  std::uint32_t cause = 0;             ///< a RemovalCause
   std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal, those that followed included
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;         ///< when it was handed to the bus; a writer fills in what is 0
 };
 /// `gone_before`: the first message of a run for each body, with what had gone before it; mostly empty.
 enum RemovalCause : std::uint32_t { cut = 0, torn = 1, fell_away = 2, gone_before = 3 };
 
-/// What a node knows a body to have lost, for a deformation node that returns. Each node that follows the changes says so at
-/// its start and after each.
+/// What a node knows a body to have lost, for a deformation node that returns. Each node that follows the changes says
+/// so at its start and after each.
 struct HeldTopology {
-  std::string node;        ///< key: who remembers
-  std::uint32_t body = 0;  ///< key
-  std::uint64_t run = 0;   ///< start of the deform node whose changes these are; 0: none was heard of
-  std::uint64_t seq = 0;   ///< from 1 in each run
+  std::string node;                    ///< key: who remembers
+  std::uint32_t body = 0;              ///< key
+  std::uint64_t run = 0;               ///< start of the deform node whose changes these are; 0: none was heard of
+  std::uint64_t seq = 0;               ///< from 1 in each run
   std::vector<std::uint32_t> removed;  ///< tetrahedra of the archive in order of removal
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;         ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// A place where a tool holds moving tissue, as it was with the tool's pose in the message.
 struct LocalContact {
   std::uint32_t body = 0;
-  std::uint32_t grasped = 0;         ///< 1: held between jaws, which pull as well as push; 0: rests against the tool
-  std::array<double, 3> position{};  ///< [m] world
-  std::array<double, 3> normal{};    ///< unit, world, from the tool into the tissue
-  std::array<double, 3> force{};     ///< [N] on the tissue, world
-  std::array<double, 9> stiffness{}; ///< [N/m] row-major: change of that force per motion of the tool
+  std::uint32_t grasped = 0;          ///< 1: held between jaws, which pull as well as push; 0: rests against the tool
+  std::array<double, 3> position{};   ///< [m] world
+  std::array<double, 3> normal{};     ///< unit, world, from the tool into the tissue
+  std::array<double, 3> force{};      ///< [N] on the tissue, world
+  std::array<double, 9> stiffness{};  ///< [N/m] row-major: change of that force per motion of the tool
 };
 
 /// A node of moving tissue near a tool.
 struct LocalNode {
   std::uint32_t body = 0;
-  std::uint32_t node = 0;            ///< surface node index of that body's archive
-  std::array<double, 3> position{};  ///< [m] world
-  std::array<double, 3> velocity{};  ///< [m/s] world
-  std::array<double, 9> stiffness{}; ///< [N/m] row-major, static, all other nodes free: force per displacement
+  std::uint32_t node = 0;             ///< surface node index of that body's archive
+  std::array<double, 3> position{};   ///< [m] world
+  std::array<double, 3> velocity{};   ///< [m/s] world
+  std::array<double, 9> stiffness{};  ///< [N/m] row-major, static, all other nodes free: force per displacement
 };
 
 /// A surface triangle near a tool; its three nodes as indices into the message's nodes, outward.
@@ -221,13 +229,13 @@ struct LocalTriangle {
 
 /// Moving tissue around one tool: all that the haptic node needs to render its force until the next message.
 struct LocalContactModel {
-  std::uint32_t tool = 0;       ///< key
-  std::uint64_t run = 0;        ///< start of the deform node
-  std::uint64_t seq = 0;        ///< from 1
-  std::uint64_t tick = 0;       ///< of the deform node
-  std::uint64_t tool_run = 0;   ///< run of the haptic loop that published the pose below
-  std::uint64_t tool_step = 0;  ///< newest haptic step whose tool pose is in here
-  std::int64_t sense_ns = 0;    ///< sense time of that step
+  std::uint32_t tool = 0;                                    ///< key
+  std::uint64_t run = 0;                                     ///< start of the deform node
+  std::uint64_t seq = 0;                                     ///< from 1
+  std::uint64_t tick = 0;                                    ///< of the deform node
+  std::uint64_t tool_run = 0;                                ///< run of the haptic loop that published the pose below
+  std::uint64_t tool_step = 0;                               ///< newest haptic step whose tool pose is in here
+  std::int64_t sense_ns = 0;                                 ///< sense time of that step
   double yaw = 0, pitch = 0, depth = 0, roll = 0, grip = 0;  ///< that pose, as in ToolState
   std::vector<LocalContact> contacts;
   std::vector<LocalNode> nodes;
@@ -246,17 +254,17 @@ inline constexpr std::uint64_t tool_left = ~std::uint64_t{0};
 
 /// Journal of the deform node's moving tissue: what one tick consumed and where it led.
 struct DeformStep {
-  std::uint64_t run = 0;   ///< start of the deform node
-  std::uint64_t seq = 0;   ///< from 1
+  std::uint64_t run = 0;  ///< start of the deform node
+  std::uint64_t seq = 0;  ///< from 1
   std::uint64_t tick = 0;
   std::vector<ConsumedStep> consumed;  ///< at most one per tool
-  std::uint64_t hash = 0;  ///< of the state after the tick
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::uint64_t hash = 0;              ///< of the state after the tick
+  std::int64_t publish_ns = 0;         ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// State of the deform node's moving tissue, from which a replay can start.
 struct DeformKeyframe {
-  std::uint64_t run = 0;   ///< start of the deform node
+  std::uint64_t run = 0;  ///< start of the deform node
   std::uint64_t seq = 0;
   std::uint64_t tick = 0;  ///< the state is the one before this tick
   double dt = 0;           ///< [s] nominal period of a tick
@@ -281,7 +289,7 @@ struct ModalState {
   std::int64_t sense_ns = 0;
   std::vector<double> coordinates;  ///< [kg^1/2 m] per mode: X - Omega^-2 Phi^T f
   std::vector<ShellForce> forces;   ///< f, at most one per node
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;      ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// Where a catheter is.
@@ -292,7 +300,7 @@ struct CatheterState {
   std::uint64_t step = 0;
   std::int64_t sense_ns = 0;
   std::vector<double> position;  ///< [m] x,y,z per particle, world, from tail to tip
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::int64_t publish_ns = 0;   ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 /// How the task of leading a catheter into a duct goes: what a trainer tells the trainee.
@@ -302,15 +310,15 @@ struct TaskRecord {
   std::uint64_t seq = 0;
   std::uint64_t step = 0;
   std::int64_t sense_ns = 0;
-  double inserted = 0;       ///< [m] of the catheter inside the duct now
-  double deepest = 0;        ///< [m] most that was inside so far
-  double inserting_s = 0;    ///< [s] from the first entry to the deepest place
-  double largest_force = 0;  ///< [N] on any tool so far
+  double inserted = 0;              ///< [m] of the catheter inside the duct now
+  double deepest = 0;               ///< [m] most that was inside so far
+  double inserting_s = 0;           ///< [s] from the first entry to the deepest place
+  double largest_force = 0;         ///< [N] on any tool so far
   std::uint64_t wall_contacts = 0;  ///< touches of the wall that have begun
-  std::uint64_t grasps = 0;  ///< how often jaws took the catheter
-  std::uint64_t drops = 0;   ///< how often it slipped out of the jaws
-  double held_s = 0;         ///< [s] that jaws have held it
-  std::int64_t publish_ns = 0;  ///< when it was handed to the bus; a writer fills in what is 0
+  std::uint64_t grasps = 0;         ///< how often jaws took the catheter
+  std::uint64_t drops = 0;          ///< how often it slipped out of the jaws
+  double held_s = 0;                ///< [s] that jaws have held it
+  std::int64_t publish_ns = 0;      ///< when it was handed to the bus; a writer fills in what is 0
 };
 
 }  // namespace palpate

@@ -32,7 +32,8 @@ Presence::Presence(Bus& bus, std::string role, std::uint64_t run, std::string sc
   announce(0, 0, 0, 0, 0);
 }
 
-void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us, const std::string& text) {
+void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us,
+                        const std::string& text) {
   ++status_.seq;
   status_.stamp_ns = now_ns();
   status_.rate_hz = rate_hz;
@@ -59,9 +60,11 @@ bool Presence::same_scene(const NodeStatus& peer) const {
 std::string Presence::meet(const NodeStatus& peer) const {
   if (same_scene(peer)) return "met " + peer.node;
   const auto differs = [&](const char* what, const std::string& theirs, const std::string& ours) {
-    return fmt::format("refusing {}: {} (its hash {} differs from {} here)", peer.node, what, theirs.substr(0, 12), ours.substr(0, 12));
+    return fmt::format("refusing {}: {} (its hash {} differs from {} here)", peer.node, what, theirs.substr(0, 12),
+                       ours.substr(0, 12));
   };
-  if (peer.scene_hash != status_.scene_hash) return differs("it runs another scene", peer.scene_hash, status_.scene_hash);
+  if (peer.scene_hash != status_.scene_hash)
+    return differs("it runs another scene", peer.scene_hash, status_.scene_hash);
   return differs("its archive is of another mesh, material or fixation", peer.archive_hash, status_.archive_hash);
 }
 
@@ -72,7 +75,8 @@ std::vector<std::string> Presence::watch() {
     if (status->node == status_.node) continue;
     Peer& peer = peers_[status->node];
     const NodeStatus& before = peer.status;
-    const bool news = before.node.empty() || before.run != status->run || before.scene_hash != status->scene_hash || before.archive_hash != status->archive_hash;
+    const bool news = before.node.empty() || before.run != status->run || before.scene_hash != status->scene_hash ||
+                      before.archive_hash != status->archive_hash;
     peer.status = std::move(*status);
     peer.heard_ns = now;
     if (!news) continue;

@@ -21,7 +21,8 @@ class Presence {
   void set_clock(const ClockFollower* clock) { clock_ = clock; }
 
   /// Publishes what has been measured; call about once a second and when `text` changes.
-  void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us, const std::string& text = "");
+  void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us,
+                const std::string& text = "");
 
   /// Takes what has come and returns a sentence for the operator for each node that is new, gone over to another
   /// run, or refused because its scene, archive or messages differ.

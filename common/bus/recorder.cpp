@@ -51,7 +51,10 @@ LogHeader make_header(const RecorderSettings& settings) {
 class Recorder::Impl {
  public:
   Impl(Bus& bus, const RecorderSettings& settings)
-      : bus_(bus), log_(settings.file, make_header(settings)), tracks_(make_tracks(bus, topics::all)), status_writer_(bus.writer(topics::node_status)) {
+      : bus_(bus),
+        log_(settings.file, make_header(settings)),
+        tracks_(make_tracks(bus, topics::all)),
+        status_writer_(bus.writer(topics::node_status)) {
     status_.node = fmt::format("recorder {}@{}", getpid(), host_name());
     status_.role = "recorder";
     status_.version = settings.version;
@@ -72,8 +75,7 @@ class Recorder::Impl {
     std::apply(
         [&](const auto&... track) {
           const auto add = [&](const auto& t) {
-            if (t.samples > 0)
-              report.topics[t.topic.name] = {t.samples, t.sequence.missing(), t.reader->invalid()};
+            if (t.samples > 0) report.topics[t.topic.name] = {t.samples, t.sequence.missing(), t.reader->invalid()};
           };
           (add(track), ...);
         },
@@ -123,8 +125,7 @@ class Recorder::Impl {
   std::int64_t next_status_ns_ = 0;
 };
 
-Recorder::Recorder(Bus& bus, const RecorderSettings& settings)
-    : impl_(std::make_unique<Impl>(bus, settings)) {}
+Recorder::Recorder(Bus& bus, const RecorderSettings& settings) : impl_(std::make_unique<Impl>(bus, settings)) {}
 Recorder::~Recorder() = default;
 void Recorder::step(std::chrono::nanoseconds timeout) {
   impl_->step(timeout);

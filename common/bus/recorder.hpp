@@ -32,7 +32,8 @@ struct RecorderReport {
 /// Writes every sample of every topic of a bus into a log, and tells the others how it fares (NodeStatus).
 class Recorder {
  public:
-  /// Throws std::runtime_error if the file cannot be created; afterwards it is a log that opens, whatever becomes of this process.
+  /// Throws std::runtime_error if the file cannot be created; afterwards it is a log that opens, whatever becomes of
+  /// this process.
   Recorder(Bus& bus, const RecorderSettings& settings);
   ~Recorder();
 

@@ -3,25 +3,27 @@
 
 #include "common/bus/fields.hpp"
 
-/// What a sample from outside must fulfil before a node sees it: finite numbers, times of this age, bounded lengths, sizes that
-/// fit each other, indices into its own sequences, unit normals of local contacts, a task record that can be. Other indices are checked against the scene by the node that uses them.
+/// What a sample from outside must fulfil before a node sees it: finite numbers, times of this age, bounded lengths,
+/// sizes that fit each other, indices into its own sequences, unit normals of local contacts, a task record that can
+/// be. Other indices are checked against the scene by the node that uses them.
 namespace palpate {
 
 /// Bounds on lengths, the same as in idl/palpate.idl.
 struct Limits {
-  static constexpr std::int64_t time_ns = 2'000'000'000'000'000'000;  ///< so that two may be added and a third taken off
+  static constexpr std::int64_t time_ns =
+      2'000'000'000'000'000'000;                          ///< so that two may be added and a third taken off
   static constexpr std::size_t contacts = 4096;           ///< nodal forces, and contacts, of one tool
   static constexpr std::size_t surface_floats = 3000000;  ///< one million surface nodes
   static constexpr std::size_t keyframe_bytes = 16777216;
   static constexpr std::size_t text_bytes = 1048576;
-  static constexpr std::size_t tetrahedra = 4000000;      ///< removed at once
-  static constexpr std::size_t local_contacts = 32;       ///< of one LocalContactModel
+  static constexpr std::size_t tetrahedra = 4000000;  ///< removed at once
+  static constexpr std::size_t local_contacts = 32;   ///< of one LocalContactModel
   static constexpr std::size_t local_nodes = 192;
   static constexpr std::size_t local_triangles = 128;
   static constexpr std::size_t consumed_steps = 64;
-  static constexpr std::size_t modes = 1024;        ///< of one modal body
+  static constexpr std::size_t modes = 1024;  ///< of one modal body
   static constexpr std::size_t shell_forces = 4096;
-  static constexpr std::size_t particles = 1024;    ///< of one catheter
+  static constexpr std::size_t particles = 1024;  ///< of one catheter
 };
 
 namespace detail {

@@ -44,13 +44,18 @@ std::string participant_words() {
 std::string version_fault(const std::string& words) {
   const std::vector<std::string> parts = split(words);
   if (parts.size() != 4 || parts[0] != program || parts[2] == messages_hash()) return {};
-  return fmt::format("cannot talk with process {}: its palpate {} has other messages (version {}) than this {} (version {}); install the same on both",
-                     printable(parts[3]), printable(parts[1]), printable(parts[2]), PALPATE_VERSION, messages_hash());
+  return fmt::format(
+      "cannot talk with process {}: its palpate {} has other messages (version {}) than this {} (version {}); install "
+      "the same on both",
+      printable(parts[3]), printable(parts[1]), printable(parts[2]), PALPATE_VERSION, messages_hash());
 }
 
-VersionWatch::VersionWatch(dds_entity_t participant) : reader_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr)) {}
+VersionWatch::VersionWatch(dds_entity_t participant)
+    : reader_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr)) {}
 
-VersionWatch::~VersionWatch() { dds_delete(reader_); }
+VersionWatch::~VersionWatch() {
+  dds_delete(reader_);
+}
 
 std::vector<std::string> VersionWatch::look() {
   std::vector<std::string> sentences;
@@ -59,7 +64,8 @@ std::vector<std::string> VersionWatch::look() {
   while (dds_take(reader_, &sample, &info, 1, 1) > 0) {
     void* data = nullptr;
     std::size_t size = 0;
-    if (info.valid_data && dds_qget_userdata(static_cast<dds_builtintopic_participant_t*>(sample)->qos, &data, &size) && data) {
+    if (info.valid_data && dds_qget_userdata(static_cast<dds_builtintopic_participant_t*>(sample)->qos, &data, &size) &&
+        data) {
       const std::string sentence = version_fault({static_cast<const char*>(data), size});
       if (!sentence.empty() && said_.insert(sentence).second) sentences.push_back(sentence);
       dds_free(data);

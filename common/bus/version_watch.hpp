@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// What a participant tells of itself before any message: program, its version, hash of all messages' fields, and where it
-/// runs. The middleware keeps writers and readers of a topic apart whose types differ, without a word.
+/// What a participant tells of itself before any message: program, its version, hash of all messages' fields, and where
+/// it runs. The middleware keeps writers and readers of a topic apart whose types differ, without a word.
 std::string participant_words();
 
 /// Finds participants of this project whose messages are of another version.

@@ -34,8 +34,7 @@ class BandMatrix {
   const double* column(int j) const { return entry_.data() + kColumn * j; }
 
   int order_;
-  std::vector<double>
-      entry_;  ///< kColumn per column, kBand empty columns behind; of a factor: inverse diagonal first
+  std::vector<double> entry_;  ///< kColumn per column, kBand empty columns behind; of a factor: inverse diagonal first
 };
 
 }  // namespace palpate

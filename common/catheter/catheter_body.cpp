@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr int kMostSubsteps = 64;
 constexpr double kStepMargin = 1.5;  ///< step times frequency bound; eq. 28 is stable up to 2
 constexpr double kLongestStride =
-    0.5;  ///< of the spacing: by how much neighbours may move against each other in a substep
+    0.5;                        ///< of the spacing: by how much neighbours may move against each other in a substep
 constexpr int kMostRounds = 4;  ///< of passages through the wall found and closed
 
 int substeps_for(const Catheter& shape, double step, double bound) {
@@ -57,8 +57,7 @@ CatheterBody::CatheterBody(const CatheterSettings& settings, const CatheterWall*
       right_side_(3 * chain_.size()) {
   if (!(step_ > 0)) throw std::runtime_error("the catheter's step must be positive");
   wall_forces_.reserve(2 * chain_.size());
-  tool_forces_.reserve(most_touches(chain_.size(), settings.most_parts) +
-                       Grasps::kMostPoints * settings.most_tools);
+  tool_forces_.reserve(most_touches(chain_.size(), settings.most_parts) + Grasps::kMostPoints * settings.most_tools);
 }
 
 int CatheterBody::most_touches(int particles, int parts) {
@@ -204,8 +203,7 @@ Vector3d CatheterBody::place(const ChainPoint& point) const {
 int CatheterBody::points_near(const Vector3d& centre, double radius, std::span<Vector3d> found) const {
   int count = 0;
   for (const Vector3d& p : x_)
-    if ((p - centre).squaredNorm() <= radius * radius && count < static_cast<int>(found.size()))
-      found[count++] = p;
+    if ((p - centre).squaredNorm() <= radius * radius && count < static_cast<int>(found.size())) found[count++] = p;
   return count;
 }
 

@@ -30,7 +30,7 @@ struct CatheterSettings {
 /// A force between the catheter and a tool.
 struct CatheterToolForce {
   int tool = 0;
-  int part = 0;  ///< as in CatheterTool; -1: the tool holds the catheter there
+  int part = 0;                                     ///< as in CatheterTool; -1: the tool holds the catheter there
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< [m] world
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on the catheter
 };
@@ -67,9 +67,7 @@ class CatheterBody {
   // What the last tick brought.
   std::span<const WallForce> wall_forces() const { return wall_forces_; }
   std::span<const CatheterToolForce> tool_forces() const { return tool_forces_; }  ///< contacts and grasps
-  int wall_contacts() const {
-    return static_cast<int>(wall_forces_.size());
-  }  ///< particles' touches of the wall
+  int wall_contacts() const { return static_cast<int>(wall_forces_.size()); }      ///< particles' touches of the wall
   const SolveEffort& effort() const { return solve_.effort(); }
 
   // Grasping.
@@ -81,8 +79,7 @@ class CatheterBody {
   /// The tool holds the catheter from now on at `point`, and with a length [m] also half of it to both sides,
   /// each place where it now is in the jaw's frame, by springs of 1/compliance [N/m]. A tool that already
   /// holds lets go first.
-  void grasp(int tool, const Eigen::Isometry3d& jaw, const ChainPoint& point, double length,
-             double compliance);
+  void grasp(int tool, const Eigen::Isometry3d& jaw, const ChainPoint& point, double length, double compliance);
   void let_go(int tool) { grasps_.let_go(tool); }
   bool holds(int tool) const { return grasps_.holds(tool); }
   double load(int tool) const {

@@ -75,8 +75,7 @@ void Chain::add_forces(std::span<const Vector3d> x, std::span<Vector3d> force) c
   }
 }
 
-void Chain::add_stiffness(std::span<const Vector3d> x, std::span<const double> tension,
-                          BandMatrix& stiffness) const {
+void Chain::add_stiffness(std::span<const Vector3d> x, std::span<const double> tension, BandMatrix& stiffness) const {
   Matrix3d ca = Matrix3d::Zero();
   double a_per_length = 0;
   for (int i = 0; i + 1 < size(); ++i) {
@@ -131,8 +130,7 @@ double Chain::frequency_bound() const {
     double bending = 0;
     for (const double entry : row) bending += std::abs(entry);
     const double stretching = i == 0 || i == size() - 1 ? 2 : 4;
-    bound =
-        std::max(bound, (stretching * stretching_ + bending * bending_ / (spacing_ * spacing_)) / mass_[i]);
+    bound = std::max(bound, (stretching * stretching_ + bending * bending_ / (spacing_ * spacing_)) / mass_[i]);
   }
   return std::sqrt(bound);
 }

@@ -31,12 +31,10 @@ class Chain {
   /// of the tangents' curvature): symmetric, positive semi-definite. `tension` [N], per segment, stiffens it
   /// across: that which will be left, because what linear springs have got by turning is gone at once and
   /// must not hold the catheter fast.
-  void add_stiffness(std::span<const Eigen::Vector3d> x, std::span<const double> tension,
-                     BandMatrix& stiffness) const;
+  void add_stiffness(std::span<const Eigen::Vector3d> x, std::span<const double> tension, BandMatrix& stiffness) const;
   /// [N] of a segment at positions `x` after a small motion, by the same linear law; negative where it is
   /// compressed.
-  double tension(int segment, std::span<const Eigen::Vector3d> x,
-                 std::span<const Eigen::Vector3d> motion) const;
+  double tension(int segment, std::span<const Eigen::Vector3d> x, std::span<const Eigen::Vector3d> motion) const;
   double elastic_energy(std::span<const Eigen::Vector3d> x) const;  ///< [J]
 
   /// Upper bound of the angular frequencies [rad/s] of the straight chain, by Gershgorin's circles.

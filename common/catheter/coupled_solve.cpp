@@ -19,8 +19,7 @@ Vector3d product(const double* rows, const double* y, int count) {
   Lanes sum[3] = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
   for (int m = 0; m < count; m += kLanes) {
     const Lanes factor = Eigen::Map<const Lanes>(y + m);
-    for (int axis = 0; axis < 3; ++axis)
-      sum[axis] += Eigen::Map<const Lanes>(rows + axis * count + m) * factor;
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += Eigen::Map<const Lanes>(rows + axis * count + m) * factor;
   }
   return {sum[0].sum(), sum[1].sum(), sum[2].sum()};
 }
@@ -73,8 +72,7 @@ void CoupledSolve::add(const CatheterTouch& touch) {
   if (modes_ == 0) return;
   duct_->rows(touch.anchor, unpadded_.data());
   double* to = rows(i);
-  for (int axis = 0; axis < 3; ++axis)
-    std::copy_n(unpadded_.data() + axis * modes_, modes_, to + axis * stride_);
+  for (int axis = 0; axis < 3; ++axis) std::copy_n(unpadded_.data() + axis * modes_, modes_, to + axis * stride_);
 }
 
 Vector3d CoupledSolve::point_motion(const CatheterTouch& touch, const double* d) const {
@@ -110,8 +108,8 @@ Vector3d CoupledSolve::spring_force(int touch) const {
          t.sticking * across(t.normal) * (slip - now_.share * t.carried);
 }
 
-void CoupledSolve::solve(const BandMatrix& base, std::span<const double> right_side,
-                         std::span<const Vector3d> velocity, double h, int index, int of) {
+void CoupledSolve::solve(const BandMatrix& base, std::span<const double> right_side, std::span<const Vector3d> velocity,
+                         double h, int index, int of) {
   now_ = {h, 1.0 / of, static_cast<double>(of - 1 - index) / of};
   for (int m = 0; m < modes_; ++m) {
     inverse_[m] = duct_->inverse()[m] * now_.share * now_.share;
@@ -211,8 +209,7 @@ void CoupledSolve::solve_modes() {
   if (!any) y_ = free_;
   double squared = 0, push = 0;
   for (int m = 0; m < modes_; ++m) {
-    residual_[m] =
-        (free_[m] - y_[m]) + inverse_[m] * image_[m];  // times inverse already: the preconditioned one
+    residual_[m] = (free_[m] - y_[m]) + inverse_[m] * image_[m];  // times inverse already: the preconditioned one
     direction_[m] = residual_[m];
     squared += residual_[m] * residual_[m] / inverse_[m];
     push += image_[m] * image_[m] * inverse_[m];

@@ -49,8 +49,8 @@ class CoupledSolve {
   /// One substep of `h` [s], the first of `of` equal ones for index 0. `base`: matrix of the catheter without
   /// touches; `right_side`: 3 per particle; `velocity` [m/s] at its beginning. May be repeated with more
   /// touches.
-  void solve(const BandMatrix& base, std::span<const double> right_side,
-             std::span<const Eigen::Vector3d> velocity, double h, int index, int of);
+  void solve(const BandMatrix& base, std::span<const double> right_side, std::span<const Eigen::Vector3d> velocity,
+             double h, int index, int of);
   /// [m] D of the last substep.
   std::span<const Eigen::Vector3d> motion() const;
   /// Takes over a motion that was held back, before advance().
@@ -72,9 +72,7 @@ class CoupledSolve {
     double h, share, left;  ///< [s], [1] of the tick, [1] of the tick that is left after it
   };
   double* rows(int touch) { return rows_.data() + static_cast<std::ptrdiff_t>(touch) * 3 * stride_; }
-  const double* rows(int touch) const {
-    return rows_.data() + static_cast<std::ptrdiff_t>(touch) * 3 * stride_;
-  }
+  const double* rows(int touch) const { return rows_.data() + static_cast<std::ptrdiff_t>(touch) * 3 * stride_; }
   Eigen::Vector3d point_motion(const CatheterTouch& touch, const double* d) const;
   Eigen::Vector3d wall_motion(int touch, const double* y) const;
   void add_wall_force(int touch, const Eigen::Vector3d& force, double* modal) const;

@@ -33,9 +33,7 @@ class Grasps {
   bool holds(int tool) const { return tool >= 0 && tool < tools() && grasps_[tool].count > 0; }
   /// Whether the tool holds the catheter at this segment or beside it.
   bool holds_near(int tool, int segment) const;
-  void take(int tool, double stiffness) {
-    grasps_.at(tool) = {.count = 0, .stiffness = stiffness, .held = {}};
-  }
+  void take(int tool, double stiffness) { grasps_.at(tool) = {.count = 0, .stiffness = stiffness, .held = {}}; }
   void add(int tool, const ChainPoint& point, const Eigen::Vector3d& place, const Eigen::Isometry3d& jaw);
   void let_go(int tool);
   double load(int tool) const;

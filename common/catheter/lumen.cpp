@@ -24,8 +24,7 @@ double solid_angle(const Vector3d& p, const Vector3d& a, const Vector3d& b, cons
 
 Lumen::Lumen(const CatheterWall* wall, std::span<const Vector3d> x, double radius) : wall_(wall) {
   if (!wall_) return;
-  if (wall_->mouths().empty())
-    throw std::runtime_error("the duct that the catheter is led into has no open end");
+  if (wall_->mouths().empty()) throw std::runtime_error("the duct that the catheter is led into has no open end");
   edge_mouth_.assign(wall_->surface().triangle_count(), {-1, -1, -1});
   node_mouth_.assign(wall_->surface().positions().size(), -1);
   for (const auto& loop : wall_->mouths()) {
@@ -154,23 +153,20 @@ void Lumen::follow_particles(std::span<const Vector3d> before, std::span<const V
     for (std::size_t i = 0; i < now.size(); ++i) cross(i, before[i], now[i], mouth, mouth.cap, seen_);
 }
 
-std::optional<SweptHit> Lumen::crossing(const Vector3d& from, const Vector3d& to, const Mouth& mouth,
-                                        const Cap& was, std::span<const Vector3d> last_nodes) const {
+std::optional<SweptHit> Lumen::crossing(const Vector3d& from, const Vector3d& to, const Mouth& mouth, const Cap& was,
+                                        std::span<const Vector3d> last_nodes) const {
   std::optional<SweptHit> last;
   const Cap& is = mouth.cap;
   const Vector3d start = from - was.middle, end = to - is.middle;
-  const double wide =
-      1.01 * std::max(was.radius, is.radius) + (to - from).norm() + (is.middle - was.middle).norm();
+  const double wide = 1.01 * std::max(was.radius, is.radius) + (to - from).norm() + (is.middle - was.middle).norm();
   if (start.squaredNorm() > wide * wide && end.squaredNorm() > wide * wide) return last;
-  const double uneven =
-      std::max(was.depth, is.depth) + (is.normal - was.normal).norm() * wide + 1e-6 * is.radius;
+  const double uneven = std::max(was.depth, is.depth) + (is.normal - was.normal).norm() * wide + 1e-6 * is.radius;
   const double ahead = start.dot(was.normal), then = end.dot(is.normal);
   if (std::min(ahead, then) > uneven || std::max(ahead, then) < -uneven) return last;
   const int count = static_cast<int>(mouth.nodes.size());
   for (int i = 0; i < count; ++i) {
     const int a = mouth.first + i, b = mouth.first + (i + 1) % count;
-    const auto hit =
-        sweep_point(from, to, {was.middle, last_nodes[a], last_nodes[b]}, {is.middle, seen_[a], seen_[b]});
+    const auto hit = sweep_point(from, to, {was.middle, last_nodes[a], last_nodes[b]}, {is.middle, seen_[a], seen_[b]});
     if (hit && (!last || hit->time >= last->time)) last = hit;
   }
   return last;
@@ -197,8 +193,7 @@ int Lumen::rim_at(int triangle, const Vector3d& weights) const {
 
 bool Lumen::past_rim(int mouth, const Vector3d& p, const Vector3d& q) const {
   const Cap& cap = mouths_[mouth].cap;
-  const Vector3d from_middle = q - cap.middle,
-                 beside = from_middle - cap.normal * cap.normal.dot(from_middle);
+  const Vector3d from_middle = q - cap.middle, beside = from_middle - cap.normal * cap.normal.dot(from_middle);
   return (p - q).dot(cap.normal) > 0 && (p - q).dot(beside) > 0;
 }
 

@@ -27,8 +27,8 @@ class Lumen {
   /// Follows the particles past resting mouths.
   void follow_particles(std::span<const Eigen::Vector3d> before, std::span<const Eigen::Vector3d> now);
 
-  /// Neighbours are on one side unless a mouth lies between them: what was missed while the wall was thrown about is put
-  /// right, from tail to tip. Where the wall itself lies between them, behind any mouth, nothing is known.
+  /// Neighbours are on one side unless a mouth lies between them: what was missed while the wall was thrown about is
+  /// put right, from tail to tip. Where the wall itself lies between them, behind any mouth, nothing is known.
   void follow_chain(std::span<const Eigen::Vector3d> x);
 
   /// Mouth on whose rim a point of a triangle lies, -1 for all others.
@@ -41,8 +41,8 @@ class Lumen {
   /// The last crossing of a mouth on a straight way; from_outside: into the lumen.
   std::optional<SweptHit> crossing(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   void leave(int particle) { inside_[particle] = 0; }
-  /// Particles about which no wall is left within reach are out, however they came there: a wall that is thrown about by
-  /// several times its width may lose them. Looks at one particle a call.
+  /// Particles about which no wall is left within reach are out, however they came there: a wall that is thrown about
+  /// by several times its width may lose them. Looks at one particle a call.
   void release_lost(std::span<const Eigen::Vector3d> x);
 
   double inserted(std::span<const Eigen::Vector3d> x, double spacing) const;  ///< [m]
@@ -74,8 +74,8 @@ class Lumen {
   /// The last crossing of a mouth's fan, which goes from the one last seen to the present one.
   std::optional<SweptHit> crossing(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Mouth& mouth,
                                    const Cap& was, std::span<const Eigen::Vector3d> last_nodes) const;
-  void cross(int particle, const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Mouth& mouth,
-             const Cap& was, std::span<const Eigen::Vector3d> last_nodes);
+  void cross(int particle, const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Mouth& mouth, const Cap& was,
+             std::span<const Eigen::Vector3d> last_nodes);
 
   const CatheterWall* wall_;
   std::vector<Mouth> mouths_;

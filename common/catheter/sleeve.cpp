@@ -16,14 +16,13 @@ Sleeve::Sleeve(const Vector3d& tail, const Vector3d& tip, double length)
     throw std::runtime_error("the catheter's sleeve must be shorter than the catheter");
 }
 
-void Sleeve::hold(const ChainPoint& point, std::span<const Vector3d> x, const Matrix3d& stiffness,
-                  BandMatrix& matrix, std::span<double> right_side, const Vector3d& at) const {
+void Sleeve::hold(const ChainPoint& point, std::span<const Vector3d> x, const Matrix3d& stiffness, BandMatrix& matrix,
+                  std::span<double> right_side, const Vector3d& at) const {
   add_at_point(point, stiffness, matrix);
   add_at_point(point, Vector3d(stiffness * (at - place_of(point, x))), right_side);
 }
 
-void Sleeve::add_springs(std::span<const Vector3d> x, BandMatrix& matrix,
-                         std::span<double> right_side) const {
+void Sleeve::add_springs(std::span<const Vector3d> x, BandMatrix& matrix, std::span<double> right_side) const {
   if (length_ == 0) return;
   const Matrix3d along = axis_ * axis_.transpose() / kCompliance;
   const Matrix3d across = Matrix3d::Identity() / kCompliance - along;

@@ -20,8 +20,7 @@ class Sleeve {
   Sleeve(const Eigen::Vector3d& tail, const Eigen::Vector3d& tip, double length);
 
   /// Adds the springs at positions x.
-  void add_springs(std::span<const Eigen::Vector3d> x, BandMatrix& matrix,
-                   std::span<double> right_side) const;
+  void add_springs(std::span<const Eigen::Vector3d> x, BandMatrix& matrix, std::span<double> right_side) const;
 
  private:
   void hold(const ChainPoint& point, std::span<const Eigen::Vector3d> x, const Eigen::Matrix3d& stiffness,

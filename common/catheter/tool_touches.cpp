@@ -43,8 +43,8 @@ void ToolTouches::find(std::span<const CatheterTool> tools, std::span<const Vect
   }
 }
 
-void ToolTouches::meet(const CatheterTool& tool, int part, int segment, std::span<const Vector3d> x,
-                       double radius, CoupledSolve& solve) {
+void ToolTouches::meet(const CatheterTool& tool, int part, int segment, std::span<const Vector3d> x, double radius,
+                       CoupledSolve& solve) {
   Pair& pair = this->pair(part, segment);
   const Segment now{tool.now[0], tool.now[1]}, before{tool.before[0], tool.before[1]},
       piece{x[segment], x[segment + 1]};

@@ -39,8 +39,8 @@ class ToolTouches {
   std::span<const Pair> pairs() const { return pairs_; }
 
  private:
-  void meet(const CatheterTool& tool, int part, int segment, std::span<const Eigen::Vector3d> x,
-            double radius, CoupledSolve& solve);
+  void meet(const CatheterTool& tool, int part, int segment, std::span<const Eigen::Vector3d> x, double radius,
+            CoupledSolve& solve);
   Pair& pair(int part, int segment) { return pairs_[part * segments_ + segment]; }
 
   int segments_, most_parts_;

@@ -21,8 +21,8 @@ struct CatheterTouch {
       0;  ///< [m] how far they overlap if nothing but a tool moves in the rest of the tick; negative: a gap
   double compliance = 0;  ///< [m/N]
   double friction = 0;    ///< [1]
-  double grip =
-      0;  ///< [N] largest friction: the coefficient times the normal force, the lesser of the last tick's and this one's; 0: newly met
+  double grip = 0;  ///< [N] largest friction: the coefficient times the normal force, the lesser of the last tick's and
+                    ///< this one's; 0: newly met
   Eigen::Vector3d carried = Eigen::Vector3d::Zero();  ///< [m] motion of the tool's surface in the whole tick
   bool on_wall = false;
   Anchor anchor;                                 ///< on the wall

@@ -18,12 +18,10 @@ namespace palpate {
 class CatheterWall {
  public:
   virtual ~CatheterWall() = default;
-  virtual const TouchSurface& surface() const = 0;  ///< middle surface now; triangles look outward
-  virtual double half_thickness() const = 0;        ///< [m]
-  virtual std::span<const double> free_motion()
-      const = 0;  ///< y of the coming step without this catheter's forces
-  virtual std::span<const double> inverse()
-      const = 0;  ///< [1] per mode: change of y per modal force, positive
+  virtual const TouchSurface& surface() const = 0;          ///< middle surface now; triangles look outward
+  virtual double half_thickness() const = 0;                ///< [m]
+  virtual std::span<const double> free_motion() const = 0;  ///< y of the coming step without this catheter's forces
+  virtual std::span<const double> inverse() const = 0;      ///< [1] per mode: change of y per modal force, positive
   /// Rows of the mode shapes at an anchor, into `rows`: row-major 3 x modes [kg^-1/2].
   virtual void rows(const Anchor& anchor, double* rows) const = 0;
   /// [m/N] static compliance of the modes left out, at the anchor; zero where they are not wanted.

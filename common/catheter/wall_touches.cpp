@@ -11,10 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kOtherSide = 0.5;  ///< cosine below which two directions are clearly different
+constexpr double kOtherSide = 0.5;   ///< cosine below which two directions are clearly different
 constexpr double kFaster = 1.5;      ///< [1] what a wall may move by in a tick against what is expected
 constexpr double kHeldBefore = 0.1;  ///< [1] of its distance: how close before the wall a particle is held
-constexpr double kInFront = 0.7;    ///< cosine above which a triangle faces a point
+constexpr double kInFront = 0.7;     ///< cosine above which a triangle faces a point
 
 }  // namespace
 
@@ -28,12 +28,10 @@ WallTouches::WallTouches(int particles, const CatheterWall* wall, double radius,
 
 /// Nearest point of a triangle with area, and its squared distance: where the foot of the perpendicular lies
 /// beyond an edge, it is on such an edge.
-ClosestPoint WallTouches::closest(const Vector3d& x, const Triangle& c, const Vector3d& normal,
-                                  double square) {
+ClosestPoint WallTouches::closest(const Vector3d& x, const Triangle& c, const Vector3d& normal, double square) {
   ClosestPoint best{Vector3d::Zero(), -1};
   const Vector3d from[3] = {x - c[0], x - c[1], x - c[2]};
-  for (int v = 0; v < 3; ++v)
-    best.weights[v] = from[(v + 1) % 3].cross(from[(v + 2) % 3]).dot(normal) / square;
+  for (int v = 0; v < 3; ++v) best.weights[v] = from[(v + 1) % 3].cross(from[(v + 2) % 3]).dot(normal) / square;
   if (best.weights.minCoeff() > 0) {
     const double height = from[0].dot(normal);
     best.squared_distance = height * height / square;
@@ -110,8 +108,8 @@ bool WallTouches::find_opposite(const Vector3d& x, const Vector3d& normal, doubl
 /// passed through. Returns the side on which it meets the wall, 1 outside and -1 inside. A particle that has
 /// come past the rim beside the mouth has left the lumen; one that is before the mouth meets the inner side
 /// where that is nearest.
-double WallTouches::direction(int particle, const Vector3d& x, const Near& near, Lumen& lumen,
-                              Vector3d& normal, double& distance) const {
+double WallTouches::direction(int particle, const Vector3d& x, const Near& near, Lumen& lumen, Vector3d& normal,
+                              double& distance) const {
   const int rim = lumen.rim_at(near.triangle, near.weights);
   if (lumen.inside()[particle] && rim >= 0 && lumen.past_rim(rim, x, near.q)) lumen.leave(particle);
   const bool inner = lumen.inside()[particle] || (near.facing < 0 && lumen.before_mouth(x));
@@ -124,8 +122,7 @@ double WallTouches::direction(int particle, const Vector3d& x, const Near& near,
   return side;
 }
 
-CatheterTouch WallTouches::touch_at(int particle, const Near& near, const Vector3d& normal,
-                                    double distance) const {
+CatheterTouch WallTouches::touch_at(int particle, const Near& near, const Vector3d& normal, double distance) const {
   CatheterTouch touch;
   const int last = static_cast<int>(past_.size()) - 1;
   touch.point = particle == last ? ChainPoint{last - 1, 1} : ChainPoint{particle, 0};
@@ -160,7 +157,8 @@ void WallTouches::find(std::span<const Vector3d> x, std::span<const Vector3d> v,
   for (int i = 0; i < static_cast<int>(x.size()); ++i) {
     const double within = reach_ + margin_ + travel_ + h * v[i].norm();
     Near near, other;
-    if (!find_nearest(x[i], wall_->surface().find(x[i], x[i] + h * v[i], reach_ + margin_ + travel_), within, near)) continue;
+    if (!find_nearest(x[i], wall_->surface().find(x[i], x[i] + h * v[i], reach_ + margin_ + travel_), within, near))
+      continue;
     Vector3d normal;
     double distance;
     const double side = direction(i, x[i], near, lumen, normal, distance);
@@ -170,8 +168,8 @@ void WallTouches::find(std::span<const Vector3d> x, std::span<const Vector3d> v,
   }
 }
 
-std::optional<WallTouches::Passage> WallTouches::passage(int particle, const Vector3d& x,
-                                                         const Vector3d& motion, const Lumen& lumen) {
+std::optional<WallTouches::Passage> WallTouches::passage(int particle, const Vector3d& x, const Vector3d& motion,
+                                                         const Lumen& lumen) {
   std::optional<Passage> first;
   if (motion.norm() + travel_ < margin_) return first;
   const TouchSurface& surface = wall_->surface();
@@ -186,8 +184,7 @@ std::optional<WallTouches::Passage> WallTouches::passage(int particle, const Vec
     near.q = hit->weights[0] * c[0] + hit->weights[1] * c[1] + hit->weights[2] * c[2];
     const Vector3d then = hit->weights[0] * now[0] + hit->weights[1] * now[1] + hit->weights[2] * now[2];
     const auto mouth = lumen.crossing(x, x + motion - (then - near.q));
-    const bool inside =
-        mouth && mouth->time < hit->time ? mouth->from_outside : lumen.inside()[particle] != 0;
+    const bool inside = mouth && mouth->time < hit->time ? mouth->from_outside : lumen.inside()[particle] != 0;
     if (hit->from_outside == inside) continue;  // on its way back to the side where it belongs
     const double side = inside ? -1 : 1;
     const Vector3d normal = side * surface.triangle_normal(t).normalized();

@@ -18,8 +18,7 @@ namespace palpate {
 class WallTouches {
  public:
   static constexpr double kCompliance = 2e-5;  ///< [m/N] of a particle's contact
-  static constexpr double kLedBack =
-      0.3;  ///< of the reach: by how much a particle found deeper is led back in a tick
+  static constexpr double kLedBack = 0.3;  ///< of the reach: by how much a particle found deeper is led back in a tick
   static constexpr double kStiffening = 20;  ///< [1] the contact is so much stiffer beyond that depth
 
   WallTouches(int particles, const CatheterWall* wall, double radius, double friction);
@@ -68,10 +67,9 @@ class WallTouches {
   bool find_opposite(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double side, double within,
                      Near& best) const;
   Near nearest_on(const Plane& plane, const Eigen::Vector3d& x) const;
-  double direction(int particle, const Eigen::Vector3d& x, const Near& near, Lumen& lumen,
-                   Eigen::Vector3d& normal, double& distance) const;
-  CatheterTouch touch_at(int particle, const Near& near, const Eigen::Vector3d& normal,
-                         double distance) const;
+  double direction(int particle, const Eigen::Vector3d& x, const Near& near, Lumen& lumen, Eigen::Vector3d& normal,
+                   double& distance) const;
+  CatheterTouch touch_at(int particle, const Near& near, const Eigen::Vector3d& normal, double distance) const;
   double past_force(int particle, const Eigen::Vector3d& normal) const;
 
   const CatheterWall* wall_;

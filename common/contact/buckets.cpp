@@ -17,8 +17,7 @@ constexpr double kRounding = 1e-9;  // of a query's reach: nothing on its border
 
 }  // namespace
 
-Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array<int, 3>> triangles,
-                 double size)
+Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array<int, 3>> triangles, double size)
     : range_(triangles.size()), first_of_triangle_(triangles.size(), -1), stamp_(triangles.size(), 0) {
   lay_grid(positions, size);
   // Four times what the rest position takes, and eight entries a triangle; one more each for the overflow.
@@ -47,8 +46,8 @@ void Buckets::lay_grid(std::span<const Vector3d> positions, double size) {
   origin_ = low.array() - margin;
   const Vector3d counts = ((high - low).array() + 2 * margin) / size;
   if (!(size > 0) || !(counts.array().ceil().cwiseMax(1).prod() <= kMostCells))
-    throw std::runtime_error(fmt::format("a bucket size of {} m does not suit a surface {:.4g} m across",
-                                         size, (high - low).norm()));
+    throw std::runtime_error(
+        fmt::format("a bucket size of {} m does not suit a surface {:.4g} m across", size, (high - low).norm()));
   size_ = size;
   per_metre_ = 1 / size;
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = std::max(1, static_cast<int>(std::ceil(counts[axis])));

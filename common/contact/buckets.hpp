@@ -21,8 +21,7 @@ class Buckets {
   /// `size` [m] is the edge of a bucket. The grid covers the surface's box grown by half its diagonal on all
   /// sides; what lies beyond is entered in the outermost buckets.
   /// Throws std::runtime_error if the size is not positive or gives more than 2^24 buckets.
-  Buckets(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles,
-          double size);
+  Buckets(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles, double size);
   /// A grid around `positions` with no triangle in it, for triangles 0 ... `most` - 1 that come and go. Each has room
   /// in one bucket; `entries` more are shared.
   Buckets(std::span<const Eigen::Vector3d> positions, double size, int most, std::size_t entries);
@@ -32,8 +31,8 @@ class Buckets {
   /// Takes the triangle out of all buckets; move() enters it again.
   void remove(int triangle);
 
-  /// Triangles whose buckets come within `radius` [m] of the box, each once, in no order, into `found`; returns how many.
-  /// `found` needs room for every triangle of the surface.
+  /// Triangles whose buckets come within `radius` [m] of the box, each once, in no order, into `found`; returns how
+  /// many. `found` needs room for every triangle of the surface.
   int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, double radius, std::span<int> found) const;
 
   std::array<int, 3> cells() const { return cells_; }

@@ -6,19 +6,19 @@
 namespace palpate {
 namespace {
 
-constexpr double gap_tolerance = 1e-9;        // [m] deeper than this an open contact closes
-constexpr double force_tolerance = 1e-9;      // share of the largest contact force that counts as tension
-constexpr int sweep_budget = 800;             // points relaxed in a step, in 5 to 40 sweeps
-constexpr int pass_budget = 400;              // points times passes of the active set under friction, 4 to 16 passes
-constexpr double sweep_tolerance = 1e-4;      // change of a force in a sweep, as a share of the largest, that ends it
-constexpr double friction_lag = 1e-3;         // share of the normal force by which lagged friction may be stale
+constexpr double gap_tolerance = 1e-9;    // [m] deeper than this an open contact closes
+constexpr double force_tolerance = 1e-9;  // share of the largest contact force that counts as tension
+constexpr int sweep_budget = 800;         // points relaxed in a step, in 5 to 40 sweeps
+constexpr int pass_budget = 400;          // points times passes of the active set under friction, 4 to 16 passes
+constexpr double sweep_tolerance = 1e-4;  // change of a force in a sweep, as a share of the largest, that ends it
+constexpr double friction_lag = 1e-3;     // share of the normal force by which lagged friction may be stale
 
 using ConstVec = Eigen::Map<const Eigen::Vector3d>;
 
 }  // namespace
 
-ContactLaw::ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule, double friction,
-                       int capacity)
+ContactLaw::ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule,
+                       double friction, int capacity)
     : rest_(rest), rule_(rule), friction_(friction), held_(compliance, rule == Rule::alpha ? 3 * capacity : capacity) {
   contacts_.reserve(capacity);
   expansions_.reserve(capacity);
@@ -31,7 +31,9 @@ ContactLaw::ContactLaw(const Compliance<double>& compliance, std::span<const Eig
   displacements_.assign(3 * points, 0.0);
 }
 
-bool ContactLaw::full() const { return contacts_.size() == contacts_.capacity(); }
+bool ContactLaw::full() const {
+  return contacts_.size() == contacts_.capacity();
+}
 
 int ContactLaw::first_point(int contact) const {
   int first = 0;
@@ -133,10 +135,12 @@ int ContactLaw::solve_held() {
     const Expansion& e = expansions_[c];
     const Eigen::Vector3d rest = anchor_position(contact.anchor, rest_);
     const bool sliding = contact.touch == Touch::sliding;
-    const Eigen::Vector3d wanted =
-        sliding ? Eigen::Vector3d(contact.normal * (contact.plane - contact.normal.dot(rest))) : Eigen::Vector3d(contact.target - rest);
+    const Eigen::Vector3d wanted = sliding
+                                       ? Eigen::Vector3d(contact.normal * (contact.plane - contact.normal.dot(rest)))
+                                       : Eigen::Vector3d(contact.target - rest);
     const Eigen::Vector3d friction =
-        sliding ? Eigen::Vector3d(friction_ * std::max(0.0, contact.force.dot(contact.normal)) * contact.slip) : Eigen::Vector3d::Zero();
+        sliding ? Eigen::Vector3d(friction_ * std::max(0.0, contact.force.dot(contact.normal)) * contact.slip)
+                : Eigen::Vector3d::Zero();
     double gains = 0;
     for (int k = 0; k < e.points; ++k) gains += e.gain[k] * e.gain[k];
     for (int k = 0; k < e.points; ++k, ++p) {
@@ -146,7 +150,8 @@ int ContactLaw::solve_held() {
       Eigen::Map<Eigen::Vector3d>(forces_.data() + 3 * p) = e.gain[k] / gains * friction;
     }
   }
-  const int raised = held_.solve(std::span(hold_).first(p), std::span(normal_).first(p), std::span(displacement_target_).first(p), forces_.data());
+  const int raised = held_.solve(std::span(hold_).first(p), std::span(normal_).first(p),
+                                 std::span(displacement_target_).first(p), forces_.data());
   held_.displacements(forces_.data(), displacements_.data());
 
   worst_lag_ = 0;
@@ -155,7 +160,8 @@ int ContactLaw::solve_held() {
     TouchContact& contact = contacts_[c];
     const double before = contact.force.dot(contact.normal);
     contact.force.setZero();
-    for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
+    for (int k = 0; k < expansions_[c].points; ++k, ++p)
+      contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
     if (contact.touch != Touch::sliding || contact.slip.isZero(0)) continue;
     const double now = contact.force.dot(contact.normal);
     worst_lag_ = std::max(worst_lag_, std::abs(now - before) - friction_lag * std::abs(now));
@@ -227,7 +233,8 @@ void ContactLaw::relax() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     TouchContact& contact = contacts_[c];
     contact.force.setZero();
-    for (int k = 0; k < expansions_[c].points; ++k, ++p) contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
+    for (int k = 0; k < expansions_[c].points; ++k, ++p)
+      contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
     place(static_cast<int>(c));
     if (contact.grasped) continue;
     const double pressing = contact.force.dot(contact.normal);

@@ -18,16 +18,17 @@ enum class Touch : std::uint8_t {
 /// One contact between a part of a tool and a point of the surface. It pushes and never pulls, unless jaws hold it.
 struct TouchContact {
   int tool = 0;
-  int part = 0;       ///< which part of the tool
-  bool face = false;  ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
+  int part = 0;          ///< which part of the tool
+  bool face = false;     ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
   bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
-  double softness = 0;   ///< [m/N] by which what holds the anchor gives way to the force
+  double softness = 0;  ///< [m/N] by which what holds the anchor gives way to the force
   Anchor anchor;
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] touching point in the part's own frame; of what jaws hold, in the tip frame
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(); ///< unit, world, from the tool into the tissue
-  Eigen::Vector3d slip = Eigen::Vector3d::Zero();    ///< unit or zero: direction of friction on the tissue
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N] on the tissue, world; conjugate to the anchor's motion
+  Eigen::Vector3d offset =
+      Eigen::Vector3d::Zero();  ///< [m] touching point in the part's own frame; of what jaws hold, in the tip frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
+  Eigen::Vector3d slip = Eigen::Vector3d::Zero();     ///< unit or zero: direction of friction on the tissue
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue, world; conjugate to the anchor's motion
   // Set before each solve:
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m] world: where a sticking anchor is held
   double plane = 0;                                  ///< [m] least value of normal . position of the anchor
@@ -47,10 +48,10 @@ struct LawOutcome {
 };
 
 /// Unilateral contact with Coulomb friction between tools and one body:
-/// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal. The gap is that to the tool where its force has
-/// pushed it back: (J C J^T + c I) f = gap.
-/// Solved by an active set that starts from the last step's and changes in a fixed order, at most max_passes times;
-/// where that does not settle, a bounded relaxation goes on from there.
+/// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal. The gap is that to the tool where its
+/// force has pushed it back: (J C J^T + c I) f = gap. Solved by an active set that starts from the last step's and
+/// changes in a fixed order, at most max_passes times; where that does not settle, a bounded relaxation goes on from
+/// there.
 class ContactLaw {
  public:
   static constexpr int max_passes = 32;
@@ -60,7 +61,8 @@ class ContactLaw {
   enum class Rule { barycentric, alpha };
 
   /// `rest`: rest positions [m] of the body's surface nodes; must outlive this object, as `compliance`.
-  ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule, double friction, int capacity);
+  ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule, double friction,
+             int capacity);
 
   std::span<TouchContact> contacts() { return contacts_; }
   std::span<const TouchContact> contacts() const { return contacts_; }
@@ -121,7 +123,7 @@ class ContactLaw {
   std::vector<Hold> hold_;
   std::vector<Eigen::Vector3d> normal_, displacement_target_;
   std::vector<double> forces_, displacements_;
-  double worst_lag_ = 0;       ///< [N] largest change of a sliding contact's normal force since its friction was set
+  double worst_lag_ = 0;  ///< [N] largest change of a sliding contact's normal force since its friction was set
 };
 
 }  // namespace palpate

@@ -23,7 +23,10 @@ double mean_diagonal(const Compliance<double>& c) {
 }  // namespace
 
 HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
-    : compliance_(compliance), capacity_(capacity), stride_(kernels::leading_dimension(3 * capacity)), typical_(mean_diagonal(compliance)) {
+    : compliance_(compliance),
+      capacity_(capacity),
+      stride_(kernels::leading_dimension(3 * capacity)),
+      typical_(mean_diagonal(compliance)) {
   anchors_.reserve(capacity);
   full_.reserve(capacity);
   raised_.reserve(capacity);
@@ -37,7 +40,9 @@ HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
   scratch_.assign(kernels::kMaxBlock * stride_, 0.0);
 }
 
-double HeldPoints::floor_of(double own) const { return pivot_share * std::max(own, typical_); }
+double HeldPoints::floor_of(double own) const {
+  return pivot_share * std::max(own, typical_);
+}
 
 Eigen::Matrix3d HeldPoints::block(int i, int j) const {
   Eigen::Matrix3d b;
@@ -77,7 +82,8 @@ void HeldPoints::remove(int point) {
   const auto in_factor = std::find(full_.begin(), full_.end(), point);
   if (in_factor != full_.end()) {
     const int i = static_cast<int>(in_factor - full_.begin());
-    kernels::active().cholesky_remove(factor_.data(), 3 * static_cast<int>(full_.size()), stride_, 3 * i, 3, scratch_.data());
+    kernels::active().cholesky_remove(factor_.data(), 3 * static_cast<int>(full_.size()), stride_, 3 * i, 3,
+                                      scratch_.data());
     full_.erase(in_factor);
     raised_.erase(raised_.begin() + i);
   }
@@ -116,7 +122,8 @@ void HeldPoints::displacements(const double* forces, double* displacement) {
 void HeldPoints::keep_full(std::span<const Hold> hold) {
   for (int i = static_cast<int>(full_.size()) - 1; i >= 0; --i) {
     if (hold[full_[i]] == Hold::all) continue;
-    kernels::active().cholesky_remove(factor_.data(), 3 * static_cast<int>(full_.size()), stride_, 3 * i, 3, scratch_.data());
+    kernels::active().cholesky_remove(factor_.data(), 3 * static_cast<int>(full_.size()), stride_, 3 * i, 3,
+                                      scratch_.data());
     full_.erase(full_.begin() + i);
     raised_.erase(raised_.begin() + i);
   }
@@ -172,7 +179,9 @@ int HeldPoints::solve(std::span<const Hold> hold, std::span<const Eigen::Vector3
     displacements(forces, given_.data());
   else
     std::fill(given_.begin(), given_.begin() + 3 * size(), 0.0);
-  const auto missing = [&](int p) -> Eigen::Vector3d { return target[p] - Eigen::Map<const Eigen::Vector3d>(given_.data() + 3 * p); };
+  const auto missing = [&](int p) -> Eigen::Vector3d {
+    return target[p] - Eigen::Map<const Eigen::Vector3d>(given_.data() + 3 * p);
+  };
   int row = 0;
   for (int p : full_) {
     Eigen::Map<Eigen::Vector3d>(rhs_.data() + row) = missing(p);

@@ -12,18 +12,18 @@ namespace palpate {
 
 /// What is prescribed at a held point.
 enum class Hold : unsigned char {
-  none,       ///< nothing: its force is zero
-  normal,     ///< the displacement along the normal; the rest of the force is given
-  all,        ///< all three displacements
+  none,    ///< nothing: its force is zero
+  normal,  ///< the displacement along the normal; the rest of the force is given
+  all,     ///< all three displacements
 };
 
 /// The compliance among a few surface points, and the Cholesky factor of what is held of it.
 ///
-/// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J the barycentric rows and c each point's own
-/// softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points
-/// come first in the factor and stay there while they are held, so that a new contact costs one append and a lost
-/// one a rank-three update; rows held along a normal are appended anew each time since normals turn.
-/// Nothing is allocated after construction.
+/// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J the barycentric rows and c each point's
+/// own softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points come
+/// first in the factor and stay there while they are held, so that a new contact costs one append and a lost one a
+/// rank-three update; rows held along a normal are appended anew each time since normals turn. Nothing is allocated
+/// after construction.
 class HeldPoints {
  public:
   /// Pivots below this share of the point's own compliance (or of a typical node's) are raised to it: coincident
@@ -39,7 +39,7 @@ class HeldPoints {
 
   /// Becomes the last point. `softness` [m/N] >= 0 of what holds it.
   void add(const Anchor& anchor, double softness = 0);
-  void remove(int point);          ///< the points after it move down by one
+  void remove(int point);  ///< the points after it move down by one
   void clear();
   /// Forgets the factor, so that the next solve() depends on nothing but the points and the arguments.
   void forget_factor();
@@ -69,13 +69,13 @@ class HeldPoints {
   const Compliance<double>& compliance_;
   int capacity_;
   std::ptrdiff_t stride_;
-  double typical_;                ///< [m/N] mean diagonal compliance of a touchable node
+  double typical_;  ///< [m/N] mean diagonal compliance of a touchable node
   std::vector<Anchor> anchors_;
-  std::vector<double> a_;         ///< A, column-major, both triangles
+  std::vector<double> a_;  ///< A, column-major, both triangles
   kernels::Buffer factor_;
-  std::vector<int> full_;         ///< fully held points in the order of the factor
-  std::vector<int> raised_;       ///< pivots raised when full_[i] was appended
-  std::vector<int> normals_;      ///< points held along their normal, in the order of the factor
+  std::vector<int> full_;     ///< fully held points in the order of the factor
+  std::vector<int> raised_;   ///< pivots raised when full_[i] was appended
+  std::vector<int> normals_;  ///< points held along their normal, in the order of the factor
   kernels::Buffer rows_, rhs_, given_, scratch_;
   std::vector<const double*> columns_;  ///< of A, for displacements()
 };

@@ -9,10 +9,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double parallel = 1e-12;  // squared sine of the angle between segments, below which they count as parallel
-constexpr double least_across = 0.1;  // sine between an axis and a side, below which the side says nothing across the axis
-constexpr int halvings = 10;        // of a segment, in the search for an end of its level part
+constexpr double least_across =
+    0.1;                      // sine between an axis and a side, below which the side says nothing across the axis
+constexpr int halvings = 10;  // of a segment, in the search for an end of its level part
 
-double distance(const Segment& s, double share, const Triangle& t) { return std::sqrt(closest_point(s.at(share), t).squared_distance); }
+double distance(const Segment& s, double share, const Triangle& t) {
+  return std::sqrt(closest_point(s.at(share), t).squared_distance);
+}
 
 /// The sphere about `centre` that leads a point inside or behind it out along `side`.
 Touching led_out(const Vector3d& centre, double radius, const Vector3d& point, const Vector3d& side) {
@@ -44,7 +47,8 @@ Exit leave(const Segment& axis, double radius, const Vector3d& point, const Vect
   return {{centre, (lateral + way * across) / radius}, false};
 }
 
-/// Led out at its own place along the axis, across it: towards `side` as far as that looks across, else on the shortest way.
+/// Led out at its own place along the axis, across it: towards `side` as far as that looks across, else on the shortest
+/// way.
 Touching led_out_across(const Segment& axis, double radius, const Vector3d& point, const Vector3d& side) {
   const Vector3d along = (axis.end - axis.start).normalized(), centre = nearest_point(axis, point);
   const Vector3d across = side - side.dot(along) * along, d = point - centre;

@@ -9,8 +9,10 @@
 namespace palpate {
 namespace {
 
-constexpr double least_facing = 0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
-constexpr double margin_share = 0.1;  // of a part's radius or a mean edge: what is this near is watched before it is touched
+constexpr double least_facing =
+    0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
+constexpr double margin_share =
+    0.1;  // of a part's radius or a mean edge: what is this near is watched before it is touched
 
 }  // namespace
 
@@ -27,7 +29,8 @@ double mean_edge(const SurfaceMap& map) {
   return sum / (3.0 * map.triangles.size());
 }
 
-ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts, Options options)
+ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts,
+                           Options options)
     : law_(law),
       surface_(map, bucket_size),
       options_(std::move(options)),
@@ -46,11 +49,14 @@ ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw
   crossings_.resize(most_swept + 1);
 }
 
-double ToolContacts::margin(double radius) const { return margin_share * std::min(radius, body_edge_); }
+double ToolContacts::margin(double radius) const {
+  return margin_share * std::min(radius, body_edge_);
+}
 
 double ToolContacts::reach(const MovingTool& moving, int part) const {
   const Segment before = moving.axis_before(part), now = moving.axis(part);
-  const double motion = std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  const double motion =
+      std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
   return radius(moving, part) + margin(radius(moving, part)) + motion;
 }
 
@@ -67,14 +73,17 @@ Eigen::Vector3d ToolContacts::inward(const TouchContact& c, bool segment) const 
 double ToolContacts::thrust(const MovingTool& moving, int part) const {
   const Segment before = moving.axis_before(part), now = moving.axis(part);
   const double length = moving.parts[part].length;
-  return length > 0 ? 2 * radius(moving, part) + std::abs((now.start - before.start).dot(now.end - now.start)) / length : 0.0;
+  return length > 0 ? 2 * radius(moving, part) + std::abs((now.start - before.start).dot(now.end - now.start)) / length
+                    : 0.0;
 }
 
-Touching ToolContacts::touch_of(const TouchContact& c, const MovingTool& moving, const Segment& axis, const Eigen::Vector3d& into) const {
+Touching ToolContacts::touch_of(const TouchContact& c, const MovingTool& moving, const Segment& axis,
+                                const Eigen::Vector3d& into) const {
   const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
   const double size = radius(moving, c.part), most = thrust(moving, c.part);
   const Touching touch = touching(axis, size, anchor, into, most);
-  // A segment that has passed over the anchor within this step, across the surface's own direction, does not come round it.
+  // A segment that has passed over the anchor within this step, across the surface's own direction, does not come round
+  // it.
   const bool passed = moving.parts[c.part].length > 0 && touch.normal.dot(c.normal) < 0;
   return passed ? touching(axis, size, anchor, c.normal, most) : touch;
 }

@@ -14,14 +14,14 @@
 namespace palpate {
 
 /// Finds which points of a moving surface the parts of tools touch, and keeps the contacts of a ContactLaw in step with
-/// them. Where triangles are smaller than a part's radius their vertices carry the contact; where they are larger a sphere
-/// touches at one point of a triangle, and a segment at one point of each triangle along it (BHS01 sec. VII). Nothing is
-/// allocated after construction.
+/// them. Where triangles are smaller than a part's radius their vertices carry the contact; where they are larger a
+/// sphere touches at one point of a triangle, and a segment at one point of each triangle along it (BHS01 sec. VII).
+/// Nothing is allocated after construction.
 class ToolContacts {
  public:
   /// What a body's tools have in common with one another, and what is each tool's own.
   struct Options {
-    double offset = 0;             ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
+    double offset = 0;  ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
   };
 
@@ -55,8 +55,8 @@ class ToolContacts {
     const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(p, length, width); };
     return take_nodes(tool, pose, between, allowed) || grasp_nearest(tool, pose, length);
   }
-  /// The nodes between jaws of another shape: those for which `between` (point in the tip frame [m] to bool) and `allowed`
-  /// are true; true if there are any.
+  /// The nodes between jaws of another shape: those for which `between` (point in the tip frame [m] to bool) and
+  /// `allowed` are true; true if there are any.
   template <class Between, class Allowed>
   bool take_nodes(int tool, const Eigen::Isometry3d& pose, Between&& between, Allowed&& allowed) {
     const std::size_t first = law_.contacts().size();
@@ -65,8 +65,8 @@ class ToolContacts {
         take_in_jaws(tool, pose, {{node, node, node}, Eigen::Vector3d::UnitX()}, false);
     return law_.contacts().size() > first;
   }
-  /// A point of the surface that is held between jaws from now on; it stays where it is in the tip frame. False if there is
-  /// no room for another contact.
+  /// A point of the surface that is held between jaws from now on; it stays where it is in the tip frame. False if
+  /// there is no room for another contact.
   bool take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face);
   /// The surface point nearest to the jaws' middle; false if it is farther than half their length.
   bool grasp_nearest(int tool, const Eigen::Isometry3d& pose, double length);
@@ -121,7 +121,8 @@ class ToolContacts {
   double radius(const MovingTool& moving, int part) const { return moving.radius(part) + options_.offset; }
   double reach(const MovingTool& moving, int part) const;
   double thrust(const MovingTool& moving, int part) const;
-  Touching touch_of(const TouchContact& contact, const MovingTool& moving, const Segment& axis, const Eigen::Vector3d& into) const;
+  Touching touch_of(const TouchContact& contact, const MovingTool& moving, const Segment& axis,
+                    const Eigen::Vector3d& into) const;
   double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
 
   ContactLaw& law_;

@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-constexpr double side_within = 2;  // radii along a segment within which a contact says on which side of the tissue it is
+constexpr double side_within =
+    2;  // radii along a segment within which a contact says on which side of the tissue it is
 
 }  // namespace
 
@@ -52,9 +53,10 @@ void ToolContacts::collide_part(const MovingTool& moving, int tool, int part, st
   sphere ? add_face(moving, tool, part, near) : add_faces(moving, tool, part, near);
 }
 
-// The contact of a part that carries force and lies nearest to a place along it [m], if one does so within a distance [m].
-// Of a sphere the oldest.
-const TouchContact* ToolContacts::held_near(const MovingTool& moving, int tool, int part, double place, double within) const {
+// The contact of a part that carries force and lies nearest to a place along it [m], if one does so within a distance
+// [m]. Of a sphere the oldest.
+const TouchContact* ToolContacts::held_near(const MovingTool& moving, int tool, int part, double place,
+                                            double within) const {
   const TouchContact* nearest = nullptr;
   for (const TouchContact& c : law_.contacts()) {
     if (c.tool != tool || c.part != part || c.grasped || c.touch == Touch::open) continue;
@@ -70,7 +72,8 @@ const TouchContact* ToolContacts::held_near(const MovingTool& moving, int tool, 
 bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int part) {
   const Eigen::Vector3d before = moving.axis_before(part).start, now = moving.axis(part).start;
   Crossing first;
-  for (int t : surface_.find(before, now, 0)) first.meet(t, sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t)));
+  for (int t : surface_.find(before, now, 0))
+    first.meet(t, sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t)));
   return first.triangle >= 0 && add_at(first, moving, tool, part, 0);
 }
 
@@ -78,7 +81,8 @@ bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int part) {
 bool ToolContacts::add_at(const Crossing& crossing, const MovingTool& moving, int tool, int part, double place) {
   if (law_.full()) return false;
   const Eigen::Vector3d into = -surface_.triangle_normal(crossing.triangle).normalized();
-  const TouchContact* held = held_near(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]));
+  const TouchContact* held =
+      held_near(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]));
   if (held && held->normal.dot(into) > 0) return false;
   TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
   c.anchor = {surface_.triangle(crossing.triangle), crossing.weights};
@@ -88,8 +92,8 @@ bool ToolContacts::add_at(const Crossing& crossing, const MovingTool& moving, in
   return true;
 }
 
-// Where triangles are smaller than the part's radius, their vertices carry the contact: the force then belongs to the patch
-// under the part and not to the mesh.
+// Where triangles are smaller than the part's radius, their vertices carry the contact: the force then belongs to the
+// patch under the part and not to the mesh.
 void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, std::span<const int> near) {
   const Segment axis = moving.axis(part);
   const double size = radius(moving, part), within = reach(moving, part), length = moving.parts[part].length;
@@ -181,7 +185,8 @@ void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<
   for (int t : near) {
     const auto& nodes = surface_.triangle(t);
     bool across = own.weights.minCoeff() <= 0 && nodes != now.nodes;
-    for (int v = 0; v < 3; ++v) across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
+    for (int v = 0; v < 3; ++v)
+      across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
     if (!across || triangle_taken(law_.contacts()[contact].tool, nodes, contact)) continue;
     const ClosestPoint p = closest_point(centre, surface_.corners(t));
     if (p.squared_distance >= least) continue;

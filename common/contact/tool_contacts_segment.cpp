@@ -7,10 +7,14 @@
 namespace palpate {
 namespace {
 
-constexpr double least_agreement = 0.2;  // cosine between a normal now and at rest, below which the surface counts as folded
-constexpr double most_inside_out = 0.1;  // cosine between a contact's normal and the wall's outer side at rest, above which it is given up
-constexpr double same_wall = 0.5;        // cosine between normals at rest, below which two nodes are of different sides of a tube
-constexpr double apart_share = 1.0 / 3;  // of a triangle's mean edge: contacts of one segment nearer than that depend on one another
+constexpr double least_agreement =
+    0.2;  // cosine between a normal now and at rest, below which the surface counts as folded
+constexpr double most_inside_out =
+    0.1;  // cosine between a contact's normal and the wall's outer side at rest, above which it is given up
+constexpr double same_wall =
+    0.5;  // cosine between normals at rest, below which two nodes are of different sides of a tube
+constexpr double apart_share =
+    1.0 / 3;  // of a triangle's mean edge: contacts of one segment nearer than that depend on one another
 
 Eigen::Vector3d unless_folded(const Eigen::Vector3d& now, const Eigen::Vector3d& rest) {
   return now.dot(rest) > least_agreement ? now : rest;
@@ -30,14 +34,17 @@ std::array<int, 2> points_in(const std::array<Eigen::Vector3d, 2>& box, const Se
     high = std::min(high, std::max(first / along, end / along));
   }
   if (low > high) return {1, 0};
-  return {std::max(0, static_cast<int>(std::floor(low * last))), std::min(last, static_cast<int>(std::ceil(high * last)))};
+  return {std::max(0, static_cast<int>(std::floor(low * last))),
+          std::min(last, static_cast<int>(std::ceil(high * last)))};
 }
 
 }  // namespace
 
 // Where a thin wall is thrust in deeply, linear displacements fold it over itself and its normals lose their meaning:
 // which side is the outer one is known from the wall at rest.
-Eigen::Vector3d ToolContacts::outward(int node) const { return unless_folded(surface_.vertex_normal(node), surface_.rest_normal(node)); }
+Eigen::Vector3d ToolContacts::outward(int node) const {
+  return unless_folded(surface_.vertex_normal(node), surface_.rest_normal(node));
+}
 
 Eigen::Vector3d ToolContacts::outward(const std::array<int, 3>& n) const {
   const auto& x = surface_.positions();
@@ -48,19 +55,22 @@ Eigen::Vector3d ToolContacts::rest_outward(const TouchContact& c) const {
   return c.face ? surface_.rest_triangle_normal(c.anchor.nodes) : surface_.rest_normal(c.anchor.nodes[0]);
 }
 
-// What has slid round a part until it would be pushed outward is above it, not under it: a fold, which it does not press.
-bool ToolContacts::inside_out(const TouchContact& c) const { return c.normal.dot(rest_outward(c)) > most_inside_out; }
+// What has slid round a part until it would be pushed outward is above it, not under it: a fold, which it does not
+// press.
+bool ToolContacts::inside_out(const TouchContact& c) const {
+  return c.normal.dot(rest_outward(c)) > most_inside_out;
+}
 
-// The direction from a segment to a node one step ago: the side from which the segment comes. If it was not in front then,
-// `into`.
+// The direction from a segment to a node one step ago: the side from which the segment comes. If it was not in front
+// then, `into`.
 Eigen::Vector3d ToolContacts::came_from(int node, const Segment& before, const Eigen::Vector3d& into) const {
   const Eigen::Vector3d& x = surface_.previous()[node];
   const Eigen::Vector3d d = x - nearest_point(before, x);
   return d.dot(into) > 0 ? Eigen::Vector3d(d.normalized()) : into;
 }
 
-// Whether a node behind the surface has been pushed there together with another contact, `by`, of the same part: it is one
-// of its neighbours on the same wall, and not of a tube's other side.
+// Whether a node behind the surface has been pushed there together with another contact, `by`, of the same part: it is
+// one of its neighbours on the same wall, and not of a tube's other side.
 bool ToolContacts::pushed_through(int node, const TouchContact& by, double size) const {
   const Eigen::Vector3d anchor = anchor_position(by.anchor, surface_.rest());
   const double within = 2 * (size + body_edge_);
@@ -68,9 +78,9 @@ bool ToolContacts::pushed_through(int node, const TouchContact& by, double size)
          (surface_.rest()[node] - anchor).squaredNorm() < within * within;
 }
 
-// The points of the axis that are swept lie no farther apart than the radius (up to most_swept of them). What passes between
-// two of them unseen is narrower than that, and lies within the radius of both as it passes: the search among what is near
-// meets it.
+// The points of the axis that are swept lie no farther apart than the radius (up to most_swept of them). What passes
+// between two of them unseen is narrower than that, and lies within the radius of both as it passes: the search among
+// what is near meets it.
 bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   const Segment before = moving.axis_before(part), now = moving.axis(part);
   const std::span<const int> found = surface_.find(before, now, 0);
@@ -78,13 +88,16 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   const double length = moving.parts[part].length;
   const int last = std::min(most_swept, static_cast<int>(std::ceil(length / moving.radius(part))));
   std::fill_n(crossings_.begin(), last + 1, Crossing{});
-  const double motion = std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  const double motion =
+      std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
   for (int t : found) {
-    if (surface_.triangle_normal(t).dot(surface_.rest_triangle_normal(surface_.triangle(t))) <= 0) continue;  // folded over
+    if (surface_.triangle_normal(t).dot(surface_.rest_triangle_normal(surface_.triangle(t))) <= 0)
+      continue;  // folded over
     const auto [from, to] = points_in(surface_.swept_box(t), now, motion, last);
     for (int i = from; i <= to; ++i) {
       const double share = static_cast<double>(i) / last;
-      crossings_[i].meet(t, sweep_point(before.at(share), now.at(share), surface_.previous_corners(t), surface_.corners(t)));
+      crossings_[i].meet(
+          t, sweep_point(before.at(share), now.at(share), surface_.previous_corners(t), surface_.corners(t)));
     }
   }
   bool crossed = false;
@@ -98,8 +111,8 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   return crossed;
 }
 
-// Whether a contact of the part holds a place along its axis already: within a distance [m] there is a point on a face or
-// a vertex that carries force.
+// Whether a contact of the part holds a place along its axis already: within a distance [m] there is a point on a face
+// or a vertex that carries force.
 bool ToolContacts::place_taken(const MovingTool& moving, int tool, int part, double place, double within) const {
   return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
     if (c.tool != tool || c.part != part || c.grasped || (!c.face && c.touch == Touch::open)) return false;
@@ -118,7 +131,8 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
     const Triangle corners = surface_.corners(candidate.triangle);
     const bool touches = candidate.squared_distance < size * size;  // what is only near stays open, wherever it is
     const double share = touches ? level_share(axis, corners, candidate.share, margin(size)) : candidate.share;
-    if (place_taken(moving, tool, part, share * length, std::max(size, apart_share * mean_edge_[candidate.triangle]))) continue;
+    if (place_taken(moving, tool, part, share * length, std::max(size, apart_share * mean_edge_[candidate.triangle])))
+      continue;
     TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
     c.anchor = {surface_.triangle(candidate.triangle), closest_point(axis.at(share), corners).weights};
     c.offset = {0, 0, share * length};
@@ -127,7 +141,8 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
   }
 }
 
-// Points on faces that slide follow the place of the axis that they belong to; where vertices have come to carry, they go.
+// Points on faces that slide follow the place of the axis that they belong to; where vertices have come to carry, they
+// go.
 void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std::span<const int> near) {
   const Segment axis = moving.axis(part);
   const double size = radius(moving, part), length = moving.parts[part].length;
@@ -169,11 +184,15 @@ void ToolContacts::find_faces(const MovingTool& moving, int tool, int part, std:
     const Triangle corners = surface_.corners(t);
     const Eigen::Vector3d normal = surface_.triangle_normal(t).normalized();
     const double start = (axis.start - corners[0]).dot(normal), end = (axis.end - corners[0]).dot(normal);
-    if ((start <= 0 && end <= 0) || std::min(start, end) > within) continue;  // all of it behind the plane, or far before it
+    if ((start <= 0 && end <= 0) || std::min(start, end) > within)
+      continue;  // all of it behind the plane, or far before it
     const Eigen::Vector3d middle = (corners[0] + corners[1] + corners[2]) / 3;
-    const double span = std::sqrt(std::max({(corners[0] - middle).squaredNorm(), (corners[1] - middle).squaredNorm(), (corners[2] - middle).squaredNorm()}));
+    const double span = std::sqrt(std::max({(corners[0] - middle).squaredNorm(), (corners[1] - middle).squaredNorm(),
+                                            (corners[2] - middle).squaredNorm()}));
     const double farthest = within + span;
-    if ((nearest_point(axis, middle) - middle).squaredNorm() > farthest * farthest || triangle_taken(tool, surface_.triangle(t), -1)) continue;
+    if ((nearest_point(axis, middle) - middle).squaredNorm() > farthest * farthest ||
+        triangle_taken(tool, surface_.triangle(t), -1))
+      continue;
     const ClosestOfTriangle p = closest_points(axis, corners);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
     if (p.squared_distance >= within * within) continue;

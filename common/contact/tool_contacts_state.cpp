@@ -16,12 +16,18 @@ struct StoredContact {
   int points;
 };
 
-void put(double* to, const Eigen::Vector3d& v) { std::memcpy(to, v.data(), sizeof(double[3])); }
-Eigen::Vector3d get(const double* from) { return {from[0], from[1], from[2]}; }
+void put(double* to, const Eigen::Vector3d& v) {
+  std::memcpy(to, v.data(), sizeof(double[3]));
+}
+Eigen::Vector3d get(const double* from) {
+  return {from[0], from[1], from[2]};
+}
 
 }  // namespace
 
-std::size_t ToolContacts::state_size() const { return surface_.state_size() + sizeof(int) + law_.capacity() * sizeof(StoredContact); }
+std::size_t ToolContacts::state_size() const {
+  return surface_.state_size() + sizeof(int) + law_.capacity() * sizeof(StoredContact);
+}
 
 void ToolContacts::save(unsigned char* to) const {
   surface_.save(to);
@@ -58,18 +64,22 @@ void ToolContacts::restore(const unsigned char* from, std::span<const MovingTool
   int count = 0;
   std::memcpy(&count, from, sizeof count);
   from += sizeof count;
-  if (count < 0 || count > law_.capacity()) throw std::runtime_error("the state names an impossible number of contacts");
+  if (count < 0 || count > law_.capacity())
+    throw std::runtime_error("the state names an impossible number of contacts");
   law_.clear();
   for (int i = 0; i < count; ++i, from += sizeof(StoredContact)) {
     StoredContact s;
     std::memcpy(&s, from, sizeof s);
     const bool tool_known = s.tool >= 0 && s.tool < static_cast<int>(tools.size());
-    if (!tool_known || s.part < 0 || s.part >= tools[s.tool].size() || s.touch > 2 ||
-        (s.points != 1 && s.points != 3))
+    if (!tool_known || s.part < 0 || s.part >= tools[s.tool].size() || s.touch > 2 || (s.points != 1 && s.points != 3))
       throw std::runtime_error("the state holds a contact that this scene cannot have");
     for (int node : s.nodes)
       if (node < 0 || node >= nodes_) throw std::runtime_error("the state names a surface node that the body lacks");
-    TouchContact c{.tool = s.tool, .part = s.part, .face = s.face != 0, .grasped = s.grasped != 0, .touch = static_cast<Touch>(s.touch)};
+    TouchContact c{.tool = s.tool,
+                   .part = s.part,
+                   .face = s.face != 0,
+                   .grasped = s.grasped != 0,
+                   .touch = static_cast<Touch>(s.touch)};
     c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
     c.offset = get(s.offset);
     c.normal = get(s.normal);

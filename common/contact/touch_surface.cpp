@@ -102,7 +102,8 @@ std::span<const int> TouchSurface::find(const Segment& before, const Segment& no
   if (now.start == now.end && before.start == before.end) return find(before.start, now.start, radius);
   found_along_.clear();
   ++found_clock_;
-  const double motion = std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  const double motion =
+      std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
   const int pieces = 1 + static_cast<int>(now.length() / piece_);
   for (int i = 0; i < pieces; ++i) {
     const double a = static_cast<double>(i) / pieces, b = static_cast<double>(i + 1) / pieces;

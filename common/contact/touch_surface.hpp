@@ -25,10 +25,11 @@ class TouchSurface {
   const std::array<int, 3>& triangle(int t) const { return triangles_[t]; }
   Triangle corners(int t) const;           ///< present
   Triangle previous_corners(int t) const;  ///< one step ago
-  std::array<Eigen::Vector3d, 2> swept_box(int t) const;  ///< lowest and highest corner of the box that it sweeps in a step
-  Eigen::Vector3d triangle_normal(int t) const;  ///< outward, not normalised
-  Eigen::Vector3d vertex_normal(int node) const; ///< outward, unit
-  std::span<const Eigen::Vector3d> rest() const { return rest_; }  ///< [m] positions at rest
+  std::array<Eigen::Vector3d, 2> swept_box(
+      int t) const;                               ///< lowest and highest corner of the box that it sweeps in a step
+  Eigen::Vector3d triangle_normal(int t) const;   ///< outward, not normalised
+  Eigen::Vector3d vertex_normal(int node) const;  ///< outward, unit
+  std::span<const Eigen::Vector3d> rest() const { return rest_; }                    ///< [m] positions at rest
   const Eigen::Vector3d& rest_normal(int node) const { return rest_normal_[node]; }  ///< vertex_normal() at rest
   Eigen::Vector3d rest_triangle_normal(const std::array<int, 3>& nodes) const;       ///< outward, unit, at rest
 
@@ -64,9 +65,9 @@ class TouchSurface {
   std::vector<int> first_of_node_, of_node_;  ///< triangles of each node, compressed
   int movable_;                               ///< nodes that can move: the touchable ones
   Buckets buckets_;
-  double slack_;                              ///< [m] by which boxes are entered larger than they are
-  double piece_;                              ///< [m] of a segment that is looked for at once
-  Eigen::Vector3d low_, high_;                ///< [m] box of all that the surface has reached so far
+  double slack_;                                         ///< [m] by which boxes are entered larger than they are
+  double piece_;                                         ///< [m] of a segment that is looked for at once
+  Eigen::Vector3d low_, high_;                           ///< [m] box of all that the surface has reached so far
   std::vector<std::array<Eigen::Vector3d, 2>> entered_;  ///< per triangle, the box by which it stands in the buckets
   mutable std::vector<int> found_, found_along_, found_stamp_;
   mutable int found_clock_ = 0;

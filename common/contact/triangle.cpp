@@ -103,17 +103,14 @@ struct Relative {
   /// Six times the volume of the tetrahedron of point and triangle over time, positive outside; linear in
   /// time if the triangle keeps still.
   Cubic volume(bool still) const {
-    const auto det = [](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-      return -a.dot(b.cross(c));
-    };
+    const auto det = [](const Vector3d& a, const Vector3d& b, const Vector3d& c) { return -a.dot(b.cross(c)); };
     const auto &a = at0, &b = at1;
     if (still) {
       const double begin = det(a[0], a[1], a[2]), end = det(b[0], b[1], b[2]);
       return {begin, (2 * begin + end) / 3, (begin + 2 * end) / 3, end};
     }
-    return {
-        det(a[0], a[1], a[2]), (det(b[0], a[1], a[2]) + det(a[0], b[1], a[2]) + det(a[0], a[1], b[2])) / 3,
-        (det(a[0], b[1], b[2]) + det(b[0], a[1], b[2]) + det(b[0], b[1], a[2])) / 3, det(b[0], b[1], b[2])};
+    return {det(a[0], a[1], a[2]), (det(b[0], a[1], a[2]) + det(a[0], b[1], a[2]) + det(a[0], a[1], b[2])) / 3,
+            (det(a[0], b[1], b[2]) + det(b[0], a[1], b[2]) + det(b[0], b[1], a[2])) / 3, det(b[0], b[1], b[2])};
   }
 
   Triangle at(double t) const {
@@ -133,14 +130,12 @@ constexpr double kLargestShare = 1e-4;  ///< of the reach: no tolerance is large
 
 double lateral_tolerance(const Relative& relative, const Cubic& volume, double t) {
   const double error = kRounding * relative.reach * relative.reach * relative.reach;
-  const double late =
-      std::min(error / std::abs(slope(volume, t)), std::sqrt(2 * error / largest_curvature(volume)));
+  const double late = std::min(error / std::abs(slope(volume, t)), std::sqrt(2 * error / largest_curvature(volume)));
   const double sideways = std::isfinite(late) ? late * relative.speed : 0.0;
   return std::min(kTolerance * relative.reach + sideways, kLargestShare * relative.reach);
 }
 
-std::optional<SweptHit> crossing_at(const Relative& relative, const Cubic& volume, double t,
-                                    bool from_outside) {
+std::optional<SweptHit> crossing_at(const Relative& relative, const Cubic& volume, double t, bool from_outside) {
   const ClosestPoint closest = closest_point(Vector3d::Zero(), relative.at(t));
   const double tolerance = lateral_tolerance(relative, volume, t);
   if (!(closest.squared_distance <= tolerance * tolerance)) return std::nullopt;

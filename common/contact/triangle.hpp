@@ -30,7 +30,7 @@ struct SweptHit {
   Eigen::Vector3d weights;  ///< barycentric coordinates of the crossing, non-negative, sum 1
   bool from_outside;        ///< the point passes against the triangle's normal (from its outer side)
 };
-std::optional<SweptHit> sweep_point(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1,
-                                    const Triangle& triangle0, const Triangle& triangle1);
+std::optional<SweptHit> sweep_point(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1, const Triangle& triangle0,
+                                    const Triangle& triangle1);
 
 }  // namespace palpate

@@ -21,8 +21,8 @@ Corotational<Scalar>::Corotational(const ElasticMesh& mesh, Integrator integrato
   std::vector<double> bounds;
   for (int t = 0; t < this->size(); ++t) {
     const auto& corners = mesh.tetrahedra[t];
-    const auto tet = tet_gradients(
-        {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]], mesh.rest[corners[3]]});
+    const auto tet =
+        tet_gradients({mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]], mesh.rest[corners[3]]});
     const Material& material = mesh.material(t);
     const Lame constants = lame(material);
     auto& quad = quads_[t / 4];
@@ -35,8 +35,7 @@ Corotational<Scalar>::Corotational(const ElasticMesh& mesh, Integrator integrato
     for (int j = 0; j < 4; ++j) quad.entry[j][lane] = 4 * corners[j];
     // Without the symmetry of the strain a shear weighs up to 2 mu, which exceeds the linear bound if lambda
     // < 0 alone.
-    bounds.push_back((constants.lambda < 0 ? 2 : 1) *
-                     element_frequency_squared(tet, constants, material.density));
+    bounds.push_back((constants.lambda < 0 ? 2 : 1) * element_frequency_squared(tet, constants, material.density));
   }
   this->set_element_bounds(std::move(bounds));
 }

@@ -18,8 +18,8 @@ class Coupling {
   virtual void apply(const double* u, double* force) = 0;
 };
 
-/// Moving tissue of one body: M u'' + a M u' + f_elastic(u) = load. Nodes and tetrahedra are those of the ElasticMesh it
-/// was built from. A node without a tetrahedron and without added mass (see couple) stands still and takes no force.
+/// Moving tissue of one body: M u'' + a M u' + f_elastic(u) = load. Nodes and tetrahedra are those of the ElasticMesh
+/// it was built from. A node without a tetrahedron and without added mass (see couple) stands still and takes no force.
 /// Displacements of fixed axes stay zero. All arrays are taken at construction: step() and remove() allocate nothing.
 class DynamicModel {
  public:
@@ -41,7 +41,7 @@ class DynamicModel {
   virtual Eigen::Vector3d displacement(int node) const = 0;  ///< [m]
   virtual Eigen::Vector3d velocity(int node) const = 0;      ///< [m/s]
   virtual void set_motion(int node, const Eigen::Vector3d& u, const Eigen::Vector3d& v) = 0;
-  virtual double mass(int node) const = 0;                   ///< [kg] lumped; 0 without tetrahedra
+  virtual double mass(int node) const = 0;  ///< [kg] lumped; 0 without tetrahedra
   /// External force [N] on a node, gravity included or not as the caller likes; stays until set again.
   virtual void set_load(int node, const Eigen::Vector3d& force) = 0;
   virtual Eigen::Vector3d load(int node) const = 0;

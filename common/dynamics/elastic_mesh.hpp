@@ -17,8 +17,7 @@ struct ElasticMesh {
   std::vector<std::array<int, 4>> tetrahedra;  ///< positively oriented
   std::vector<std::array<bool, 3>> fixed;      ///< per node and axis
   std::vector<Material> materials;             ///< the body's own first
-  std::vector<std::uint16_t>
-      material_of;  ///< index into materials per tetrahedron; empty: all have the first
+  std::vector<std::uint16_t> material_of;      ///< index into materials per tetrahedron; empty: all have the first
 
   const Material& material(int t) const { return materials[material_of.empty() ? 0 : material_of[t]]; }
   int nodes() const { return static_cast<int>(rest.size()); }

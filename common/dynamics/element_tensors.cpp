@@ -42,8 +42,7 @@ ElementTensors::ElementTensors(const ElasticMesh& mesh)
 void ElementTensors::find_edges() {
   edges_.reserve(6 * tetrahedra_.size());
   for (const auto& tet : tetrahedra_)
-    for (const auto& [i, j] : kCornerPairs)
-      edges_.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
+    for (const auto& [i, j] : kCornerPairs) edges_.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
   std::sort(edges_.begin(), edges_.end());
   edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
   edges_.shrink_to_fit();
@@ -65,8 +64,7 @@ Eigen::Matrix3d ElementTensors::edge_tensor(int edge) const {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int t : around_edge_.of(edge))
     if (alive_[t])
-      sum +=
-          stiffness_block(gradients_[t], lame(t), corner_of(tetrahedra_[t], a), corner_of(tetrahedra_[t], b));
+      sum += stiffness_block(gradients_[t], lame(t), corner_of(tetrahedra_[t], a), corner_of(tetrahedra_[t], b));
   return sum;
 }
 

@@ -21,8 +21,7 @@ Vector3d HybridPart::still_position(const Anchor& anchor) const {
   Vector3d position = Vector3d::Zero();
   for (int v = 0; v < 3; ++v) {
     const int node = anchor.nodes[v];
-    if (anchor.weights[v] != 0)
-      position += anchor.weights[v] * (rest_[node] + sag_[node] + respond(node, dead_));
+    if (anchor.weights[v] != 0) position += anchor.weights[v] * (rest_[node] + sag_[node] + respond(node, dead_));
   }
   return position;
 }
@@ -90,8 +89,7 @@ void HybridPart::factorise() {
     const auto& [cr, axis] = rows_[r];
     const TouchContact& contact = contacts[cr];
     const Vector3d still = still_position(contact.anchor);
-    constant_[r] =
-        contact.touch == Touch::sliding ? contact.plane - axis.dot(still) : axis.dot(contact.target - still);
+    constant_[r] = contact.touch == Touch::sliding ? contact.plane - axis.dot(still) : axis.dot(contact.target - still);
   }
   for (std::size_t a = 0; a < contacts.size(); ++a)
     for (std::size_t b = 0; b < contacts.size(); ++b) {
@@ -104,8 +102,7 @@ void HybridPart::factorise() {
         constant_[r] -= rows_[r].axis.dot(block * friction_force_[b]);
       }
     }
-  for (int r = 0; r < count; ++r)
-    floor_[r] = HeldPoints::pivot_share * std::max(factor_[kStride * r + r], typical_);
+  for (int r = 0; r < count; ++r) floor_[r] = HeldPoints::pivot_share * std::max(factor_[kStride * r + r], typical_);
   kernels::active().cholesky(factor_.data(), count, kStride, floor_.data());
 }
 
@@ -135,8 +132,7 @@ void HybridPart::condense() {
   const auto contacts = law_.contacts();
   for (std::size_t c = 0; c < contacts.size(); ++c)
     if (!friction_force_[c].isZero(0)) add_follow_force(contacts[c].anchor, friction_force_[c]);
-  for (int r = 0; r < count; ++r)
-    Vector(load_.data(), size_) += constant_[r] * ConstVector(held_rows_[r], size_);
+  for (int r = 0; r < count; ++r) Vector(load_.data(), size_) += constant_[r] * ConstVector(held_rows_[r], size_);
 }
 
 void HybridPart::apply(const double* u, double* force) {
@@ -152,8 +148,7 @@ void HybridPart::apply(const double* u, double* force) {
   }
   const int count = static_cast<int>(rows_.size());
   if (count == 0) return;
-  for (int r = 0; r < count; ++r)
-    multiplier_[r] = ConstVector(held_rows_[r], size_).dot(ConstVector(u, size_));
+  for (int r = 0; r < count; ++r) multiplier_[r] = ConstVector(held_rows_[r], size_).dot(ConstVector(u, size_));
   kernels::active().cholesky_solve(factor_.data(), count, kStride, multiplier_.data());
   kernels::active().combine_d(held_rows_.data(), multiplier_.data(), count, size_, product_.data());
   out -= ConstVector(product_.data(), size_);
@@ -164,12 +159,10 @@ void HybridPart::apply(const double* u, double* force) {
 void HybridPart::find_forces() {
   const auto contacts = law_.contacts();
   const int count = static_cast<int>(rows_.size());
-  for (int r = 0; r < count; ++r)
-    multiplier_[r] = ConstVector(held_rows_[r], size_).dot(ConstVector(u_.data(), size_));
+  for (int r = 0; r < count; ++r) multiplier_[r] = ConstVector(held_rows_[r], size_).dot(ConstVector(u_.data(), size_));
   kernels::active().cholesky_solve(factor_.data(), count, kStride, multiplier_.data());
   for (std::size_t c = 0; c < contacts.size(); ++c) contact_force_[c] = friction_force_[c];
-  for (int r = 0; r < count; ++r)
-    contact_force_[rows_[r].contact] += (constant_[r] - multiplier_[r]) * rows_[r].axis;
+  for (int r = 0; r < count; ++r) contact_force_[rows_[r].contact] += (constant_[r] - multiplier_[r]) * rows_[r].axis;
   list_node_forces();
 }
 

@@ -92,9 +92,7 @@ void HybridPart::fill_stiffness(const HybridTensors& hybrid) {
   const int stride = padded(size_);
   if (single_) stiffness_f_.assign(static_cast<std::size_t>(stride) * size_, 0);
   if (!single_) stiffness_d_.assign(static_cast<std::size_t>(stride) * size_, 0);
-  const auto entry = [&](const Dof& dof) {
-    return static_cast<std::size_t>(3 * place_[dof.node] + dof.axis);
-  };
+  const auto entry = [&](const Dof& dof) { return static_cast<std::size_t>(3 * place_[dof.node] + dof.axis); };
   for (std::size_t i = 0; i < hybrid.dofs.size(); ++i) {
     reaction_[entry(hybrid.dofs[i])] = hybrid.reaction[i];
     for (std::size_t j = 0; j <= i; ++j) {
@@ -142,10 +140,8 @@ void HybridPart::couple(DynamicModel& model) {
 
 void HybridPart::set_force(int node, const Vector3d& force) {
   if (!owns(node) || node >= compliance_.column_nodes())
-    throw std::runtime_error(
-        "a dead force acts on a node that is not touchable or not of the quasi-static part");
-  const auto found =
-      std::find_if(dead_.begin(), dead_.end(), [&](const NodeForce& f) { return f.node == node; });
+    throw std::runtime_error("a dead force acts on a node that is not touchable or not of the quasi-static part");
+  const auto found = std::find_if(dead_.begin(), dead_.end(), [&](const NodeForce& f) { return f.node == node; });
   if (found != dead_.end())
     found->force = force;
   else
@@ -225,12 +221,11 @@ void HybridPart::superpose(std::span<Eigen::Vector3f> displacement) {
       coefficients_.push_back(static_cast<float>(force[axis]));
     }
   const int nodes = picture_.row_nodes();
-  kernels::active().combine_f(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()),
-                              3 * nodes, whole_.data());
+  kernels::active().combine_f(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()), 3 * nodes,
+                              whole_.data());
   for (int node = 0; node < nodes; ++node)
     if (row_[node] >= 0)
-      displacement[node] =
-          Eigen::Map<const Eigen::Vector3f>(whole_.data() + 3 * node) + sag_[node].cast<float>();
+      displacement[node] = Eigen::Map<const Eigen::Vector3f>(whole_.data() + 3 * node) + sag_[node].cast<float>();
   for (std::size_t k = 0; k < connection_.size(); ++k)
     displacement[connection_[k]] = Eigen::Map<const Vector3d>(u_.data() + 3 * k).cast<float>();
 }

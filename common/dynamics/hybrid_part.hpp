@@ -143,7 +143,7 @@ class HybridPart final : public Coupling {
   kernels::Buffer factor_, floor_;
   Array<double> held_, product_, multiplier_, constant_;  // J H by rows; S u; and per row
   std::vector<const double*> held_rows_;
-  std::vector<int> shares_;  // per connection node: contacts that rest on it
+  std::vector<int> shares_;                                      // per connection node: contacts that rest on it
   std::vector<Eigen::Vector3d> friction_force_, contact_force_;  // per contact
   std::vector<double> u_, load_, added_;                         // per connection dof
   std::vector<float> u_f_;

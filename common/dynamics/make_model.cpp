@@ -23,7 +23,9 @@ std::unique_ptr<DynamicModel> choose(const ElasticMesh& mesh, const Body& body) 
 
 }  // namespace
 
-Integrator integrator_of(const Body& body) { return body.dynamic.integrator == "semi_implicit" ? Integrator::semi_implicit : Integrator::rk4; }
+Integrator integrator_of(const Body& body) {
+  return body.dynamic.integrator == "semi_implicit" ? Integrator::semi_implicit : Integrator::rk4;
+}
 
 std::unique_ptr<DynamicModel> make_dynamic_model(const ElasticMesh& mesh, const Body& body) {
   return body.dynamic.precision == "double" ? choose<double>(mesh, body) : choose<float>(mesh, body);

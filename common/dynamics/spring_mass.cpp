@@ -62,8 +62,7 @@ SpringMass<Scalar>::SpringMass(const ElasticMesh& mesh, Integrator integrator, d
     auto& quad = quads_[s / 4];
     const int lane = s % 4;
     const bool used = s < springs;
-    for (int axis = 0; axis < 3; ++axis)
-      quad.rest[axis][lane] = static_cast<Scalar>(used ? rest_[s][axis] : axis == 0);
+    for (int axis = 0; axis < 3; ++axis) quad.rest[axis][lane] = static_cast<Scalar>(used ? rest_[s][axis] : axis == 0);
     quad.length[lane] = static_cast<Scalar>(used ? rest_[s].norm() : 1);
     for (int end = 0; end < 2; ++end) quad.entry[end][lane] = used ? 4 * ends_[s][end] : 0;
     quad.stiffness[lane] = 0;

@@ -47,8 +47,7 @@ Staged<Scalar>::Staged(const ElasticMesh& mesh, Integrator integrator, double da
       load_(mesh.rest.size(), Eigen::Vector3d::Zero()),
       state_(8 * mesh.rest.size(), 0) {
   const std::size_t entries = 4 * mesh.rest.size();
-  for (Array* array :
-       {&constant_, &inverse_mass_, &force_, &stage_u_, &stage_v_, &sum_u_, &sum_v_, &present_})
+  for (Array* array : {&constant_, &inverse_mass_, &force_, &stage_u_, &stage_v_, &sum_u_, &sum_v_, &present_})
     array->assign(entries, 0);
   fixed_.resize(mesh.rest.size(), {false, false, false});
   list_around(mesh, around_begin_, around_);
@@ -116,8 +115,7 @@ void Staged<Scalar>::set_motion(int node, const Eigen::Vector3d& u, const Eigen:
   for (int axis = 0; axis < 3; ++axis) {
     const int i = 4 * node + axis;
     this->u()[i] = static_cast<Scalar>(fixed_[node][axis] ? 0 : u[axis]);
-    this->v()[i] =
-        static_cast<Scalar>(fixed_[node][axis] || mass_[node] + coupled_mass_[node] == 0 ? 0 : v[axis]);
+    this->v()[i] = static_cast<Scalar>(fixed_[node][axis] || mass_[node] + coupled_mass_[node] == 0 ? 0 : v[axis]);
   }
   is_present_ = false;
 }
@@ -160,8 +158,8 @@ double Staged<Scalar>::energy() const {
 template <class Scalar>
 void Staged<Scalar>::set_state(std::span<const std::byte> state) {
   if (state.size() != state_.size() * sizeof(Scalar))
-    throw std::runtime_error(fmt::format("a state of {} bytes is not one of this model, which has {}",
-                                         state.size(), state_.size() * sizeof(Scalar)));
+    throw std::runtime_error(fmt::format("a state of {} bytes is not one of this model, which has {}", state.size(),
+                                         state_.size() * sizeof(Scalar)));
   std::memcpy(state_.data(), state.data(), state.size());
   is_present_ = false;
 }

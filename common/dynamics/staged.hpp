@@ -19,8 +19,7 @@ class Staged : public DynamicModel {
 
   void step(double dt) final;
   void remove(std::span<const int> tetrahedra) final;
-  void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass,
-              double bound) final;
+  void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass, double bound) final;
   double frequency_bound() const final;
 
   Eigen::Vector3d displacement(int node) const final { return entry(u(), node); }

@@ -62,8 +62,8 @@ TearCriterion tear_criterion(std::string_view name) {
   if (name == "volume") return TearCriterion::volume;
   if (name == "mean_elongation") return TearCriterion::mean_elongation;
   if (name == "largest_elongation") return TearCriterion::largest_elongation;
-  throw std::runtime_error(fmt::format(
-      "no tearing criterion '{}': there are volume, mean_elongation and largest_elongation", name));
+  throw std::runtime_error(
+      fmt::format("no tearing criterion '{}': there are volume, mean_elongation and largest_elongation", name));
 }
 
 TearSearch::TearSearch(const ElasticMesh& mesh, TearCriterion criterion, double threshold, int limit)

@@ -110,11 +110,9 @@ void TensorMass<Scalar>::step(double dt) {
       couple_pass(rates_.data());
       return of_type<Scalar>(kernels_.rk4_second_f, kernels_.rk4_second_d)(blocks_, arrays_, damping_, dt);
     case Integrator::semi_implicit:
-      return of_type<Scalar>(kernels_.semi_implicit_f, kernels_.semi_implicit_d)(blocks_, arrays_, damping_,
-                                                                                 dt);
+      return of_type<Scalar>(kernels_.semi_implicit_f, kernels_.semi_implicit_d)(blocks_, arrays_, damping_, dt);
     case Integrator::forward_euler:
-      return of_type<Scalar>(kernels_.forward_euler_f, kernels_.forward_euler_d)(blocks_, arrays_, damping_,
-                                                                                 dt);
+      return of_type<Scalar>(kernels_.forward_euler_f, kernels_.forward_euler_d)(blocks_, arrays_, damping_, dt);
   }
 }
 
@@ -131,8 +129,7 @@ void TensorMass<Scalar>::couple_pass(const Scalar* pair) {
     coupling_->apply(coupled_vector_.data(), coupled_force_.data());
     for (std::size_t c = 0; c < coupled_.size(); ++c)
       for (int axis = 0; axis < 3; ++axis)
-        product_[kNodeWidth * row_[coupled_[c]] + first + axis] -=
-            static_cast<Scalar>(coupled_force_[3 * c + axis]);
+        product_[kNodeWidth * row_[coupled_[c]] + first + axis] -= static_cast<Scalar>(coupled_force_[3 * c + axis]);
   }
 }
 
@@ -232,8 +229,7 @@ Eigen::Matrix3d TensorMass<Scalar>::edge_tensor(int i, int j) const {
   const int edge = elements_.edge_between(i, j);
   if (edge < 0) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix3d tensor =
-      Eigen::Map<const Eigen::Matrix<Scalar, 3, 3>>(&block_[kBlockSize * slot_[edge]])
-          .template cast<double>();
+      Eigen::Map<const Eigen::Matrix<Scalar, 3, 3>>(&block_[kBlockSize * slot_[edge]]).template cast<double>();
   return row_[i] < row_[j] ? tensor : Eigen::Matrix3d(tensor.transpose());
 }
 

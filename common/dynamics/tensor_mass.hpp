@@ -24,8 +24,7 @@ class TensorMass final : public DynamicModel {
   double frequency_bound() const override;
   void step(double dt) override;
   void remove(std::span<const int> tetrahedra) override;
-  void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass,
-              double bound) override;
+  void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass, double bound) override;
 
   Eigen::Vector3d displacement(int node) const override { return vector_at(node, 0); }
   Eigen::Vector3d velocity(int node) const override { return vector_at(node, 4); }

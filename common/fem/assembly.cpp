@@ -110,8 +110,7 @@ std::vector<Eigen::Vector3d> internal_force(const TetMesh& mesh, const MaterialF
     Eigen::Matrix<double, 4, 3> u;
     for (int j = 0; j < 4; ++j) u.row(j) = displacement[tet[j]];
     const auto stress = element_stress(gradients, lame(materials.at(static_cast<int>(e))), u);
-    for (int j = 0; j < 4; ++j)
-      force[tet[j]] += gradients.volume * stress * gradients.gradient.row(j).transpose();
+    for (int j = 0; j < 4; ++j) force[tet[j]] += gradients.volume * stress * gradients.gradient.row(j).transpose();
   }
   return force;
 }

@@ -45,8 +45,8 @@ SurfaceCompliance allocate(std::size_t touchable, std::size_t other) {
   return result;
 }
 
-SurfaceCompliance condense(const SparseMatrix& stiffness, std::optional<Factorisation>& factor,
-                           Index touchable, Index other, Stopwatch& watch) {
+SurfaceCompliance condense(const SparseMatrix& stiffness, std::optional<Factorisation>& factor, Index touchable,
+                           Index other, Stopwatch& watch) {
   factor->factorise(stiffness);
   watch.lap("factorisation");
   MatrixXd surface = factor->trailing_factor(static_cast<int>(other + touchable));
@@ -69,9 +69,8 @@ SurfaceCompliance condense(const SparseMatrix& stiffness, std::optional<Factoris
   return result;
 }
 
-SurfaceCompliance solve_columns(const SparseMatrix& stiffness, Factorisation& factor,
-                                const std::vector<int>& touchable, const std::vector<int>& other,
-                                Stopwatch& watch) {
+SurfaceCompliance solve_columns(const SparseMatrix& stiffness, Factorisation& factor, const std::vector<int>& touchable,
+                                const std::vector<int>& other, Stopwatch& watch) {
   factor.factorise(stiffness);
   watch.lap("factorisation");
   const auto t = static_cast<Index>(touchable.size()), o = static_cast<Index>(other.size());
@@ -82,8 +81,7 @@ SurfaceCompliance solve_columns(const SparseMatrix& stiffness, Factorisation& fa
     for (Index c = 0; c < count; ++c) unit(touchable[begin + c], c) = 1;
     const MatrixXd column = factor.solve(unit);
     for (Index c = 0; c < count; ++c) {
-      for (Index i = begin + c; i < t; ++i)
-        result.touchable[i * (i + 1) / 2 + begin + c] = column(touchable[i], c);
+      for (Index i = begin + c; i < t; ++i) result.touchable[i * (i + 1) / 2 + begin + c] = column(touchable[i], c);
       for (Index i = 0; i < o; ++i) result.other[i * t + begin + c] = column(other[i], c);
     }
   }
@@ -112,8 +110,8 @@ SurfaceCompliance surface_compliance(const TetMesh& mesh, const MaterialField& m
   // With most of the surface touchable condensing always wins, and the second ordering is saved.
   if (route == Route::solve || (route == Route::fastest && t < 0.5 * (t + o))) solving.emplace(stiffness);
 
-  const bool by_condensing = !solving || (condensing && condensing_flops(*condensing, t, o) <=
-                                                            kSolvePenalty * solving_flops(*solving, t));
+  const bool by_condensing =
+      !solving || (condensing && condensing_flops(*condensing, t, o) <= kSolvePenalty * solving_flops(*solving, t));
   const double flops = by_condensing ? condensing_flops(*condensing, t, o) : solving_flops(*solving, t);
   watch.lap(fmt::format("ordering ({:.3g} Gflop follow)", 1e-9 * flops));
   SurfaceCompliance result;

@@ -29,21 +29,20 @@ void invert_from_cholesky(DenseRef factor) {
   if (info != 0) throw std::runtime_error("the compliance of the surface is singular");
 }
 
-void multiply_symmetric(double factor, const ConstDenseRef& symmetric_lower, const ConstDenseRef& b,
-                        DenseRef out) {
+void multiply_symmetric(double factor, const ConstDenseRef& symmetric_lower, const ConstDenseRef& b, DenseRef out) {
   cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, rows(out), columns(out), factor, symmetric_lower.data(),
               stride(symmetric_lower), b.data(), stride(b), 0.0, out.data(), stride(out));
 }
 
 void divide_by_lower(DenseRef b, const ConstDenseRef& lower) {
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, rows(b), columns(b), 1.0,
-              lower.data(), stride(lower), b.data(), stride(b));
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, rows(b), columns(b), 1.0, lower.data(),
+              stride(lower), b.data(), stride(b));
 }
 
 Eigen::MatrixXd dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd product(a.rows(), b.cols());
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows(a), columns(b), columns(a), 1.0, a.data(),
-              stride(a), b.data(), stride(b), 0.0, product.data(), stride(product));
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows(a), columns(b), columns(a), 1.0, a.data(), stride(a),
+              b.data(), stride(b), 0.0, product.data(), stride(product));
   return product;
 }
 

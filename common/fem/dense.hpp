@@ -13,8 +13,7 @@ using ConstDenseRef = Eigen::Ref<const Eigen::MatrixXd>;
 void invert_from_cholesky(DenseRef factor);
 
 /// out = factor * S B, S symmetric with its lower triangle given.
-void multiply_symmetric(double factor, const ConstDenseRef& symmetric_lower, const ConstDenseRef& b,
-                        DenseRef out);
+void multiply_symmetric(double factor, const ConstDenseRef& symmetric_lower, const ConstDenseRef& b, DenseRef out);
 
 /// In place: B becomes B L^-1.
 void divide_by_lower(DenseRef b, const ConstDenseRef& lower);

@@ -33,8 +33,8 @@ Reduced eliminate_holds(const StaticProblem& problem, const std::vector<Constrai
     }
     const auto& [node, axis, weight] = constraint.terms.at(0);
     if (!reduced.dofs.is_free(node, axis))
-      throw std::runtime_error(fmt::format("node {} cannot be held along {}: {}", node, "xyz"[axis],
-                                           obstacle(problem.dofs, node, axis)));
+      throw std::runtime_error(
+          fmt::format("node {} cannot be held along {}: {}", node, "xyz"[axis], obstacle(problem.dofs, node, axis)));
     reduced.dofs.fix(node, axis);
     reduced.displacement[node][axis] = constraint.value / weight;
   }
@@ -53,8 +53,7 @@ void scatter_add(const DofMap& dofs, const VectorXd& values, std::vector<Vector3
 }
 
 /// Adds the free response to the conditions' multipliers.
-void impose_conditions(const Reduced& reduced, const Factorisation& factor,
-                       std::vector<Vector3d>& displacement) {
+void impose_conditions(const Reduced& reduced, const Factorisation& factor, std::vector<Vector3d>& displacement) {
   const auto count = static_cast<Eigen::Index>(reduced.conditions.size());
   MatrixXd rows = MatrixXd::Zero(reduced.dofs.size(), count);  // J^T
   VectorXd gap(count);

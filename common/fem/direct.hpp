@@ -21,8 +21,7 @@ StaticProblem make_static_problem(const Body& body, TetMesh mesh);
 
 struct StaticSolution {
   std::vector<Eigen::Vector3d> displacement;  ///< [m] per mesh node
-  std::vector<Eigen::Vector3d>
-      force;  ///< [N] per mesh node, on the tissue: holds and reactions of fixed nodes
+  std::vector<Eigen::Vector3d> force;         ///< [N] per mesh node, on the tissue: holds and reactions of fixed nodes
 };
 
 /// Solves the full system afresh, independently of any precomputed compliance. Axes held alone are eliminated

@@ -37,8 +37,7 @@ Eigen::Matrix3d element_strain(const TetGradients& tet, const Eigen::Matrix<doub
   return 0.5 * (gradient + gradient.transpose());
 }
 
-Eigen::Matrix3d element_stress(const TetGradients& tet, const Lame& lame,
-                               const Eigen::Matrix<double, 4, 3>& u) {
+Eigen::Matrix3d element_stress(const TetGradients& tet, const Lame& lame, const Eigen::Matrix<double, 4, 3>& u) {
   const Eigen::Matrix3d e = element_strain(tet, u);
   return lame.lambda * e.trace() * Eigen::Matrix3d::Identity() + 2 * lame.mu * e;
 }

@@ -34,8 +34,7 @@ Eigen::Matrix<double, 12, 12> element_stiffness(const TetGradients& tet, const L
 /// Constant small strain of an element [1] and its stress [Pa] for vertex displacements in the rows of `u`
 /// [m].
 Eigen::Matrix3d element_strain(const TetGradients& tet, const Eigen::Matrix<double, 4, 3>& u);
-Eigen::Matrix3d element_stress(const TetGradients& tet, const Lame& lame,
-                               const Eigen::Matrix<double, 4, 3>& u);
+Eigen::Matrix3d element_stress(const TetGradients& tet, const Lame& lame, const Eigen::Matrix<double, 4, 3>& u);
 
 /// Elastic energy of an element [J]: V (lambda/2 (tr e)^2 + mu e:e) (RR3510 eq. 1).
 double element_energy(const TetGradients& tet, const Lame& lame, const Eigen::Matrix<double, 4, 3>& u);

@@ -29,8 +29,7 @@ struct Factorisation::Impl {
     context->method[0].ordering = order.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
     context->postorder = order.empty();
     auto* permutation = const_cast<std::int64_t*>(order.data());
-    factor = cholmod_l_analyze_p(&view, reinterpret_cast<SuiteSparse_long*>(permutation), nullptr, 0,
-                                 context.get());
+    factor = cholmod_l_analyze_p(&view, reinterpret_cast<SuiteSparse_long*>(permutation), nullptr, 0, context.get());
     if (!factor) throw std::runtime_error(failure("the analysis of the stiffness matrix failed"));
     flops = context->fl;
     nonzeros = static_cast<std::int64_t>(context->lnz);
@@ -81,11 +80,10 @@ Eigen::MatrixXd Factorisation::solve(const Eigen::MatrixXd& b) const {
   view.xtype = CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
   cholmod_dense* x = nullptr;
-  cholmod_l_solve2(CHOLMOD_A, impl_->factor, &view, nullptr, &x, nullptr, &impl_->workspace[0],
-                   &impl_->workspace[1], impl_->context.get());
+  cholmod_l_solve2(CHOLMOD_A, impl_->factor, &view, nullptr, &x, nullptr, &impl_->workspace[0], &impl_->workspace[1],
+                   impl_->context.get());
   if (!x) throw std::runtime_error(impl_->failure("the solution with the factor failed"));
-  Eigen::MatrixXd result =
-      Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), b.rows(), b.cols());
+  Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), b.rows(), b.cols());
   cholmod_l_free_dense(&x, impl_->context.get());
   return result;
 }

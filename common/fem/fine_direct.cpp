@@ -56,7 +56,8 @@ std::vector<Vector3d> mean_displacement(const FineProblem& problem, const std::v
 
 /// Adds what the support exerts: K u at fixed fine dofs less the applied forces that act there themselves.
 void add_reactions(const FineProblem& problem, const std::vector<Vector3d>& fine, std::vector<Vector3d>& force) {
-  auto support = internal_force(problem.space, problem.materials, problem.pressures ? &*problem.pressures : nullptr, fine);
+  auto support =
+      internal_force(problem.space, problem.materials, problem.pressures ? &*problem.pressures : nullptr, fine);
   for (int node = 0; node < problem.run_time_dofs.nodes(); ++node)
     for (SparseMatrix::InnerIterator it(problem.hats, node); it; ++it) support[it.row()] -= it.value() * force[node];
   for (int node = 0; node < problem.dofs.nodes(); ++node)

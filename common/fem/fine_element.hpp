@@ -17,9 +17,9 @@ ShapeGradients shape_gradients(const TetGradients& tet, int functions, const Eig
 /// equal.
 struct ElementQuadrature {
   int count;
-  std::array<Eigen::Vector4d, 4> at;        ///< barycentric coordinates
+  std::array<Eigen::Vector4d, 4> at;  ///< barycentric coordinates
   std::array<ShapeGradients, 4> gradient;
-  double weight;                            ///< [m^3]
+  double weight;  ///< [m^3]
 };
 
 TetGradients corner_gradients(const FineSpace& space, int element);

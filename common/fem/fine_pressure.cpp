@@ -34,8 +34,7 @@ Eigen::VectorXd Pressures::operator()(const std::vector<Eigen::Vector3d>& displa
 }
 
 Eigen::Matrix3d fine_stress(const FineSpace& space, const MaterialField& materials, const Eigen::VectorXd* pressure,
-                            const std::vector<Eigen::Vector3d>& displacement, int element,
-                            const Eigen::Vector4d& at) {
+                            const std::vector<Eigen::Vector3d>& displacement, int element, const Eigen::Vector4d& at) {
   const auto gradient = shape_gradients(corner_gradients(space, element), space.per_element, at);
   Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
   for (int j = 0; j < space.per_element; ++j) slope += displacement[space.elements[element][j]] * gradient.row(j);

@@ -17,12 +17,12 @@ namespace palpate {
 /// tetrahedra.
 struct FineProblem {
   FineSpace space;
-  MaterialField materials;            ///< of the run-time tetrahedra
-  std::optional<Pressures> pressures; ///< set for the locking-free formulation
-  DofMap dofs;                        ///< of the fine nodes
+  MaterialField materials;             ///< of the run-time tetrahedra
+  std::optional<Pressures> pressures;  ///< set for the locking-free formulation
+  DofMap dofs;                         ///< of the fine nodes
   DofMap run_time_dofs;
-  SparseMatrix hats;                  ///< W
-  std::string body;                   ///< for error sentences
+  SparseMatrix hats;  ///< W
+  std::string body;   ///< for error sentences
 };
 
 /// Throws std::runtime_error as make_fine_space(), apply_fixation() and material_field() do.
@@ -59,6 +59,7 @@ StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constr
 std::vector<Eigen::Vector3d> spread_loads(const FineProblem& problem, const std::vector<Eigen::Vector3d>& load);
 
 /// Displacements [m] of the fine nodes under dead loads [N] on them.
-std::vector<Eigen::Vector3d> solve_fine_loads(const FineProblem& problem, const std::vector<Eigen::Vector3d>& fine_load);
+std::vector<Eigen::Vector3d> solve_fine_loads(const FineProblem& problem,
+                                              const std::vector<Eigen::Vector3d>& fine_load);
 
 }  // namespace palpate

@@ -61,7 +61,8 @@ FineSpace make_fine_space(const TetMesh& mesh, const Offline& offline) {
   const bool linear_pressures = offline.element == "p1" && offline.formulation == "locking_free";
   if (linear_pressures && offline.refine == 0)
     throw std::runtime_error(
-        "element = \"p1\" with formulation = \"locking_free\" needs refine = 1 or 2, since eight linear elements share a "
+        "element = \"p1\" with formulation = \"locking_free\" needs refine = 1 or 2, since eight linear elements share "
+        "a "
         "pressure; or take element = \"p2\"");
   FineSpace space;
   space.mesh = {mesh.nodes, mesh.tetrahedra, {}};

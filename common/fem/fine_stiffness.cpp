@@ -70,8 +70,7 @@ void add_pressures(const Pressures& pressures, Blocks& blocks) {
     }
     for (std::size_t k = 0; k < star.size(); ++k)
       for (std::size_t j = k; j < star.size(); ++j)
-        blocks.at(star[j].first, star[k].first) +=
-            pressures.modulus[a] * star[j].second * star[k].second.transpose();
+        blocks.at(star[j].first, star[k].first) += pressures.modulus[a] * star[j].second * star[k].second.transpose();
   }
 }
 
@@ -115,8 +114,8 @@ SparseMatrix assemble_stiffness(const FineSpace& space, const MaterialField& mat
   return lower_triangle(blocks.block, dofs, graph);
 }
 
-std::vector<Vector3d> internal_force(const FineSpace& space, const MaterialField& materials,
-                                     const Pressures* pressures, const std::vector<Vector3d>& displacement) {
+std::vector<Vector3d> internal_force(const FineSpace& space, const MaterialField& materials, const Pressures* pressures,
+                                     const std::vector<Vector3d>& displacement) {
   std::vector<Vector3d> force(space.nodes.size(), Vector3d::Zero());
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const auto points = quadrature(space, e);

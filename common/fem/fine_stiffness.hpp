@@ -36,7 +36,6 @@ std::vector<Eigen::Vector3d> internal_force(const FineSpace& space, const Materi
 
 /// Stress [Pa] of an element at barycentric coordinates. `pressure`: of every pressure, null without.
 Eigen::Matrix3d fine_stress(const FineSpace& space, const MaterialField& materials, const Eigen::VectorXd* pressure,
-                            const std::vector<Eigen::Vector3d>& displacement, int element,
-                            const Eigen::Vector4d& at);
+                            const std::vector<Eigen::Vector3d>& displacement, int element, const Eigen::Vector4d& at);
 
 }  // namespace palpate

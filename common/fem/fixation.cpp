@@ -45,8 +45,7 @@ int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
     for (int axis = 0; axis < 3; ++axis) {
       if (dofs.index(node, axis) != DofMap::kFixed) continue;
       Eigen::Matrix<double, 6, 1> row;
-      row << Eigen::Vector3d::Unit(axis),
-          ((mesh.nodes[node] - centre) / size).cross(Eigen::Vector3d::Unit(axis));
+      row << Eigen::Vector3d::Unit(axis), ((mesh.nodes[node] - centre) / size).cross(Eigen::Vector3d::Unit(axis));
       gram += row * row.transpose();
     }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram, Eigen::EigenvaluesOnly);
@@ -55,18 +54,15 @@ int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
   return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
 }
 
-DofMap apply_fixation(const TetMesh& mesh, const std::vector<FixedRegion>& regions,
-                      const std::string& where) {
+DofMap apply_fixation(const TetMesh& mesh, const std::vector<FixedRegion>& regions, const std::string& where) {
   if (regions.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   DofMap dofs(mesh);
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const std::string place = fmt::format("{}: [[body.fixed]] number {}", where, i + 1);
     const auto nodes = select_nodes(mesh, regions[i].where, place);
     const auto& axes = regions[i].axes;
-    if (nodes.empty())
-      throw std::runtime_error(place + ": an empty fixed set: it selects no node of the mesh");
-    if (!axes[0] && !axes[1] && !axes[2])
-      throw std::runtime_error(place + ": an empty fixed set: it names no axis");
+    if (nodes.empty()) throw std::runtime_error(place + ": an empty fixed set: it selects no node of the mesh");
+    if (!axes[0] && !axes[1] && !axes[2]) throw std::runtime_error(place + ": an empty fixed set: it names no axis");
     for (int node : nodes)
       for (int axis = 0; axis < 3; ++axis)
         if (axes[axis]) dofs.fix(node, axis);
@@ -74,9 +70,9 @@ DofMap apply_fixation(const TetMesh& mesh, const std::vector<FixedRegion>& regio
   dofs.number();
   if (dofs.size() == 0) throw std::runtime_error(where + ": every node is fixed, nothing is left to deform");
   if (const int motions = remaining_rigid_motions(mesh, dofs))
-    throw std::runtime_error(fmt::format(
-        "{}: unfixed body: the fixed nodes leave {} rigid-body motion{} free, fix more nodes or axes", where,
-        motions, motions == 1 ? "" : "s"));
+    throw std::runtime_error(
+        fmt::format("{}: unfixed body: the fixed nodes leave {} rigid-body motion{} free, fix more nodes or axes",
+                    where, motions, motions == 1 ? "" : "s"));
   return dofs;
 }
 

@@ -100,10 +100,12 @@ SparseMatrix hat_tractions(const FineSpace& space, const TetMesh& run_time_mesh,
     const double size = 0.5 * (x[face.node[1]] - x[face.node[0]]).cross(x[face.node[2]] - x[face.node[0]]).norm();
     const auto corners = run_time_corners(space, face);
     for (int i = 0; i < 3; ++i) {
-      area[corners[i]] += size / 3 * (hat_at(space, face.node[0], corners[i]) + hat_at(space, face.node[1], corners[i]) +
-                                      hat_at(space, face.node[2], corners[i]));
+      area[corners[i]] += size / 3 *
+                          (hat_at(space, face.node[0], corners[i]) + hat_at(space, face.node[1], corners[i]) +
+                           hat_at(space, face.node[2], corners[i]));
       for (int c = 0; c < 3; ++c) {
-        const double hat = hat_at(space, face.node[c], corners[i]), value = weight == SurfaceWeight::hat ? hat : 4 * hat - 1;
+        const double hat = hat_at(space, face.node[c], corners[i]),
+                     value = weight == SurfaceWeight::hat ? hat : 4 * hat - 1;
         for (int a = 0; a < face.count; ++a)
           entries.emplace_back(face.node[a], corners[i], size * share(face.count, a, c) * value);
       }

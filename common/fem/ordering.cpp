@@ -6,8 +6,7 @@ namespace palpate {
 namespace {
 
 /// Pattern (lower triangle) of the graph restricted to the nodes with local number >= 0.
-SparseMatrix induced_pattern(const NodeGraph& graph, const std::vector<int>& nodes,
-                             const std::vector<int>& local) {
+SparseMatrix induced_pattern(const NodeGraph& graph, const std::vector<int>& nodes, const std::vector<int>& local) {
   const auto n = static_cast<std::int64_t>(nodes.size());
   SparseMatrix pattern(n, n);
   pattern.reserve(static_cast<std::int64_t>(graph.neighbour.size()));

@@ -26,8 +26,8 @@ bool contains(const Box& box, const Eigen::Vector3d& point) {
 void check_range(const std::vector<int>& indices, int count, const char* kind, const std::string& where) {
   for (int index : indices)
     if (index < 0 || index >= count)
-      throw std::runtime_error(fmt::format("{}: {} {} is not in the mesh, which has {} (0 to {})", where,
-                                           kind, index, count, count - 1));
+      throw std::runtime_error(
+          fmt::format("{}: {} {} is not in the mesh, which has {} (0 to {})", where, kind, index, count, count - 1));
 }
 
 void sort_unique(std::vector<int>& values) {

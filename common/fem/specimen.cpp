@@ -60,8 +60,8 @@ SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material) {
   }
   problem.dofs.number();
   if (const int motions = remaining_rigid_motions(mesh, problem.dofs))
-    throw std::runtime_error("the specimen mesh has no flat lower end to stand on: " +
-                             std::to_string(motions) + " rigid-body motions remain");
+    throw std::runtime_error("the specimen mesh has no flat lower end to stand on: " + std::to_string(motions) +
+                             " rigid-body motions remain");
 
   const double press = 1e-3 * (extent.max.z() - extent.min.z());
   std::vector<Constraint> plate;

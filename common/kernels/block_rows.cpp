@@ -238,20 +238,16 @@ void rk4_second_f(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, do
 void rk4_second_d(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step) {
   second_pass(k, nodes, damping, step);
 }
-void semi_implicit_f(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping,
-                     double step) {
+void semi_implicit_f(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step) {
   one_pass<float, true>(k, nodes, damping, step);
 }
-void semi_implicit_d(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping,
-                     double step) {
+void semi_implicit_d(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step) {
   one_pass<double, true>(k, nodes, damping, step);
 }
-void forward_euler_f(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping,
-                     double step) {
+void forward_euler_f(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step) {
   one_pass<float, false>(k, nodes, damping, step);
 }
-void forward_euler_d(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping,
-                     double step) {
+void forward_euler_d(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step) {
   one_pass<double, false>(k, nodes, damping, step);
 }
 

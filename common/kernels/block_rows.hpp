@@ -21,10 +21,9 @@ struct EdgeBlocks {
 /// Node arrays of a step of M u'' + a M u' + K u = load, eight scalars a node.
 template <class Scalar>
 struct NodeArrays {
-  Scalar* motion;  ///< [u | v]
-  Scalar* rates;   ///< [v' | v''], from the first pass of RK4 to the second
-  Scalar*
-      product;  ///< forces of others [-N] before a pass, in the layout of what is multiplied; zero after it
+  Scalar* motion;          ///< [u | v]
+  Scalar* rates;           ///< [v' | v''], from the first pass of RK4 to the second
+  Scalar* product;         ///< forces of others [-N] before a pass, in the layout of what is multiplied; zero after it
   const Scalar* response;  ///< [1/m | load/m]; zero along fixed axes
 };
 

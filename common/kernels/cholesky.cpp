@@ -11,8 +11,7 @@ constexpr int kVectors = kWidth == 2 ? 2 : 3;
 
 /// x = A[r.., j..j+N) - L[r.., 0..j) L[j..j+N, 0..j)^T for M vectors of rows from r.
 template <int M, int N>
-inline void subtract_previous(const double* l, std::ptrdiff_t ld, std::ptrdiff_t r, std::ptrdiff_t j,
-                              Vd (&x)[N][M]) {
+inline void subtract_previous(const double* l, std::ptrdiff_t ld, std::ptrdiff_t r, std::ptrdiff_t j, Vd (&x)[N][M]) {
   for (int c = 0; c < N; ++c)
     for (int m = 0; m < M; ++m) x[c][m] = load(l + (j + c) * ld + r + m * kWidth);
   const double* rows = l + r;
@@ -27,8 +26,7 @@ inline void subtract_previous(const double* l, std::ptrdiff_t ld, std::ptrdiff_t
 
 /// Rows from r of the panel of N columns at j, whose diagonal block is factored: x := x D^-T.
 template <int M, int N>
-inline void solve_rows(double* l, std::ptrdiff_t ld, std::ptrdiff_t r, std::ptrdiff_t j,
-                       const double (&inverse)[N]) {
+inline void solve_rows(double* l, std::ptrdiff_t ld, std::ptrdiff_t r, std::ptrdiff_t j, const double (&inverse)[N]) {
   Vd x[N][M];
   subtract_previous<M, N>(l, ld, r, j, x);
   for (int c = 0; c < N; ++c) {
@@ -45,8 +43,7 @@ inline void solve_rows(double* l, std::ptrdiff_t ld, std::ptrdiff_t r, std::ptrd
 
 /// Factors the diagonal block of the panel at j. floor[c] belongs to column j + c. Returns the raised pivots.
 template <int N>
-inline int factor_diagonal(double* l, std::ptrdiff_t ld, std::ptrdiff_t j, const double* floor,
-                           double (&inverse)[N]) {
+inline int factor_diagonal(double* l, std::ptrdiff_t ld, std::ptrdiff_t j, const double* floor, double (&inverse)[N]) {
   constexpr int vectors = N < kWidth ? 1 : N / kWidth;
   Vd x[N][vectors];
   subtract_previous<vectors, N>(l, ld, j, j, x);
@@ -69,21 +66,18 @@ inline int factor_diagonal(double* l, std::ptrdiff_t ld, std::ptrdiff_t j, const
 
 /// One panel of N columns at j.
 template <int N>
-inline int factor_panel(double* l, std::ptrdiff_t ld, std::ptrdiff_t j, std::ptrdiff_t n,
-                        const double* floor) {
+inline int factor_panel(double* l, std::ptrdiff_t ld, std::ptrdiff_t j, std::ptrdiff_t n, const double* floor) {
   double inverse[N];
   const int raised = factor_diagonal<N>(l, ld, j, floor + j, inverse);
   std::ptrdiff_t r = j + N;
-  for (; r + (kVectors - 1) * kWidth < n; r += kVectors * kWidth)
-    solve_rows<kVectors, N>(l, ld, r, j, inverse);
+  for (; r + (kVectors - 1) * kWidth < n; r += kVectors * kWidth) solve_rows<kVectors, N>(l, ld, r, j, inverse);
   for (; r < n; r += kWidth) solve_rows<1, N>(l, ld, r, j, inverse);
   return raised;
 }
 
 /// Panels of N columns from column j, as many as fit.
 template <int N>
-inline int factor_panels(double* l, std::ptrdiff_t ld, std::ptrdiff_t& j, std::ptrdiff_t n,
-                         const double* floor) {
+inline int factor_panels(double* l, std::ptrdiff_t ld, std::ptrdiff_t& j, std::ptrdiff_t n, const double* floor) {
   int raised = 0;
   for (; j + N <= n; j += N) raised += factor_panel<N>(l, ld, j, n, floor);
   return raised;

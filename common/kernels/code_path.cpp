@@ -6,9 +6,13 @@
 
 namespace palpate {
 
-std::string this_software() { return fmt::format("palpate {} g++ {}", PALPATE_VERSION, __VERSION__); }
+std::string this_software() {
+  return fmt::format("palpate {} g++ {}", PALPATE_VERSION, __VERSION__);
+}
 
-std::string code_path() { return fmt::format("{}; {}", kernels::active().name, this_software()); }
+std::string code_path() {
+  return fmt::format("{}; {}", kernels::active().name, this_software());
+}
 
 std::pair<std::string, std::string> split_code_path(const std::string& recorded) {
   const std::size_t cut = recorded.find("; ");

@@ -14,16 +14,14 @@ void combine(const T* const* columns, const T* coefficient, int count, std::ptrd
     accumulate<T, kGroup, true>(columns, coefficient, 0, rows, out);
   }
   int c = count < kGroup ? 0 : kGroup;
-  for (; c + kGroup <= count; c += kGroup)
-    accumulate<T, kGroup, false>(columns + c, coefficient + c, 0, rows, out);
+  for (; c + kGroup <= count; c += kGroup) accumulate<T, kGroup, false>(columns + c, coefficient + c, 0, rows, out);
   for (; c + 3 <= count; c += 3) accumulate<T, 3, false>(columns + c, coefficient + c, 0, rows, out);
   for (; c < count; ++c) accumulate<T, 1, false>(columns + c, coefficient + c, 0, rows, out);
 }
 
 /// Adds N columns at the listed nodes.
 template <int N>
-void gather(const double* const* column, const double* weight, const int* nodes, int node_count,
-            double* out) {
+void gather(const double* const* column, const double* weight, const int* nodes, int node_count, double* out) {
   for (int m = 0; m < node_count; ++m) {
     const std::ptrdiff_t row = 3 * static_cast<std::ptrdiff_t>(nodes[m]);
     double x = out[3 * m], y = out[3 * m + 1], z = out[3 * m + 2];
@@ -39,13 +37,11 @@ void gather(const double* const* column, const double* weight, const int* nodes,
 
 }  // namespace
 
-void combine_f(const float* const* columns, const float* coefficient, int count, std::ptrdiff_t rows,
-               float* out) {
+void combine_f(const float* const* columns, const float* coefficient, int count, std::ptrdiff_t rows, float* out) {
   combine(columns, coefficient, count, rows, out);
 }
 
-void combine_d(const double* const* columns, const double* coefficient, int count, std::ptrdiff_t rows,
-               double* out) {
+void combine_d(const double* const* columns, const double* coefficient, int count, std::ptrdiff_t rows, double* out) {
   combine(columns, coefficient, count, rows, out);
 }
 

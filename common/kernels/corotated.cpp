@@ -140,8 +140,7 @@ void corotated(const TetQuad<T>* quads, int count, const T* u, T* force) {
     for (int corner = 1; corner < 4; ++corner) {
       const auto& gradient = q->gradient[corner - 1];
       for (int i = 0; i < 3; ++i) {
-        const V pull =
-            f[i][0] * load4(gradient[0]) + f[i][1] * load4(gradient[1]) + f[i][2] * load4(gradient[2]);
+        const V pull = f[i][0] * load4(gradient[0]) + f[i][1] * load4(gradient[1]) + f[i][2] * load4(gradient[2]);
         part[corner][i] = -pull;
         part[0][i] += pull;
       }

@@ -50,15 +50,14 @@ struct Table {
   std::string_view name;  ///< "x86-64", "x86-64-v3" (AVX2, FMA) or "x86-64-v4" (AVX-512)
 
   /// out[0..rows) = sum over i < count of coefficient[i] * columns[i][0..rows). Single precision.
-  void (*combine_f)(const float* const* columns, const float* coefficient, int count, std::ptrdiff_t rows,
-                    float* out);
+  void (*combine_f)(const float* const* columns, const float* coefficient, int count, std::ptrdiff_t rows, float* out);
   /// The same in double precision.
   void (*combine_d)(const double* const* columns, const double* coefficient, int count, std::ptrdiff_t rows,
                     double* out);
   /// The same for some nodes only, three rows each:
   /// out[3m + a] = sum over i < count of coefficient[i] * columns[i][3 nodes[m] + a], a = 0, 1, 2.
-  void (*combine_nodes_d)(const double* const* columns, const double* coefficient, int count,
-                          const int* nodes, int node_count, double* out);
+  void (*combine_nodes_d)(const double* const* columns, const double* coefficient, int count, const int* nodes,
+                          int node_count, double* out);
 
   /// Lower Cholesky factor L of a, n x n, in place. A pivot (the square of L's diagonal entry) below floor[i]
   /// > 0, or not a number, is raised to floor[i]: the factor is then that of A plus a compliance of (floor[i]
@@ -70,8 +69,8 @@ struct Table {
   /// Appends k <= kMaxBlock rows to an n x n factor: `rows` holds the new rows of A, k x (n+k) by rows with
   /// stride `row_stride` (of the new diagonal block, the lower triangle is read). floor[i] belongs to new row
   /// i; pivots as in cholesky. Returns how many were raised.
-  int (*cholesky_append)(double* l, int n, std::ptrdiff_t ld, const double* rows, std::ptrdiff_t row_stride,
-                         int k, const double* floor);
+  int (*cholesky_append)(double* l, int n, std::ptrdiff_t ld, const double* rows, std::ptrdiff_t row_stride, int k,
+                         const double* floor);
   /// Removes rows and columns [first, first+k) of A, k <= kMaxBlock, from its n x n factor, which becomes
   /// (n-k) x (n-k): a positive rank-k update of the trailing part by reflections, all k columns in one pass.
   /// What a raised pivot added within the removed rows goes with them; elsewhere it stays.

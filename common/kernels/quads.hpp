@@ -17,10 +17,9 @@ struct SpringQuad {
 /// Four tetrahedra of corotated linear elasticity. A lane without one has stiffness 0 and equal corners.
 template <class T>
 struct TetQuad {
-  T gradient[3][3]
-            [4];  ///< [1/m] [corner - 1][axis]: rest gradients of the shape functions of corners 1, 2, 3
-  T shear[4];     ///< 2 mu V [J]
-  T volume[4];    ///< lambda V [J]
+  T gradient[3][3][4];   ///< [1/m] [corner - 1][axis]: rest gradients of the shape functions of corners 1, 2, 3
+  T shear[4];            ///< 2 mu V [J]
+  T volume[4];           ///< lambda V [J]
   unsigned entry[4][4];  ///< 4 * node [corner][lane]
 };
 

@@ -31,8 +31,8 @@ inline void subtract_vector(const double* column, std::ptrdiff_t ld, int i, cons
 /// x[r][i] -= sum over c < kBlock of weight[r][c] * L[i, j + c] for j + kBlock <= i < n. Where Roomy, whole
 /// vectors of x may be written.
 template <int K, bool Roomy>
-inline void subtract_columns(const double* l, int n, std::ptrdiff_t ld, int j,
-                             const double (&weight)[K][kBlock], double* const (&x)[K]) {
+inline void subtract_columns(const double* l, int n, std::ptrdiff_t ld, int j, const double (&weight)[K][kBlock],
+                             double* const (&x)[K]) {
   const double* column = l + j * ld;
   double* out[K];
   int i = j + kBlock;
@@ -54,8 +54,7 @@ inline void subtract_columns(const double* l, int n, std::ptrdiff_t ld, int j,
 
 /// Solves with the diagonal block at j; v holds the result as well.
 template <int K>
-inline void solve_diagonal(const double* l, std::ptrdiff_t ld, int j, double (&v)[K][kBlock],
-                           double* const (&x)[K]) {
+inline void solve_diagonal(const double* l, std::ptrdiff_t ld, int j, double (&v)[K][kBlock], double* const (&x)[K]) {
   double inverse[kBlock];
   invert_diagonal(l, ld, j, inverse);
   for (int r = 0; r < K; ++r)

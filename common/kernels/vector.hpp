@@ -46,8 +46,7 @@ inline V in_register(V v) {
 
 /// out[i] += sum over c < N of weight[c] * column[c][i] for begin <= i < end; overwrites out where First.
 template <class T, int N, bool First>
-inline void accumulate(const T* const* column, const T* weight, std::ptrdiff_t begin, std::ptrdiff_t end,
-                       T* out) {
+inline void accumulate(const T* const* column, const T* weight, std::ptrdiff_t begin, std::ptrdiff_t end, T* out) {
   constexpr int width = Vector<T>::width;
   const T* p[N];
   T w[N];

@@ -89,8 +89,7 @@ struct Descriptor {
 
 std::string run_in_child(const std::function<std::string()>& work) {
   const Descriptor answer_file{memfd_create("palpate", MFD_CLOEXEC)};
-  if (answer_file.number < 0)
-    throw std::runtime_error(fmt::format("no memory file: {}", std::strerror(errno)));
+  if (answer_file.number < 0) throw std::runtime_error(fmt::format("no memory file: {}", std::strerror(errno)));
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error(fmt::format("no process for the reader: {}", std::strerror(errno)));
   if (child == 0) be_child(answer_file.number, work);

@@ -27,8 +27,7 @@ CutMesh::CutMesh(std::span<const std::array<int, 4>> tetrahedra, int nodes)
   for (int t = 0; t < size(); ++t)
     for (int n : tetrahedra_[t]) {
       if (n < 0 || n >= nodes)
-        throw std::runtime_error(
-            fmt::format("tetrahedron {}: node {} does not exist, there are {}", t, n, nodes));
+        throw std::runtime_error(fmt::format("tetrahedron {}: node {} does not exist, there are {}", t, n, nodes));
       ++alive_around_[n];
     }
   for (int n = 0; n < nodes; ++n) first_around_[n + 1] = first_around_[n] + alive_around_[n];

@@ -75,12 +75,12 @@ class CutMesh {
 
   std::vector<std::array<int, 4>> tetrahedra_;
   std::vector<int> first_around_, around_;  ///< tetrahedra of each node, compressed
-  std::vector<int> across_;  ///< per facet: the same face as a facet of the other tetrahedron, or -1
+  std::vector<int> across_;                 ///< per facet: the same face as a facet of the other tetrahedron, or -1
   std::vector<char> alive_;
-  std::vector<int> alive_around_;  ///< per node: living tetrahedra
-  std::vector<char> is_joint_, is_joint_node_;                   ///< per facet and node; empty: not joined to anything
-  std::vector<std::array<int, 2>> joint_edges_;                  ///< ascending
-  std::vector<char> joined_;                                     ///< per group, while joints are looked at
+  std::vector<int> alive_around_;                ///< per node: living tetrahedra
+  std::vector<char> is_joint_, is_joint_node_;   ///< per facet and node; empty: not joined to anything
+  std::vector<std::array<int, 2>> joint_edges_;  ///< ascending
+  std::vector<char> joined_;                     ///< per group, while joints are looked at
   int alive_count_;
   std::vector<int> visible_, place_;  ///< place_: per facet, where it stands in visible_, or -1
   std::vector<int> appeared_, vanished_, killed_;

@@ -31,7 +31,8 @@ bool CutMesh::drop_unjoined(int node) {
     if (!alive_[t]) continue;
     for (int other : tetrahedra_[t]) {
       const auto [low, high] = std::minmax(node, other);
-      const bool is_joint_edge = other != node && std::binary_search(joint_edges_.begin(), joint_edges_.end(), std::array{low, high});
+      const bool is_joint_edge =
+          other != node && std::binary_search(joint_edges_.begin(), joint_edges_.end(), std::array{low, high});
       if (is_joint_edge && drop_unjoined(node, other)) return true;
     }
   }

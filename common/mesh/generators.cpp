@@ -64,8 +64,7 @@ template <class Cut>
 TetMesh make_grid(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs,
                   Cut&& cut) {
   for (const auto* axis : {&xs, &ys, &zs}) check_axis(*axis);
-  const int nx = static_cast<int>(xs.size()), ny = static_cast<int>(ys.size()),
-            nz = static_cast<int>(zs.size());
+  const int nx = static_cast<int>(xs.size()), ny = static_cast<int>(ys.size()), nz = static_cast<int>(zs.size());
   const auto node = [&](int i, int j, int k) { return (k * ny + j) * nx + i; };
 
   TetMesh mesh;
@@ -132,8 +131,7 @@ void add_triangle(Disc& disc, std::array<std::array<int, 2>, 3> ring_and_step) {
   std::sort(ring_and_step.begin(), ring_and_step.end(),
             [](const auto& a, const auto& b) { return colour(a[0], a[1]) < colour(b[0], b[1]); });
   const auto& c = ring_and_step;
-  disc.triangles.push_back(
-      {disc_index(c[0][0], c[0][1]), disc_index(c[1][0], c[1][1]), disc_index(c[2][0], c[2][1])});
+  disc.triangles.push_back({disc_index(c[0][0], c[0][1]), disc_index(c[1][0], c[1][1]), disc_index(c[2][0], c[2][1])});
 }
 
 Disc make_disc(int rings) {
@@ -165,25 +163,21 @@ TetMesh make_block(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const
   return make_graded_block(axes[0], axes[1], axes[2]);
 }
 
-TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys,
-                          const std::vector<double>& zs) {
+TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs) {
   return make_grid(xs, ys, zs, [](TetMesh& mesh, const std::array<int, 8>& corner, int i, int j, int k) {
     cut_cell(mesh, corner, (i & 1) | (j & 1) << 1 | (k & 1) << 2);
   });
 }
 
-TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-                           const std::array<int, 3>& cells) {
+TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const std::array<int, 3>& cells) {
   const auto axes = even_axes(min, max, cells);
-  return make_grid(axes[0], axes[1], axes[2],
-                   [](TetMesh& mesh, const std::array<int, 8>& corner, int i, int j, int k) {
-                     cut_cell_in_five(mesh, corner, (i + j + k) % 2 == 1);
-                   });
+  return make_grid(axes[0], axes[1], axes[2], [](TetMesh& mesh, const std::array<int, 8>& corner, int i, int j, int k) {
+    cut_cell_in_five(mesh, corner, (i + j + k) % 2 == 1);
+  });
 }
 
 std::vector<double> graded_axis(double begin, double end, int cells, double ratio) {
-  require(cells >= 1 && ratio > 0 && end > begin,
-          "a grid axis needs a cell, a positive ratio and a positive extent");
+  require(cells >= 1 && ratio > 0 && end > begin, "a grid axis needs a cell, a positive ratio and a positive extent");
   std::vector<double> axis{begin};
   double total = 0, step = 1;
   for (int i = 0; i < cells; ++i, step *= ratio) total += step;

@@ -15,13 +15,11 @@ namespace palpate {
 TetMesh make_block(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const std::array<int, 3>& cells);
 
 /// The same with grid planes at the given ascending coordinates [m], at least two per axis.
-TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys,
-                          const std::vector<double>& zs);
+TetMesh make_graded_block(const std::vector<double>& xs, const std::vector<double>& ys, const std::vector<double>& zs);
 
 /// The block of make_block, nodes and groups alike, with five tetrahedra to a cell: one in the middle with a
 /// third of the volume, and four at corners. Neighbouring cells are mirror images.
-TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-                           const std::array<int, 3>& cells);
+TetMesh make_block_of_five(const Eigen::Vector3d& min, const Eigen::Vector3d& max, const std::array<int, 3>& cells);
 
 /// Ascending grid coordinates from `begin` to `end` [m] in `cells` steps; each step is `ratio` times the one
 /// before it. ratio = 1: uniform.

@@ -130,8 +130,8 @@ bool holds_all(const std::vector<int>& sorted, const std::array<int, 3>& nodes) 
 }
 
 // A group without tetrahedra is written as surface triangles where they cover its nodes, else as points.
-void place_node_group(int number, const std::vector<int>& nodes, const Surface& surface,
-                      Memberships& triangles, Memberships& points) {
+void place_node_group(int number, const std::vector<int>& nodes, const Surface& surface, Memberships& triangles,
+                      Memberships& points) {
   std::vector<int> covered;
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
@@ -157,14 +157,12 @@ void add_elements(EntityTable& table, int dimension, int type, const std::vector
     auto& nodes = nodes_of_entity[table.entity(dimension, groups[i])];
     for (int n : items[i]) nodes.push_back(static_cast<std::size_t>(n) + 1);
   }
-  for (const auto& [entity, nodes] : nodes_of_entity)
-    gmsh::model::mesh::addElementsByType(entity, type, {}, nodes);
+  for (const auto& [entity, nodes] : nodes_of_entity) gmsh::model::mesh::addElementsByType(entity, type, {}, nodes);
 }
 
 void build_model(const TetMesh& mesh, bool group_all) {
   const Surface surface = extract_surface(mesh);
-  Memberships tetrahedra(mesh.tetrahedra.size()), triangles(surface.triangles.size()),
-      points(mesh.nodes.size());
+  Memberships tetrahedra(mesh.tetrahedra.size()), triangles(surface.triangles.size()), points(mesh.nodes.size());
   std::vector<std::string> names;
   for (const auto& [name, group] : mesh.groups) {
     names.push_back(name);

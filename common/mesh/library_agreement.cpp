@@ -123,12 +123,10 @@ LibraryMesh ask_library(const path& file) {
 }
 
 template <std::size_t N>
-void check_agreement(const path& file, const FileListing& listing,
-                     const std::vector<std::array<int, N>>& listed, const LibraryMesh& library,
-                     const std::vector<std::array<std::uint64_t, N>>& read) {
+void check_agreement(const path& file, const FileListing& listing, const std::vector<std::array<int, N>>& listed,
+                     const LibraryMesh& library, const std::vector<std::array<std::uint64_t, N>>& read) {
   std::unordered_map<std::uint64_t, int> position;
-  for (std::size_t i = 0; i < listing.node_numbers.size(); ++i)
-    position[listing.node_numbers[i]] = static_cast<int>(i);
+  for (std::size_t i = 0; i < listing.node_numbers.size(); ++i) position[listing.node_numbers[i]] = static_cast<int>(i);
   bool agree = true;
   for (std::size_t i = 0; i < library.nodes.size() && agree; ++i) {
     const auto place = position.find(library.node_numbers[i]);

@@ -32,8 +32,7 @@ int element_dimension(int type) {
 }
 
 void Lister::reserve_nodes(std::size_t count) {
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::runtime_error("too many nodes");
+  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw std::runtime_error("too many nodes");
   listing.nodes.reserve(count);
   listing.node_numbers.reserve(count);
   positions_.reserve(count);
@@ -48,8 +47,8 @@ void Lister::add_node(std::uint64_t number, const Eigen::Vector3d& x) {
 }
 
 void Lister::note_missing(int type, std::uint64_t node) {
-  const std::string who = type == 4 ? fmt::format("element {}", tetrahedra_)
-                                    : fmt::format("entry {} of the element list", elements_);
+  const std::string who =
+      type == 4 ? fmt::format("element {}", tetrahedra_) : fmt::format("entry {} of the element list", elements_);
   faults.add(fmt::format("{}: node number {} is not in the node list", who, static_cast<std::int64_t>(node)));
 }
 

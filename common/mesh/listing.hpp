@@ -9,11 +9,10 @@ namespace palpate {
 
 /// One element as the file lists it.
 struct ListedElement {
-  int type = 0;    ///< Gmsh's element type: 4 is a tetrahedron of four nodes, 2 a triangle, 15 a point
-  int entity = 0;  ///< elementary entity that it belongs to
-  std::vector<int>
-      groups;              ///< physical group numbers; Gmsh 1 and 2 only, in Gmsh 4 they belong to the entity
-  std::vector<int> nodes;  ///< positions in the node list
+  int type = 0;             ///< Gmsh's element type: 4 is a tetrahedron of four nodes, 2 a triangle, 15 a point
+  int entity = 0;           ///< elementary entity that it belongs to
+  std::vector<int> groups;  ///< physical group numbers; Gmsh 1 and 2 only, in Gmsh 4 they belong to the entity
+  std::vector<int> nodes;   ///< positions in the node list
 };
 
 /// What stands in a mesh file's lists, in the order of the file. Programming interfaces of mesh libraries

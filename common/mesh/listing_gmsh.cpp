@@ -9,8 +9,7 @@ namespace palpate {
 namespace {
 
 void expect_end(FileCursor& cursor, std::string_view name) {
-  if (cursor.word() != name)
-    throw std::runtime_error(fmt::format("{} is missing after the last entry", name));
+  if (cursor.word() != name) throw std::runtime_error(fmt::format("{} is missing after the last entry", name));
 }
 
 void list_gmsh1(FileCursor& cursor, Lister& lister) {
@@ -30,8 +29,8 @@ void list_gmsh1(FileCursor& cursor, Lister& lister) {
     const int type = cursor.number<int>(), group = cursor.number<int>(), entity = cursor.number<int>();
     const std::size_t given = cursor.count<int>("nodes of an element");
     if (given != static_cast<std::size_t>(element_type(type).nodes)) {
-      throw std::runtime_error(fmt::format("entry {} of the element list has {} nodes, its type {} has {}", i,
-                                           given, type, element_type(type).nodes));
+      throw std::runtime_error(fmt::format("entry {} of the element list has {} nodes, its type {} has {}", i, given,
+                                           type, element_type(type).nodes));
     }
     lister.add_element<std::uint64_t>(cursor, type, entity, group, given);
   }
@@ -47,8 +46,7 @@ void list_gmsh2_element(FileCursor& cursor, Lister& lister, int type, std::size_
     if (t == 0) group = tag;
     if (t == 1) entity = tag;
   }
-  lister.add_element<Integer>(cursor, type, entity, group,
-                              static_cast<std::size_t>(element_type(type).nodes));
+  lister.add_element<Integer>(cursor, type, entity, group, static_cast<std::size_t>(element_type(type).nodes));
 }
 
 void list_gmsh2(FileCursor& cursor, Lister& lister) {
@@ -59,8 +57,7 @@ void list_gmsh2(FileCursor& cursor, Lister& lister) {
   cursor.binary = binary;
   lister.reserve_nodes(nodes);
   for (std::size_t i = 0; i < nodes; ++i) {
-    const auto number =
-        binary ? static_cast<std::uint64_t>(cursor.number<int>()) : cursor.number<std::uint64_t>();
+    const auto number = binary ? static_cast<std::uint64_t>(cursor.number<int>()) : cursor.number<std::uint64_t>();
     lister.add_node(number, take_point(cursor));
   }
   expect_end(cursor, "$EndNodes");
@@ -77,8 +74,7 @@ void list_gmsh2(FileCursor& cursor, Lister& lister) {
       continue;
     }
     const int type = cursor.number<int>();
-    const std::size_t in_block = cursor.count<int>("elements"),
-                      tags = cursor.count<int>("tags of an element");
+    const std::size_t in_block = cursor.count<int>("elements"), tags = cursor.count<int>("tags of an element");
     if (in_block == 0) throw std::runtime_error("the element list has an empty block");
     for (std::size_t k = 0; k < in_block; ++k, ++i) {
       cursor.number<int>();
@@ -119,8 +115,7 @@ void list_gmsh4_elements(FileCursor& cursor, Lister& lister) {
     const std::size_t count = cursor.count<std::size_t>("elements");
     for (std::size_t k = 0; k < count; ++k) {
       cursor.number<std::size_t>();
-      lister.add_element<std::size_t>(cursor, type, entity, 0,
-                                      static_cast<std::size_t>(element_type(type).nodes));
+      lister.add_element<std::size_t>(cursor, type, entity, 0, static_cast<std::size_t>(element_type(type).nodes));
     }
   }
 }

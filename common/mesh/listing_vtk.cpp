@@ -20,8 +20,7 @@ void list_vtk_points(FileCursor& cursor, Lister& lister) {
   expect_section(cursor, "POINTS", "point list");
   const std::size_t points = cursor.text_count("points");
   const std::string_view real = cursor.word();
-  if (real != "double" && real != "float")
-    throw std::runtime_error("its points are neither double nor float");
+  if (real != "double" && real != "float") throw std::runtime_error("its points are neither double nor float");
   cursor.rest_of_line();
   lister.reserve_nodes(points);
   for (std::size_t i = 0; i < points; ++i) {
@@ -49,8 +48,7 @@ void list_vtk(FileCursor& cursor, Lister& lister) {
   cursor.rest_of_line();
   FileCursor nodes = cursor;  // the types stand behind the nodes
   expect_section(cursor, "CELL_TYPES", "list of cell types");
-  if (cursor.text_count("cell types") != cells)
-    throw std::runtime_error("it has not as many cell types as cells");
+  if (cursor.text_count("cell types") != cells) throw std::runtime_error("it has not as many cell types as cells");
   if (binary) cursor.rest_of_line();
   for (std::size_t i = 0; i < cells; ++i) {
     const int type = gmsh_type_of_vtk(cursor.number<int>());

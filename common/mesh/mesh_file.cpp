@@ -26,9 +26,8 @@ void take_elements(const path& file, const FileListing& listing, TetMesh& mesh) 
     if (element.type == 4) {
       mesh.tetrahedra.push_back({element.nodes[0], element.nodes[1], element.nodes[2], element.nodes[3]});
     } else if (element_dimension(element.type) == 3) {
-      refuse_mesh(file,
-             fmt::format("it has solid elements of {} nodes; only tetrahedra of 4 nodes are computed with",
-                         element.nodes.size()));
+      refuse_mesh(file, fmt::format("it has solid elements of {} nodes; only tetrahedra of 4 nodes are computed with",
+                                    element.nodes.size()));
     }
   }
 }
@@ -75,8 +74,7 @@ TriangleMesh triangles_of(const path& file, const LibraryMesh& library, double s
     std::array<int, 3> triangle;
     for (int c = 0; c < 3; ++c) {
       const auto place = position.find(library.triangles[i][c]);
-      if (place == position.end())
-        refuse_mesh(file, fmt::format("triangle {}: one of its nodes does not exist", i));
+      if (place == position.end()) refuse_mesh(file, fmt::format("triangle {}: one of its nodes does not exist", i));
       triangle[c] = place->second;
       if (!mesh.nodes[triangle[c]].allFinite()) {
         refuse_mesh(file, fmt::format("triangle {}: a coordinate is not a finite number", i));
@@ -129,9 +127,7 @@ void write_tet_mesh(const TetMesh& mesh, const path& file, MshFormat format) {
 
 void write_stl(const TriangleMesh& mesh, const path& file) {
   std::ofstream out(file, std::ios::binary);
-  const auto write = [&](const void* data, std::streamsize size) {
-    out.write(static_cast<const char*>(data), size);
-  };
+  const auto write = [&](const void* data, std::streamsize size) { out.write(static_cast<const char*>(data), size); };
   const auto write_vector = [&](const Eigen::Vector3d& v) {
     const Eigen::Vector3f single = v.cast<float>();
     write(single.data(), sizeof single);

@@ -69,9 +69,9 @@ void check_shapes(const TetMesh& mesh, FaultList& faults) {
     if (!is_new) faults.add(fmt::format("element {}: the same tetrahedron as element {}", e, place->second));
     const double shape = tet_shape(mesh, mesh.tetrahedra[e]);
     if (std::abs(shape) < kDegenerateShape) {
-      faults.add(fmt::format(
-          "element {}: degenerate, its four nodes lie in a plane (shape {:.1e}, at least {:.0e} is needed)",
-          e, std::abs(shape), kDegenerateShape));
+      faults.add(
+          fmt::format("element {}: degenerate, its four nodes lie in a plane (shape {:.1e}, at least {:.0e} is needed)",
+                      e, std::abs(shape), kDegenerateShape));
     } else if (shape < 0) {
       faults.add(fmt::format("element {}: inverted, its volume is negative", e));
     }
@@ -92,9 +92,8 @@ void check_connection(const TetMesh& mesh, FaultList& faults) {
   }
   for (const auto& [root, part] : parts) {
     if (part.first == 0) continue;
-    faults.add(fmt::format(
-        "element {}: disconnected, it and {} further elements share no node with element 0's part",
-        part.first, part.size - 1));
+    faults.add(fmt::format("element {}: disconnected, it and {} further elements share no node with element 0's part",
+                           part.first, part.size - 1));
   }
 }
 
@@ -108,9 +107,9 @@ void check_faces(const TetMesh& mesh, FaultList& faults) {
       }
       std::sort(face.begin(), face.end());
       if (++uses[face] == 3) {
-        faults.add(fmt::format(
-            "element {}: not manifold, its face with the nodes {}, {} and {} belongs to two other elements",
-            e, face[0], face[1], face[2]));
+        faults.add(
+            fmt::format("element {}: not manifold, its face with the nodes {}, {} and {} belongs to two other elements",
+                        e, face[0], face[1], face[2]));
       }
     }
   }
@@ -124,15 +123,13 @@ void check_boundary_edges(const Surface& surface, FaultList& faults) {
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const int a = surface.triangles[i][c], b = surface.triangles[i][(c + 1) % 3];
-      ++edges.emplace(std::array{std::min(a, b), std::max(a, b)}, Edge{static_cast<int>(i), 0})
-            .first->second.uses;
+      ++edges.emplace(std::array{std::min(a, b), std::max(a, b)}, Edge{static_cast<int>(i), 0}).first->second.uses;
     }
   }
   for (const auto& [nodes, edge] : edges) {
     if (edge.uses == 2) continue;
-    faults.add(
-        fmt::format("element {}: not manifold, {} surface triangles meet at the edge between nodes {} and {}",
-                    surface.tetrahedra[edge.triangle], edge.uses, nodes[0], nodes[1]));
+    faults.add(fmt::format("element {}: not manifold, {} surface triangles meet at the edge between nodes {} and {}",
+                           surface.tetrahedra[edge.triangle], edge.uses, nodes[0], nodes[1]));
   }
 }
 
@@ -144,8 +141,7 @@ void check_boundary_vertices(const Surface& surface, FaultList& faults) {
   for (int corner = 0; corner < static_cast<int>(3 * triangles.size()); ++corner) {
     const auto& t = triangles[corner / 3];
     for (int step : {1, 2}) {
-      const auto [place, is_new] =
-          first_corner.emplace(std::array{t[corner % 3], t[(corner + step) % 3]}, corner);
+      const auto [place, is_new] = first_corner.emplace(std::array{t[corner % 3], t[(corner + step) % 3]}, corner);
       if (!is_new) corners.join(place->second, corner);
     }
   }

@@ -24,9 +24,8 @@ void take_triangles(const path& file, const FileListing& listing, ShellMesh& mes
     if (element.type == kTriangle) {
       mesh.triangles.push_back({element.nodes[0], element.nodes[1], element.nodes[2]});
     } else if (dimension >= 2) {
-      refuse_mesh(file,
-                  fmt::format("it has {} elements of {} nodes; a shell is made of triangles of 3 nodes alone",
-                              dimension == 3 ? "solid" : "surface", element.nodes.size()));
+      refuse_mesh(file, fmt::format("it has {} elements of {} nodes; a shell is made of triangles of 3 nodes alone",
+                                    dimension == 3 ? "solid" : "surface", element.nodes.size()));
     }
   }
 }
@@ -58,10 +57,8 @@ ShellMesh read_corners(const path& file) {
         refuse_mesh(file, fmt::format("triangle {}: one of its nodes does not exist", mesh.triangles.size()));
       const Eigen::Vector3d& x = library.nodes[found->second];
       if (!x.allFinite())
-        refuse_mesh(file,
-                    fmt::format("triangle {}: a coordinate is not a finite number", mesh.triangles.size()));
-      const auto [node, is_new] =
-          number.emplace(std::array{x[0], x[1], x[2]}, static_cast<int>(mesh.nodes.size()));
+        refuse_mesh(file, fmt::format("triangle {}: a coordinate is not a finite number", mesh.triangles.size()));
+      const auto [node, is_new] = number.emplace(std::array{x[0], x[1], x[2]}, static_cast<int>(mesh.nodes.size()));
       if (is_new) mesh.nodes.push_back(x);
       triangle[c] = node->second;
     }
@@ -97,8 +94,7 @@ void write_shell_mesh(const ShellMesh& mesh, const path& file) {
   number = 0;
   for (const auto& [name, group] : mesh.groups) {
     ++number;
-    for (int n : group.nodes)
-      text += fmt::format("{} {} 2 {} {} {}\n", ++element, kPoint, number, n + 1, n + 1);
+    for (int n : group.nodes) text += fmt::format("{} {} 2 {} {} {}\n", ++element, kPoint, number, n + 1, n + 1);
   }
   for (const auto& [a, b, c] : mesh.triangles)
     text += fmt::format("{} {} 2 0 1 {} {} {}\n", ++element, kTriangle, a + 1, b + 1, c + 1);

@@ -24,10 +24,9 @@ void add_cells(ShellMesh& mesh, int around, int along) {
 
 }  // namespace
 
-ShellMesh make_tube(const std::function<Eigen::Vector3d(double)>& centre,
-                    const std::function<double(double)>& radius, int around, int along) {
-  if (around < 3 || along < 1)
-    throw std::runtime_error("a tube needs three nodes around and one cell along at least");
+ShellMesh make_tube(const std::function<Eigen::Vector3d(double)>& centre, const std::function<double(double)>& radius,
+                    int around, int along) {
+  if (around < 3 || along < 1) throw std::runtime_error("a tube needs three nodes around and one cell along at least");
   ShellMesh mesh;
   Eigen::Vector3d x = Eigen::Vector3d::UnitX();  // towards node 0 of a ring
   for (int i = 0; i <= along; ++i) {
@@ -51,8 +50,8 @@ ShellMesh make_tube(const std::function<Eigen::Vector3d(double)>& centre,
 }
 
 ShellMesh make_tube(double radius, double length, int around, int along) {
-  return make_tube([&](double s) { return Eigen::Vector3d(0, 0, s * length); },
-                   [&](double) { return radius; }, around, along);
+  return make_tube([&](double s) { return Eigen::Vector3d(0, 0, s * length); }, [&](double) { return radius; }, around,
+                   along);
 }
 
 }  // namespace palpate

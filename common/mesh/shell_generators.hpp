@@ -11,8 +11,8 @@ namespace palpate {
 /// like a chessboard. Groups `end0` and `end1` hold the nodes of the first and last ring. Triangles look
 /// outward. Throws std::runtime_error where a count is too small (3 around, 1 along) or a radius is not
 /// positive.
-ShellMesh make_tube(const std::function<Eigen::Vector3d(double)>& centre,
-                    const std::function<double(double)>& radius, int around, int along);
+ShellMesh make_tube(const std::function<Eigen::Vector3d(double)>& centre, const std::function<double(double)>& radius,
+                    int around, int along);
 
 /// A straight round tube about the z axis from z = 0 to `length` [m]; node 0 lies at x = radius.
 ShellMesh make_tube(double radius, double length, int around, int along);

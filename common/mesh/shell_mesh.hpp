@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-/// Middle surface of a thin wall. Node numbers are 0-based positions in the mesh file's node list, nodes that no triangle
-/// uses included. Triangles are oriented alike; of a tube they look outward, by the right-hand rule.
+/// Middle surface of a thin wall. Node numbers are 0-based positions in the mesh file's node list, nodes that no
+/// triangle uses included. Triangles are oriented alike; of a tube they look outward, by the right-hand rule.
 struct ShellMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m] rest positions, world frame
   std::vector<std::array<int, 3>> triangles;  ///< node numbers

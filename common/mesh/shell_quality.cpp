@@ -41,8 +41,7 @@ void check_numbers_and_coordinates(const ShellMesh& mesh, FaultList& faults) {
       if (n < 0 || n >= count)
         faults.add(fmt::format("triangle {}: node {} does not exist, the mesh has {} nodes", t, n, count));
   for (int n = 0; n < count; ++n)
-    if (!mesh.nodes[n].allFinite())
-      faults.add(fmt::format("node {} has a coordinate that is not a finite number", n));
+    if (!mesh.nodes[n].allFinite()) faults.add(fmt::format("node {} has a coordinate that is not a finite number", n));
 }
 
 void check_shapes(const ShellMesh& mesh, FaultList& faults) {
@@ -60,20 +59,19 @@ void check_shapes(const ShellMesh& mesh, FaultList& faults) {
     const double shape = triangle_shape(mesh, mesh.triangles[t]);
     if (!(shape >= kDegenerateTriangle))
       faults.add(fmt::format(
-          "triangle {}: degenerate, its three nodes lie on a line (shape {:.1e}, at least {:.0e} is needed)",
-          t, shape, kDegenerateTriangle));
+          "triangle {}: degenerate, its three nodes lie on a line (shape {:.1e}, at least {:.0e} is needed)", t, shape,
+          kDegenerateTriangle));
   }
 }
 
 void check_edges(const Edges& edges, FaultList& faults) {
   for (const auto& [nodes, sides] : edges) {
     if (sides.size() > 2) {
-      faults.add(
-          fmt::format("triangle {}: {} triangles share the edge between nodes {} and {}, two at most can",
-                      sides[2].triangle, sides.size(), nodes[0], nodes[1]));
+      faults.add(fmt::format("triangle {}: {} triangles share the edge between nodes {} and {}, two at most can",
+                             sides[2].triangle, sides.size(), nodes[0], nodes[1]));
     } else if (sides.size() == 2 && sides[0].along == sides[1].along) {
-      faults.add(fmt::format("triangle {}: turned against triangle {}, with which it shares an edge",
-                             sides[1].triangle, sides[0].triangle));
+      faults.add(fmt::format("triangle {}: turned against triangle {}, with which it shares an edge", sides[1].triangle,
+                             sides[0].triangle));
     }
   }
 }
@@ -103,15 +101,14 @@ std::vector<std::vector<int>> connected_parts(int triangles, const Edges& edges)
 void check_connection(const ShellMesh& mesh, const Edges& edges, FaultList& faults) {
   const auto parts = connected_parts(static_cast<int>(mesh.triangles.size()), edges);
   for (std::size_t p = 1; p < parts.size(); ++p)
-    faults.add(fmt::format(
-        "triangle {}: disconnected, it and {} further triangles share no edge with triangle 0's part",
-        parts[p][0], parts[p].size() - 1));
+    faults.add(
+        fmt::format("triangle {}: disconnected, it and {} further triangles share no edge with triangle 0's part",
+                    parts[p][0], parts[p].size() - 1));
 }
 
 // Corners of triangles at one node hang together where their triangles share an edge there.
 void check_fans(const ShellMesh& mesh, const Edges& edges, FaultList& faults) {
-  std::map<std::array<int, 2>, std::vector<int>>
-      beside;  // of (node, triangle) the next triangles around the node
+  std::map<std::array<int, 2>, std::vector<int>> beside;  // of (node, triangle) the next triangles around the node
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int n : mesh.triangles[t]) beside[{n, static_cast<int>(t)}];
   for (const auto& [nodes, sides] : edges)
@@ -135,8 +132,7 @@ void check_fans(const ShellMesh& mesh, const Edges& edges, FaultList& faults) {
 
 /// Turns the triangles of a part like its first one; how many had to be turned, or -1 on a one-sided surface.
 int turn_alike(std::vector<std::array<int, 3>>& triangles, const std::vector<int>& part,
-               const std::vector<std::vector<std::pair<int, bool>>>& beside,
-               std::vector<signed char>& turned) {
+               const std::vector<std::vector<std::pair<int, bool>>>& beside, std::vector<signed char>& turned) {
   turned[part[0]] = 0;
   std::vector<int> queue{part[0]};
   int count = 0;
@@ -183,8 +179,7 @@ void orient_shell(ShellMesh& mesh, const std::string& where) {
   std::vector<signed char> turned(mesh.triangles.size(), -1);
   for (const auto& part : connected_parts(static_cast<int>(mesh.triangles.size()), edges)) {
     if (turn_alike(mesh.triangles, part, beside, turned) < 0)
-      throw std::runtime_error(where +
-                               ": the surface has one side only, its triangles cannot be turned alike");
+      throw std::runtime_error(where + ": the surface has one side only, its triangles cannot be turned alike");
   }
   const double size = std::pow(area(mesh), 1.5), volume = enclosed_volume(mesh);
   if (!(volume < -1e-3 * size)) return;

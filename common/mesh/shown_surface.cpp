@@ -13,7 +13,8 @@ std::array<int, 3> sorted(std::array<int, 3> t) {
 
 }  // namespace
 
-ShownSurface::ShownSurface(std::span<const std::array<int, 3>> surface, const CutMesh& part) : is_joint_(4 * part.size(), 0) {
+ShownSurface::ShownSurface(std::span<const std::array<int, 3>> surface, const CutMesh& part)
+    : is_joint_(4 * part.size(), 0) {
   std::set<std::array<int, 3>> seen, of_part;
   for (const auto& t : surface) seen.insert(sorted(t));
   for (int facet : part.visible()) {

@@ -7,9 +7,9 @@
 
 namespace palpate {
 
-/// The surface that is seen of a body of which a part, a CutMesh, can be cut: the rest of the body's surface, the visible
-/// facets of the part, and what its removal lays bare of the rest. Facets by which the part is joined to the rest are not
-/// seen.
+/// The surface that is seen of a body of which a part, a CutMesh, can be cut: the rest of the body's surface, the
+/// visible facets of the part, and what its removal lays bare of the rest. Facets by which the part is joined to the
+/// rest are not seen.
 class ShownSurface {
  public:
   /// `surface`: outward triangles of the whole body; `part`: before any cut.

@@ -11,8 +11,7 @@ namespace palpate {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-TubeSurface::TubeSurface(int particles, double radius, const Vector3d& axis)
-    : particles_(particles), radius_(radius) {
+TubeSurface::TubeSurface(int particles, double radius, const Vector3d& axis) : particles_(particles), radius_(radius) {
   if (particles < 2) throw std::runtime_error("a tube needs at least two particles");
   if (!(radius > 0)) throw std::runtime_error("a tube's radius must be positive");
   if (!(axis.norm() > 0)) throw std::runtime_error("a tube's axis must not be zero");
@@ -49,8 +48,8 @@ TubeSurface::Frame TubeSurface::frame_at(std::span<const Vector3d> x, int sample
 }
 
 /// A ring of `share` of the radius, `shift` [m] ahead of the frame; its normals lean by as much as the cap's.
-void TubeSurface::put_ring(int ring, const Frame& frame, double shift, double share,
-                           std::span<Vector3f> positions, std::span<Vector3f> normals) const {
+void TubeSurface::put_ring(int ring, const Frame& frame, double shift, double share, std::span<Vector3f> positions,
+                           std::span<Vector3f> normals) const {
   const Vector3d up = frame.along.cross(frame.across);
   for (int k = 0; k < kAround; ++k) {
     const double angle = 2 * std::numbers::pi * k / kAround;
@@ -61,8 +60,7 @@ void TubeSurface::put_ring(int ring, const Frame& frame, double shift, double sh
   }
 }
 
-void TubeSurface::place(std::span<const Vector3d> x, std::span<Vector3f> positions,
-                        std::span<Vector3f> normals) const {
+void TubeSurface::place(std::span<const Vector3d> x, std::span<Vector3f> positions, std::span<Vector3f> normals) const {
   Frame frame{.centre = x[0], .along = axis_, .across = across_};
   const int samples = (particles_ - 1) * kRings + 1;
   const auto cap = [&](int ring, int step,

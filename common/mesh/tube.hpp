@@ -25,9 +25,7 @@ class TubeSurface {
 
   int particles() const { return particles_; }
   int vertices() const { return rings() * kAround + 2; }
-  const std::vector<std::array<int, 3>>& triangles() const {
-    return triangles_;
-  }  ///< outward by the right-hand rule
+  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }  ///< outward by the right-hand rule
 
   /// Vertex positions [m] and outward unit normals for particles at `x` [m]; both spans hold vertices()
   /// entries. Allocates nothing. Particles that coincide leave rings of the full radius.
@@ -40,8 +38,8 @@ class TubeSurface {
   };
   int rings() const { return (particles_ - 1) * kRings + 1 + 2 * kCapRings; }
   Frame frame_at(std::span<const Eigen::Vector3d> x, int sample, const Frame& last) const;
-  void put_ring(int ring, const Frame& frame, double shift, double share,
-                std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) const;
+  void put_ring(int ring, const Frame& frame, double shift, double share, std::span<Eigen::Vector3f> positions,
+                std::span<Eigen::Vector3f> normals) const;
 
   int particles_;
   double radius_;

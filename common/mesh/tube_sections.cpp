@@ -66,14 +66,12 @@ std::vector<double> harmonic(const ShellMesh& mesh, const std::vector<std::vecto
     }
   std::set<std::array<int, 2>> pairs;
   for (const auto& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c)
-      pairs.insert({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
+    for (int c = 0; c < 3; ++c) pairs.insert({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
   std::vector<int> degree(mesh.nodes.size(), 0);
   for (const auto& pair : pairs)
     for (int n : pair) ++degree[n];
   int count = 0;
-  for (std::size_t n = 0; n < unknown.size(); ++n)
-    unknown[n] = unknown[n] < 0 || degree[n] == 0 ? -1 : count++;
+  for (std::size_t n = 0; n < unknown.size(); ++n) unknown[n] = unknown[n] < 0 || degree[n] == 0 ? -1 : count++;
   if (count == 0) return value;
 
   std::vector<Eigen::Triplet<double>> entries;

@@ -5,7 +5,10 @@
 namespace palpate {
 
 ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
-    : presence_(presence), deformer_(deformer), contacts_(bus.reader(topics::contact_state)), held_(bus.writer(topics::held_contacts)) {
+    : presence_(presence),
+      deformer_(deformer),
+      contacts_(bus.reader(topics::contact_state)),
+      held_(bus.writer(topics::held_contacts)) {
   if (deformer.has_modal_shells()) modes_ = bus.reader(topics::modal_state);
   if (deformer.has_catheters()) catheters_ = bus.reader(topics::catheter_state);
 }

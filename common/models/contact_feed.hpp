@@ -9,7 +9,8 @@
 namespace palpate {
 
 /// Brings contacts and reduced states from the bus to a deformer: those of haptic nodes with the same scene, and no
-/// others; modal states and catheters only where the scene has such bodies. When the haptic node dies in contact, it keeps the last contacts on the bus for the one that returns.
+/// others; modal states and catheters only where the scene has such bodies. When the haptic node dies in contact, it
+/// keeps the last contacts on the bus for the one that returns.
 class ContactFeed {
  public:
   ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer);

@@ -48,8 +48,8 @@ bool Deformer::has_catheters() const {
   return std::ranges::any_of(bodies_, [](const DeformableBody& body) { return body.tube.has_value(); });
 }
 
-// Messages of several topics may arrive in any order: what is late of a run that has been followed by another is refused,
-// unless it is newer than all else (a log that is played again).
+// Messages of several topics may arrive in any order: what is late of a run that has been followed by another is
+// refused, unless it is newer than all else (a log that is played again).
 bool Deformer::follow(std::uint64_t run, std::int64_t sense_ns) {
   if (run == run_) return true;
   if (std::ranges::find(past_runs_, run) != past_runs_.end() && sense_ns <= sense_ns_) return false;
@@ -85,7 +85,8 @@ bool Deformer::take(const ContactState& contacts) {
 }
 
 bool Deformer::take(const ModalState& state) {
-  if (state.body >= bodies_.size() || !bodies_[state.body].modal || !bodies_[state.body].modal->fits(state)) return false;
+  if (state.body >= bodies_.size() || !bodies_[state.body].modal || !bodies_[state.body].modal->fits(state))
+    return false;
   if (!follow(state.run, state.sense_ns)) return false;
   bodies_[state.body].modes = state;
   bodies_[state.body].fresh = true;
@@ -99,7 +100,8 @@ bool Deformer::take(const CatheterState& state) {
   if (state.position.size() != 3 * static_cast<std::size_t>(body.tube->particles())) return false;
   if (!follow(state.run, state.sense_ns)) return false;
   body.particles.resize(body.tube->particles());
-  for (std::size_t i = 0; i < body.particles.size(); ++i) body.particles[i] = Eigen::Map<const Eigen::Vector3d>(&state.position[3 * i]);
+  for (std::size_t i = 0; i < body.particles.size(); ++i)
+    body.particles[i] = Eigen::Map<const Eigen::Vector3d>(&state.position[3 * i]);
   body.fresh = true;
   show(state.step, state.sense_ns);
   return true;
@@ -117,7 +119,8 @@ void Deformer::add_columns(DeformableBody& body, std::uint32_t index, const Cont
 
 namespace {
 
-void combine(const std::vector<const float*>& columns, const std::vector<float>& coefficients, std::vector<Eigen::Vector3f>& out) {
+void combine(const std::vector<const float*>& columns, const std::vector<float>& coefficients,
+             std::vector<Eigen::Vector3f>& out) {
   kernels::active().combine_f(columns.data(), coefficients.data(), static_cast<int>(columns.size()),
                               3 * static_cast<std::ptrdiff_t>(out.size()), out.data()->data());
 }
@@ -170,7 +173,8 @@ void Deformer::rebuild(DeformableBody& body, std::uint32_t index) {
   } else {
     std::ranges::fill(surface.displacement, Eigen::Vector3f::Zero());
   }
-  for (std::size_t n = 0; n < surface.position.size(); ++n) surface.position[n] = body.map.position[n].cast<float>() + surface.displacement[n];
+  for (std::size_t n = 0; n < surface.position.size(); ++n)
+    surface.position[n] = body.map.position[n].cast<float>() + surface.displacement[n];
   vertex_normals(surface.position, body.map.triangles, surface.normal);
 }
 

@@ -24,7 +24,8 @@ struct DeformedSurface {
 };
 
 /// Rebuilds the shape of the bodies that the haptic node owns, in single precision, from what it says of them:
-/// - quasi-static ones from contacts: u = sum over contacts of C f (TVCG99 eq. 9 in compliance form) over the whole visible
+/// - quasi-static ones from contacts: u = sum over contacts of C f (TVCG99 eq. 9 in compliance form) over the whole
+/// visible
 ///   surface, then the quasi non-linear correction per tool (TVCG99 eq. 3-4);
 /// - modal shells from their modal coordinates and forces;
 /// - catheters, as smooth tubes, from their particles.
@@ -34,9 +35,9 @@ class Deformer {
   /// One archive per body, read with ArchivePart::surface.
   Deformer(const Scene& scene, const std::vector<Archive>& archives);
 
-  /// Keep the newest state of each tool, or body, of the newest run. A run that another has followed does not come back. False
-  /// (and nothing kept) if the sample is of such a run, or names a body or a node that this scene does not have, or has other
-  /// modes or particles.
+  /// Keep the newest state of each tool, or body, of the newest run. A run that another has followed does not come
+  /// back. False (and nothing kept) if the sample is of such a run, or names a body or a node that this scene does not
+  /// have, or has other modes or particles.
   bool take(const ContactState& contacts);
   bool take(const ModalState& state);
   bool take(const CatheterState& state);
@@ -53,9 +54,9 @@ class Deformer {
   const DeformedSurface& surface(int body) const { return bodies_[body].surface; }
   /// The newest contacts, by tool.
   const std::map<std::uint32_t, ContactState>& contacts() const { return contacts_; }
-  std::uint64_t run() const { return run_; }            ///< 0 before anything was taken
-  std::uint64_t step() const { return step_; }          ///< newest haptic step shown
-  std::int64_t sense_ns() const { return sense_ns_; }   ///< its sense time
+  std::uint64_t run() const { return run_; }           ///< 0 before anything was taken
+  std::uint64_t step() const { return step_; }         ///< newest haptic step shown
+  std::int64_t sense_ns() const { return sense_ns_; }  ///< its sense time
 
  private:
   struct DeformableBody {
@@ -65,8 +66,8 @@ class Deformer {
     std::optional<ModalShape> modal;
     std::optional<TubeSurface> tube;
     std::optional<QuasiNonlinear> nonlinear;
-    std::optional<ModalState> modes;           ///< newest; none: at rest
-    std::vector<Eigen::Vector3d> particles;    ///< [m] newest; empty: at rest
+    std::optional<ModalState> modes;         ///< newest; none: at rest
+    std::vector<Eigen::Vector3d> particles;  ///< [m] newest; empty: at rest
     bool fresh = true, changed = false;
     DeformedSurface surface;
     std::vector<const float*> columns;

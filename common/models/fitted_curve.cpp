@@ -12,8 +12,7 @@ FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>
     : count_(degree), end_(s.empty() ? 0 : s.back()) {
   const auto points = static_cast<Eigen::Index>(s.size());
   if (degree < 1 || degree > kMaxDegree || points < degree || s.size() != y.size() || !(s.front() > 0))
-    throw std::invalid_argument(
-        "a fit needs a degree of 1 to 10 and at least that many points beyond the origin");
+    throw std::invalid_argument("a fit needs a degree of 1 to 10 and at least that many points beyond the origin");
 
   Eigen::MatrixXd basis(points, degree);
   for (Eigen::Index i = 0; i < points; ++i) {

@@ -8,8 +8,7 @@ std::vector<double> modal_damping(std::span<const double> omega, double ratio, d
   return damping;
 }
 
-ModalConstants make_modal_constants(std::span<const double> omega, std::span<const double> damping,
-                                    double h) {
+ModalConstants make_modal_constants(std::span<const double> omega, std::span<const double> damping, double h) {
   ModalConstants constants;
   constants.h = h;
   for (std::size_t i = 0; i < omega.size(); ++i) {
@@ -24,10 +23,8 @@ ModalConstants make_modal_constants(std::span<const double> omega, std::span<con
   return constants;
 }
 
-void free_motion(const ModalConstants& constants, const double* x, const double* v, const double* force,
-                 double* y) {
-  const double *carry = constants.carry.data(), *pull = constants.pull.data(),
-               *inverse = constants.inverse.data();
+void free_motion(const ModalConstants& constants, const double* x, const double* v, const double* force, double* y) {
+  const double *carry = constants.carry.data(), *pull = constants.pull.data(), *inverse = constants.inverse.data();
   for (int i = 0; i < constants.modes(); ++i) y[i] = carry[i] * v[i] + pull[i] * x[i] + inverse[i] * force[i];
 }
 
@@ -44,8 +41,7 @@ ModalNewmark::ModalNewmark(std::span<const double> omega, std::span<const double
   for (double w : omega) omega2_.push_back(w * w);
 }
 
-void ModalNewmark::start(std::span<const double> x, std::span<const double> v,
-                         std::span<const double> force) {
+void ModalNewmark::start(std::span<const double> x, std::span<const double> v, std::span<const double> force) {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     x_[i] = x[i];
     v_[i] = v[i];

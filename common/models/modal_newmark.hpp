@@ -26,8 +26,7 @@ ModalConstants make_modal_constants(std::span<const double> omega, std::span<con
 
 /// y = h v_{t+h} [kg^1/2 m] of every mode, from x_t [kg^1/2 m] and v_t [kg^1/2 m/s], under the modal force f
 /// = Phi^T F [N kg^-1/2] held over the step. Allocates nothing.
-void free_motion(const ModalConstants& constants, const double* x, const double* v, const double* force,
-                 double* y);
+void free_motion(const ModalConstants& constants, const double* x, const double* v, const double* force, double* y);
 
 /// Ends the step: v_{t+h} = y/h, x_{t+h} = x_t + h/2 (v_t + v_{t+h}). `y`: free_motion() plus inverse times
 /// the forces that it did not hold.

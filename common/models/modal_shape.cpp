@@ -25,8 +25,8 @@ ModalShape::ModalShape(const Archive& archive)
       shape_(static_cast<std::size_t>(stride_) * modes_, 0.0f) {
   const std::ptrdiff_t rows = 3 * archive.surface.size();
   for (int m = 0; m < modes_; ++m)
-    std::transform(archive.modal->shape.begin() + rows * m, archive.modal->shape.begin() + rows * (m + 1), shape_.begin() + stride_ * m,
-                   [](double x) { return static_cast<float>(x); });
+    std::transform(archive.modal->shape.begin() + rows * m, archive.modal->shape.begin() + rows * (m + 1),
+                   shape_.begin() + stride_ * m, [](double x) { return static_cast<float>(x); });
 }
 
 bool ModalShape::fits(const ModalState& state) const {

@@ -13,15 +13,16 @@ namespace palpate {
 /// eq. 18 and the static share of the modes left out), in single precision.
 class ModalShape {
  public:
-  /// `archive`: read with ArchivePart::surface. Throws std::runtime_error if it holds no modes, or modes of another surface.
+  /// `archive`: read with ArchivePart::surface. Throws std::runtime_error if it holds no modes, or modes of another
+  /// surface.
   explicit ModalShape(const Archive& archive);
 
   int modes() const { return modes_; }
   int nodes() const { return compliance_.row_nodes(); }
   /// Whether the state is of this wall: as many coordinates as modes, and forces at its nodes.
   bool fits(const ModalState& state) const;
-  /// Fills `displacement` [m], nodes() long. A force where nothing can move has no effect. Allocates only when more nodes
-  /// are loaded than ever before.
+  /// Fills `displacement` [m], nodes() long. A force where nothing can move has no effect. Allocates only when more
+  /// nodes are loaded than ever before.
   void displace(const ModalState& state, std::vector<Eigen::Vector3f>& displacement);
 
  private:

@@ -23,20 +23,18 @@ FittedCurve read_curve(const std::filesystem::path& file, std::string_view colum
   for (const CsvRow& row : table.rows) {
     const double x = row.values[0], y = row.values[1];
     if (x < 0) table.fail(row.line, fmt::format("the displacement {} is negative; loading counts from 0", x));
-    if (x <= before)
-      table.fail(row.line, fmt::format("the displacement {} does not come after {}", x, before));
+    if (x <= before) table.fail(row.line, fmt::format("the displacement {} does not come after {}", x, before));
     before = x;
     if (x == 0 && std::abs(y) > 1e-3 * greatest)
-      table.fail(row.line,
-                 fmt::format("the curve must pass through zero, and is {} without displacement", y));
+      table.fail(row.line, fmt::format("the curve must pass through zero, and is {} without displacement", y));
     if (x == 0) continue;
     linear.push_back(slope * x);
     measured.push_back(y);
   }
   if (static_cast<int>(linear.size()) < degree)
-    table.fail(table.rows.back().line,
-               fmt::format("a fit of degree {} needs as many points beyond zero, and there are {}", degree,
-                           linear.size()));
+    table.fail(
+        table.rows.back().line,
+        fmt::format("a fit of degree {} needs as many points beyond zero, and there are {}", degree, linear.size()));
   return {linear, measured, degree};
 }
 
@@ -67,16 +65,14 @@ LinearSlopes sliding_slopes(const Material& material, double radius, double heig
 }
 
 QuasiNonlinear::QuasiNonlinear(const Nonlinear& nonlinear, const LinearSlopes& linear)
-    : force_(read_force_curve(nonlinear, linear.force)),
-      radial_(read_radial_curve(nonlinear, linear.radial)) {}
+    : force_(read_force_curve(nonlinear, linear.force)), radial_(read_radial_curve(nonlinear, linear.radial)) {}
 
 QuasiNonlinear make_quasi_nonlinear(const Body& body, const Archive& archive) {
   const Nonlinear& nonlinear = *body.nonlinear;
   if (nonlinear.specimen_mesh.empty())
     return {nonlinear, sliding_slopes(body.material, nonlinear.specimen_radius, nonlinear.specimen_height)};
   if (!(archive.specimen_force_slope > 0))
-    throw std::runtime_error(
-        fmt::format("the archive of body '{}' holds no press of its specimen", body.name));
+    throw std::runtime_error(fmt::format("the archive of body '{}' holds no press of its specimen", body.name));
   return {nonlinear, {archive.specimen_force_slope, archive.specimen_radial_slope}};
 }
 

@@ -2,7 +2,8 @@
 
 namespace palpate {
 
-TopologyFeed::TopologyFeed(Bus& bus, const Presence& presence, const std::vector<Archive>& archives) : memory_(bus, presence, archives) {
+TopologyFeed::TopologyFeed(Bus& bus, const Presence& presence, const std::vector<Archive>& archives)
+    : memory_(bus, presence, archives) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
     if (archives[b].tetrahedra.empty()) continue;
     Followed& body = bodies_[static_cast<int>(b)];

@@ -15,9 +15,11 @@ class TopologyFeed {
   /// Takes what has come; the bodies whose surface has changed, ascending.
   std::vector<int> take();
   /// What is seen of a body that can be cut: outward triangles over its surface nodes. Valid until the next call.
-  const std::vector<std::array<int, 3>>& triangles(int body) { return bodies_.at(body).shown->triangles(*bodies_.at(body).mesh); }
+  const std::vector<std::array<int, 3>>& triangles(int body) {
+    return bodies_.at(body).shown->triangles(*bodies_.at(body).mesh);
+  }
   const CutMesh& mesh(int body) const { return *bodies_.at(body).mesh; }
-  std::size_t cuts() const;  ///< tetrahedra gone, of all bodies
+  std::size_t cuts() const;                                    ///< tetrahedra gone, of all bodies
   std::uint64_t refused() const { return memory_.refused(); }  ///< messages that do not fit the archives
 
  private:

@@ -12,7 +12,10 @@ constexpr std::int64_t interval_ns = 50'000'000;
 }  // namespace
 
 TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::vector<Archive>& archives)
-    : bus_(bus), presence_(presence), reader_(bus.reader(topics::topology_change, Keep::all)), writer_(bus.writer(topics::held_topology)) {
+    : bus_(bus),
+      presence_(presence),
+      reader_(bus.reader(topics::topology_change, Keep::all)),
+      writer_(bus.writer(topics::held_topology)) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
     if (archives[b].tetrahedra.empty()) continue;
     Followed& body = bodies_[static_cast<int>(b)];
@@ -23,8 +26,8 @@ TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::ve
   tell(now_ns());
 }
 
-// The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it would
-// come again and again.
+// The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it
+// would come again and again.
 bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
   const bool fits = std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
   if (change.seq == 1) body.removed.clear();

@@ -10,9 +10,9 @@
 
 namespace palpate {
 
-/// What the bodies of a scene have lost, by the changes that the deformation node published, in a node that does not own them.
-/// One that comes late receives all changes so far; where one is missing it asks for all of them anew. What is known goes
-/// out again as HeldTopology, so that a deformation node that died begins where it was.
+/// What the bodies of a scene have lost, by the changes that the deformation node published, in a node that does not
+/// own them. One that comes late receives all changes so far; where one is missing it asks for all of them anew. What
+/// is known goes out again as HeldTopology, so that a deformation node that died begins where it was.
 class TopologyMemory {
  public:
   /// One archive per body; those without tetrahedra cannot be cut and are not followed.

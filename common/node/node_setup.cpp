@@ -53,7 +53,8 @@ void say_ready(const NodeOptions& options) {
   std::fflush(stdout);
 }
 
-int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&), const NodeOptions& options) {
+int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&),
+              const NodeOptions& options) {
   CLI11_PARSE(app, argc, argv);
   spdlog::set_default_logger(spdlog::stderr_color_mt(name));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");

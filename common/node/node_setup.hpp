@@ -31,7 +31,9 @@ struct LoadedScene {
 };
 /// Reads `part` of each body's archive, `of_dynamic` of those whose model is dynamic.
 LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic);
-inline LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) { return load_for_node(options, part, part); }
+inline LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) {
+  return load_for_node(options, part, part);
+}
 
 /// A random number, not 0, that identifies one start of a loop.
 std::uint64_t new_run();
@@ -40,6 +42,7 @@ std::uint64_t new_run();
 void say_ready(const NodeOptions& options);
 
 /// Runs `body` with logging under the node's name; prints the sentence of an exception and returns the exit status.
-int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&), const NodeOptions& options);
+int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&),
+              const NodeOptions& options);
 
 }  // namespace palpate

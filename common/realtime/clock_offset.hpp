@@ -26,8 +26,8 @@ class ClockOffset {
   static constexpr double wander = 1e-6;      ///< [1] by which a bound is loosened with its age
 
   struct Estimate {
-    std::int64_t offset_ns = 0;       ///< other minus own
-    std::int64_t uncertainty_ns = 0;  ///< the true offset is within so much of it
+    std::int64_t offset_ns = 0;               ///< other minus own
+    std::int64_t uncertainty_ns = 0;          ///< the true offset is within so much of it
     double drift = 0, drift_uncertainty = 0;  ///< [1] by which the other clock runs faster
   };
 

@@ -45,8 +45,7 @@ void Histogram::merge(const Histogram& other) {
 
 std::int64_t Histogram::percentile(double share) const {
   if (count_ == 0) return 0;
-  const auto rank =
-      static_cast<std::uint64_t>(std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_)));
+  const auto rank = static_cast<std::uint64_t>(std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_)));
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < bins; ++i) {
     seen += bins_[i];
@@ -59,8 +58,7 @@ std::int64_t Histogram::percentile(double share) const {
 
 Percentiles percentiles_us(const Histogram& h) {
   const auto us = [](std::int64_t ns) { return static_cast<double>(ns) / 1000.0; };
-  return {us(h.percentile(0.5)), us(h.percentile(0.9)), us(h.percentile(0.99)), us(h.percentile(0.999)),
-          us(h.max())};
+  return {us(h.percentile(0.5)), us(h.percentile(0.9)), us(h.percentile(0.99)), us(h.percentile(0.999)), us(h.max())};
 }
 
 }  // namespace palpate

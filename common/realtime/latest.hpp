@@ -16,7 +16,8 @@ class Latest {
   }
   /// Reader's side: the newest value; the last one again if nothing has come since.
   const T& get() {
-    if (middle_.load(std::memory_order_relaxed) & fresh) front_ = middle_.exchange(front_, std::memory_order_acq_rel) & ~fresh;
+    if (middle_.load(std::memory_order_relaxed) & fresh)
+      front_ = middle_.exchange(front_, std::memory_order_acq_rel) & ~fresh;
     return slots_[front_];
   }
 

@@ -13,8 +13,7 @@ struct RealtimeSettings {
 
 struct RealtimeGrant {
   bool scheduler = false, memory = false, core = false;
-  std::vector<std::string>
-      sentences;  ///< one per request: what was granted, or not and why; for the operator
+  std::vector<std::string> sentences;  ///< one per request: what was granted, or not and why; for the operator
 };
 
 /// Applies the settings to the calling thread (memory: to the process). Never throws: a loop runs without,

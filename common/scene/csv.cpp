@@ -71,8 +71,7 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
     if (line.empty() || line.starts_with('#')) continue;
     const std::vector<std::string_view> cells = split(line);
     if (wanted == 0) {
-      if (cells != columns && cells != longer)
-        table.fail(number, fmt::format("the header must be {}", header));
+      if (cells != columns && cells != longer) table.fail(number, fmt::format("the header must be {}", header));
       wanted = cells.size();
       continue;
     }

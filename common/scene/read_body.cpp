@@ -15,15 +15,13 @@ void check_name(const TableReader& table, const std::string& name) {
 Selector read_selector(const TableReader& table, std::string_view list_key) {
   const int given = table.has(list_key) + table.has("box") + table.has("group");
   if (given != 1)
-    table.fail(
-        fmt::format("exactly one of '{}', 'box' and 'group' is needed, and there are {}", list_key, given));
+    table.fail(fmt::format("exactly one of '{}', 'box' and 'group' is needed, and there are {}", list_key, given));
   Selector where;
   table.indices(list_key, where.indices);
   table.group("group", where.group);
   if (table.has("box")) {
     const auto [low, high] = table.vector_pair("box");
-    if ((low.array() > high.array()).any())
-      table.fail_at("box", "box must be [[least x, y, z], [greatest x, y, z]]");
+    if ((low.array() > high.array()).any()) table.fail_at("box", "box must be [[least x, y, z], [greatest x, y, z]]");
     where.box = Box{low, high};
   }
   return where;
@@ -48,9 +46,8 @@ FixedRegion read_fixed(const TableReader& table, const std::string& model) {
     fixed.axes[axis] = true;
   }
   if (table.has("rotations") && model != "modal_shell")
-    table.fail_at(
-        "rotations",
-        fmt::format("rotations means nothing for the model '{}': a shell's nodes alone turn", model));
+    table.fail_at("rotations",
+                  fmt::format("rotations means nothing for the model '{}': a shell's nodes alone turn", model));
   table.flag("rotations", fixed.rotations);
   return fixed;
 }
@@ -108,19 +105,18 @@ Body read_body(const TableReader& table) {
   for (const TableReader& fixed : table.tables("fixed", "[[body.fixed]]"))
     body.fixed.push_back(read_fixed(fixed, body.model));
   if (body.fixed.empty())
-    table.fail(
-        fmt::format("body '{}' is not fixed anywhere and would float: give it a [[body.fixed]]", body.name));
+    table.fail(fmt::format("body '{}' is not fixed anywhere and would float: give it a [[body.fixed]]", body.name));
   for (const TableReader& region : table.tables("material", "[[body.material]]"))
     body.materials.push_back(read_material(region, body.material));
-  if (const auto nonlinear = table.table("nonlinear", "[body.nonlinear]"))
-    body.nonlinear = read_nonlinear(*nonlinear);
+  if (const auto nonlinear = table.table("nonlinear", "[body.nonlinear]")) body.nonlinear = read_nonlinear(*nonlinear);
   if (const auto touchable = table.table("touchable", "[body.touchable]"))
     body.touchable = read_selector(*touchable, "nodes");
   read_dynamics(table, body);
   if (const auto offline = table.table("offline", "[body.offline]")) {
     if (body.model != "quasi_static")
-      table.fail_at("offline", fmt::format("[body.offline] serves the model 'quasi_static' alone, and '{}' has the model '{}'",
-                                           body.name, body.model));
+      table.fail_at("offline",
+                    fmt::format("[body.offline] serves the model 'quasi_static' alone, and '{}' has the model '{}'",
+                                body.name, body.model));
     body.offline = read_offline(*offline);
   }
   return body;

@@ -32,9 +32,8 @@ Catheter read_catheter(const TableReader& table) {
   table.integer("particles", catheter.particles, 4, 10000);
   table.number("sleeve", catheter.sleeve, at_least(0));
   if (!(catheter.sleeve < length))
-    table.fail_at("sleeve",
-                  fmt::format("sleeve must be shorter than the catheter, which is {} m long, and is {}",
-                              length, catheter.sleeve));
+    table.fail_at("sleeve", fmt::format("sleeve must be shorter than the catheter, which is {} m long, and is {}",
+                                        length, catheter.sleeve));
   table.number("damping", catheter.damping, at_least(0));
   table.vector("gravity", catheter.gravity);
   table.choice("integrator", catheter.integrator, {"implicit", "semi_implicit"});
@@ -44,8 +43,7 @@ Catheter read_catheter(const TableReader& table) {
 /// Refuses the keys that go with meshes of another kind.
 void refuse_keys(const TableReader& table, const Body& body) {
   const auto refuse = [&](std::string_view key, std::string_view name) {
-    if (table.has(key))
-      table.fail_at(key, fmt::format("{} means nothing for the model '{}'", name, body.model));
+    if (table.has(key)) table.fail_at(key, fmt::format("{} means nothing for the model '{}'", name, body.model));
   };
   if (body.model != "modal_shell") refuse("shell", "[body.shell]");
   if (body.model != "catheter") refuse("catheter", "[body.catheter]");
@@ -69,14 +67,12 @@ void read_duct(const TableReader& table, Body& body) {
   refuse_keys(table, body);
   if (body.model == "modal_shell") {
     const auto shell = table.table("shell", "[body.shell]");
-    if (!shell)
-      table.fail_at("model", "the model 'modal_shell' needs a [body.shell] that gives its thickness");
+    if (!shell) table.fail_at("model", "the model 'modal_shell' needs a [body.shell] that gives its thickness");
     body.shell = read_shell(*shell);
   }
   if (body.model == "catheter") {
     const auto catheter = table.table("catheter", "[body.catheter]");
-    if (!catheter)
-      table.fail_at("model", "the model 'catheter' needs a [body.catheter] that says where it lies");
+    if (!catheter) table.fail_at("model", "the model 'catheter' needs a [body.catheter] that says where it lies");
     body.catheter = read_catheter(*catheter);
   }
 }
@@ -87,9 +83,8 @@ void check_ducts(const std::vector<TableReader>& bodies, const Scene& scene) {
     if (!catheter || catheter->inside.empty()) continue;
     const auto duct = std::ranges::find(scene.bodies, catheter->inside, &Body::name);
     if (duct != scene.bodies.end() && duct->shell) continue;
-    const std::string reason = duct == scene.bodies.end()
-                                   ? "the scene has no such body"
-                                   : fmt::format("that body's model is '{}'", duct->model);
+    const std::string reason = duct == scene.bodies.end() ? "the scene has no such body"
+                                                          : fmt::format("that body's model is '{}'", duct->model);
     bodies[b]
         .table("catheter", "[body.catheter]")
         ->fail_at("inside", fmt::format("inside must name a body of the model 'modal_shell', and is '{}': {}",

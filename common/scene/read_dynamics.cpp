@@ -19,8 +19,7 @@ Dynamic read_dynamic(const TableReader& table, const std::string& model) {
   table.vector("gravity", dynamic.gravity);
   table.flag("corotational", dynamic.corotational);
   if (dynamic.corotational && model == "spring_mass")
-    table.fail_at("corotational",
-                  "corotational is for elements, and springs turn with the tissue by themselves");
+    table.fail_at("corotational", "corotational is for elements, and springs turn with the tissue by themselves");
   return dynamic;
 }
 
@@ -55,10 +54,8 @@ void read_dynamics(const TableReader& table, Body& body) {
   if (body.model != "quasi_static" && body.nonlinear)
     table.fail_at(
         "nonlinear",
-        fmt::format("[body.nonlinear] corrects the model 'quasi_static' alone, and the model is '{}'",
-                    body.model));
-  if (const auto dynamic = table.table("dynamic", "[body.dynamic]"))
-    body.dynamic = read_dynamic(*dynamic, body.model);
+        fmt::format("[body.nonlinear] corrects the model 'quasi_static' alone, and the model is '{}'", body.model));
+  if (const auto dynamic = table.table("dynamic", "[body.dynamic]")) body.dynamic = read_dynamic(*dynamic, body.model);
   if (const auto tearing = table.table("tearing", "[body.tearing]")) body.tearing = read_tearing(*tearing);
   if (body.model == "hybrid" && !table.has("hybrid"))
     table.fail_at("model", "the model 'hybrid' needs a [body.hybrid] that says which part is tensor-mass");

@@ -91,8 +91,8 @@ Render read_render(const TableReader& table) {
 
 /// Reads a list of named tables whose names must differ.
 template <class Item>
-void read_named(const TableReader& root, std::string_view key, std::string_view name,
-                Item (*read)(const TableReader&), std::vector<Item>& items) {
+void read_named(const TableReader& root, std::string_view key, std::string_view name, Item (*read)(const TableReader&),
+                std::vector<Item>& items) {
   std::set<std::string> names;
   for (const TableReader& table : root.tables(key, name)) {
     items.push_back(read(table));
@@ -125,8 +125,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
     table = toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
     const auto where = error.source().begin;
-    throw std::runtime_error(
-        fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
+    throw std::runtime_error(fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
   }
   Scene scene = read_root(TableReader(table, "scene", file));
   scene.file = std::filesystem::absolute(file).lexically_normal();

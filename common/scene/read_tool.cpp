@@ -31,11 +31,9 @@ Cautery read_cautery(const TableReader& table, double tip_radius) {
 }
 
 /// Refuses keys of the other kind of tool.
-void refuse_keys(const TableReader& table, std::initializer_list<std::string_view> keys,
-                 const std::string& kind) {
+void refuse_keys(const TableReader& table, std::initializer_list<std::string_view> keys, const std::string& kind) {
   for (std::string_view key : keys)
-    if (table.has(key))
-      table.fail_at(key, fmt::format("{} means nothing for a tool of the kind '{}'", key, kind));
+    if (table.has(key)) table.fail_at(key, fmt::format("{} means nothing for a tool of the kind '{}'", key, kind));
 }
 
 Jaws read_jaws(const TableReader& table, const std::string& kind) {
@@ -59,8 +57,7 @@ void read_end(const TableReader& table, Tool& tool) {
   table.choice("kind", tool.kind, {"probe", "forceps"});
   if (tool.kind == "forceps") refuse_keys(table, {"radius", "cautery"}, tool.kind);
   table.number("radius", tool.radius, kPositive);
-  if (const auto cautery = table.table("cautery", "[tool.cautery]"))
-    tool.cautery = read_cautery(*cautery, tool.radius);
+  if (const auto cautery = table.table("cautery", "[tool.cautery]")) tool.cautery = read_cautery(*cautery, tool.radius);
   if (const auto jaws = table.table("jaws", "[tool.jaws]")) tool.jaws = read_jaws(*jaws, tool.kind);
   if (tool.kind == "forceps" && !tool.jaws)
     table.fail_at("kind", fmt::format("the forceps '{}' needs a [tool.jaws]", tool.name));

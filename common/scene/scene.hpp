@@ -18,7 +18,7 @@ struct Box {
 struct Selector {
   std::vector<int> indices;  ///< `nodes` or `elements`: 0-based
   std::optional<Box> box;
-  std::string group;         ///< physical group: name or number
+  std::string group;  ///< physical group: name or number
 };
 
 struct FixedRegion {
@@ -45,18 +45,19 @@ struct Nonlinear {
   double specimen_radius = 0;          ///< [m]
   double specimen_height = 0;          ///< [m]
   int degree = 6;                      ///< 4..10
-  std::filesystem::path specimen_mesh; ///< empty: ends slide, closed-form linear curves; else stuck ends, from this mesh
-  double specimen_scale = 1;           ///< [m per unit of specimen_mesh]
+  std::filesystem::path
+      specimen_mesh;          ///< empty: ends slide, closed-form linear curves; else stuck ends, from this mesh
+  double specimen_scale = 1;  ///< [m per unit of specimen_mesh]
 };
 
 /// Motion of tissue that is cut or torn (RR3510 sec. 4); means nothing to a quasi-static body.
 struct Dynamic {
-  std::string integrator = "rk4";    ///< rk4 | semi_implicit
-  std::string precision = "single";  ///< single | double
-  double step = 0;                   ///< [s] 0: chosen from the frequency bound
-  double damping = 5;                ///< [1/s] proportional to mass: gamma_i = damping * m_i
+  std::string integrator = "rk4";                     ///< rk4 | semi_implicit
+  std::string precision = "single";                   ///< single | double
+  double step = 0;                                    ///< [s] 0: chosen from the frequency bound
+  double damping = 5;                                 ///< [1/s] proportional to mass: gamma_i = damping * m_i
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  bool corotational = false;         ///< elements turn with the tissue
+  bool corotational = false;                          ///< elements turn with the tissue
 };
 
 /// When dynamic tissue tears by itself (RR3510 sec. 4.4).
@@ -72,7 +73,8 @@ struct Hybrid {
   double scale = 1;               ///< [m per unit of mesh]
 };
 
-/// A thin wall of shell triangles that moves by its lowest modes (BHS01 sec. V-C-1). The mesh is the wall's middle surface.
+/// A thin wall of shell triangles that moves by its lowest modes (BHS01 sec. V-C-1). The mesh is the wall's middle
+/// surface.
 struct Shell {
   double thickness = 0;                        ///< [m]
   std::string bending = "discrete_kirchhoff";  ///< discrete_kirchhoff | polynomial (BHS01 app. A)
@@ -84,13 +86,13 @@ struct Shell {
 
 /// A flexible catheter of particles (BHS01 sec. V-C-2), straight at rest. Young's modulus and density are the body's.
 struct Catheter {
-  std::string inside;                                 ///< name of the modal_shell body that it is led into; empty: none
-  Eigen::Vector3d tail = Eigen::Vector3d::Zero();     ///< [m] first particle at rest
-  Eigen::Vector3d tip = Eigen::Vector3d::UnitX();     ///< [m] last particle at rest
-  double radius = 0.00125;                            ///< [m]
+  std::string inside;                              ///< name of the modal_shell body that it is led into; empty: none
+  Eigen::Vector3d tail = Eigen::Vector3d::Zero();  ///< [m] first particle at rest
+  Eigen::Vector3d tip = Eigen::Vector3d::UnitX();  ///< [m] last particle at rest
+  double radius = 0.00125;                         ///< [m]
   int particles = 60;
-  double sleeve = 0;                                  ///< [m] of a straight fixed sleeve that guides it, from `tail` towards `tip`
-  double damping = 5;                                 ///< [1/s] force -damping m v on a particle
+  double sleeve = 0;   ///< [m] of a straight fixed sleeve that guides it, from `tail` towards `tip`
+  double damping = 5;  ///< [1/s] force -damping m v on a particle
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   std::string integrator = "implicit";                ///< implicit | semi_implicit (BHS01 eq. 28, in substeps)
 };
@@ -105,20 +107,20 @@ struct Offline {
 
 struct Body {
   std::string name;
-  std::filesystem::path mesh;  ///< empty for a catheter
-  double scale = 1;  ///< [m per mesh unit]
+  std::filesystem::path mesh;          ///< empty for a catheter
+  double scale = 1;                    ///< [m per mesh unit]
   std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid | modal_shell | catheter
   Material material;
   std::vector<FixedRegion> fixed;
   std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
   std::optional<Nonlinear> nonlinear;
-  std::optional<Selector> touchable;      ///< absent: every free surface node
-  std::optional<Offline> offline;         ///< absent: the mesh itself with linear elements; of quasi_static bodies alone
-  Dynamic dynamic;                        ///< defaults where the section is absent
+  std::optional<Selector> touchable;  ///< absent: every free surface node
+  std::optional<Offline> offline;     ///< absent: the mesh itself with linear elements; of quasi_static bodies alone
+  Dynamic dynamic;                    ///< defaults where the section is absent
   std::optional<Tearing> tearing;
-  std::optional<Hybrid> hybrid;           ///< set exactly for the model hybrid
-  std::optional<Shell> shell;             ///< set exactly for the model modal_shell
-  std::optional<Catheter> catheter;       ///< set exactly for the model catheter
+  std::optional<Hybrid> hybrid;      ///< set exactly for the model hybrid
+  std::optional<Shell> shell;        ///< set exactly for the model modal_shell
+  std::optional<Catheter> catheter;  ///< set exactly for the model catheter
 };
 
 /// Whether the deformation node owns the body's state, and it can be cut: tensor_mass, spring_mass and hybrid.
@@ -135,26 +137,26 @@ struct Jaws {
   double width = 0.006;       ///< [m] across the plane they open in
   double closed_below = 0.1;  ///< [rad] of grip; a forceps has no use for it: its jaws close until they touch
   // Of a forceps alone:
-  double radius = 0.001;          ///< [m] of each jaw about its segment
-  double most_open = 1.0;         ///< [rad] between the jaws
-  double grip_stiffness = 0.5;    ///< [N m/rad] of the handle's linkage: closing torque per angle beyond the touch
-  double friction = 0.8;          ///< [1] between jaws and what they hold; beyond it the hold slips
+  double radius = 0.001;        ///< [m] of each jaw about its segment
+  double most_open = 1.0;       ///< [rad] between the jaws
+  double grip_stiffness = 0.5;  ///< [N m/rad] of the handle's linkage: closing torque per angle beyond the touch
+  double friction = 0.8;        ///< [1] between jaws and what they hold; beyond it the hold slips
 };
 
 struct Tool {
   std::string name;
   std::string kind = "probe";  ///< probe: spheres along tip and shaft | forceps: segments of shaft and two jaws
-  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m] trocar point, world frame
-  Eigen::Vector3d axis = -Eigen::Vector3d::UnitZ(); ///< unit, direction of the shaft (handle to tip) in the zero pose
-  Eigen::Vector3d up = Eigen::Vector3d::UnitY();    ///< unit, perpendicular part used: the tool's y axis in the zero pose
-  double radius = 0.004;        ///< [m] of the spherical tip
-  double shaft_radius = 0.0025; ///< [m]
-  double shaft_length = 0.3;    ///< [m] from the tip back along the shaft
-  std::string device = "scripted";         ///< scripted | log | bus
-  std::filesystem::path trajectory;        ///< for scripted: CSV; for log: an LCM event log
-  double compliance = 1e-4;     ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
-  double max_force = 10;        ///< [N] limit of the safety chain
-  double max_force_rate = 5000; ///< [N/s] slew limit
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();   ///< [m] trocar point, world frame
+  Eigen::Vector3d axis = -Eigen::Vector3d::UnitZ();  ///< unit, direction of the shaft (handle to tip) in the zero pose
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit, perpendicular part used: the tool's y axis in the zero pose
+  double radius = 0.004;                          ///< [m] of the spherical tip
+  double shaft_radius = 0.0025;                   ///< [m]
+  double shaft_length = 0.3;                      ///< [m] from the tip back along the shaft
+  std::string device = "scripted";                ///< scripted | log | bus
+  std::filesystem::path trajectory;               ///< for scripted: CSV; for log: an LCM event log
+  double compliance = 1e-4;      ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
+  double max_force = 10;         ///< [N] limit of the safety chain
+  double max_force_rate = 5000;  ///< [N/s] slew limit
   std::optional<Cautery> cautery;
   std::optional<Jaws> jaws;
 };
@@ -167,8 +169,9 @@ struct Contact {
 
 /// Watch over the energy that all tools together take from the tissue.
 struct Passivity {
-  bool controller = true;   ///< damps the tools that take out more than they put in and the reserve; false: observed only
-  double reserve = 0.01;    ///< [J] that may be taken out beyond what was put in
+  bool controller =
+      true;               ///< damps the tools that take out more than they put in and the reserve; false: observed only
+  double reserve = 0.01;  ///< [J] that may be taken out beyond what was put in
 };
 
 /// Only who has keys of one authority takes part, and what crosses the network is encrypted.
@@ -178,9 +181,9 @@ struct Security {
 
 struct Network {
   int domain = 0;
-  std::string interface;            ///< empty: loopback
+  std::string interface;  ///< empty: loopback
   std::vector<std::string> peers;
-  std::optional<Security> security; ///< absent: open to all, and nothing of it is loaded
+  std::optional<Security> security;  ///< absent: open to all, and nothing of it is loaded
 };
 
 struct Rates {
@@ -203,10 +206,10 @@ struct Render {
   int width = 1024;
   int height = 768;
   Camera camera;
-  std::string colour = "tissue";    ///< tissue | displacement
+  std::string colour = "tissue";                          ///< tissue | displacement
   std::array<double, 3> tissue_colour{0.55, 0.16, 0.13};  ///< linear RGB
-  std::filesystem::path backdrop;   ///< empty: none
-  double backdrop_scale = 1;        ///< [m per mesh unit]
+  std::filesystem::path backdrop;                         ///< empty: none
+  double backdrop_scale = 1;                              ///< [m per mesh unit]
   bool overlay = true;
 };
 

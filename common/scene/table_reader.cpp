@@ -103,16 +103,14 @@ void TableReader::fail_at(std::string_view key, std::string_view sentence) const
 
 double TableReader::finite_number(const toml::node& node, std::string_view what) const {
   if (!node.is_number()) fail(node.source(), fmt::format("{} must be a number, not {}", what, kind(node)));
-  const double x =
-      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!std::isfinite(x)) fail(node.source(), fmt::format("{} must be finite", what));
   return x;
 }
 
 Eigen::Vector3d TableReader::three_numbers(const toml::node& node, std::string_view what) const {
   const toml::array* list = node.as_array();
-  if (!list || list->size() != 3)
-    fail(node.source(), fmt::format("{} must be a list of three numbers", what));
+  if (!list || list->size() != 3) fail(node.source(), fmt::format("{} must be a list of three numbers", what));
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) v[i] = finite_number((*list)[i], what);
   return v;
@@ -122,8 +120,7 @@ std::string TableReader::plain_text(const toml::node& node, std::string_view wha
   if (!node.is_string()) fail(node.source(), fmt::format("{} must be a string, not {}", what, kind(node)));
   const std::string& value = node.as_string()->get();
   if (value.empty()) fail(node.source(), fmt::format("{} must not be empty", what));
-  if (value.find('\0') != value.npos)
-    fail(node.source(), fmt::format("{} must not hold a zero character", what));
+  if (value.find('\0') != value.npos) fail(node.source(), fmt::format("{} must not hold a zero character", what));
   return value;
 }
 
@@ -131,16 +128,14 @@ void TableReader::number(std::string_view key, double& value, const Range& range
   const toml::node* node = find(key, need);
   if (!node) return;
   const double x = finite_number(*node, key);
-  if (!contains(range, x))
-    fail(node->source(), fmt::format("{} must be {}, and is {}", key, describe(range), x));
+  if (!contains(range, x)) fail(node->source(), fmt::format("{} must be {}, and is {}", key, describe(range), x));
   value = x;
 }
 
 void TableReader::integer(std::string_view key, int& value, int low, int high, Need need) const {
   const toml::node* node = find(key, need);
   if (!node) return;
-  if (!node->is_integer())
-    fail(node->source(), fmt::format("{} must be an integer, not {}", key, kind(*node)));
+  if (!node->is_integer()) fail(node->source(), fmt::format("{} must be an integer, not {}", key, kind(*node)));
   const std::int64_t x = node->as_integer()->get();
   if (x < low || x > high)
     fail(node->source(), fmt::format("{} must be at least {} and at most {}, and is {}", key, low, high, x));
@@ -150,8 +145,7 @@ void TableReader::integer(std::string_view key, int& value, int low, int high, N
 void TableReader::flag(std::string_view key, bool& value) const {
   const toml::node* node = find(key, Need::optional);
   if (!node) return;
-  if (!node->is_boolean())
-    fail(node->source(), fmt::format("{} must be true or false, not {}", key, kind(*node)));
+  if (!node->is_boolean()) fail(node->source(), fmt::format("{} must be true or false, not {}", key, kind(*node)));
   value = node->as_boolean()->get();
 }
 
@@ -159,8 +153,7 @@ void TableReader::text(std::string_view key, std::string& value, Need need) cons
   if (const toml::node* node = find(key, need)) value = plain_text(*node, key);
 }
 
-void TableReader::choice(std::string_view key, std::string& value,
-                         const std::vector<std::string_view>& allowed) const {
+void TableReader::choice(std::string_view key, std::string& value, const std::vector<std::string_view>& allowed) const {
   const toml::node* node = find(key, Need::optional);
   if (!node) return;
   const std::string word = plain_text(*node, key);
@@ -174,8 +167,7 @@ void TableReader::choice(std::string_view key, std::string& value,
 void TableReader::texts(std::string_view key, std::vector<std::string>& value) const {
   const toml::node* node = find(key, Need::optional);
   if (!node) return;
-  if (!node->is_array())
-    fail(node->source(), fmt::format("{} must be a list of strings, not {}", key, kind(*node)));
+  if (!node->is_array()) fail(node->source(), fmt::format("{} must be a list of strings, not {}", key, kind(*node)));
   value.clear();
   for (const toml::node& entry : *node->as_array()) value.push_back(plain_text(entry, key));
 }
@@ -206,8 +198,7 @@ void TableReader::indices(std::string_view key, std::vector<int>& value) const {
   value.clear();
   std::set<std::int64_t> seen;
   for (const toml::node& entry : *list) {
-    if (!entry.is_integer())
-      fail(entry.source(), fmt::format("{} must hold integers, not {}", key, kind(entry)));
+    if (!entry.is_integer()) fail(entry.source(), fmt::format("{} must hold integers, not {}", key, kind(entry)));
     const std::int64_t x = entry.as_integer()->get();
     if (x < 0 || x > std::numeric_limits<int>::max())
       fail(entry.source(), fmt::format("{} counts from 0, and {} is out of range", key, x));

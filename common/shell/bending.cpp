@@ -16,8 +16,7 @@ constexpr double kLeastFactor = 1e-3;
 
 /// Integrates B^T D B, B being linear over the triangle, by its values at the middles of the sides: exact.
 template <class CurvatureAt>
-Matrix9d integrate(const FlatTriangle& triangle, const Eigen::Matrix3d& rigidity,
-                   CurvatureAt&& curvature_at) {
+Matrix9d integrate(const FlatTriangle& triangle, const Eigen::Matrix3d& rigidity, CurvatureAt&& curvature_at) {
   Matrix9d stiffness = Matrix9d::Zero();
   for (int i = 0; i < 3; ++i) {
     Eigen::Vector3d middle(0.5, 0.5, 0.5);

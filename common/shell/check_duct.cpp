@@ -48,11 +48,10 @@ void check_duct(const Scene& scene, const Body& shell, const ShellMesh& mesh) {
                       mouths > 2 ? ": is there a hole in the wall?" : ""));
     const double lumen = lumen_radius(mesh) - 0.5 * shell.shell->thickness;
     if (body.catheter->radius >= lumen)
-      throw std::runtime_error(
-          fmt::format("{}: the catheter '{}' is {:.4g} mm wide, and the duct '{}' is {:.4g} mm wide inside "
-                      "at its narrowest",
-                      shell.mesh.string(), body.name, 2e3 * body.catheter->radius, shell.name,
-                      2e3 * std::max(0.0, lumen)));
+      throw std::runtime_error(fmt::format(
+          "{}: the catheter '{}' is {:.4g} mm wide, and the duct '{}' is {:.4g} mm wide inside "
+          "at its narrowest",
+          shell.mesh.string(), body.name, 2e3 * body.catheter->radius, shell.name, 2e3 * std::max(0.0, lumen)));
   }
 }
 

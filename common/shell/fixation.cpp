@@ -61,19 +61,16 @@ std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, c
 }
 
 ShellDofs shell_fixation(const ShellMesh& mesh, const Body& body, const std::string& where) {
-  if (body.fixed.empty())
-    throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
+  if (body.fixed.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   ShellDofs dofs(used_shell_nodes(mesh));
   for (std::size_t i = 0; i < body.fixed.size(); ++i) {
     const std::string place = fmt::format("{}: [[body.fixed]] number {}", where, i + 1);
     const auto nodes = select_nodes(mesh, body.fixed[i].where, place);
-    if (nodes.empty())
-      throw std::runtime_error(place + ": an empty fixed set: it selects no node of the mesh");
+    if (nodes.empty()) throw std::runtime_error(place + ": an empty fixed set: it selects no node of the mesh");
     fix_region(body.fixed[i], nodes, dofs);
   }
   dofs.number();
-  if (dofs.translations() == 0)
-    throw std::runtime_error(where + ": every node is fixed, nothing is left to deform");
+  if (dofs.translations() == 0) throw std::runtime_error(where + ": every node is fixed, nothing is left to deform");
   if (const int motions = remaining_rigid_motions(mesh, dofs))
     throw std::runtime_error(
         fmt::format("{}: unfixed body: the fixed nodes leave {} rigid-body motion{} free, fix more nodes, "

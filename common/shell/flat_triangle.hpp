@@ -22,8 +22,7 @@ struct FlatTriangle {
 /// Where a triangle of space has its plane. BHS01 lays y along the side 1-2 and numbers clockwise; here x
 /// lies there and the corners go counterclockwise, which is the same frame mirrored.
 struct TriangleFrame {
-  Eigen::Matrix3d
-      axes;  ///< rows: the local x, y, z axes in the world; z is the normal by the right-hand rule
+  Eigen::Matrix3d axes;  ///< rows: the local x, y, z axes in the world; z is the normal by the right-hand rule
   FlatTriangle flat;
 };
 

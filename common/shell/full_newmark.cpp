@@ -35,8 +35,7 @@ Map sparse_product(const SparseMatrix& lower, Eigen::Index translations) {
   const Eigen::Index rotations = lower.rows() - translations;
   const SparseMatrix tt = lower.topLeftCorner(translations, translations);
   const SparseMatrix rt = lower.bottomLeftCorner(rotations, translations);
-  if (rotations == 0)
-    return [tt](const VectorXd& u) -> VectorXd { return tt.selfadjointView<Eigen::Lower>() * u; };
+  if (rotations == 0) return [tt](const VectorXd& u) -> VectorXd { return tt.selfadjointView<Eigen::Lower>() * u; };
   const SparseMatrix rr = lower.bottomRightCorner(rotations, rotations);
   const auto factor = std::make_shared<Factorisation>(rr);
   factor->factorise(rr);
@@ -60,8 +59,7 @@ FullNewmark::FullNewmark(const MatrixXd& condensed, VectorXd mass, double dampin
   MatrixXd modified = condensed;
   modified.diagonal() += mass_share(damping, step) * mass_;
   const auto factor = std::make_shared<Eigen::LLT<MatrixXd>>(modified);
-  if (factor->info() != Eigen::Success)
-    throw std::runtime_error("the stiffness matrix is not positive definite");
+  if (factor->info() != Eigen::Success) throw std::runtime_error("the stiffness matrix is not positive definite");
   stiffness_times_ = [condensed](const VectorXd& u) -> VectorXd { return condensed * u; };
   solve_ = [factor](const VectorXd& f) -> VectorXd { return factor->solve(f); };
 }

@@ -78,8 +78,7 @@ class DeflatedOperator {
     return x;
   }
   void perform_op(const double* in, double* out) const {
-    Eigen::Map<VectorXd>(out, rows()) =
-        outside(whole_.times(outside(Eigen::Map<const VectorXd>(in, rows()))));
+    Eigen::Map<VectorXd>(out, rows()) = outside(whole_.times(outside(Eigen::Map<const VectorXd>(in, rows()))));
   }
 
  private:
@@ -180,8 +179,8 @@ void choose_signs(MatrixXd& shape) {
 Modes lowest_modes(const SparseMatrix& stiffness, const VectorXd& mass, int count, double shift) {
   const Index n = mass.size();
   if (count < 1 || count > n)
-    throw std::runtime_error(fmt::format(
-        "{} modes are asked for, but there are {} free translational degrees of freedom", count, n));
+    throw std::runtime_error(
+        fmt::format("{} modes are asked for, but there are {} free translational degrees of freedom", count, n));
   if (!(mass.minCoeff() > 0)) throw std::runtime_error("a node without mass has no modes of vibration");
   InverseOperator op(shifted(stiffness, mass, shift), mass);
   auto pairs = 3 * (count + kGuard) < n ? largest_pairs(op, count) : all_pairs(op);

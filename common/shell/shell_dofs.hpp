@@ -11,9 +11,9 @@ struct ShellMaterial {
   double thickness = 0;  ///< [m]
 };
 
-/// Numbers the free degrees of freedom of a shell: six a node, displacements along the world's x, y, z [m], then rotations
-/// about them [rad]. Fixed ones are eliminated. All free translations come first, then all free rotations, each by node and
-/// axis: so the condensation of the rotations (BHS01 eq. 15) splits the matrices at translations().
+/// Numbers the free degrees of freedom of a shell: six a node, displacements along the world's x, y, z [m], then
+/// rotations about them [rad]. Fixed ones are eliminated. All free translations come first, then all free rotations,
+/// each by node and axis: so the condensation of the rotations (BHS01 eq. 15) splits the matrices at translations().
 class ShellDofs {
  public:
   static constexpr int kFixed = -1, kUnused = -2;

@@ -17,8 +17,8 @@ void add_part(const Matrix9d& part, const std::array<int, 3>& places, ShellStiff
 
 }  // namespace
 
-ShellStiffness shell_element_stiffness(const std::array<Eigen::Vector3d, 3>& corners,
-                                       const ShellMaterial& material, Bending bending) {
+ShellStiffness shell_element_stiffness(const std::array<Eigen::Vector3d, 3>& corners, const ShellMaterial& material,
+                                       Bending bending) {
   const auto [axes, flat] = triangle_frame(corners);
   const Eigen::Matrix3d elasticity = plane_stress(material.young, material.poisson);
   const double t = material.thickness;

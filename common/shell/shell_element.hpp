@@ -10,7 +10,7 @@ using ShellStiffness = Eigen::Matrix<double, 18, 18>;
 /// bending_stiffness side by side, turned. Dofs per corner: displacements along the world's x, y, z [m], then
 /// rotations about them [rad]; entries [N/m, N, N m]. Throws std::runtime_error with the reason alone if the
 /// corners lie on a line or the bending element is singular.
-ShellStiffness shell_element_stiffness(const std::array<Eigen::Vector3d, 3>& corners,
-                                       const ShellMaterial& material, Bending bending);
+ShellStiffness shell_element_stiffness(const std::array<Eigen::Vector3d, 3>& corners, const ShellMaterial& material,
+                                       Bending bending);
 
 }  // namespace palpate

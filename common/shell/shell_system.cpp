@@ -2,8 +2,8 @@
 
 namespace palpate {
 
-ShellSystem make_shell_system(const ShellMesh& mesh, const ShellMaterial& material, Bending bending,
-                              ShellDofs dofs, const std::string& where) {
+ShellSystem make_shell_system(const ShellMesh& mesh, const ShellMaterial& material, Bending bending, ShellDofs dofs,
+                              const std::string& where) {
   ShellSystem system{std::move(dofs), {}, {}};
   system.stiffness = assemble_shell_stiffness(mesh, material, bending, system.dofs, where);
   const auto node_mass = lumped_shell_mass(mesh, material);

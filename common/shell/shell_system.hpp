@@ -14,7 +14,7 @@ struct ShellSystem {
 };
 
 /// Throws as assemble_shell_stiffness() does.
-ShellSystem make_shell_system(const ShellMesh& mesh, const ShellMaterial& material, Bending bending,
-                              ShellDofs dofs, const std::string& where);
+ShellSystem make_shell_system(const ShellMesh& mesh, const ShellMaterial& material, Bending bending, ShellDofs dofs,
+                              const std::string& where);
 
 }  // namespace palpate

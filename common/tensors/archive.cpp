@@ -41,28 +41,24 @@ void write_header(Hdf5Writer& file, const Archive& archive) {
 }
 
 void write_surface(Hdf5Writer& file, const SurfaceMap& surface) {
-  file.dataset({"surface/position", "m", "rest position of each node, touchable ones first, then the rest of the surface, then inner ones"},
-               flatten(surface.position, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }),
-               3);
+  file.dataset({"surface/position", "m",
+                "rest position of each node, touchable ones first, then the rest of the surface, then inner ones"},
+               flatten(surface.position, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }), 3);
   file.dataset({"surface/node_number", "1", "0-based node number in the mesh file of each node"},
                std::vector<std::int32_t>(surface.node_number.begin(), surface.node_number.end()));
   file.dataset({"surface/fixed", "1", "1 where x, y, z of a node is fixed"},
-               flatten(surface.fixed, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }),
-               3);
-  file.dataset(
-      {"surface/triangles", "1", "surface nodes of each triangle, outward by the right-hand rule"},
-      flatten(surface.triangles, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
+               flatten(surface.fixed, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
+  file.dataset({"surface/triangles", "1", "surface nodes of each triangle, outward by the right-hand rule"},
+               flatten(surface.triangles, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
 }
 
 void write_material(Hdf5Writer& file, const Archive& archive) {
-  file.dataset({"material/young", "Pa", "Young's modulus of the body, then of its material regions"},
-               archive.young);
-  file.dataset({"material/poisson", "1", "Poisson's ratio of the body, then of its material regions"},
-               archive.poisson);
+  file.dataset({"material/young", "Pa", "Young's modulus of the body, then of its material regions"}, archive.young);
+  file.dataset({"material/poisson", "1", "Poisson's ratio of the body, then of its material regions"}, archive.poisson);
   file.dataset({"material/density", "kg/m^3", "density of the body, then of its material regions"}, archive.density);
-  file.dataset(
-      {"material/of_element", "1", "row of material/young for each tetrahedron (of dynamic/tetrahedra if there); absent: 0 for all"},
-      std::vector<std::int32_t>(archive.material_of_element.begin(), archive.material_of_element.end()));
+  file.dataset({"material/of_element", "1",
+                "row of material/young for each tetrahedron (of dynamic/tetrahedra if there); absent: 0 for all"},
+               std::vector<std::int32_t>(archive.material_of_element.begin(), archive.material_of_element.end()));
 }
 
 void write_compliance(Hdf5Writer& file, const Archive& archive) {
@@ -70,14 +66,12 @@ void write_compliance(Hdf5Writer& file, const Archive& archive) {
                flatten(archive.touchable_dofs), 2);
   file.dataset({"other/dofs", "1", "surface node and axis of each row of the other compliance"},
                flatten(archive.other_dofs), 2);
-  file.dataset(
-      {"touchable/compliance", "m/N",
-       "displacement of touchable dof i per force on touchable dof j; lower triangle packed by rows, "
-       "entry (i,j), j <= i, at i(i+1)/2 + j"},
-      archive.touchable_compliance);
-  file.dataset(
-      {"other/compliance", "m/N", "displacement of other dof i (row) per force on touchable dof j (column)"},
-      archive.other_compliance, std::max<std::size_t>(archive.touchable_dofs.size(), 1));
+  file.dataset({"touchable/compliance", "m/N",
+                "displacement of touchable dof i per force on touchable dof j; lower triangle packed by rows, "
+                "entry (i,j), j <= i, at i(i+1)/2 + j"},
+               archive.touchable_compliance);
+  file.dataset({"other/compliance", "m/N", "displacement of other dof i (row) per force on touchable dof j (column)"},
+               archive.other_compliance, std::max<std::size_t>(archive.touchable_dofs.size(), 1));
 }
 
 SurfaceMap read_surface(const Hdf5Reader& file) {
@@ -107,8 +101,7 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
                     surface.touchable <= surface.size() && !archive.young.empty() &&
                     archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
                     modal_part_fits(archive, part);
-  if (part != ArchivePart::header)
-    consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
+  if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
     consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;
   if (!consistent) file.fail("damaged: its datasets do not fit together");
@@ -119,8 +112,8 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
 std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
                                    const std::string& content_hash) {
   const char* cache = std::getenv("PALPATE_CACHE");
-  const auto folder = cache && *cache ? std::filesystem::path(cache)
-                                      : std::filesystem::absolute(mesh_file).parent_path() / ".palpate";
+  const auto folder =
+      cache && *cache ? std::filesystem::path(cache) : std::filesystem::absolute(mesh_file).parent_path() / ".palpate";
   return folder / (body + "-" + content_hash + ".h5");
 }
 

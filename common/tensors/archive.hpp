@@ -51,8 +51,8 @@ struct Archive {
   std::vector<std::uint16_t> material_of_element;
   SurfaceMap surface;
   std::vector<std::array<int, 4>> tetrahedra;  ///< those that move with inertia: surface nodes, positively oriented
-  std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes (hybrid: those among i), ascending
-  std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes (hybrid: those among i)
+  std::vector<Dof> touchable_dofs;             ///< free dofs of touchable nodes (hybrid: those among i), ascending
+  std::vector<Dof> other_dofs;                 ///< free dofs of the remaining visible nodes (hybrid: those among i)
   /// C_tt, packed lower triangle by rows: entry (i,j), j <= i, at i(i+1)/2 + j.  [m/N]
   std::vector<double> touchable_compliance;
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
@@ -77,8 +77,8 @@ std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const
 /// std::runtime_error on failure (a full disk, say), leaving nothing.
 void write_archive(const Archive& archive, const std::filesystem::path& file);
 
-/// Which part of an archive to read: the header with maps, tetrahedra, material and frequencies, C_tt and mode shapes as
-/// well (all that the haptic node needs), or everything. What is not asked for is not read.
+/// Which part of an archive to read: the header with maps, tetrahedra, material and frequencies, C_tt and mode shapes
+/// as well (all that the haptic node needs), or everything. What is not asked for is not read.
 enum class ArchivePart { header, touchable, surface };
 
 /// Throws std::runtime_error("FILE: reason") if the file is truncated, foreign, of another format version, or

@@ -8,15 +8,13 @@ namespace palpate {
 namespace {
 
 void write_gap(Hdf5Writer& file, const HybridTensors& hybrid) {
-  file.dataset(
-      {"hybrid/gap_nodes", "1",
-       "node on one side of a partial connection, and the nodes of the nearest triangle of the other side"},
-      flatten(hybrid.gap, 4,
-              [](const GapPair& p, std::size_t c) { return std::int32_t{c ? p.triangle[c - 1] : p.node}; }),
-      4);
+  file.dataset({"hybrid/gap_nodes", "1",
+                "node on one side of a partial connection, and the nodes of the nearest triangle of the other side"},
+               flatten(hybrid.gap, 4,
+                       [](const GapPair& p, std::size_t c) { return std::int32_t{c ? p.triangle[c - 1] : p.node}; }),
+               4);
   file.dataset({"hybrid/gap_weights", "1", "barycentric weights of the point opposite to the node"},
-               flatten(hybrid.gap, 3, [](const GapPair& p, std::size_t c) { return double{p.weights[c]}; }),
-               3);
+               flatten(hybrid.gap, 3, [](const GapPair& p, std::size_t c) { return double{p.weights[c]}; }), 3);
 }
 
 void write_hybrid(Hdf5Writer& file, const HybridTensors& hybrid) {
@@ -26,14 +24,12 @@ void write_hybrid(Hdf5Writer& file, const HybridTensors& hybrid) {
   file.attribute("largest_gap", hybrid.largest_gap);
   file.dataset({"hybrid/connection", "1", "nodes that the quasi-static and the dynamic part share"},
                std::vector<std::int32_t>(hybrid.connection.begin(), hybrid.connection.end()));
-  file.dataset({"hybrid/mass", "kg", "lumped mass of the quasi-static elements at each connection node"},
-               hybrid.mass);
+  file.dataset({"hybrid/mass", "kg", "lumped mass of the quasi-static elements at each connection node"}, hybrid.mass);
   file.dataset({"hybrid/interface", "1",
                 "faces between the parts: three nodes, outward of the quasi-static part, and the dynamic "
                 "facet 4 t + f that covers it"},
                flatten_integers(hybrid.interface), 4);
-  file.dataset({"hybrid/dofs", "1", "node and axis of each free dof of the connection nodes"},
-               flatten(hybrid.dofs), 2);
+  file.dataset({"hybrid/dofs", "1", "node and axis of each free dof of the connection nodes"}, flatten(hybrid.dofs), 2);
   file.dataset({"hybrid/stiffness", "N/m", "S = K_cc - K_ci K_ii^-1 K_ic; lower triangle packed by rows"},
                hybrid.stiffness);
   file.dataset({"hybrid/reaction", "N", "force of the quasi-static part's weight on each connection dof"},
@@ -42,9 +38,8 @@ void write_hybrid(Hdf5Writer& file, const HybridTensors& hybrid) {
                 "H = -K_ii^-1 K_ic: displacement of touchable, then other dofs (row) per displacement of "
                 "connection dofs (column)"},
                hybrid.follow, std::max<std::size_t>(hybrid.dofs.size(), 1));
-  file.dataset(
-      {"hybrid/sag", "m", "displacement of touchable, then other dofs under the quasi-static part's weight"},
-      hybrid.sag);
+  file.dataset({"hybrid/sag", "m", "displacement of touchable, then other dofs under the quasi-static part's weight"},
+               hybrid.sag);
   write_gap(file, hybrid);
 }
 
@@ -84,8 +79,7 @@ bool hybrid_fits(const Archive& archive, ArchivePart part) {
               hybrid.quasi_static_triangles <= static_cast<int>(archive.surface.triangles.size());
   for (int node : hybrid.connection) fits &= within(node, nodes);
   for (const Dof& dof : hybrid.dofs)
-    fits &= std::binary_search(hybrid.connection.begin(), hybrid.connection.end(), dof.node) &&
-            within(dof.axis, 3);
+    fits &= std::binary_search(hybrid.connection.begin(), hybrid.connection.end(), dof.node) && within(dof.axis, 3);
   for (const auto& [p, q, r, facet] : hybrid.interface)
     fits &= within(p, nodes) && within(q, nodes) && within(r, nodes) && within(facet, facets);
   for (const GapPair& pair : hybrid.gap) {
@@ -100,9 +94,8 @@ bool hybrid_fits(const Archive& archive, ArchivePart part) {
 }  // namespace
 
 void write_dynamic_part(Hdf5Writer& file, const Archive& archive) {
-  file.dataset(
-      {"dynamic/tetrahedra", "1", "nodes of each tetrahedron that moves with inertia, positively oriented"},
-      flatten_integers(archive.tetrahedra), 4);
+  file.dataset({"dynamic/tetrahedra", "1", "nodes of each tetrahedron that moves with inertia, positively oriented"},
+               flatten_integers(archive.tetrahedra), 4);
   if (archive.hybrid) write_hybrid(file, *archive.hybrid);
 }
 
@@ -127,8 +120,8 @@ std::size_t dynamic_payload_bytes(const Archive& archive) {
   std::size_t doubles = 0, integers = 4 * archive.tetrahedra.size();
   if (archive.hybrid) {
     const HybridTensors& h = *archive.hybrid;
-    doubles = h.mass.size() + h.stiffness.size() + h.reaction.size() + h.follow.size() + h.sag.size() +
-              3 * h.gap.size();
+    doubles =
+        h.mass.size() + h.stiffness.size() + h.reaction.size() + h.follow.size() + h.sag.size() + 3 * h.gap.size();
     integers += h.connection.size() + 4 * h.interface.size() + 2 * h.dofs.size() + 4 * h.gap.size();
   }
   return sizeof(double) * doubles + sizeof(std::int32_t) * integers;

@@ -37,8 +37,7 @@ bool modal_part_fits(const Archive& archive, ArchivePart part) {
 
 std::size_t modal_payload_bytes(const Archive& archive) {
   if (!archive.modal) return 0;
-  return sizeof(double) *
-         (archive.modal->omega.size() + archive.modal->shape.size() + archive.modal->mass.size());
+  return sizeof(double) * (archive.modal->omega.size() + archive.modal->shape.size() + archive.modal->mass.size());
 }
 
 }  // namespace palpate

@@ -45,8 +45,7 @@ void remove_abandoned(const fs::path& folder) {
 int reserve(const fs::path& file, std::size_t bytes) {
   rlimit limit{};
   // Beyond the limit the kernel would send SIGXFSZ instead of returning an error.
-  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur)
-    return EFBIG;
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur) return EFBIG;
   const int descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0644);
   if (descriptor < 0) return errno;
   const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));

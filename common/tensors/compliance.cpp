@@ -32,8 +32,8 @@ std::vector<std::ptrdiff_t> places(const std::vector<Dof>& dofs) {
 
 /// Writes both triangles tile by tile, so that neither the reads nor the writes stride through memory.
 template <class Scalar>
-void expand_triangle(const std::vector<double>& packed, const std::vector<std::ptrdiff_t>& place,
-                     Scalar* data, std::ptrdiff_t stride) {
+void expand_triangle(const std::vector<double>& packed, const std::vector<std::ptrdiff_t>& place, Scalar* data,
+                     std::ptrdiff_t stride) {
   constexpr std::ptrdiff_t kTile = 64;
   const auto n = static_cast<std::ptrdiff_t>(place.size());
   for (std::ptrdiff_t row = 0; row < n; row += kTile)
@@ -91,7 +91,8 @@ void Compliance<Scalar>::clear() {
 template <class Scalar>
 void Compliance<Scalar>::add_modes(std::span<const double> shape, std::span<const double> weight) {
   const auto modes = static_cast<Eigen::Index>(weight.size());
-  if (modes == 0 || shape.size() % weight.size() != 0 || shape.size() / weight.size() < 3 * static_cast<std::size_t>(row_nodes_))
+  if (modes == 0 || shape.size() % weight.size() != 0 ||
+      shape.size() / weight.size() < 3 * static_cast<std::size_t>(row_nodes_))
     throw std::invalid_argument("the mode shapes do not fit the compliance");
   const Eigen::Map<const Eigen::MatrixXd> all(shape.data(), static_cast<Eigen::Index>(shape.size()) / modes, modes);
   const Eigen::Map<const Eigen::VectorXd> weights(weight.data(), modes);

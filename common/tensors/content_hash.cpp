@@ -137,8 +137,10 @@ std::string content_hash(const Body& body) {
     hash.add(body.offline->element);
     hash.add(body.offline->formulation);
   }
-  if (body.model == "modal_shell") add_shell(hash, body);
-  else if (body.model != "quasi_static") add_dynamic(hash, body);
+  if (body.model == "modal_shell")
+    add_shell(hash, body);
+  else if (body.model != "quasi_static")
+    add_dynamic(hash, body);
   return hash.text();
 }
 

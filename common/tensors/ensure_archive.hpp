@@ -8,9 +8,9 @@ namespace palpate {
 /// What became of a body's archive.
 struct ArchiveState {
   std::filesystem::path file;  ///< empty for a catheter, which needs none
-  bool up_to_date = false;  ///< nothing had to be computed
-  std::string refused;  ///< why the file that was there was rebuilt; empty if there was none or it was good
-  double seconds = 0;   ///< from the loaded mesh to the renamed archive
+  bool up_to_date = false;     ///< nothing had to be computed
+  std::string refused;         ///< why the file that was there was rebuilt; empty if there was none or it was good
+  double seconds = 0;          ///< from the loaded mesh to the renamed archive
 };
 
 /// Sees to it that the archive of a body exists and is whole: reads it, or loads the mesh, computes and

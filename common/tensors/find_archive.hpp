@@ -8,7 +8,8 @@ namespace palpate {
 std::filesystem::path archive_path(const Scene& scene, const Body& body);
 
 /// Reads the archive of a body for the run time, by the scene alone: no mesh is loaded and nothing is
-/// computed. Of a catheter it is made here: a surface, the tube at rest, and nothing else. Throws std::runtime_error with what to do if it is missing or refused.
+/// computed. Of a catheter it is made here: a surface, the tube at rest, and nothing else. Throws std::runtime_error
+/// with what to do if it is missing or refused.
 Archive find_archive(const Scene& scene, const Body& body, ArchivePart part);
 
 }  // namespace palpate

@@ -90,8 +90,7 @@ hid_t native_type<std::int64_t>() {
 template <class T>
 bool write_scalar(hid_t object, const std::string& name, T value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose);
+  const Handle attribute(H5Acreate2(object, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   return attribute >= 0 && H5Awrite(attribute, native_type<T>(), &value) >= 0;
 }
 
@@ -159,8 +158,7 @@ void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<double>& v
   write(label, values, columns);
 }
 
-void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<std::int32_t>& values,
-                         std::size_t columns) {
+void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<std::int32_t>& values, std::size_t columns) {
   write(label, values, columns);
 }
 
@@ -172,8 +170,8 @@ void Hdf5Writer::write(const DatasetLabel& label, const std::vector<T>& values, 
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
   H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-  const Handle data(
-      H5Dcreate2(id_, label.name.c_str(), native_type<T>(), space, links, creation, H5P_DEFAULT), H5Dclose);
+  const Handle data(H5Dcreate2(id_, label.name.c_str(), native_type<T>(), space, links, creation, H5P_DEFAULT),
+                    H5Dclose);
   const bool done = data >= 0 && write_text(data, "units", label.units) &&
                     write_text(data, "description", label.description) &&
                     write_text(data, kChecksum, checksum(values.data(), values.size() * sizeof(T))) &&

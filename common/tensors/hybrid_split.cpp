@@ -82,18 +82,15 @@ std::vector<int> dynamic_elements(const Body& body, const TetMesh& mesh) {
   return elements;
 }
 
-HybridSplit split_hybrid(const Body& body, const TetMesh& mesh, const DofMap& dofs,
-                         std::vector<int> dynamic) {
+HybridSplit split_hybrid(const Body& body, const TetMesh& mesh, const DofMap& dofs, std::vector<int> dynamic) {
   const std::string place = fmt::format("body '{}': [body.hybrid]", body.name);
   const auto count = static_cast<int>(mesh.tetrahedra.size());
   if (dynamic.empty()) throw std::runtime_error(place + " leaves no tensor-mass part");
   if (static_cast<int>(dynamic.size()) == count)
-    throw std::runtime_error(place +
-                             " leaves no quasi-static part: the regions hold every element of the mesh");
+    throw std::runtime_error(place + " leaves no quasi-static part: the regions hold every element of the mesh");
   std::vector<int> all(count), quasi_static;
   std::iota(all.begin(), all.end(), 0);
-  std::set_difference(all.begin(), all.end(), dynamic.begin(), dynamic.end(),
-                      std::back_inserter(quasi_static));
+  std::set_difference(all.begin(), all.end(), dynamic.begin(), dynamic.end(), std::back_inserter(quasi_static));
 
   TetMesh part;
   part.nodes = mesh.nodes;
@@ -127,8 +124,7 @@ std::vector<std::array<int, 4>> interface_faces(const TetMesh& mesh, const Hybri
   std::vector<std::array<int, 4>> interface;
   for (const Face& face : extract_surface(split.quasi_static_mesh).triangles) {
     const auto found = facet_of.find(key_of(face));
-    if (found != facet_of.end())
-      interface.push_back({index[face[0]], index[face[1]], index[face[2]], found->second});
+    if (found != facet_of.end()) interface.push_back({index[face[0]], index[face[1]], index[face[2]], found->second});
   }
   return interface;
 }

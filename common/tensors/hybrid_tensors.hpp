@@ -32,11 +32,11 @@ struct HybridTensors {
   double bound = 0;
   bool held_by_connection = false;  ///< some piece has no fixed node: the connection nodes alone hold it
   std::vector<Dof> dofs;            ///< c, ascending
-  std::vector<double> stiffness;  ///< S [N/m], packed lower triangle by rows as Archive::touchable_compliance
-  std::vector<double> reaction;   ///< g_c [N]
-  std::vector<double> follow;     ///< H [1], row-major: touchable_dofs, then other_dofs, by dofs
-  std::vector<double> sag;        ///< u_g [m]: touchable_dofs, then other_dofs
-  int quasi_static_triangles = 0;  ///< the surface's triangles before this are faces of quasi-static elements
+  std::vector<double> stiffness;    ///< S [N/m], packed lower triangle by rows as Archive::touchable_compliance
+  std::vector<double> reaction;     ///< g_c [N]
+  std::vector<double> follow;       ///< H [1], row-major: touchable_dofs, then other_dofs, by dofs
+  std::vector<double> sag;          ///< u_g [m]: touchable_dofs, then other_dofs
+  int quasi_static_triangles = 0;   ///< the surface's triangles before this are faces of quasi-static elements
   /// Faces between the parts, outward of the quasi-static part: three connection nodes, and the facet (4 t +
   /// f: face f, opposite to vertex f, of dynamic tetrahedron t) that covers it. Visible once t is gone.
   std::vector<std::array<int, 4>> interface;

@@ -53,8 +53,7 @@ class NodeFinder {
   std::vector<int> nodes_;
 };
 
-void append_groups(const TetMesh& coarse, const std::vector<int>& node_of, int first_tetrahedron,
-                   TetMesh& joined) {
+void append_groups(const TetMesh& coarse, const std::vector<int>& node_of, int first_tetrahedron, TetMesh& joined) {
   for (const auto& [name, group] : coarse.groups) {
     MeshGroup& into = joined.groups[name];
     for (int node : group.nodes) into.nodes.push_back(node_of[node]);
@@ -90,8 +89,8 @@ double box_distance(const Vector3d& p, const Triangle& t) {
 }
 
 /// The pairs of one side's nodes with the other side's triangles.
-void add_pairs(const TetMesh& mesh, const std::vector<char>& connection, const Side& from, const Side& to,
-               double reach, const std::vector<int>& index, HybridTensors& tensors) {
+void add_pairs(const TetMesh& mesh, const std::vector<char>& connection, const Side& from, const Side& to, double reach,
+               const std::vector<int>& index, HybridTensors& tensors) {
   for (int node : from.surface.nodes) {
     if (connection[node]) continue;
     const Vector3d& p = mesh.nodes[node];
@@ -124,8 +123,8 @@ TetMesh join_meshes(const TetMesh& fine, const TetMesh& coarse, const std::strin
   std::vector<int> node_of(coarse.nodes.size(), -1);
   for (int node : extract_surface(coarse).nodes) node_of[node] = finder.find(coarse.nodes[node], distance);
   if (std::count(node_of.begin(), node_of.end(), -1) == static_cast<long>(node_of.size()))
-    throw std::runtime_error(
-        where + ": no node of the tensor-mass mesh coincides with a surface node of the body's mesh");
+    throw std::runtime_error(where +
+                             ": no node of the tensor-mass mesh coincides with a surface node of the body's mesh");
   for (std::size_t node = 0; node < coarse.nodes.size(); ++node) {
     if (node_of[node] >= 0) continue;
     node_of[node] = static_cast<int>(joined.nodes.size());
@@ -143,8 +142,7 @@ TetMesh join_meshes(const TetMesh& fine, const TetMesh& coarse, const std::strin
   return joined;
 }
 
-void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index,
-             HybridTensors& tensors) {
+void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index, HybridTensors& tensors) {
   TetMesh moving;
   moving.nodes = joined.nodes;
   for (int e : split.dynamic) moving.tetrahedra.push_back(joined.tetrahedra[e]);

@@ -14,7 +14,6 @@ TetMesh join_meshes(const TetMesh& fine, const TetMesh& coarse, const std::strin
 
 /// Fills in HybridTensors::gap: every node of one part's boundary that faces the other part's boundary within
 /// half a mean edge of the tensor-mass mesh and is no connection node, with the point opposite to it.
-void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index,
-             HybridTensors& tensors);
+void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index, HybridTensors& tensors);
 
 }  // namespace palpate

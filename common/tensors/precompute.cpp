@@ -49,10 +49,10 @@ Archive precompute(const Body& body, const TetMesh& mesh, const TetMesh* specime
 
   const auto split = surface.node_number.begin() + surface.touchable;
   const std::vector<int> touchable(surface.node_number.begin(), split), other(split, surface.node_number.end());
-  auto compliance =
-      is_finer(body.offline)
-          ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name), touchable, other, progress)
-          : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
+  auto compliance = is_finer(body.offline)
+                        ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name),
+                                             touchable, other, progress)
+                        : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
   archive.touchable_compliance = std::move(compliance.touchable);
   archive.other_compliance = std::move(compliance.other);
   if (cost) *cost = {compliance.flops, compliance.condensed};

@@ -28,7 +28,6 @@ struct PrecomputeCost {
 /// body names, see ensure_archive(). Throws std::runtime_error on an unfixed body, empty selections, or too
 /// little memory.
 Archive precompute(const Body& body, const TetMesh& mesh, const TetMesh* specimen = nullptr,
-                   const Progress& progress = {}, Route route = Route::fastest,
-                   PrecomputeCost* cost = nullptr);
+                   const Progress& progress = {}, Route route = Route::fastest, PrecomputeCost* cost = nullptr);
 
 }  // namespace palpate

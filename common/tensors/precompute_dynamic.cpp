@@ -33,8 +33,7 @@ MaterialField materials_of(const MaterialField& whole, const std::vector<int>& e
 /// Fills in the surface map, the tetrahedra and the densities, for the tetrahedra `elements` that move with
 /// inertia. Returns the archive's node per mesh node.
 std::vector<int> add_moving_part(const Body& body, const TetMesh& mesh, const DofMap& dofs,
-                                 const MaterialField& materials, const std::vector<int>& elements,
-                                 Archive& archive) {
+                                 const MaterialField& materials, const std::vector<int>& elements, Archive& archive) {
   std::vector<int> nodes;
   for (int e : elements) nodes.insert(nodes.end(), mesh.tetrahedra[e].begin(), mesh.tetrahedra[e].end());
   archive.surface = make_surface_map(body, mesh, dofs, nodes);
@@ -80,8 +79,7 @@ std::vector<Dof> of_mesh(const SurfaceMap& surface, std::vector<Dof> dofs) {
 std::vector<int> nodes_of(const SurfaceMap& surface, const std::vector<Dof>& dofs) {
   std::vector<int> nodes;
   for (const Dof& dof : dofs)
-    if (nodes.empty() || nodes.back() != surface.node_number[dof.node])
-      nodes.push_back(surface.node_number[dof.node]);
+    if (nodes.empty() || nodes.back() != surface.node_number[dof.node]) nodes.push_back(surface.node_number[dof.node]);
   return nodes;
 }
 
@@ -138,8 +136,7 @@ Parts find_parts(const Body& body, const TetMesh& mesh, const TetMesh* coarse) {
     std::iota(all.begin(), all.end(), 0);
     return {mesh, all};
   }
-  if (!body.hybrid)
-    throw std::runtime_error(fmt::format("body '{}': a hybrid body needs [body.hybrid]", body.name));
+  if (!body.hybrid) throw std::runtime_error(fmt::format("body '{}': a hybrid body needs [body.hybrid]", body.name));
   if (!coarse) return {mesh, dynamic_elements(body, mesh)};
   Parts parts{join_meshes(mesh, *coarse, fmt::format("body '{}': [body.hybrid]", body.name)), {}};
   parts.dynamic.resize(coarse->tetrahedra.size());
@@ -149,8 +146,7 @@ Parts find_parts(const Body& body, const TetMesh& mesh, const TetMesh* coarse) {
 
 }  // namespace
 
-Archive precompute_dynamic(const Body& body, const TetMesh& mesh, const TetMesh* coarse,
-                           const Progress& progress) try {
+Archive precompute_dynamic(const Body& body, const TetMesh& mesh, const TetMesh* coarse, const Progress& progress) try {
   Stopwatch watch(progress);
   const auto parts = find_parts(body, mesh, coarse);
   const auto dofs = apply_fixation(parts.mesh, body.fixed, fmt::format("body '{}'", body.name));

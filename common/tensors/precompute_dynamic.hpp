@@ -13,7 +13,6 @@ Archive start_archive(const Body& body, const TetMesh& mesh, const MaterialField
 /// part (HybridTensors). `coarse`: the mesh of Hybrid::mesh, null without one. Throws std::runtime_error on
 /// an unfixed body, empty selections, a region that leaves no part, parts that share no node, a quasi-static
 /// part that would float, or too little memory.
-Archive precompute_dynamic(const Body& body, const TetMesh& mesh, const TetMesh* coarse,
-                           const Progress& progress = {});
+Archive precompute_dynamic(const Body& body, const TetMesh& mesh, const TetMesh* coarse, const Progress& progress = {});
 
 }  // namespace palpate

@@ -70,8 +70,8 @@ void factorise(Factorisation& factor, const SparseMatrix& inner) try {
   factor.factorise(inner);
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(
-      std::string("some quasi-static tetrahedra hang by a corner or an edge alone and would float (") +
-      error.what() + "); draw the regions otherwise");
+      std::string("some quasi-static tetrahedra hang by a corner or an edge alone and would float (") + error.what() +
+      "); draw the regions otherwise");
 }
 
 /// [rad^2/s^2] of K_cc against the lumped mass of the same nodes. Since S, and S with points held, take no
@@ -100,10 +100,9 @@ std::vector<double> lumped_mass(const HybridSplit& split, const MaterialField& m
   return mass;
 }
 
-void condense_on_connection(const HybridSplit& split, const MaterialField& materials,
-                            const std::vector<Dof>& rows, const std::vector<Dof>& columns,
-                            const std::vector<double>& mass, const Eigen::Vector3d& gravity,
-                            HybridTensors& tensors) {
+void condense_on_connection(const HybridSplit& split, const MaterialField& materials, const std::vector<Dof>& rows,
+                            const std::vector<Dof>& columns, const std::vector<double>& mass,
+                            const Eigen::Vector3d& gravity, HybridTensors& tensors) {
   const auto count = static_cast<Index>(columns.size());
   auto blocks = take_apart(split, materials, columns);
   const auto row_index = inner_indices(split, rows);
@@ -118,8 +117,7 @@ void condense_on_connection(const HybridSplit& split, const MaterialField& mater
     factorise(factor, blocks.inner);
     for (Index begin = 0; begin < count; begin += kBlock) {
       const Index width = std::min(kBlock, count - begin);
-      const MatrixXd solved =
-          factor.solve(MatrixXd(blocks.coupling.middleCols(begin, width)));  // -H, all inner rows
+      const MatrixXd solved = factor.solve(MatrixXd(blocks.coupling.middleCols(begin, width)));  // -H, all inner rows
       stiffness.middleCols(begin, width) -= blocks.coupling.transpose() * solved;
       for (std::size_t r = 0; r < rows.size(); ++r)
         for (Index c = 0; c < width; ++c) tensors.follow[r * count + begin + c] = -solved(row_index[r], c);

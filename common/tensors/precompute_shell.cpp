@@ -36,8 +36,7 @@ std::vector<char> touchable_mask(const Body& body, const ShellMesh& mesh, const 
 }
 
 /// Numbers of the surface's dofs among the free translations.
-std::vector<Index> numbers_of(const SurfaceMap& surface, const std::vector<Dof>& surface_dofs,
-                              const ShellDofs& dofs) {
+std::vector<Index> numbers_of(const SurfaceMap& surface, const std::vector<Dof>& surface_dofs, const ShellDofs& dofs) {
   std::vector<Index> numbers;
   for (const Dof& dof : surface_dofs) numbers.push_back(dofs.index(surface.node_number[dof.node], dof.axis));
   return numbers;
@@ -66,8 +65,7 @@ void add_compliance(const SparseMatrix& stiffness, const ShellDofs& dofs, Archiv
   }
 }
 
-void add_modes(const Body& body, const ShellSystem& system, const std::vector<double>& node_mass,
-               Archive& archive) {
+void add_modes(const Body& body, const ShellSystem& system, const std::vector<double>& node_mass, Archive& archive) {
   const auto modes = lowest_modes(system.stiffness, system.mass, body.shell->modes);
   ModalTensors& modal = archive.modal.emplace();
   modal.thickness = body.shell->thickness;
@@ -125,8 +123,7 @@ Archive precompute_shell(const Body& body, const ShellMesh& mesh, const Progress
 
   const ShellMaterial material{body.material.young, body.material.poisson, body.material.density,
                                body.shell->thickness};
-  const auto bending =
-      body.shell->bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
+  const auto bending = body.shell->bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
   const auto system = make_shell_system(mesh, material, bending, std::move(dofs), where);
   watch.lap("assembly");
   add_modes(body, system, lumped_shell_mass(mesh, material), archive);

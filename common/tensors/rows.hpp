@@ -20,13 +20,11 @@ auto flatten(const std::vector<Row>& rows, std::size_t columns, Convert convert)
 
 template <class Row>
 std::vector<std::int32_t> flatten_integers(const std::vector<Row>& rows) {
-  return flatten(rows, std::tuple_size_v<Row>,
-                 [](const Row& row, std::size_t c) { return std::int32_t{row[c]}; });
+  return flatten(rows, std::tuple_size_v<Row>, [](const Row& row, std::size_t c) { return std::int32_t{row[c]}; });
 }
 
 inline std::vector<std::int32_t> flatten(const std::vector<Dof>& dofs) {
-  return flatten(dofs, 2,
-                 [](const Dof& dof, std::size_t c) { return std::int32_t{c == 0 ? dof.node : dof.axis}; });
+  return flatten(dofs, 2, [](const Dof& dof, std::size_t c) { return std::int32_t{c == 0 ? dof.node : dof.axis}; });
 }
 
 template <class Row, class Value>
@@ -39,8 +37,7 @@ std::vector<Row> rows_of(std::size_t columns, const std::vector<Value>& flat) {
 
 inline std::vector<Dof> read_dofs(const Hdf5Reader& file, const std::string& name) {
   std::vector<Dof> dofs;
-  for (const auto& [node, axis] : rows_of<std::array<int, 2>>(2, file.integers(name)))
-    dofs.push_back({node, axis});
+  for (const auto& [node, axis] : rows_of<std::array<int, 2>>(2, file.integers(name))) dofs.push_back({node, axis});
   return dofs;
 }
 

@@ -58,8 +58,7 @@ std::vector<Entry> row_of(const Constraint& constraint, const RowFinder& find) {
     if (const int place = find(node, axis); place >= 0) row.push_back({place, weight});
   if (row.empty()) {
     const auto& term = constraint.terms.at(0);
-    throw std::runtime_error(
-        fmt::format("node {} cannot be held along {}: it is fixed", term.node, "xyz"[term.axis]));
+    throw std::runtime_error(fmt::format("node {} cannot be held along {}: it is fixed", term.node, "xyz"[term.axis]));
   }
   return row;
 }
@@ -104,8 +103,7 @@ HeldNodes group_by_node(const Archive& archive, const std::vector<Constraint>& h
   const RowFinder find(archive);
   std::map<std::pair<int, int>, std::pair<int, double>> sorted;
   for (const auto& constraint : holds) {
-    if (constraint.terms.size() != 1)
-      throw std::runtime_error("the paper's superposition holds nodes, not points");
+    if (constraint.terms.size() != 1) throw std::runtime_error("the paper's superposition holds nodes, not points");
     const auto& term = constraint.terms[0];
     sorted[{term.node, term.axis}] = {row_of(constraint, find)[0].row, constraint.value / term.weight};
   }
@@ -126,8 +124,7 @@ HeldNodes group_by_node(const Archive& archive, const std::vector<Constraint>& h
 MatrixXd block(const Archive& archive, const std::vector<int>& rows, const std::vector<int>& columns) {
   MatrixXd result(rows.size(), columns.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t j = 0; j < columns.size(); ++j)
-      result(i, j) = touchable_entry(archive, rows[i], columns[j]);
+    for (std::size_t j = 0; j < columns.size(); ++j) result(i, j) = touchable_entry(archive, rows[i], columns[j]);
   return result;
 }
 
@@ -161,8 +158,7 @@ SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constrai
   return respond(archive, forces);
 }
 
-SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds,
-                                  Superposition how) {
+SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds, Superposition how) {
   check_complete(archive);
   const auto held = group_by_node(archive, holds);
   const auto size = held.value.size();

@@ -10,8 +10,8 @@ namespace palpate {
 /// A static state of the visible surface.
 struct SurfaceSolution {
   std::vector<Eigen::Vector3d> displacement;  ///< [m] per surface node
-  std::vector<Eigen::Vector3d> force;  ///< [N] per surface node, on the tissue, by the holds; reactions of
-                                       ///< fixed axes are not in an archive and stay zero
+  std::vector<Eigen::Vector3d> force;         ///< [N] per surface node, on the tissue, by the holds; reactions of
+                                              ///< fixed axes are not in an archive and stay zero
 };
 
 /// Exact response to bilateral conditions J u = d through the compliance, in double precision:
@@ -28,7 +28,6 @@ enum class Superposition {
 
 /// The paper's own way: u_n = sum T^u_nk u~_k (eq. 9), f_k = T^f_k u~_k (eq. 10 prints u*; its text says u~).
 /// Takes conditions of one term each; the axes of one node form its block of the tensors.
-SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds,
-                                  Superposition how);
+SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds, Superposition how);
 
 }  // namespace palpate

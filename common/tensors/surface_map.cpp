@@ -14,8 +14,7 @@ bool any_free(const DofMap& dofs, int node) {
   return dofs.is_free(node, 0) || dofs.is_free(node, 1) || dofs.is_free(node, 2);
 }
 
-std::vector<char> touchable_mask(const Body& body, const TetMesh& mesh, const DofMap& dofs,
-                                 const Surface& surface) {
+std::vector<char> touchable_mask(const Body& body, const TetMesh& mesh, const DofMap& dofs, const Surface& surface) {
   std::vector<char> allowed(mesh.nodes.size(), !body.touchable);
   const std::string place = fmt::format("body '{}': [body.touchable]", body.name);
   if (body.touchable)
@@ -31,15 +30,13 @@ std::vector<char> touchable_mask(const Body& body, const TetMesh& mesh, const Do
 std::vector<int> inner_nodes(const Surface& surface, std::vector<int> nodes) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::erase_if(
-      nodes, [&](int node) { return std::binary_search(surface.nodes.begin(), surface.nodes.end(), node); });
+  std::erase_if(nodes, [&](int node) { return std::binary_search(surface.nodes.begin(), surface.nodes.end(), node); });
   return nodes;
 }
 
 }  // namespace
 
-SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs,
-                            const std::vector<int>& also) {
+SurfaceMap make_surface_map(const Body& body, const TetMesh& mesh, const DofMap& dofs, const std::vector<int>& also) {
   const auto surface = extract_surface(mesh);
   const auto touchable = touchable_mask(body, mesh, dofs, surface);
   SurfaceMap map;

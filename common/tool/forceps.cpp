@@ -6,7 +6,9 @@ namespace palpate {
 namespace {
 
 /// Turns z towards +y by the angle [rad].
-Eigen::Matrix3d tilted(double angle) { return Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitX()).toRotationMatrix(); }
+Eigen::Matrix3d tilted(double angle) {
+  return Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitX()).toRotationMatrix();
+}
 
 }  // namespace
 
@@ -26,7 +28,8 @@ void set_opening(double opening, std::span<ToolPart> parts) {
 
 bool between_jaws(const ForcepsShape& shape, double opening, const Eigen::Vector3d& p) {
   const double from_joint = std::hypot(p.y(), p.z());
-  return std::abs(p.x()) <= shape.jaw_radius && from_joint <= shape.jaw_length && std::abs(std::atan2(p.y(), p.z())) <= 0.5 * opening;
+  return std::abs(p.x()) <= shape.jaw_radius && from_joint <= shape.jaw_length &&
+         std::abs(std::atan2(p.y(), p.z())) <= 0.5 * opening;
 }
 
 }  // namespace palpate

@@ -19,10 +19,12 @@ struct JawTouch {
 JawTouch jaw_touch(const ForcepsShape& shape, const Eigen::Vector3d& p, double radius) {
   const double reach = shape.jaw_radius + radius, from_joint = std::hypot(p.y(), p.z());
   if (std::abs(p.x()) >= reach || p.z() <= 0) return {};
-  const double across = std::sqrt(reach * reach - p.x() * p.x());  // of jaw and ball, in the plane in which the jaws turn
+  const double across =
+      std::sqrt(reach * reach - p.x() * p.x());  // of jaw and ball, in the plane in which the jaws turn
   const double along = std::sqrt(std::max(0.0, from_joint * from_joint - across * across));
   if (along > shape.jaw_length) return {};
-  const double half = across < from_joint ? std::asin(across / from_joint) : 0.5 * std::numbers::pi, middle = std::atan2(p.y(), p.z());
+  const double half = across < from_joint ? std::asin(across / from_joint) : 0.5 * std::numbers::pi,
+               middle = std::atan2(p.y(), p.z());
   const auto within = [](double angle) { return std::clamp(angle, 0.0, 0.5 * std::numbers::pi); };
   return {within(half + middle), within(half - middle)};
 }
@@ -61,7 +63,8 @@ Grip grip_at(const GripLaw& law, double commanded) {
   return {.opening = wanted, .commanded = wanted};
 }
 
-GripEvent work_grip(Grip& grip, const GripLaw& law, double commanded, double touch, double distance, double load, double dt) {
+GripEvent work_grip(Grip& grip, const GripLaw& law, double commanded, double touch, double distance, double load,
+                    double dt) {
   if (std::isfinite(commanded)) grip.commanded = std::clamp(commanded, 0.0, law.most_open);
   const double bound = grip_capacity(grip, law), most = law.rate * dt;
   grip.touch = std::min(touch, law.most_open);
@@ -85,8 +88,12 @@ double grip_torque(const Grip& grip, const GripLaw& law) {
   return grip.stopped ? law.stiffness * std::max(0.0, grip.opening - grip.commanded) : 0.0;
 }
 
-double grip_force(const Grip& grip, const GripLaw& law) { return grip_torque(grip, law) / std::max(grip.distance, nearest_grip); }
+double grip_force(const Grip& grip, const GripLaw& law) {
+  return grip_torque(grip, law) / std::max(grip.distance, nearest_grip);
+}
 
-double grip_capacity(const Grip& grip, const GripLaw& law) { return 2 * law.friction * grip_force(grip, law); }
+double grip_capacity(const Grip& grip, const GripLaw& law) {
+  return 2 * law.friction * grip_force(grip, law);
+}
 
 }  // namespace palpate

@@ -8,7 +8,8 @@
 
 namespace palpate {
 
-/// Spheres of a probe: the tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of them.
+/// Spheres of a probe: the tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of
+/// them.
 inline constexpr int max_shaft_samples = 47;
 std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length);
 

@@ -20,8 +20,7 @@ Eigen::Matrix3d swing(const ToolDofs& dofs) {
 Trocar make_trocar(const Eigen::Vector3d& pivot, const Eigen::Vector3d& axis, const Eigen::Vector3d& up) {
   const Eigen::Vector3d z = axis.stableNormalized();
   const Eigen::Vector3d x = up.stableNormalized().cross(z);
-  if (!(x.norm() > 1e-9))
-    throw std::runtime_error("a tool's axis and up must be two different directions, not zero");
+  if (!(x.norm() > 1e-9)) throw std::runtime_error("a tool's axis and up must be two different directions, not zero");
   Trocar trocar;
   trocar.pivot = pivot;
   trocar.frame.col(0) = x.normalized();
@@ -53,12 +52,11 @@ Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, co
                                   const Eigen::Vector3d& torque) {
   const Eigen::Matrix3d shaft = trocar.frame * swing(dofs);
   const Eigen::Vector3d moment = torque + (dofs.depth * shaft.col(2)).cross(force);  // about the pivot
-  return {trocar.frame.col(1).dot(moment), shaft.col(0).dot(moment), shaft.col(2).dot(force),
-          shaft.col(2).dot(torque)};
+  return {trocar.frame.col(1).dot(moment), shaft.col(0).dot(moment), shaft.col(2).dot(force), shaft.col(2).dot(torque)};
 }
 
-LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length, const Eigen::Vector3d& force,
-                            const Eigen::Vector3d& torque) {
+LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length,
+                            const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
   const Eigen::Vector3d along = (trocar.frame * swing(dofs)).col(2);
   const Eigen::Vector3d moment = torque + dofs.depth * along.cross(force);  // about the pivot
   const double handle = shaft_length - dofs.depth;                          // [m] behind the pivot

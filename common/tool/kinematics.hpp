@@ -34,8 +34,8 @@ ToolDofs dofs_for_tip(const Trocar& trocar, const Eigen::Vector3d& tip, double r
 Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, const Eigen::Vector3d& force,
                                   const Eigen::Vector3d& torque);
 
-/// What holds an instrument against a force at its tip: the trocar, which is a frictionless pivot and bears on the shaft from
-/// the side alone, and the hand at the handle's end. World frame.
+/// What holds an instrument against a force at its tip: the trocar, which is a frictionless pivot and bears on the
+/// shaft from the side alone, and the hand at the handle's end. World frame.
 struct LeverForces {
   Eigen::Vector3d trocar = Eigen::Vector3d::Zero();  ///< [N] of the trocar on the shaft, across it
   Eigen::Vector3d hand = Eigen::Vector3d::Zero();    ///< [N] of the hand on the handle's end
@@ -45,10 +45,10 @@ struct LeverForces {
 /// The hand's lever is at least this long [m]: a handle that has come to the trocar could not bear a moment.
 inline constexpr double least_lever = 0.01;
 
-/// The reaction to force and torque [N, N m] on the tool at its tip (about the tip's origin): all forces and all moments sum to
-/// zero. The handle's end lies shaft_length [m] behind the tip; nearer to the trocar than least_lever, the hand's force is
-/// that of this lever and `twist` takes the rest of the moment.
-LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length, const Eigen::Vector3d& force,
-                            const Eigen::Vector3d& torque);
+/// The reaction to force and torque [N, N m] on the tool at its tip (about the tip's origin): all forces and all
+/// moments sum to zero. The handle's end lies shaft_length [m] behind the tip; nearer to the trocar than least_lever,
+/// the hand's force is that of this lever and `twist` takes the rest of the moment.
+LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length,
+                            const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
 
 }  // namespace palpate

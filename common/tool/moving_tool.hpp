@@ -19,9 +19,13 @@ struct MovingTool {
 
   /// Between the world and a part's own frame now: what sticks to a jaw turns with it.
   Eigen::Vector3d to_world(int part, const Eigen::Vector3d& p) const { return now * (parts[part].pose * p); }
-  Eigen::Vector3d to_part(int part, const Eigen::Vector3d& p) const { return parts[part].pose.inverse() * (now.inverse() * p); }
+  Eigen::Vector3d to_part(int part, const Eigen::Vector3d& p) const {
+    return parts[part].pose.inverse() * (now.inverse() * p);
+  }
   /// The same for the poses before.
-  Eigen::Vector3d to_world_before(int part, const Eigen::Vector3d& p) const { return before * (parts_before[part].pose * p); }
+  Eigen::Vector3d to_world_before(int part, const Eigen::Vector3d& p) const {
+    return before * (parts_before[part].pose * p);
+  }
   Eigen::Vector3d to_part_before(int part, const Eigen::Vector3d& p) const {
     return parts_before[part].pose.inverse() * (before.inverse() * p);
   }

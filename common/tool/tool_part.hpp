@@ -19,13 +19,16 @@ inline double nearest_share(const Segment& s, const Eigen::Vector3d& p) {
   return square > 0 ? std::clamp((p - s.start).dot(along) / square, 0.0, 1.0) : 0.0;
 }
 
-inline Eigen::Vector3d nearest_point(const Segment& s, const Eigen::Vector3d& p) { return s.at(nearest_share(s, p)); }
+inline Eigen::Vector3d nearest_point(const Segment& s, const Eigen::Vector3d& p) {
+  return s.at(nearest_share(s, p));
+}
 
 /// A part of a tool for collision: all points within `radius` of a segment; a sphere where its length is 0.
 struct ToolPart {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the tip frame: origin at the segment's start, z along it
-  double length = 0;                                       ///< [m]
-  double radius = 0;                                       ///< [m]
+  Eigen::Isometry3d pose =
+      Eigen::Isometry3d::Identity();  ///< in the tip frame: origin at the segment's start, z along it
+  double length = 0;                  ///< [m]
+  double radius = 0;                  ///< [m]
 
   /// The segment in the world for a pose of the tip frame.
   Segment axis(const Eigen::Isometry3d& tip) const {

@@ -25,8 +25,7 @@ double row_speed(double h0, double slope0, double h1, double slope1) {
 
 Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& dofs) : time_(std::move(time)) {
   const std::size_t n = time_.size();
-  if (n == 0 || n != dofs.size())
-    throw std::invalid_argument("a trajectory needs one time for each row, and a row");
+  if (n == 0 || n != dofs.size()) throw std::invalid_argument("a trajectory needs one time for each row, and a row");
   if (std::ranges::adjacent_find(time_, std::greater_equal<>{}) != time_.end())
     throw std::invalid_argument("a trajectory's times must increase");
   for (const ToolDofs& d : dofs) {
@@ -37,8 +36,7 @@ Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& do
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double h0 = time_[i] - time_[i - 1], h1 = time_[i + 1] - time_[i];
     for (int d = 0; d < kDofs; ++d)
-      speed_[i][d] =
-          row_speed(h0, (value_[i][d] - value_[i - 1][d]) / h0, h1, (value_[i + 1][d] - value_[i][d]) / h1);
+      speed_[i][d] = row_speed(h0, (value_[i][d] - value_[i - 1][d]) / h0, h1, (value_[i + 1][d] - value_[i][d]) / h1);
   }
 }
 
@@ -57,8 +55,7 @@ ToolDofs Trajectory::at(double time) const {
     for (int k = 0; k < kDofs; ++k)
       now[k] = value_[i][k] + b * (value_[i + 1][k] - value_[i][k]) + c * speed_[i][k] + d * speed_[i + 1][k];
   }
-  return {
-      .yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4], .pedal = pedal_[i]};
+  return {.yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4], .pedal = pedal_[i]};
 }
 
 Trajectory load_trajectory(const std::filesystem::path& file) {
@@ -82,8 +79,9 @@ void check_grip(const Trajectory& trajectory, const Tool& tool) {
   for (double time : trajectory.times()) {  // between the rows nothing overshoots
     const double grip = trajectory.at(time).grip;
     if (grip >= 0 && grip <= tool.jaws->most_open) continue;
-    throw std::runtime_error(fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
-                                         tool.trajectory.string(), grip, time, tool.name, tool.jaws->most_open));
+    throw std::runtime_error(
+        fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
+                    tool.trajectory.string(), grip, time, tool.name, tool.jaws->most_open));
   }
 }
 

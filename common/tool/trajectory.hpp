@@ -17,7 +17,7 @@ class Trajectory {
   /// `time` [s] increases strictly and is as long as `dofs`; at least one row. Throws std::invalid_argument.
   Trajectory(std::vector<double> time, const std::vector<ToolDofs>& dofs);
 
-  double duration() const { return time_.back(); }  ///< [s] from time 0 to the last row
+  double duration() const { return time_.back(); }            ///< [s] from time 0 to the last row
   const std::vector<double>& times() const { return time_; }  ///< [s] of the rows
 
   /// Before the first row that row's dofs, after the last one that one's. Allocates nothing.

@@ -39,8 +39,13 @@ TEST(ClockLink, ATimeOfAnotherMachineIsToldOnTheOwnClock) {
     const auto probe = probes->take();
     ASSERT_TRUE(probe);
     const std::int64_t theirs = time + 1'000'000'000;
-    answers->write({.node = probe->node, .clock_of = "haptic 1@there", .host = "another", .seq = probe->seq, .probe_ns = probe->publish_ns,
-                    .receive_ns = theirs, .publish_ns = theirs});
+    answers->write({.node = probe->node,
+                    .clock_of = "haptic 1@there",
+                    .host = "another",
+                    .seq = probe->seq,
+                    .probe_ns = probe->publish_ns,
+                    .receive_ns = theirs,
+                    .publish_ns = theirs});
     time += 30'000'000;
     follower.follow();
     time += ClockFollower::interval_ns;
@@ -57,7 +62,8 @@ TEST(ClockLink, AnswersForOthersAreLeftAlone) {
   const auto haptic = make_memory_bus(network), render = make_memory_bus(network);
   ClockFollower follower(*render, "render 2@here");
   follower.follow();
-  haptic->writer(topics::clock_answer)->write({.node = "deform 3@here", .clock_of = "haptic 1@there", .seq = 1, .publish_ns = 5});
+  haptic->writer(topics::clock_answer)
+      ->write({.node = "deform 3@here", .clock_of = "haptic 1@there", .seq = 1, .publish_ns = 5});
   follower.follow();
   EXPECT_FALSE(follower.known());
 }

@@ -99,11 +99,9 @@ TEST(Codec, TheSchemaSpellsOutFieldsAndTopics) {
 TEST(Print, JsonReadsBackWithEveryValue) {
   for_each_message([]<class M>(const M& message) {
     const auto json = nlohmann::json::parse(to_json(message));
-    fields(
-        [&](const char* name, const auto& field) {
-          EXPECT_EQ(json.at(name).dump(), nlohmann::json::parse(to_json(field)).dump());
-        },
-        message);
+    fields([&](const char* name,
+               const auto& field) { EXPECT_EQ(json.at(name).dump(), nlohmann::json::parse(to_json(field)).dump()); },
+           message);
   });
   const auto json = nlohmann::json::parse(to_json(status_sample()));
   EXPECT_EQ(json["text"], status_sample().text);
@@ -120,7 +118,8 @@ TEST(Print, ATaskRecordIsTwoLinesForTheTrainee) {
 
 TEST(Print, CsvHasAsManyCellsAsColumns) {
   EXPECT_EQ(csv_header<ForceState>(),
-            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,trocar_2,energy,flags,publish_ns");
+            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,"
+            "trocar_2,energy,flags,publish_ns");
   EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.04,7,-8,9,0.25,5,7");
   NodeStatus status;
   status.node = "a \"b\", c";

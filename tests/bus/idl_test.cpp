@@ -20,10 +20,9 @@ using IdlStructs = std::map<std::string, std::vector<IdlField>>;
 
 /// The encoding's name of an IDL type, "u32", "f64[3]", "NodalForce[]".
 std::string encoded_type(std::string type, const std::string& extent) {
-  static const std::map<std::string, std::string> names{
-      {"unsigned long", "u32"}, {"unsigned long long", "u64"},
-      {"long long", "i64"},     {"double", "f64"},
-      {"float", "f32"},         {"octet", "u8"}};
+  static const std::map<std::string, std::string> names{{"unsigned long", "u32"}, {"unsigned long long", "u64"},
+                                                        {"long long", "i64"},     {"double", "f64"},
+                                                        {"float", "f32"},         {"octet", "u8"}};
   std::smatch match;
   const bool sequence = std::regex_match(type, match, std::regex(R"(sequence<(.*), \d+>)"));
   if (sequence) type = match[1];
@@ -63,10 +62,7 @@ TEST(Idl, HasTheFieldsOfTheMessagesInTheSameOrderAndOfTheSameTypes) {
   for (const auto& [name, idl_fields] : idl) {
     std::string line = name;
     for (const IdlField& field : idl_fields)
-      line.append(&field == &idl_fields.front() ? ": " : ", ")
-          .append(field.name)
-          .append(" ")
-          .append(field.type);
+      line.append(&field == &idl_fields.front() ? ": " : ", ").append(field.name).append(" ").append(field.type);
     EXPECT_NE(schema_text().find(line + "\n"), std::string::npos) << line;
   }
   std::istringstream lines(schema_text());
@@ -80,8 +76,7 @@ TEST(Idl, SaysUnitFrameAndMeaningOfEveryField) {
   const std::regex comment(R"(\[[^\]]+\] \[[^\]]+\] \S.*)");
   for (const auto& [name, idl_fields] : read_idl())
     for (const IdlField& field : idl_fields)
-      EXPECT_TRUE(std::regex_match(field.comment, comment))
-          << name << "." << field.name << ": " << field.comment;
+      EXPECT_TRUE(std::regex_match(field.comment, comment)) << name << "." << field.name << ": " << field.comment;
 }
 
 TEST(Idl, KeysAreTheFirstFieldsThatNameAToolABodyOrANode) {

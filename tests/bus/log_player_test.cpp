@@ -82,21 +82,20 @@ TEST_F(PlayedLog, PlaysAtOtherSpeedsAndStopsWhenAsked) {
       play_log(file_, *bus_, {.speed = 1, .topics = {}, .patience = {}}, [](double) { return false; });
   EXPECT_FALSE(stopped.complete);
   EXPECT_LT(stopped.played, 5u);
-  EXPECT_THROW(
-      play_log(file_, *bus_, {.speed = 0, .topics = {}, .patience = {}}, [](double) { return true; }),
-      std::runtime_error);
+  EXPECT_THROW(play_log(file_, *bus_, {.speed = 0, .topics = {}, .patience = {}}, [](double) { return true; }),
+               std::runtime_error);
 }
 
 TEST_F(PlayedLog, PlaysTheChosenTopicsAlone) {
   const auto tools = bus_->reader(topics::tool_state, Keep::all);
-  const PlayReport report = play_log(
-      file_, *bus_, {.speed = 100, .topics = {"palpate/scene"}, .patience = {}}, [](double) { return true; });
+  const PlayReport report =
+      play_log(file_, *bus_, {.speed = 100, .topics = {"palpate/scene"}, .patience = {}}, [](double) { return true; });
   EXPECT_EQ(report.played, 1u);
   EXPECT_EQ(report.skipped, 199u);
   EXPECT_FALSE(tools->take());
-  EXPECT_THROW(play_log(file_, *bus_, {.speed = 1, .topics = {"palpate/nothing"}, .patience = {}},
-                        [](double) { return true; }),
-               std::runtime_error);
+  EXPECT_THROW(
+      play_log(file_, *bus_, {.speed = 1, .topics = {"palpate/nothing"}, .patience = {}}, [](double) { return true; }),
+      std::runtime_error);
 }
 
 TEST_F(PlayedLog, IsSummarisedWithRatesGapsAndLatencies) {

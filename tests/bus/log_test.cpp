@@ -238,8 +238,7 @@ TEST_F(Log, FilesThatAreNoLogAreRefusedInWords) {
     other.version = "9.9";
     writer.write(header_channel, 1, other);
   }
-  EXPECT_EQ(message(),
-            file_.string() + ": was recorded by version 9.9 with other messages than this program reads");
+  EXPECT_EQ(message(), file_.string() + ": was recorded by version 9.9 with other messages than this program reads");
   EXPECT_THROW(LogWriter(folder_ / "no" / "such" / "folder"), std::runtime_error);
 }
 

@@ -81,9 +81,11 @@ inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uin
   m.tool = 1, m.run = 2, m.seq = 3, m.tick = 4, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7, m.publish_ns = 8;
   m.yaw = 0.1, m.pitch = 0.2, m.depth = 0.3, m.roll = 0.4, m.grip = 0.5;
   for (std::uint32_t i = 0; i < contacts; ++i)
-    m.contacts.push_back({i, i % 2, {0.1 * i, 0.2, 0.3}, {0, 0.6, -0.8}, {1, 2, 3.5}, {100, 1, 2, 3, 200, 4, 5, 6, 300.5 + i}});
+    m.contacts.push_back(
+        {i, i % 2, {0.1 * i, 0.2, 0.3}, {0, 0.6, -0.8}, {1, 2, 3.5}, {100, 1, 2, 3, 200, 4, 5, 6, 300.5 + i}});
   for (std::uint32_t i = 0; triangles > 0 && i < triangles + 2; ++i)
-    m.nodes.push_back({i, 7 + i, {0.01 * i, -0.02, 0.03}, {1e-3, 2e-3, -3e-3 * i}, {10, 1, 2, 1, 20, 3, 2, 3, 30.5 + i}});
+    m.nodes.push_back(
+        {i, 7 + i, {0.01 * i, -0.02, 0.03}, {1e-3, 2e-3, -3e-3 * i}, {10, 1, 2, 1, 20, 3, 2, 3, 30.5 + i}});
   for (std::uint32_t i = 0; i < triangles; ++i) m.triangles.push_back({i, i + 1, i + 2});
   return m;
 }

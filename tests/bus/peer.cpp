@@ -84,8 +84,7 @@ void collect(Bus& bus) {
 void nonsense(int domain) {
   const std::string configuration = dds_configuration({.domain = domain});
   dds_create_domain(static_cast<dds_domainid_t>(domain), configuration.c_str());
-  const dds_entity_t participant =
-      dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
+  const dds_entity_t participant = dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
   const dds_entity_t topic =
       dds_create_topic(participant, &palpate_ToolState_desc, topics::tool_state.name, nullptr, nullptr);
   dds_qos_t* qos = dds_create_qos();

@@ -211,9 +211,9 @@ TEST_F(TwoProcesses, ARecorderThatJoinsARunningSystemLosesNothingAndHasItsScene)
   EXPECT_TRUE(report.has_scene);
   EXPECT_EQ(report.missing(), 0u);
   EXPECT_EQ(report.log.lost, 0u);
-  const std::vector<std::string> written{
-      "palpate/tool_state",    "palpate/contact_state", "palpate/force_state",  "palpate/node_status",
-      "palpate/surface_state", "palpate/scene",         "palpate/held_contacts"};
+  const std::vector<std::string> written{"palpate/tool_state",   "palpate/contact_state", "palpate/force_state",
+                                         "palpate/node_status",  "palpate/surface_state", "palpate/scene",
+                                         "palpate/held_contacts"};
   for (const std::string& name : written) EXPECT_GT(report.topics[name].samples, 0u) << name;
   EXPECT_GT(report.topics["palpate/tool_state"].samples, 500u);
 
@@ -263,8 +263,7 @@ TEST(DdsSettings, ARealInterfaceGetsDatagramsThatFitAFrame) {
   EXPECT_NE(network.find("<MaxMessageSize>1400B</MaxMessageSize>"), std::string::npos);
   EXPECT_NE(network.find("<Peer address=\"192.0.2.1\"/>"), std::string::npos);
   EXPECT_NE(network.find("<AllowMulticast>false</AllowMulticast>"), std::string::npos);
-  EXPECT_NO_THROW(
-      make_dds_bus({.domain = 1 + test_domain() % 200, .interface = "lo", .peers = {"192.0.2.1"}}));
+  EXPECT_NO_THROW(make_dds_bus({.domain = 1 + test_domain() % 200, .interface = "lo", .peers = {"192.0.2.1"}}));
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 namespace palpate {
 namespace {
 
-std::string for_recorders(const Qos& qos) { return qos.recorder_depth > 0 ? fmt::format("; {} for recorders", qos.recorder_depth) : ""; }
+std::string for_recorders(const Qos& qos) {
+  return qos.recorder_depth > 0 ? fmt::format("; {} for recorders", qos.recorder_depth) : "";
+}
 
 std::string table() {
   std::string text =
@@ -21,8 +23,10 @@ std::string table() {
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} | {} | {} |\n", t.name, t.message,
                         t.qos.reliable ? "reliable" : "best effort",
                         t.qos.depth == keep_all ? "all" : std::to_string(t.qos.depth) + for_recorders(t.qos),
-                        !t.qos.transient_local ? "-" : t.qos.depth == keep_all ? "get all" : "get the newest", t.rate, t.writer, t.readers,
-                        t.description);
+                        !t.qos.transient_local    ? "-"
+                        : t.qos.depth == keep_all ? "get all"
+                                                  : "get the newest",
+                        t.rate, t.writer, t.readers, t.description);
   });
   return text;
 }

@@ -37,8 +37,7 @@ TEST(BandMatrix, ToldThatItIsNotPositiveDefinite) {
   BandMatrix band(3);
   for (int i = 0; i < 3; ++i)
     band.add(i, 0,
-             i == 1 ? Eigen::Matrix3d(-Eigen::Matrix3d::Identity())
-                    : Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
+             i == 1 ? Eigen::Matrix3d(-Eigen::Matrix3d::Identity()) : Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
   EXPECT_FALSE(band.factorise());
 }
 

@@ -43,8 +43,7 @@ TEST(Chain, ForcesAreTheEnergysDerivative) {
       auto up = x, down = x;
       up[i][axis] += 1e-8;
       down[i][axis] -= 1e-8;
-      EXPECT_NEAR(f[i][axis], -(chain.elastic_energy(up) - chain.elastic_energy(down)) / 2e-8,
-                  1e-6 * largest);
+      EXPECT_NEAR(f[i][axis], -(chain.elastic_energy(up) - chain.elastic_energy(down)) / 2e-8, 1e-6 * largest);
     }
 }
 
@@ -95,11 +94,10 @@ TEST(Chain, NoFrequencyLiesAboveTheBound) {
     down[j / 3][j % 3] -= 1e-7;
     const auto fu = forces(chain, up), fd = forces(chain, down);
     for (int i = 0; i < n; ++i)
-      k(i, j) = -(fu[i / 3][i % 3] - fd[i / 3][i % 3]) / 2e-7 /
-                std::sqrt(chain.mass()[i / 3] * chain.mass()[j / 3]);
+      k(i, j) = -(fu[i / 3][i % 3] - fd[i / 3][i % 3]) / 2e-7 / std::sqrt(chain.mass()[i / 3] * chain.mass()[j / 3]);
   }
-  const double largest = std::sqrt(
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (k + k.transpose())).eigenvalues().maxCoeff());
+  const double largest =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (k + k.transpose())).eigenvalues().maxCoeff());
   EXPECT_LE(largest, chain.frequency_bound());
   EXPECT_GT(largest, 0.7 * chain.frequency_bound());
 }

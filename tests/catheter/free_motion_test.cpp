@@ -45,8 +45,7 @@ TEST(FreeCatheter, FallsAndTurnsAsARigidRodHoweverStiff) {
   std::vector<unsigned char> state(body.state_size());
   body.save(state.data());
   auto* v = reinterpret_cast<Vector3d*>(state.data() + body.size() * sizeof(Vector3d));
-  for (int i = 0; i < body.size(); ++i)
-    v[i].x() = 2.0 * (body.positions()[i].z() + 0.06);  // 2 rad/s about its middle
+  for (int i = 0; i < body.size(); ++i) v[i].x() = 2.0 * (body.positions()[i].z() + 0.06);  // 2 rad/s about its middle
   body.restore(state.data());
   for (int i = 0; i < 300; ++i) body.step({}, {});
   EXPECT_NEAR(body.velocities()[20].y(), -9.81 * 0.3, 1e-3);
@@ -191,10 +190,8 @@ TEST(FreeCatheter, StaysBoundedAtAnyStiffness) {
     }
     EXPECT_LT(fastest, 3.0) << young;
     double kinetic = 0, length = 0;
-    for (int i = 0; i < body.size(); ++i)
-      kinetic += 0.5 * chain.mass()[i] * body.velocities()[i].squaredNorm();
-    for (int i = 0; i + 1 < body.size(); ++i)
-      length += (body.positions()[i + 1] - body.positions()[i]).norm();
+    for (int i = 0; i < body.size(); ++i) kinetic += 0.5 * chain.mass()[i] * body.velocities()[i].squaredNorm();
+    for (int i = 0; i + 1 < body.size(); ++i) length += (body.positions()[i + 1] - body.positions()[i]).norm();
     EXPECT_LT(kinetic, 1e-3) << young;
     if (young >= 1e9) {
       EXPECT_NEAR(length, 0.12, 1e-4) << young;
@@ -233,8 +230,7 @@ TEST(FreeCatheter, SleeveGuidesAndStopsTheTail) {
     for (int i = 0; i < ticks; ++i) {
       jaw.translation().z() += by / ticks;
       body.step({}, {&jaw, 1});
-      for (const Vector3d& p : body.positions())
-        ASSERT_LT(p.z() < -0.12 + 0.05 ? p.head<2>().norm() : 0.0, 2e-4);
+      for (const Vector3d& p : body.positions()) ASSERT_LT(p.z() < -0.12 + 0.05 ? p.head<2>().norm() : 0.0, 2e-4);
     }
   };
   feed(-0.06, 1000);  // withdrawn beyond the resting tail

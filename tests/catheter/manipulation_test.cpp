@@ -16,9 +16,7 @@ using Eigen::Vector3d;
 /// too much slips.
 class ClumsyHand {
  public:
-  ClumsyHand(int tool, unsigned seed) : tool_(tool), random_(seed) {
-    jaw_.translation() = Vector3d(0.02, 0.02, -0.02);
-  }
+  ClumsyHand(int tool, unsigned seed) : tool_(tool), random_(seed) { jaw_.translation() = Vector3d(0.02, 0.02, -0.02); }
 
   const Eigen::Isometry3d& jaw() const { return jaw_; }
   int grasps() const { return grasps_; }
@@ -33,9 +31,8 @@ class ClumsyHand {
     jaw_.linear() = (jaw_.linear() * Eigen::AngleAxisd(turn_, Vector3d::UnitX())).eval();
     for (int part = 0; part < 3; ++part) {
       const auto end = [&](const Eigen::Isometry3d& pose, double far) {
-        return Vector3d(pose *
-                        Vector3d(0, part == 0 ? 0.03 * far : (part == 1 ? 1 : -1) * (holding_ ? 2e-3 : 5e-3),
-                                 part == 0 ? 0 : -0.01 * far));
+        return Vector3d(pose * Vector3d(0, part == 0 ? 0.03 * far : (part == 1 ? 1 : -1) * (holding_ ? 2e-3 : 5e-3),
+                                        part == 0 ? 0 : -0.01 * far));
       };
       parts.push_back({.tool = tool_,
                        .part = part,
@@ -52,9 +49,7 @@ class ClumsyHand {
   }
 
  private:
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random_);
-  }
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
   void plan(CatheterBody& body) {
     const ChainPoint near = body.nearest(jaw_.translation());
@@ -70,8 +65,7 @@ class ClumsyHand {
     } else if (uniform(0, 1) < 0.7) {
       target = body.place(body.nearest({0, 0, uniform(-0.05, -0.01)}));
     }
-    const double speed = std::exp(uniform(std::log(2e-3), std::log(1.0))),
-                 way = (target - jaw_.translation()).norm();
+    const double speed = std::exp(uniform(std::log(2e-3), std::log(1.0))), way = (target - jaw_.translation()).norm();
     left_ = 1 + std::min(800, static_cast<int>(way / (speed * 1e-3)));
     step_ = (target - jaw_.translation()) / std::max(1.0, way / (speed * 1e-3));
     turn_ = uniform(-1, 1) * std::min(0.002, 0.5 / left_);
@@ -115,8 +109,7 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
       outside += wrong.outside;
       strayed += wrong.strayed;
     }
-    for (const Vector3d& p : body.positions())
-      ASSERT_LT(p.norm(), 0.5) << i;  // false also where it is not finite
+    for (const Vector3d& p : body.positions()) ASSERT_LT(p.norm(), 0.5) << i;  // false also where it is not finite
     for (const WallForce& f : body.wall_forces()) force = std::max(force, f.force.norm());
     wall.advance(body.wall_forces());
     left.slip(body);
@@ -126,8 +119,8 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
     deepest = std::max(deepest, body.inserted());
     limited += body.effort().limited;
   }
-  std::printf("%d s: led in and outside %d, not led in and inside %d, energy %.3g J, wall %.3g J, force %.3g N\n", ticks() / 1000, outside, strayed, energy,
-              wall_energy, force);
+  std::printf("%d s: led in and outside %d, not led in and inside %d, energy %.3g J, wall %.3g J, force %.3g N\n",
+              ticks() / 1000, outside, strayed, energy, wall_energy, force);
   testing::Test::RecordProperty("energy_uJ", static_cast<int>(1e6 * energy));
   testing::Test::RecordProperty("largest_force_mN", static_cast<int>(1e3 * force));
   testing::Test::RecordProperty("grasps", left.grasps() + right.grasps());

@@ -9,11 +9,8 @@ using Eigen::Vector3d;
 
 CatheterTool rod(const Vector3d& at, const Vector3d& before, double radius = 1e-3) {
   const Vector3d half(0.03, 0, 0);
-  return {.tool = 0,
-          .part = 1,
-          .before = {before - half, before + half},
-          .now = {at - half, at + half},
-          .radius = radius};
+  return {
+      .tool = 0, .part = 1, .before = {before - half, before + half}, .now = {at - half, at + half}, .radius = radius};
 }
 
 /// A catheter along z that a rod along x comes upon.

@@ -24,19 +24,16 @@ Shown show(const TubeSurface& tube, const std::vector<Vector3d>& x) {
 
 std::vector<Vector3d> helix(int particles, double turn) {
   std::vector<Vector3d> x;
-  for (int i = 0; i < particles; ++i)
-    x.emplace_back(0.03 * std::cos(turn * i), 0.03 * std::sin(turn * i), 0.001 * i);
+  for (int i = 0; i < particles; ++i) x.emplace_back(0.03 * std::cos(turn * i), 0.03 * std::sin(turn * i), 0.001 * i);
   return x;
 }
 
 double volume(const TubeSurface& tube, const Shown& s) {
   double sum = 0;
   for (const auto& t : tube.triangles())
-    sum += s.positions[t[0]]
-               .cast<double>()
-               .cross(s.positions[t[1]].cast<double>())
-               .dot(s.positions[t[2]].cast<double>()) /
-           6;
+    sum +=
+        s.positions[t[0]].cast<double>().cross(s.positions[t[1]].cast<double>()).dot(s.positions[t[2]].cast<double>()) /
+        6;
   return sum;
 }
 
@@ -94,8 +91,7 @@ TEST(Tube, DoesNotTwistAlongItOrInTime) {
     const Shown s = show(tube, helix(particles, 0.1 + 0.001 * frame));
     const int rings = (particles - 1) * TubeSurface::kRings + 1;
     for (int r = TubeSurface::kCapRings; r + 1 < TubeSurface::kCapRings + rings; ++r)
-      EXPECT_GT(s.normals[1 + r * TubeSurface::kAround].dot(s.normals[1 + (r + 1) * TubeSurface::kAround]),
-                0.99f);
+      EXPECT_GT(s.normals[1 + r * TubeSurface::kAround].dot(s.normals[1 + (r + 1) * TubeSurface::kAround]), 0.99f);
     for (std::size_t v = 0; v < last.size(); ++v) ASSERT_GT(s.normals[v].dot(last[v]), 0.98f);
     last = s.normals;
   }

@@ -44,16 +44,13 @@ class TubeWall : public CatheterWall {
   double half_thickness() const override { return shape_.half_thickness; }
   std::span<const double> free_motion() const override { return free_; }
   std::span<const double> inverse() const override { return inverse_; }
-  Eigen::Matrix3d residual(const Anchor&) const override {
-    return shape_.residual * Eigen::Matrix3d::Identity();
-  }
+  Eigen::Matrix3d residual(const Anchor&) const override { return shape_.residual * Eigen::Matrix3d::Identity(); }
   std::span<const std::vector<int>> mouths() const override { return mouths_; }
   void rows(const Anchor& anchor, double* rows) const override {
     for (int axis = 0; axis < 3; ++axis)
       for (int m = 0; m < shape_.modes; ++m) {
         double value = 0;
-        for (int v = 0; v < 3; ++v)
-          value += anchor.weights[v] * mode_[(3 * anchor.nodes[v] + axis) * shape_.modes + m];
+        for (int v = 0; v < 3; ++v) value += anchor.weights[v] * mode_[(3 * anchor.nodes[v] + axis) * shape_.modes + m];
         rows[axis * shape_.modes + m] = value;
       }
   }
@@ -65,8 +62,7 @@ class TubeWall : public CatheterWall {
     for (const WallForce& f : forces) {
       rows(f.anchor, row.data());
       for (int m = 0; m < shape_.modes; ++m)
-        for (int axis = 0; axis < 3; ++axis)
-          y[m] += inverse_[m] * row[axis * shape_.modes + m] * f.force[axis];
+        for (int axis = 0; axis < 3; ++axis) y[m] += inverse_[m] * row[axis * shape_.modes + m] * f.force[axis];
     }
     for (int m = 0; m < shape_.modes; ++m) {
       coordinate_[m] += y[m];
@@ -84,8 +80,7 @@ class TubeWall : public CatheterWall {
     for (const int n : surface_.marked())
       for (int axis = 0; axis < 3; ++axis) {
         double value = given ? given(map_.position[n])[axis] : 0.0;
-        for (int m = 0; m < shape_.modes; ++m)
-          value += mode_[(3 * n + axis) * shape_.modes + m] * coordinate_[m];
+        for (int m = 0; m < shape_.modes; ++m) value += mode_[(3 * n + axis) * shape_.modes + m] * coordinate_[m];
         u.push_back(value);
       }
     surface_.move_marked(u);
@@ -94,7 +89,8 @@ class TubeWall : public CatheterWall {
   /// Sets a mode's velocity so that the node which it moves most goes at `speed` [m/s].
   void kick(int mode, double speed) {
     double most = 0;
-    for (int k = 0; k < 3 * map_.size(); ++k) most = std::max(most, std::abs(mode_[k * static_cast<std::size_t>(shape_.modes) + mode]));
+    for (int k = 0; k < 3 * map_.size(); ++k)
+      most = std::max(most, std::abs(mode_[k * static_cast<std::size_t>(shape_.modes) + mode]));
     velocity_[mode] = speed / most;
     plan();
   }
@@ -157,10 +153,9 @@ class TubeWall : public CatheterWall {
       double sum = 0;
       for (int n = 0; n < map_.size(); ++n) {
         const int ring = n / shape_.around;
-        const double angle = 2 * std::numbers::pi *
-                             (n % shape_.around + 0.5 * (shape_.twisted ? ring % 2 : 1)) / shape_.around;
-        const double shape =
-            std::sin((along - 0.5) * std::numbers::pi * (1 - double(ring) / (shape_.rings - 1)));
+        const double angle =
+            2 * std::numbers::pi * (n % shape_.around + 0.5 * (shape_.twisted ? ring % 2 : 1)) / shape_.around;
+        const double shape = std::sin((along - 0.5) * std::numbers::pi * (1 - double(ring) / (shape_.rings - 1)));
         const double share = shape * (m % 2 ? std::sin(wave * angle + 0.1 * m) : std::cos(wave * angle));
         const Eigen::Vector3d out =
             (map_.position[n] - axis(shape_, shape_.length * ring / (shape_.rings - 1))).normalized();
@@ -178,8 +173,7 @@ class TubeWall : public CatheterWall {
   void plan() {
     const double damping_ratio = 0.2;
     for (int m = 0; m < shape_.modes; ++m) {
-      const double stiffness =
-          1 / (kStep * kStep) + 2 * damping_ratio * omega_[m] / kStep + omega_[m] * omega_[m];
+      const double stiffness = 1 / (kStep * kStep) + 2 * damping_ratio * omega_[m] / kStep + omega_[m] * omega_[m];
       inverse_[m] = 1 / stiffness;
       free_[m] = (velocity_[m] / kStep - omega_[m] * omega_[m] * coordinate_[m]) / stiffness;
     }
@@ -197,8 +191,7 @@ inline bool enclosed(const Eigen::Vector3d& p, const TubeWall& wall) {
   const Eigen::Vector3d along = Eigen::Vector3d(0.5377, 0.3189, 0.7804).normalized();
   int crossings = 0;
   const auto count = [&](const Triangle& c) {
-    const Eigen::Vector3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = along.cross(e2), s = p - c[0],
-                          q = s.cross(e1);
+    const Eigen::Vector3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = along.cross(e2), s = p - c[0], q = s.cross(e1);
     const double det = e1.dot(h), u = s.dot(h) / det, v = along.dot(q) / det;
     crossings += u >= 0 && v >= 0 && u + v <= 1 && e2.dot(q) / det > 0;
   };
@@ -207,8 +200,7 @@ inline bool enclosed(const Eigen::Vector3d& p, const TubeWall& wall) {
   for (const auto& loop : wall.mouths()) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const int node : loop) middle += nodes[node] / loop.size();
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      count({middle, nodes[loop[i]], nodes[loop[(i + 1) % loop.size()]]});
+    for (std::size_t i = 0; i < loop.size(); ++i) count({middle, nodes[loop[i]], nodes[loop[(i + 1) % loop.size()]]});
   }
   return crossings % 2 == 1;
 }
@@ -221,7 +213,8 @@ inline double from_mouths(const Eigen::Vector3d& p, const TubeWall& wall) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const int node : loop) middle += nodes[node] / loop.size();
     for (std::size_t i = 0; i < loop.size(); ++i)
-      squared = std::min(squared, closest_point(p, {middle, nodes[loop[i]], nodes[loop[(i + 1) % loop.size()]]}).squared_distance);
+      squared = std::min(
+          squared, closest_point(p, {middle, nodes[loop[i]], nodes[loop[(i + 1) % loop.size()]]}).squared_distance);
   }
   return std::sqrt(squared);
 }

@@ -162,8 +162,7 @@ TEST(CatheterInASoftDuct, PushesTheWallOutAndActsAsItIsActedUpon) {
     for (const WallForce& f : body.wall_forces()) {
       const Vector3d out =
           (wall.surface().positions()[f.anchor.nodes[1]] - wall.surface().positions()[f.anchor.nodes[0]])
-              .cross(wall.surface().positions()[f.anchor.nodes[2]] -
-                     wall.surface().positions()[f.anchor.nodes[0]])
+              .cross(wall.surface().positions()[f.anchor.nodes[2]] - wall.surface().positions()[f.anchor.nodes[0]])
               .normalized();
       if (f.anchor.weights.minCoeff() <= 0) continue;  // on an edge the force has another direction
       ++touches;
@@ -205,9 +204,8 @@ TEST(CatheterInASoftDuct, SolvesForBothBodiesAtOnce) {
       const double force = -f.force.dot(normal[k]);
       double nearest = 1;
       for (const Vector3d& x : body.positions())
-        nearest = std::min(
-            nearest, std::abs(reach - WallTouches::kCompliance * force -
-                              normal[k].dot(x - anchor_position(f.anchor, wall.surface().positions()))));
+        nearest = std::min(nearest, std::abs(reach - WallTouches::kCompliance * force -
+                                             normal[k].dot(x - anchor_position(f.anchor, wall.surface().positions()))));
       ASSERT_LT(nearest, 1e-9) << i;  // of overlaps of some 1e-7
       largest = std::max(largest, force);
     }
@@ -292,8 +290,12 @@ void throw_over(double beside) {
   EXPECT_GT(most, 2 * (body.radius() + wall.half_thickness()));
 }
 
-TEST(CatheterAtASwingingDuct, StaysOutside) { throw_over(0.008); }
-TEST(CatheterAtASwingingDuct, StaysInside) { throw_over(0); }
+TEST(CatheterAtASwingingDuct, StaysOutside) {
+  throw_over(0.008);
+}
+TEST(CatheterAtASwingingDuct, StaysInside) {
+  throw_over(0);
+}
 
 TEST(CatheterInASoftDuct, TakesNoMemoryInAStep) {
   TubeWall wall({.length = 0.05, .bend = 30, .modes = 30, .residual = 0.01});

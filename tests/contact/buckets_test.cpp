@@ -71,7 +71,8 @@ TEST(Buckets, GiveEveryTriangleWhoseBoxComesWithinTheRadius) {
       const Box own = swept_box(surface.before(t), surface.after(t));
       const Vector3d apart = (own[0] - box[1]).cwiseMax(box[0] - own[1]).cwiseMax(0.0);
       if (apart.norm() > radius) continue;
-      ASSERT_TRUE(std::binary_search(found.begin(), found.end(), t)) << "lost triangle " << t << " at radius " << radius;
+      ASSERT_TRUE(std::binary_search(found.begin(), found.end(), t))
+          << "lost triangle " << t << " at radius " << radius;
     }
     round_ones += found.size();
     square_ones += ask(buckets, surface, {box[0].array() - radius, box[1].array() + radius}).size();
@@ -106,8 +107,7 @@ TEST(Buckets, LoseNothingWhenTrianglesOutgrowThem) {
 TEST(Buckets, LoseNothingWhenEntriesRunOut) {
   MovingSurface surface(3);
   Buckets buckets(surface.rest, surface.triangles, 0.01);
-  for (int t = 0; t < surface.size(); ++t)
-    buckets.move(t, Vector3d::Constant(-0.01475), Vector3d::Constant(0.01475));
+  for (int t = 0; t < surface.size(); ++t) buckets.move(t, Vector3d::Constant(-0.01475), Vector3d::Constant(0.01475));
   EXPECT_GT(buckets.overflow(), 0);
   EXPECT_LT(buckets.overflow(), surface.size());
   EXPECT_EQ(ask(buckets, surface, {Vector3d::Constant(-0.001), Vector3d::Constant(0.001)}).size(),

@@ -87,8 +87,7 @@ TEST(CutSurface, FindsWhatBruteForceFindsOnTheMovingAndCutSurface) {
         body.step();
       else
         body.tremble(body.random() % 2 == 0 ? 1e-6 : 1e-4);
-      for (unsigned i = 0; i < body.random() % 3 && body.cut.alive_count() > 0; ++i)
-        body.remove(cutter.aim(body.cut));
+      for (unsigned i = 0; i < body.random() % 3 && body.cut.alive_count() > 0; ++i) body.remove(cutter.aim(body.cut));
       for (int trial = 0; trial < 3; ++trial) body.expect_found_as_by_brute_force();
       if (testing::Test::HasFatalFailure()) FAIL() << "kind " << kind;
     }

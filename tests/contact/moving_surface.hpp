@@ -36,9 +36,7 @@ struct MovingSurface {
     }
   }
 
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  }
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
   Eigen::Vector3d direction() {
     std::normal_distribution<double> normal;
     return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
@@ -70,8 +68,7 @@ inline bool meet(const std::array<Eigen::Vector3d, 2>& a, const std::array<Eigen
 
 /// Turns of the closed surface around p (1 inside, 0 outside), from solid angles (Van Oosterom and Strackee
 /// 1983).
-inline double winding(const MovingSurface& surface, const std::vector<Eigen::Vector3d>& x,
-                      const Eigen::Vector3d& p) {
+inline double winding(const MovingSurface& surface, const std::vector<Eigen::Vector3d>& x, const Eigen::Vector3d& p) {
   double angle = 0;
   for (int t = 0; t < surface.size(); ++t) {
     const Triangle c = surface.corners(x, t);

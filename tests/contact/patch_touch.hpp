@@ -20,7 +20,8 @@ inline Archive tube(int n_around, int n_along, double radius, double length, dou
   for (int i = 0; i < n_along; ++i)
     for (int k = 0; k < n_around; ++k) {
       const double angle = 2 * std::numbers::pi * k / n_around;
-      a.surface.position.emplace_back(length * (static_cast<double>(i) / (n_along - 1) - 0.5), radius * std::cos(angle), radius * std::sin(angle));
+      a.surface.position.emplace_back(length * (static_cast<double>(i) / (n_along - 1) - 0.5), radius * std::cos(angle),
+                                      radius * std::sin(angle));
       a.surface.node_number.push_back(i * n_around + k);
       a.surface.fixed.push_back({false, false, false});
     }
@@ -114,7 +115,9 @@ class PatchTouch {
 class HandledTool {
  public:
   explicit HandledTool(std::vector<ToolPart> parts) : before_(parts), now_(std::move(parts)) {}
-  static HandledTool segment(double length, double radius) { return HandledTool({{.length = length, .radius = radius}}); }
+  static HandledTool segment(double length, double radius) {
+    return HandledTool({{.length = length, .radius = radius}});
+  }
   static HandledTool forceps(const ForcepsShape& shape, double opening) {
     const auto parts = forceps_parts(shape, opening);
     return HandledTool({parts.begin(), parts.end()});
@@ -125,7 +128,8 @@ class HandledTool {
     pose_before_ = pose_;
     before_ = now_;
     pose_.linear() = (Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along) *
-                      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+                      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()))
+                         .toRotationMatrix();
     pose_.translation() = at;
   }
   void place_at(const Eigen::Vector3d& at, const Eigen::Vector3d& along, double roll = 0) {

@@ -20,7 +20,8 @@ using testing::settle;
 using testing::step;
 
 TEST(SegmentContact, ThePressedSurfaceLiesOutsideADenseRowOfSpheresAndTheirForcesArePressure) {
-  // Triangles smaller than the radius: vertices carry. These are the conditions that decide a row of spheres without gaps.
+  // Triangles smaller than the radius: vertices carry. These are the conditions that decide a row of spheres without
+  // gaps.
   const double radius = 0.0016, length = 0.008;
   PatchTouch touch(flat_patch(31, 0.0008, 1e-3), 0, 1);
   HandledTool tool = HandledTool::segment(length, radius);
@@ -160,7 +161,6 @@ TEST(SegmentContact, WhatSticksToAJawTurnsWithIt) {
   }
 }
 
-
 TEST(SegmentContact, HalfTheWallsThicknessIsAddedToEachRadius) {
   for (const double offset : {0.0, 0.0004}) {
     PatchTouch touch(flat_patch(25, 0.005, 1e-2), 0, 1, {.offset = offset});
@@ -212,7 +212,9 @@ TEST(SegmentContact, ASegmentSteppedAboutAllocatesNothing) {
 
 TEST(SegmentContact, ARestoredStateGoesOnBitForBit) {
   const ForcepsShape shape{.shaft_length = 0.05, .jaw_length = 0.012, .jaw_radius = 0.001};
-  const auto make = [] { return PatchTouch(flat_patch(25, 0.0025, 2e-3), 0.3, 3, {.offset = 2e-4, .softness = {1e-4}}); };
+  const auto make = [] {
+    return PatchTouch(flat_patch(25, 0.0025, 2e-3), 0.3, 3, {.offset = 2e-4, .softness = {1e-4}});
+  };
   const auto pose = [&](HandledTool& tool, int i) {
     const Vector3d at(0.01 * std::sin(0.02 * i), 0.01 * std::cos(0.03 * i), 0.0035 + 0.002 * std::cos(0.04 * i));
     tool.move_to(at, Vector3d(1, 0.3 * std::sin(0.01 * i), -0.3).normalized(), 0.02 * i);

@@ -21,7 +21,9 @@ class Random {
   std::mt19937 engine_;
 };
 
-double distance(const Segment& s, const Vector3d& p) { return (nearest_point(s, p) - p).norm(); }
+double distance(const Segment& s, const Vector3d& p) {
+  return (nearest_point(s, p) - p).norm();
+}
 
 TEST(Segments, ThePairFoundIsNearerThanAnyOtherOfADenseGrid) {
   Random random(3);
@@ -62,7 +64,8 @@ TEST(SegmentAndTriangle, ThePairFoundIsNearerThanAnyOtherOfADenseGrid) {
     ASSERT_GE(found.weights.minCoeff(), 0);
     ASSERT_NEAR((s.at(found.share) - at).norm(), std::sqrt(found.squared_distance), 1e-12);
     double least = 10;
-    for (int i = 0; i <= 1000; ++i) least = std::min(least, std::sqrt(closest_point(s.at(i / 1000.0), t).squared_distance));
+    for (int i = 0; i <= 1000; ++i)
+      least = std::min(least, std::sqrt(closest_point(s.at(i / 1000.0), t).squared_distance));
     const double error = std::sqrt(found.squared_distance) - least;
     ASSERT_LT(error, 1e-9) << "round " << round;
     ASSERT_GT(error, -2e-3) << "round " << round;

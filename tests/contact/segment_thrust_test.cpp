@@ -73,7 +73,8 @@ TEST(SegmentThrust, ForcedThroughAThinWallTheForceKeepsOutwardAndTheJawComesBack
         ASSERT_GE(height, 0) << "edge " << edge << " tilt " << tilt << " step " << i;
         pressed += height > 0;
         for (const TouchContact& c : touch.law().contacts())
-          ASSERT_TRUE(c.touch == Touch::open || c.normal.z() < 0.1 + 1e-9) << "edge " << edge << " tilt " << tilt << " step " << i;
+          ASSERT_TRUE(c.touch == Touch::open || c.normal.z() < 0.1 + 1e-9)
+              << "edge " << edge << " tilt " << tilt << " step " << i;
       }
       ASSERT_GE(pressed, 8) << "edge " << edge << " tilt " << tilt;
       for (int i = 0; i < 20; ++i) {  // held there, it goes on pushing out
@@ -95,7 +96,8 @@ TEST(SegmentThrust, ForcedThroughAThinWallTheForceKeepsOutwardAndTheJawComesBack
 TEST(SegmentThrust, AJawPushedIntoATubeIsPushedBackOutOfTheWallThatItMet) {
   const ForcepsShape shape{.shaft_radius = 0.0025, .shaft_length = 0.05, .jaw_length = 0.014, .jaw_radius = 0.001};
   for (const auto& [friction, around] : {std::pair{0.0, 16}, {0.3, 16}, {0.0, 28}, {0.3, 28}}) {
-    PatchTouch touch(testing::tube(around, 30 * around / 16, 0.0045, 0.05, 2e-3), friction, 3, {.offset = 0.0005, .softness = {1e-4}});
+    PatchTouch touch(testing::tube(around, 30 * around / 16, 0.0045, 0.05, 2e-3), friction, 3,
+                     {.offset = 0.0005, .softness = {1e-4}});
     HandledTool tool = HandledTool::forceps(shape, 0.1);
     const Vector3d along = Vector3d(0.3, 1, -0.1).normalized(), start(0, -0.008, 0.0105);
     tool.place_at(start, along);

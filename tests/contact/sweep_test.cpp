@@ -20,8 +20,8 @@ struct Found {
   bool from_outside = false;
 };
 
-Found with_buckets(const MovingSurface& surface, const Buckets& buckets, std::vector<int>& room,
-                   const Vector3d& p0, const Vector3d& p1) {
+Found with_buckets(const MovingSurface& surface, const Buckets& buckets, std::vector<int>& room, const Vector3d& p0,
+                   const Vector3d& p1) {
   Found first;
   const int count = buckets.query(p0.cwiseMin(p1), p0.cwiseMax(p1), 0, room);
   for (int i = 0; i < count; ++i) {
@@ -116,8 +116,7 @@ TEST(Sweep, AgreesWithBruteForceForTrianglesThatTurnOverWithinAStep) {
     const Vector3d p0 = 0.6 * source.direction(), p1 = 0.6 * source.direction();
     const auto hit = sweep_point(p0, p1, a, b);
     Found expected = by_force(p0, p1, a, b, 128);
-    if (hit.has_value() != (expected.triangle == 0))
-      expected = by_force(p0, p1, a, b, 1 << 18);  // twice in one part
+    if (hit.has_value() != (expected.triangle == 0)) expected = by_force(p0, p1, a, b, 1 << 18);  // twice in one part
     ASSERT_EQ(hit.has_value(), expected.triangle == 0) << "trial " << trial;
     if (!hit) continue;
     ASSERT_NEAR(hit->time, expected.time, 1e-9) << "trial " << trial;
@@ -136,8 +135,7 @@ TEST(Sweep, GoesInAndOutAsOftenAsTheWindingNumberSays) {
     const auto [p0, p1] = random_path(surface);
     int net = 0;
     for (int t = 0; t < surface.size(); ++t)
-      if (const auto hit = sweep_point(p0, p1, surface.before(t), surface.after(t)))
-        net += hit->from_outside ? 1 : -1;
+      if (const auto hit = sweep_point(p0, p1, surface.before(t), surface.after(t))) net += hit->from_outside ? 1 : -1;
     const double turns = winding(surface, surface.present, p1) - winding(surface, surface.previous, p0);
     ASSERT_NEAR(net, turns, 1e-6) << "trial " << trial;
   }
@@ -195,8 +193,7 @@ TEST(Sweep, CatchesPointsThatPassThroughSliversAndTheirEdges) {
   const int count = surface.size();
   for (int t = 0; t < count; ++t) {
     const auto corner = surface.triangles[t];
-    const double width = std::pow(10.0, surface.uniform(-18, -3)),
-                 s = surface.uniform(0.2, 0.8) * (1 - width);
+    const double width = std::pow(10.0, surface.uniform(-18, -3)), s = surface.uniform(0.2, 0.8) * (1 - width);
     const auto split = [&](std::vector<Vector3d>& x) {
       x.push_back(s * x[corner[0]] + (1 - s - width) * x[corner[1]] + width * x[corner[2]]);
     };
@@ -241,10 +238,9 @@ TEST(Sweep, CatchesFastPointsThatPassThroughAMovingSliverBetweenGoodTriangles) {
     const Vector3d through = (1 - r) * (s * at[A] + (1 - s) * at[B]) + r * at[M];
     const Vector3d path = std::pow(10.0, source.uniform(-2, 0)) * source.direction();
     bool found = false;
-    for (const auto& [i, j, k] :
-         {std::array{A, B, M}, std::array{B, C, M}, std::array{C, A, M}, std::array{B, A, D}})
-      found |= sweep_point(through - time * path, through + (1 - time) * path,
-                           {before[i], before[j], before[k]}, {after[i], after[j], after[k]})
+    for (const auto& [i, j, k] : {std::array{A, B, M}, std::array{B, C, M}, std::array{C, A, M}, std::array{B, A, D}})
+      found |= sweep_point(through - time * path, through + (1 - time) * path, {before[i], before[j], before[k]},
+                           {after[i], after[j], after[k]})
                    .has_value();
     lost += !found;
   }

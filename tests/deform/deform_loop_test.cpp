@@ -17,7 +17,8 @@ using namespace testing;
 struct Loop {
   DuctScene s;
   std::shared_ptr<MemoryNetwork> network = make_memory_network();
-  std::unique_ptr<Bus> haptic_bus = make_memory_bus(network), bus = make_memory_bus(network), observer_bus = make_memory_bus(network);
+  std::unique_ptr<Bus> haptic_bus = make_memory_bus(network), bus = make_memory_bus(network),
+                       observer_bus = make_memory_bus(network);
   Presence haptic{*haptic_bus, "haptic", 5, "scene", "archive"};
   Presence presence{*bus, "deform", 0, "scene", "archive"};
   Deformer deformer{s.scene, s.archives};

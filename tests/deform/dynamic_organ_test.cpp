@@ -14,13 +14,16 @@ using testing::block_scene;
 
 constexpr double top = 0.03, radius = 0.006;
 
-double from_above(int tick, int ticks, double from, double to) { return from + (to - from) * std::min(1.0, static_cast<double>(tick) / ticks); }
+double from_above(int tick, int ticks, double from, double to) {
+  return from + (to - from) * std::min(1.0, static_cast<double>(tick) / ticks);
+}
 
 TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
   Bench bench(block_scene());
   for (int i = 0; i < 100; ++i) bench.tick(top + 0.02);
   EXPECT_TRUE(bench.force().isZero(0));
-  for (int n = 0; n < bench.organ().mesh().nodes(); ++n) EXPECT_TRUE(bench.organ().model().displacement(n).isZero(1e-12));
+  for (int n = 0; n < bench.organ().mesh().nodes(); ++n)
+    EXPECT_TRUE(bench.organ().model().displacement(n).isZero(1e-12));
 }
 
 TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
@@ -103,7 +106,8 @@ TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
   Scene scene = block_scene();
   scene.bodies[0].dynamic.gravity = {0, 0, 9.81};  // upwards: off the base
   scene.bodies[0].dynamic.damping = 5;
-  scene.bodies[0].fixed[0].where = {.indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
+  scene.bodies[0].fixed[0].where = {
+      .indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
   scene.tools[0].cautery = Cautery{0.0062};
   scene.tools[0].radius = 0.003;
   scene.tools[0].pivot = {-0.2, 0, 0.02};
@@ -166,9 +170,12 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   Scene scene = block_scene("hybrid");
   scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
   scene.bodies[0].hybrid = Hybrid{};
-  scene.bodies[0].hybrid->regions.push_back({.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}, .group = ""});
+  scene.bodies[0].hybrid->regions.push_back(
+      {.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}, .group = ""});
   Bench first(scene), second(first);
-  const auto move = [](Bench& bench, int i) { bench.tick(top + radius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i); };
+  const auto move = [](Bench& bench, int i) {
+    bench.tick(top + radius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i);
+  };
   const int keyframe = static_cast<int>(first.world().keyframe_interval());
   for (int i = 0; i < keyframe; ++i) move(first, i);
   EXPECT_FALSE(first.organ().still_part()->contacts().empty());
@@ -241,9 +248,11 @@ TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
     Scene hybrid = whole;
     hybrid.bodies[0].model = "hybrid";
     hybrid.bodies[0].hybrid = Hybrid{};
-    hybrid.bodies[0].hybrid->regions.push_back({.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(0.0026, 1, 1)}, .group = ""});
+    hybrid.bodies[0].hybrid->regions.push_back(
+        {.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(0.0026, 1, 1)}, .group = ""});
     const Vector3d felt = settled_press(hybrid, x);
-    EXPECT_LT((felt - wanted).norm(), 0.05 * wanted.norm()) << "at x = " << x << ": " << felt.transpose() << " against " << wanted.transpose();
+    EXPECT_LT((felt - wanted).norm(), 0.05 * wanted.norm())
+        << "at x = " << x << ": " << felt.transpose() << " against " << wanted.transpose();
   }
 }
 
@@ -251,7 +260,9 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   Scene scene = block_scene("hybrid");
   scene.contact.friction = 0;
   scene.bodies[0].hybrid = Hybrid{.regions = {}, .mesh = "coarse.msh"};
-  scene.bodies[0].fixed[0].where = {.indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};  // not the coarse mesh's bottom
+  scene.bodies[0].fixed[0].where = {.indices = {},
+                                    .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)},
+                                    .group = ""};  // not the coarse mesh's bottom
   const TetMesh fine = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.015}, {12, 12, 3});
   const TetMesh coarse = make_block({-0.03, -0.03, 0.015}, {0.03, 0.03, 0.03}, {6, 6, 2});
   Bench bench(scene, fine, coarse);
@@ -261,10 +272,12 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   Scene alike = block_scene();
   alike.contact.friction = 0;
   const double whole = settled_press(alike, 0, make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 4})).z();
-  EXPECT_NEAR(bench.force().z(), whole, 0.25 * std::abs(whole)) << "the part below is finer and joined at fewer nodes, so softer";
+  EXPECT_NEAR(bench.force().z(), whole, 0.25 * std::abs(whole))
+      << "the part below is finer and joined at fewer nodes, so softer";
   EXPECT_GT(bench.force().z(), whole);
   for (int i = 0; i < 1500; ++i) bench.tick(top + 0.03);
-  EXPECT_LT(bench.organ().still_part()->part().gap(bench.organ().model()), 1e-5) << "at rest both sides lie on one another again";
+  EXPECT_LT(bench.organ().still_part()->part().gap(bench.organ().model()), 1e-5)
+      << "at rest both sides lie on one another again";
 }
 
 TEST(DynamicOrgan, AnUnstableStepIsRefusedWithTheBound) {

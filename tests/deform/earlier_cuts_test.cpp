@@ -24,7 +24,8 @@ class EarlierCutsTest : public ::testing::Test {
   std::shared_ptr<MemoryNetwork> network_ = make_memory_network();
   std::unique_ptr<Bus> there_ = make_memory_bus(network_), here_ = make_memory_bus(network_);
   std::unique_ptr<Writer<HeldTopology>> held_ = there_->writer(topics::held_topology);
-  Presence haptic_{*there_, "haptic", 1, "same", ""}, render_{*there_, "render", 0, "same", ""}, recorder_{*there_, "recorder", 0, "", ""};
+  Presence haptic_{*there_, "haptic", 1, "same", ""}, render_{*there_, "render", 0, "same", ""},
+      recorder_{*there_, "recorder", 0, "", ""};
   Presence presence_{*here_, "deform", 9, "same", ""};
   EarlierCuts cuts_{*here_, {0, 2}};
 };

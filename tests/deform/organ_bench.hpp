@@ -28,7 +28,9 @@ inline Scene block_scene(const std::string& model = "tensor_mass") {
 }
 
 /// 60 x 60 x 30 mm, cells of 5 mm; its top at z = 30 mm.
-inline TetMesh block_mesh() { return make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {12, 12, 6}); }
+inline TetMesh block_mesh() {
+  return make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {12, 12, 6});
+}
 
 /// Moves the tools of a world by hand.
 class Bench {
@@ -46,7 +48,14 @@ class Bench {
   void tick(double z, double x = 0, double pedal = 0, double grip = 1) {
     const Trocar trocar = make_trocar(scene_.tools[0].pivot, scene_.tools[0].axis, scene_.tools[0].up);
     const ToolDofs d = dofs_for_tip(trocar, {x, 0, z}, 0);
-    ToolState s{.run = 7, .step = ++step_, .sense_ns = static_cast<std::int64_t>(step_), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = 0, .grip = grip};
+    ToolState s{.run = 7,
+                .step = ++step_,
+                .sense_ns = static_cast<std::int64_t>(step_),
+                .yaw = d.yaw,
+                .pitch = d.pitch,
+                .depth = d.depth,
+                .roll = 0,
+                .grip = grip};
     s.pedal = pedal;
     world_.take(s);
     world_.tick();
@@ -71,7 +80,8 @@ class Bench {
 
  private:
   template <class Make>
-  Bench(Scene scene, Make&& make) : scene_(std::move(scene)), archives_{make(scene_.bodies[0])}, world_(scene_, archives_) {}
+  Bench(Scene scene, Make&& make)
+      : scene_(std::move(scene)), archives_{make(scene_.bodies[0])}, world_(scene_, archives_) {}
 
   Scene scene_;
   std::vector<Archive> archives_;

@@ -46,7 +46,8 @@ class Deploy : public ::testing::Test {
   }
 
   std::string line(const std::string& arguments, const std::string& ssh) const {
-    return fmt::format("{}/scripts/deploy.sh {} --bin {} --ssh '{}' {}", PALPATE_SOURCE, TwoHosts::address_b, PALPATE_BIN, ssh, arguments);
+    return fmt::format("{}/scripts/deploy.sh {} --bin {} --ssh '{}' {}", PALPATE_SOURCE, TwoHosts::address_b,
+                       PALPATE_BIN, ssh, arguments);
   }
   int deploy(const std::string& arguments, const std::string& ssh = {}) {
     return run_in(hosts_->a(), line(arguments, ssh.empty() ? far_->ssh() : ssh), said_);
@@ -58,7 +59,11 @@ class Deploy : public ::testing::Test {
   /// Waits on host A for a surface that a haptic node on the same host caused.
   bool surface_comes(const fs::path& keys = {}) const {
     const Inside here(hosts_->a());
-    const auto bus = make_dds_bus({.domain = domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}, .keys = keys, .role = "observer"});
+    const auto bus = make_dds_bus({.domain = domain,
+                                   .interface = TwoHosts::device,
+                                   .peers = {TwoHosts::address_b},
+                                   .keys = keys,
+                                   .role = "observer"});
     const auto surfaces = bus->reader(topics::surface_state);
     const auto limit = std::chrono::steady_clock::now() + 10s;
     while (std::chrono::steady_clock::now() < limit) {
@@ -82,8 +87,9 @@ TEST_F(Deploy, ADeformNodeIsBroughtAndItsSurfacesComeBack) {
   EXPECT_FALSE(fs::exists(far_->home() / "palpate/bin/haptic_node")) << "only what the node needs";
   EXPECT_EQ(deploy("--status"), 0);
 
-  const std::string near = fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"), block_.scene(),
-                                       domain, TwoHosts::device, TwoHosts::address_b);
+  const std::string near =
+      fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"),
+                  block_.scene(), domain, TwoHosts::device, TwoHosts::address_b);
   const Inside here(hosts_->a());
   ChildProcess haptic("haptic_node", {"/bin/sh", "-c", near});
   EXPECT_TRUE(surface_comes());
@@ -123,7 +129,8 @@ TEST_F(Deploy, OfTheKeysAHostGetsThoseOfItsNodesAlone) {
   EXPECT_EQ(deploy(scene()), 1);
   EXPECT_TRUE(said("key.pem may be read by others"));
   fs::permissions(keys / "deform/key.pem", fs::perms::others_read, fs::perm_options::remove);
-  const auto altered = far_->ssh_through("altering", "LC_ALL=C sed 's/<grant name=\"deform\">/<grant name=\"haptic\">/'");
+  const auto altered =
+      far_->ssh_through("altering", "LC_ALL=C sed 's/<grant name=\"deform\">/<grant name=\"haptic\">/'");
   EXPECT_EQ(deploy(scene(), altered), 1);
   EXPECT_TRUE(said("scene/keys/deform/permissions.p7s: FAILED")) << said_;
   EXPECT_EQ(far_->listing(), "");
@@ -131,11 +138,14 @@ TEST_F(Deploy, OfTheKeysAHostGetsThoseOfItsNodesAlone) {
   ASSERT_EQ(deploy(scene() + "-- --seconds 25"), 0);
   std::set<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(there))
-    files.insert(fmt::format("{} {:o}", fs::relative(entry.path(), there).string(), static_cast<unsigned>(entry.status().permissions())));
-  EXPECT_EQ(files, (std::set<std::string>{"deform 700", "deform/authority.pem 600", "deform/certificate.pem 600", "deform/governance.p7s 600", "deform/key.pem 600",
-                                          "deform/permissions.p7s 600"}));
-  const std::string near = fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"), block_.scene(),
-                                       domain, TwoHosts::device, TwoHosts::address_b);
+    files.insert(fmt::format("{} {:o}", fs::relative(entry.path(), there).string(),
+                             static_cast<unsigned>(entry.status().permissions())));
+  EXPECT_EQ(files,
+            (std::set<std::string>{"deform 700", "deform/authority.pem 600", "deform/certificate.pem 600",
+                                   "deform/governance.p7s 600", "deform/key.pem 600", "deform/permissions.p7s 600"}));
+  const std::string near =
+      fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"),
+                  block_.scene(), domain, TwoHosts::device, TwoHosts::address_b);
   const Inside here(hosts_->a());
   ChildProcess haptic("haptic_node", {"/bin/sh", "-c", near});
   EXPECT_TRUE(surface_comes(keys));
@@ -151,7 +161,8 @@ TEST_F(Deploy, FilesBesideTheSceneKeepTheirPlaces) {
   fs::rename(block_.scene(), block_.folder() / "deeper/scene.toml");
   const std::string deeper = (block_.folder() / "deeper/scene.toml").string() + " --no-start";
   EXPECT_EQ(deploy(deeper), 0);
-  for (const char* file : {"block.msh", "motion.csv", "deeper/scene.toml"}) EXPECT_TRUE(fs::exists(far_->home() / "palpate/scene" / file)) << file;
+  for (const char* file : {"block.msh", "motion.csv", "deeper/scene.toml"})
+    EXPECT_TRUE(fs::exists(far_->home() / "palpate/scene" / file)) << file;
   EXPECT_FALSE(somebody_runs(far_->home() / "palpate"));
   EXPECT_EQ(run_in(hosts_->b(), far_->home() / "palpate/start deform_node --seconds 0.1", said_), 0);
 }
@@ -166,7 +177,8 @@ TEST_F(Deploy, DamageIsNoticed) {
   EXPECT_EQ(far_->listing(), "");
 
   ASSERT_EQ(deploy(scene() + "-- --seconds 25"), 0);
-  for (const auto& archive : fs::directory_iterator(far_->home() / "palpate/archives")) std::ofstream(archive.path(), std::ios::app) << ' ';
+  for (const auto& archive : fs::directory_iterator(far_->home() / "palpate/archives"))
+    std::ofstream(archive.path(), std::ios::app) << ' ';
   EXPECT_EQ(deploy("--status"), 1);
   EXPECT_TRUE(std::regex_search(said_, std::regex("not as it was sent: archives/block-[0-9a-f]+.h5")));
   EXPECT_EQ(deploy("--remove"), 0);
@@ -195,7 +207,8 @@ TEST_F(Deploy, InterruptedItLeavesNothing) {
   const Inside here(hosts_->a());
   ChildProcess script("deploy.sh", {"/bin/bash", "-c", "exec " + line(scene(), stalling) + " 2>&1"});
   const auto limit = std::chrono::steady_clock::now() + 10s;
-  while (far_->listing() != "palpate.new" && std::chrono::steady_clock::now() < limit) std::this_thread::sleep_for(10ms);
+  while (far_->listing() != "palpate.new" && std::chrono::steady_clock::now() < limit)
+    std::this_thread::sleep_for(10ms);
   ASSERT_EQ(far_->listing(), "palpate.new");
   kill(-script.pid(), SIGINT);
   ASSERT_TRUE(script.wait(10s));

@@ -12,10 +12,13 @@ namespace fs = std::filesystem;
 /// What `cmake --install` makes, moved to another place thereafter. Removed with the object.
 class MovedPrefix {
  public:
-  explicit MovedPrefix(const std::string& options) : folder_(fs::temp_directory_path() / fmt::format("palpate-install-{}", getpid())) {
+  explicit MovedPrefix(const std::string& options)
+      : folder_(fs::temp_directory_path() / fmt::format("palpate-install-{}", getpid())) {
     std::string said;
     const fs::path first = folder_.string() + "-first";
-    if (run_command(fmt::format("{} --install {} --prefix {} {}", PALPATE_CMAKE, PALPATE_BUILD, first.string(), options), &said) != 0)
+    if (run_command(
+            fmt::format("{} --install {} --prefix {} {}", PALPATE_CMAKE, PALPATE_BUILD, first.string(), options),
+            &said) != 0)
       throw std::runtime_error(said);
     fs::rename(first, folder_);
   }
@@ -39,12 +42,14 @@ TEST(Install, AMovedPrefixRunsItsScenes) {
   const std::string palpate = prefix / "bin/palpate", scene = prefix / "share/palpate/scenes/liver.toml";
   std::string said;
   EXPECT_EQ(run_command(palpate + " check " + scene, &said), 0) << said;
-  EXPECT_EQ(run_command(fmt::format("{} run {} --seconds 1 --domain {}", palpate, scene, own_domain()), &said), 0) << said;
+  EXPECT_EQ(run_command(fmt::format("{} run {} --seconds 1 --domain {}", palpate, scene, own_domain()), &said), 0)
+      << said;
   EXPECT_NE(said.find("haptic "), std::string::npos) << said;
   EXPECT_EQ(run_command((prefix / "share/palpate/scripts/deploy.sh").string() + " --help", &said), 0) << said;
   const auto files = prefix.files();
-  for (const char* name : {"share/palpate/docs/deploy.md", "share/palpate/idl/palpate.idl", "share/palpate/scripts/deploy_remote.sh",
-                           "share/palpate/scripts/study_page.py", "share/palpate/scripts/latency_plot.py", "share/palpate/systemd/palpate@.service"})
+  for (const char* name : {"share/palpate/docs/deploy.md", "share/palpate/idl/palpate.idl",
+                           "share/palpate/scripts/deploy_remote.sh", "share/palpate/scripts/study_page.py",
+                           "share/palpate/scripts/latency_plot.py", "share/palpate/systemd/palpate@.service"})
     EXPECT_TRUE(files.contains(name)) << name;
 }
 

@@ -44,7 +44,8 @@ TEST(DeployPage, TheScriptBringsEveryFileThatASceneCanName) {
 std::set<std::string> packages_of(const std::string& program) {
   std::string said;
   run_command(fmt::format("readelf -d {0} | sed -n 's/.*NEEDED.*\\[\\(.*\\)\\]/\\1/p' | while read -r name; do "
-                          "file=$(ldd {0} | awk -v name=\"$name\" '$1 == name {{print $3}}'); echo \"$file\" \"$(readlink -f \"$file\")\" \"/usr$file\"; done | "
+                          "file=$(ldd {0} | awk -v name=\"$name\" '$1 == name {{print $3}}'); echo \"$file\" "
+                          "\"$(readlink -f \"$file\")\" \"/usr$file\"; done | "
                           "xargs dpkg-query -S 2>/dev/null | cut -d: -f1",
                           program),
               &said);

@@ -22,7 +22,8 @@ constexpr int port = 2222;
 constexpr const char* sshd = "/usr/sbin/sshd";
 
 fs::path new_folder() {
-  if (access(sshd, X_OK) != 0) throw std::runtime_error(fmt::format("{} is not there: openssh-server is not installed", sshd));
+  if (access(sshd, X_OK) != 0)
+    throw std::runtime_error(fmt::format("{} is not there: openssh-server is not installed", sshd));
   std::string name = fs::temp_directory_path() / "palpate-ssh-XXXXXX";
   if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
   return name;
@@ -30,7 +31,8 @@ fs::path new_folder() {
 
 void make_key(const fs::path& file) {
   std::string said;
-  if (run_command(fmt::format("ssh-keygen -q -t ed25519 -N '' -f {}", file.string()), &said) != 0) throw std::runtime_error(said);
+  if (run_command(fmt::format("ssh-keygen -q -t ed25519 -N '' -f {}", file.string()), &said) != 0)
+    throw std::runtime_error(said);
 }
 
 std::string text_of(const fs::path& file) {
@@ -66,15 +68,18 @@ SshHost::SshHost(const NetworkNamespace& space, const std::string& address)
         make_key(folder_ / "host_key");
         make_key(folder_ / "user_key");
         write("known_hosts", fmt::format("[{}]:{} {}", address, port, text_of(folder_ / "host_key.pub")));
-        write("config", fmt::format("Port {}\nListenAddress {}\nHostKey {}\nAuthorizedKeysFile {}\nPidFile none\nStrictModes no\n"
-                                    "UsePAM no\nPasswordAuthentication no\nPermitRootLogin prohibit-password\nSetEnv HOME={}\n",
-                                    port, address, (folder_ / "host_key").string(), (folder_ / "user_key.pub").string(), home().string()));
+        write("config",
+              fmt::format("Port {}\nListenAddress {}\nHostKey {}\nAuthorizedKeysFile {}\nPidFile none\nStrictModes no\n"
+                          "UsePAM no\nPasswordAuthentication no\nPermitRootLogin prohibit-password\nSetEnv HOME={}\n",
+                          port, address, (folder_ / "host_key").string(), (folder_ / "user_key.pub").string(),
+                          home().string()));
         return start(space, folder_);
       }()) {
   const Inside here(space);
   const auto limit = std::chrono::steady_clock::now() + 5s;
   while (!answers(address)) {
-    if (!daemon_.running() || std::chrono::steady_clock::now() > limit) throw std::runtime_error("sshd does not start: " + text_of(folder_ / "log"));
+    if (!daemon_.running() || std::chrono::steady_clock::now() > limit)
+      throw std::runtime_error("sshd does not start: " + text_of(folder_ / "log"));
     std::this_thread::sleep_for(10ms);
   }
 }
@@ -87,8 +92,8 @@ SshHost::~SshHost() {
 }
 
 std::string SshHost::ssh() const {
-  return fmt::format("ssh -q -F none -p {} -i {} -o IdentitiesOnly=yes -o BatchMode=yes -o UserKnownHostsFile={}", port, (folder_ / "user_key").string(),
-                     (folder_ / "known_hosts").string());
+  return fmt::format("ssh -q -F none -p {} -i {} -o IdentitiesOnly=yes -o BatchMode=yes -o UserKnownHostsFile={}", port,
+                     (folder_ / "user_key").string(), (folder_ / "known_hosts").string());
 }
 
 std::string SshHost::listing() const {
@@ -100,12 +105,17 @@ std::string SshHost::listing() const {
 }
 
 std::string SshHost::ssh_through(const std::string& name, const std::string& filter) const {
-  write(name, fmt::format("#!/bin/bash\nif mkdir $0.used 2>/dev/null; then exec {0} \"$@\" < <({1}); else exec {0} \"$@\"; fi\n", ssh(), filter));
+  write(name,
+        fmt::format(
+            "#!/bin/bash\nif mkdir $0.used 2>/dev/null; then exec {0} \"$@\" < <({1}); else exec {0} \"$@\"; fi\n",
+            ssh(), filter));
   fs::permissions(folder_ / name, fs::perms::owner_all);
   return folder_ / name;
 }
 
-void SshHost::write(const std::string& file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
+void SshHost::write(const std::string& file, const std::string& text) const {
+  std::ofstream(folder_ / file) << text;
+}
 
 int run_in(const NetworkNamespace& space, const std::string& command, std::string& said) {
   const Inside here(space);

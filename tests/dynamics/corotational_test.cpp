@@ -103,8 +103,7 @@ std::vector<Vector3d> homogeneous_forces(const ElasticMesh& mesh, const Matrix3d
   for (const auto& [i, j, k, l] : mesh.tetrahedra) {
     const auto tet = tet_gradients({mesh.rest[i], mesh.rest[j], mesh.rest[k], mesh.rest[l]});
     int corner = 0;
-    for (const int node : {i, j, k, l})
-      force[node] -= tet.volume * p * tet.gradient.row(corner++).transpose();
+    for (const int node : {i, j, k, l}) force[node] -= tet.volume * p * tet.gradient.row(corner++).transpose();
   }
   return force;
 }
@@ -117,9 +116,8 @@ TEST(Corotational, FlatAndInvertedElementsFollowTheNearestRotation) {
   const std::string before(kernels::active().name);
   for (const kernels::Table* table : kernels::available()) {
     kernels::use(table->name);
-    for (const auto& d :
-         {Vector3d(1.2, 0.9, 1), Vector3d(1, 0.5, 0), Vector3d(1, 0.8, -0.3), Vector3d(1, 0.02, -0.01),
-          Vector3d(1, 0.01, 0.01), Vector3d(0.3, 3e-4, 1e-4), Vector3d(1, 4e-7, -1e-8)}) {
+    for (const auto& d : {Vector3d(1.2, 0.9, 1), Vector3d(1, 0.5, 0), Vector3d(1, 0.8, -0.3), Vector3d(1, 0.02, -0.01),
+                          Vector3d(1, 0.01, 0.01), Vector3d(0.3, 3e-4, 1e-4), Vector3d(1, 4e-7, -1e-8)}) {
       const Matrix3d f = turn * axes * d.asDiagonal() * axes.transpose();
       set_field(model, affine_field(mesh, f));
       const auto expected = homogeneous_forces(mesh, f);
@@ -161,8 +159,7 @@ TEST(Corotational, NoModeExceedsTheLinearBoundWhenTurnedAndStrained) {
 
 /// A beam along x, clamped at x = 0, under a force at its far end.
 DynamicBody beam() {
-  return make_dynamic(make_block({0, 0, 0}, {0.16, 0.02, 0.02}, {16, 2, 2}), {1e4, 0.3, 1000},
-                      {fix_group("x0")});
+  return make_dynamic(make_block({0, 0, 0}, {0.16, 0.02, 0.02}, {16, 2, 2}), {1e4, 0.3, 1000}, {fix_group("x0")});
 }
 
 std::vector<Vector3d> settled_beam(const DynamicBody& body, const std::vector<Vector3d>& load) {
@@ -210,8 +207,7 @@ TEST(Corotational, TumblingFreePartKeepsEnergyAndMomentumForTenSeconds) {
   for (int n = 0; n < mesh.nodes(); ++n) centre += model.mass(n) * mesh.rest[n], mass += model.mass(n);
   centre /= mass;
   const Vector3d spin(6, 3, 1);
-  for (int n = 0; n < mesh.nodes(); ++n)
-    model.set_motion(n, Vector3d::Zero(), spin.cross(mesh.rest[n] - centre));
+  for (int n = 0; n < mesh.nodes(); ++n) model.set_motion(n, Vector3d::Zero(), spin.cross(mesh.rest[n] - centre));
   const auto momentum = [&] {
     Vector3d sum = Vector3d::Zero();
     for (int n = 0; n < mesh.nodes(); ++n)

@@ -11,8 +11,7 @@ struct DynamicBody {
   ElasticMesh mesh;
 };
 
-inline DynamicBody make_dynamic(TetMesh tets, const Material& material,
-                                const std::vector<FixedRegion>& fixed) {
+inline DynamicBody make_dynamic(TetMesh tets, const Material& material, const std::vector<FixedRegion>& fixed) {
   Body body;
   body.name = "organ";
   body.material = material;
@@ -29,8 +28,7 @@ inline DynamicBody make_dynamic(TetMesh tets, const Material& material,
 }
 
 /// A body of irregular tetrahedra that stands on its bottom.
-inline DynamicBody dynamic_block(const std::array<int, 3>& cells,
-                                 const Material& material = {2e3, 0.4, 1000}) {
+inline DynamicBody dynamic_block(const std::array<int, 3>& cells, const Material& material = {2e3, 0.4, 1000}) {
   const Eigen::Vector3d extent(0.01 * cells[0], 0.01 * cells[1], 0.01 * cells[2]);
   return make_dynamic(make_jittered_block(extent, cells, 0.15), material, {fix_group("bottom")});
 }

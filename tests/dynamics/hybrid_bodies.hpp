@@ -23,10 +23,9 @@ inline std::vector<int> random_part(const TetMesh& mesh, unsigned seed) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Eigen::Vector3d size = mesh.nodes.back();
   for (;;) {
-    const Eigen::Vector3d normal =
-        Eigen::Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
-    const Eigen::Vector3d centre = 0.5 * size + 0.4 * size.cwiseProduct(Eigen::Vector3d(
-                                                          uniform(random), uniform(random), uniform(random)));
+    const Eigen::Vector3d normal = Eigen::Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
+    const Eigen::Vector3d centre =
+        0.5 * size + 0.4 * size.cwiseProduct(Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
     const double radius = size.norm() * (0.25 + 0.1 * uniform(random));
     const bool sphere = seed % 2 == 0;
     std::vector<int> part;

@@ -71,8 +71,7 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
   HybridRun<double> run(archive, 0, 60, kGravity);
   run.run(1.0);
   const double opened = run.part.gap(run.model);
-  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->largest_gap,
-              1e3 * opened);
+  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->largest_gap, 1e3 * opened);
   EXPECT_GT(opened, 0);
   EXPECT_LT(opened, 5e-3);
 }
@@ -115,8 +114,8 @@ TEST(HybridInterface, FacesLieBetweenTheParts) {
     bool only_dynamic = true, only_quasi_static = true;
     for (int node : archive.surface.triangles[i]) {
       const bool shared = std::ranges::binary_search(hybrid.connection, node);
-      const bool moves = std::ranges::any_of(
-          archive.tetrahedra, [&](const auto& t) { return std::ranges::find(t, node) != t.end(); });
+      const bool moves =
+          std::ranges::any_of(archive.tetrahedra, [&](const auto& t) { return std::ranges::find(t, node) != t.end(); });
       only_dynamic &= moves;
       only_quasi_static &= shared || !moves;
     }
@@ -137,12 +136,10 @@ TEST(HybridRefusal, IsAPlainSentence) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   auto body = hybrid_body({});
   body.hybrid->regions[0].box = Box{{-1, -1, -1}, {1, 1, 1}};
-  EXPECT_EQ(
-      refusal(body, mesh),
-      "body 'organ': [body.hybrid] leaves no quasi-static part: the regions hold every element of the mesh");
-  body.hybrid->regions[0].box = Box{{1, 1, 1}, {2, 2, 2}};
   EXPECT_EQ(refusal(body, mesh),
-            "body 'organ': [[body.hybrid.region]] number 1 selects no element of the mesh");
+            "body 'organ': [body.hybrid] leaves no quasi-static part: the regions hold every element of the mesh");
+  body.hybrid->regions[0].box = Box{{1, 1, 1}, {2, 2, 2}};
+  EXPECT_EQ(refusal(body, mesh), "body 'organ': [[body.hybrid.region]] number 1 selects no element of the mesh");
   body.hybrid->regions[0].box = Box{{-1, -1, 0.02}, {1, 1, 1}};
   body.fixed.clear();
   EXPECT_EQ(refusal(body, mesh), "body 'organ': unfixed body: it has no [[body.fixed]] section");
@@ -164,8 +161,7 @@ TEST(HybridRefusal, OfAQuasiStaticPartThatWouldFloat) {
     stack.body.fixed[0].where.box = Box{{-1, -1, 0.059}, {1, 1, 1}};
     const auto sentence = refusal(stack.body, stack.fine, &stack.coarse);
     if (by_an_edge) {
-      EXPECT_NE(sentence.find("[body.hybrid] leaves 192 quasi-static tetrahedra that would float"),
-                std::string::npos)
+      EXPECT_NE(sentence.find("[body.hybrid] leaves 192 quasi-static tetrahedra that would float"), std::string::npos)
           << sentence;
     } else {
       EXPECT_EQ(sentence, "");

@@ -83,8 +83,7 @@ Pressed press_and_compare(int contacts, Touch touch) {
     for (int axis = touch == Touch::sliding ? 2 : 0; axis < 3; ++axis) {
       constraints.push_back({{}, motion[axis]});
       for (int v = 0; v < 3; ++v)
-        constraints.back().terms.push_back(
-            {map.node_number[contact.anchor.nodes[v]], axis, contact.anchor.weights[v]});
+        constraints.back().terms.push_back({map.node_number[contact.anchor.nodes[v]], axis, contact.anchor.weights[v]});
     }
   }
   for (int i = 0; i < map.touchable; i += 7) {  // on both parts
@@ -150,8 +149,8 @@ TEST(HybridContact, FrequencyBoundCoversContactsAnywhere) {
       if (!run.part.law().full()) {
         auto contact = press(triangle, map, {0, 0, -1e-3});
         if (where == Where::border) {  // nearly all its weight on one connection node
-          const int at = static_cast<int>(
-              std::ranges::find_if(triangle, [&](int n) { return !run.part.owns(n); }) - triangle.begin());
+          const int at = static_cast<int>(std::ranges::find_if(triangle, [&](int n) { return !run.part.owns(n); }) -
+                                          triangle.begin());
           contact.anchor.weights.setConstant(0.01);
           contact.anchor.weights[at] = 0.98;
           contact.target = anchor_position(contact.anchor, map.position) - Vector3d(0, 0, 1e-3);
@@ -167,8 +166,7 @@ TEST(HybridContact, FrequencyBoundCoversContactsAnywhere) {
     MatrixXd stiffness = MatrixXd::Zero(3 * nodes, 3 * nodes);
     for (int i = 0; i < nodes; ++i)
       for (int j = 0; j < nodes; ++j)
-        stiffness.block<3, 3>(3 * i, 3 * j) =
-            i == j ? run.model.vertex_tensor(i) : run.model.edge_tensor(i, j);
+        stiffness.block<3, 3>(3 * i, 3 * j) = i == j ? run.model.vertex_tensor(i) : run.model.edge_tensor(i, j);
     const auto connection = run.part.connection();
     const auto size = static_cast<Eigen::Index>(3 * connection.size());
     for (Eigen::Index c = 0; c < size; ++c) {

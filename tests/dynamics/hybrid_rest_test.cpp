@@ -18,8 +18,7 @@ constexpr double kTime = 0.8;    // [s] from the start to rest
 
 /// Point loads [N] spread over touchable nodes of the chosen parts.
 template <class Run>
-std::vector<Vector3d> put_point_loads(Run& run, bool on_quasi_static, bool on_dynamic,
-                                      std::size_t mesh_nodes) {
+std::vector<Vector3d> put_point_loads(Run& run, bool on_quasi_static, bool on_dynamic, std::size_t mesh_nodes) {
   std::vector<Vector3d> load(mesh_nodes, Vector3d::Zero());
   for (int i = 0; i < run.archive.surface.touchable; i += 5) {
     const bool owned = run.part.owns(i);
@@ -59,10 +58,8 @@ double worst_difference(const Case& loads) {
   return worst;
 }
 
-const Case kCases[] = {{kGravity, false, false},
-                       {Vector3d::Zero(), true, false},
-                       {Vector3d::Zero(), false, true},
-                       {kGravity, true, true}};
+const Case kCases[] = {
+    {kGravity, false, false}, {Vector3d::Zero(), true, false}, {Vector3d::Zero(), false, true}, {kGravity, true, true}};
 
 TEST(HybridRest, IsTheQuasiStaticStateForEveryBorderAndLoadInDouble) {
   for (const Case& one : kCases) EXPECT_LT(worst_difference<double>(one), 1e-6);
@@ -84,12 +81,10 @@ double difference_from_tensor_mass() {
   const double dt = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 0);
   for (int i = 0; i < kTime / dt; ++i) model.step(dt);
   std::vector<Vector3d> of_node(mesh.nodes.size(), Vector3d::Zero());
-  for (int i = 0; i < whole.surface.size(); ++i)
-    of_node[whole.surface.node_number[i]] = model.displacement(i);
+  for (int i = 0; i < whole.surface.size(); ++i) of_node[whole.surface.node_number[i]] = model.displacement(i);
   double worst = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    HybridRun<Scalar> run(precompute(hybrid_body(random_part(mesh, seed), kGravity), mesh), 0, kDamping,
-                          kGravity);
+    HybridRun<Scalar> run(precompute(hybrid_body(random_part(mesh, seed), kGravity), mesh), 0, kDamping, kGravity);
     run.run(kTime);
     worst = std::max(worst, static_difference(run, {of_node, {}}));
   }
@@ -143,8 +138,7 @@ TEST(HybridRest, SurfaceForThePictureIsThatOfTheNodes) {
   run.part.superpose(picture);
   std::vector<Vector3d> shown, exact;
   for (int i = 0; i < run.archive.surface.size(); ++i) {
-    const bool ours =
-        run.part.owns(i) || std::ranges::find(run.part.connection(), i) != run.part.connection().end();
+    const bool ours = run.part.owns(i) || std::ranges::find(run.part.connection(), i) != run.part.connection().end();
     if (!ours) {
       EXPECT_EQ(picture[i], Eigen::Vector3f::Constant(7));
       continue;

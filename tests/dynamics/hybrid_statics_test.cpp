@@ -44,8 +44,7 @@ Coupled couple(const Archive& archive, const Vector3d& gravity) {
   for (int i = 0; i < size; ++i) place[3 * system.dofs[i].node + system.dofs[i].axis] = i;
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
     const auto& t = mesh.tetrahedra[e];
-    const auto gradients =
-        tet_gradients({mesh.rest[t[0]], mesh.rest[t[1]], mesh.rest[t[2]], mesh.rest[t[3]]});
+    const auto gradients = tet_gradients({mesh.rest[t[0]], mesh.rest[t[1]], mesh.rest[t[2]], mesh.rest[t[3]]});
     const auto& material = mesh.material(static_cast<int>(e));
     const auto element = element_stiffness(gradients, lame(material));
     for (int i = 0; i < 12; ++i) {
@@ -60,8 +59,8 @@ Coupled couple(const Archive& archive, const Vector3d& gravity) {
   const HybridTensors& hybrid = *archive.hybrid;
   for (std::size_t i = 0; i < hybrid.dofs.size(); ++i) {
     const int r = place[3 * hybrid.dofs[i].node + hybrid.dofs[i].axis];
-    const auto k = std::find(hybrid.connection.begin(), hybrid.connection.end(), hybrid.dofs[i].node) -
-                   hybrid.connection.begin();
+    const auto k =
+        std::find(hybrid.connection.begin(), hybrid.connection.end(), hybrid.dofs[i].node) - hybrid.connection.begin();
     system.mass[r] += hybrid.mass[k];
     system.load[r] += hybrid.reaction[i];
     for (std::size_t j = 0; j < hybrid.dofs.size(); ++j) {
@@ -83,8 +82,7 @@ TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
     const VectorXd u = system.stiffness.llt().solve(system.load);
     const double size = u.cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < u.size(); ++i)
-      ASSERT_NEAR(u[i],
-                  direct.displacement[archive.surface.node_number[system.dofs[i].node]][system.dofs[i].axis],
+      ASSERT_NEAR(u[i], direct.displacement[archive.surface.node_number[system.dofs[i].node]][system.dofs[i].axis],
                   1e-9 * size)
           << "border " << seed;
     const HybridTensors& hybrid = *archive.hybrid;
@@ -93,10 +91,8 @@ TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       double value = hybrid.sag[r];
       for (std::size_t c = 0; c < hybrid.dofs.size(); ++c)
-        value += hybrid.follow[r * hybrid.dofs.size() + c] *
-                 u[system.place(hybrid.dofs[c].node, hybrid.dofs[c].axis)];
-      ASSERT_NEAR(value, direct.displacement[archive.surface.node_number[rows[r].node]][rows[r].axis],
-                  1e-9 * size)
+        value += hybrid.follow[r * hybrid.dofs.size() + c] * u[system.place(hybrid.dofs[c].node, hybrid.dofs[c].axis)];
+      ASSERT_NEAR(value, direct.displacement[archive.surface.node_number[rows[r].node]][rows[r].axis], 1e-9 * size)
           << "border " << seed;
     }
   }
@@ -109,8 +105,7 @@ TEST(HybridTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
     Vector3d centre = Vector3d::Zero();
     for (int node : mesh.tetrahedra[e]) centre += mesh.nodes[node] / 4;
-    if (centre.z() < 0.02)
-      upper.push_back(e);  // the lower half moves, the upper hangs on it without a fixed node
+    if (centre.z() < 0.02) upper.push_back(e);  // the lower half moves, the upper hangs on it without a fixed node
   }
   const auto archive = precompute(hybrid_body(upper, kGravity), mesh);
   const auto problem = make_static_problem(hybrid_body(upper, kGravity), mesh);
@@ -120,8 +115,7 @@ TEST(HybridTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
   for (std::size_t e = 0; e < part.tetrahedra.size(); ++e) {
     const auto& t = part.tetrahedra[e];
     moving += part.material(static_cast<int>(e)).density *
-              tet_gradients({part.rest[t[0]], part.rest[t[1]], part.rest[t[2]], part.rest[t[3]]}).volume *
-              kGravity;
+              tet_gradients({part.rest[t[0]], part.rest[t[1]], part.rest[t[2]], part.rest[t[3]]}).volume * kGravity;
   }
   for (std::size_t i = 0; i < archive.hybrid->dofs.size(); ++i)
     reaction[archive.hybrid->dofs[i].axis] += archive.hybrid->reaction[i];
@@ -162,8 +156,7 @@ TEST(HybridTensors, CouplingIsSymmetricAndTakesNoEnergyOut) {
     matrix.col(c) = -force;
   }
   EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
-  const VectorXd values =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd values = Eigen::SelfAdjointEigenSolver<MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
   EXPECT_GT(values.minCoeff(), -1e-10 * values.maxCoeff());
 }
 

@@ -92,8 +92,7 @@ inline double stiffest_mode(DynamicModel& model, int iterations = 200) {
   double value = 0;
   const double step = 1e-7;
   for (int i = 0; i < iterations; ++i) {
-    for (std::size_t n = 0; n < u.size(); ++n)
-      model.set_motion(n, u[n] + step * mode[n], Eigen::Vector3d::Zero());
+    for (std::size_t n = 0; n < u.size(); ++n) model.set_motion(n, u[n] + step * mode[n], Eigen::Vector3d::Zero());
     double product = 0, norm = 0, next = 0;
     std::vector<Eigen::Vector3d> image;
     for (std::size_t n = 0; n < u.size(); ++n) {

@@ -18,8 +18,8 @@ std::vector<testing::DynamicBody> bodies() {
   made.push_back(testing::make_dynamic(testing::make_organ({7, 6, 5}), {2e3, 0.45, 1000}, bottom));
   made.push_back(testing::make_dynamic(make_cylinder(0.02, 0.06, 3, 6), {1e6, 0.3, 1100}, bottom));
   made.push_back(testing::dynamic_block({5, 5, 5}, {500, 0.49, 900}));
-  made.push_back(testing::make_dynamic(make_block_of_five({0, 0, 0}, {0.08, 0.06, 0.05}, {8, 6, 5}),
-                                       {5e3, 0.1, 1000}, bottom));
+  made.push_back(
+      testing::make_dynamic(make_block_of_five({0, 0, 0}, {0.08, 0.06, 0.05}, {8, 6, 5}), {5e3, 0.1, 1000}, bottom));
   auto& layered = made.back().mesh;  // of two materials
   layered.materials.push_back({4e4, 0.4, 1500});
   for (std::size_t t = 0; t < layered.tetrahedra.size(); ++t) layered.material_of.push_back(t % 3 == 0);
@@ -40,8 +40,7 @@ ElasticMesh remaining(const ElasticMesh& mesh, const CutMesh& cut) {
 template <class Scalar>
 void expect_same_tensors(const TensorMass<Scalar>& cut, const TensorMass<Scalar>& fresh,
                          std::span<const std::array<int, 2>> edges) {
-  for (const auto& [i, j] : edges)
-    ASSERT_EQ(cut.edge_tensor(i, j), fresh.edge_tensor(i, j)) << i << ", " << j;
+  for (const auto& [i, j] : edges) ASSERT_EQ(cut.edge_tensor(i, j), fresh.edge_tensor(i, j)) << i << ", " << j;
   for (int n = 0; n < cut.nodes(); ++n) {
     ASSERT_EQ(cut.mass(n), fresh.mass(n));
     ASSERT_EQ(cut.vertex_tensor(n), fresh.vertex_tensor(n));

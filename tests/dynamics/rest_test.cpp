@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Gravity, a pull at the last node and a push in the middle.
-std::vector<Vector3d> loads(const testing::DynamicBody& body, const DynamicModel& model,
-                            const Vector3d& gravity, double force) {
+std::vector<Vector3d> loads(const testing::DynamicBody& body, const DynamicModel& model, const Vector3d& gravity,
+                            double force) {
   std::vector<Vector3d> load;
   for (int n = 0; n < model.nodes(); ++n) load.push_back(model.mass(n) * gravity);
   load.back() += force * Vector3d(0, 1, 2);
@@ -38,13 +38,11 @@ testing::DynamicBody box(const ElasticMesh& mesh) {
   std::vector<int> held;
   for (int n = 0; n < mesh.nodes(); ++n)
     if (mesh.fixed[n][0]) held.push_back(n);
-  return testing::make_dynamic({mesh.rest, mesh.tetrahedra, {}}, mesh.materials[0],
-                               {testing::fix_nodes(held)});
+  return testing::make_dynamic({mesh.rest, mesh.tetrahedra, {}}, mesh.materials[0], {testing::fix_nodes(held)});
 }
 
 TEST(TensorMassAtRest, IsTheDirectSolution) {
-  for (const Material& material :
-       {Material{1e3, 0.3, 1000}, Material{2e3, 0.45, 1000}, Material{1e5, 0.49, 1100}}) {
+  for (const Material& material : {Material{1e3, 0.3, 1000}, Material{2e3, 0.45, 1000}, Material{1e5, 0.49, 1100}}) {
     const auto body = testing::dynamic_block({6, 5, 4}, material);
     const double slowest = 1.5 / 0.04 * std::sqrt(material.young / material.density) / 2;  // [rad/s], about
     EXPECT_LT(error_at_rest<double>(body, 2 * slowest, 25 / slowest), 1e-6);

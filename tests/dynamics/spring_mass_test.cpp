@@ -174,8 +174,7 @@ TEST(SpringMass, StepAndRemovalTakeNoMemory) {
 
 TEST(SpringMass, FixedAxesStandStillAndStateRestoresTheMotion) {
   const DynamicBody body = dynamic_block({2, 2, 2});
-  SpringMass<float> first(body.mesh, Integrator::semi_implicit, 2),
-      second(body.mesh, Integrator::semi_implicit, 2);
+  SpringMass<float> first(body.mesh, Integrator::semi_implicit, 2), second(body.mesh, Integrator::semi_implicit, 2);
   for (auto* model : {&first, &second}) model->set_gravity({1, 0, -9.81});
   for (int i = 0; i < 50; ++i) first.step(1e-4);
   second.set_state(first.state());
@@ -214,8 +213,7 @@ TEST(SpringMass, CoupledNodesFeelTheOthersForceInEveryStage) {
   EXPECT_DOUBLE_EQ(model.frequency_bound(), std::max(alone, std::sqrt(stiffness / mass)));
   model.set_load(node, {0.01, 0, -0.02});
   settle(model, 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 60), 3000);
-  const Vector3d residual =
-      model.load(node) + model.elastic_force(node) - stiffness * model.displacement(node);
+  const Vector3d residual = model.load(node) + model.elastic_force(node) - stiffness * model.displacement(node);
   EXPECT_LT(residual.norm(), 1e-6 * model.load(node).norm());
   EXPECT_GT(model.displacement(node).norm(), 1e-5);
   model.couple(nullptr, {}, {}, 0);

@@ -49,8 +49,7 @@ TEST(LargestStep, KeepsEveryFrequencyUpToTheBoundFromGrowing) {
       const double h = largest_step(integrator, 1000, damping);
       for (double share : {0.05, 0.3, 0.6, 0.8, 0.9, 0.97, 0.999999})
         EXPECT_LE(worst_growth(integrator, 1000, damping, share * h), 1 + 1e-12)
-            << "integrator " << static_cast<int>(integrator) << ", damping " << damping << ", share "
-            << share;
+            << "integrator " << static_cast<int>(integrator) << ", damping " << damping << ", share " << share;
     }
 }
 
@@ -81,9 +80,8 @@ TEST(ElementFrequency, IsTheLargestEigenvalueOfTheElement) {
         const auto tet = tet_gradients(random_tetrahedron(random, flatness));
         const Material material{2e3, poisson, 1100};
         const auto k = element_stiffness(tet, lame(material));
-        const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
-                                   .eigenvalues()
-                                   .maxCoeff();
+        const double largest =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
         const double exact = 4 * largest / (1100 * tet.volume);
         EXPECT_NEAR(element_frequency_squared(tet, lame(material), 1100) / exact, 1, 1e-9);
       }

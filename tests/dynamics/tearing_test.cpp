@@ -42,8 +42,7 @@ TEST(Tearing, UniformGrowthChangesVolumeByItsCube) {
 TEST(Tearing, StretchAlongAnEdgeHasItsClosedForm) {
   const double s = 1.5;  // along x: edges 0-1, 1-2 and 1-3 grow, the others keep their length
   const Corners present = moved(corner, Vector3d(s, 1, 1).asDiagonal());
-  const double along = s - 1, to_y = std::sqrt((4 * s * s + 9) / 13) - 1,
-               to_z = std::sqrt((4 * s * s + 16) / 20) - 1;
+  const double along = s - 1, to_y = std::sqrt((4 * s * s + 9) / 13) - 1, to_z = std::sqrt((4 * s * s + 16) / 20) - 1;
   EXPECT_NEAR(volume_change(corner, present), s - 1, 1e-14);
   EXPECT_NEAR(mean_elongation(corner, present), (along + to_y + to_z) / 6, 1e-14);
   EXPECT_NEAR(largest_elongation(corner, present), along, 1e-14);

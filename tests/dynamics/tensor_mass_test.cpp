@@ -74,19 +74,17 @@ TYPED_TEST(TensorMassOf, TensorsAreThoseOfTheAssembledMatrix) {
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * nodes, 3 * nodes);
   for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
     const auto& tet = body.mesh.tetrahedra[t];
-    const auto gradients = tet_gradients(
-        {body.mesh.rest[tet[0]], body.mesh.rest[tet[1]], body.mesh.rest[tet[2]], body.mesh.rest[tet[3]]});
+    const auto gradients =
+        tet_gradients({body.mesh.rest[tet[0]], body.mesh.rest[tet[1]], body.mesh.rest[tet[2]], body.mesh.rest[tet[3]]});
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < 4; ++b)
-        expected.block<3, 3>(3 * tet[a], 3 * tet[b]) +=
-            stiffness_block(gradients, lame(body.mesh.material(0)), a, b);
+        expected.block<3, 3>(3 * tet[a], 3 * tet[b]) += stiffness_block(gradients, lame(body.mesh.material(0)), a, b);
   }
   const double tolerance = this->kRounding * expected.cwiseAbs().maxCoeff();
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < nodes; ++j) {
       const Eigen::Matrix3d tensor = i == j ? model.vertex_tensor(i) : model.edge_tensor(i, j);
-      ASSERT_LT((tensor - expected.block<3, 3>(3 * i, 3 * j)).cwiseAbs().maxCoeff(), tolerance)
-          << i << ", " << j;
+      ASSERT_LT((tensor - expected.block<3, 3>(3 * i, 3 * j)).cwiseAbs().maxCoeff(), tolerance) << i << ", " << j;
       if (i == j) continue;
       ASSERT_EQ(tensor, model.edge_tensor(j, i).transpose());
     }
@@ -103,8 +101,7 @@ TYPED_TEST(TensorMassOf, RestAndTranslationGiveExactlyNoForce) {
 TYPED_TEST(TensorMassOf, EveryIntegratorEqualsTheTextbookStepByStep) {
   const DynamicBody body = dynamic_block({3, 2, 3});
   const int nodes = body.mesh.nodes();
-  const Field u = random_field(nodes, 1e-3, 5), v = random_field(nodes, 0.1, 6),
-              load = random_field(nodes, 1e-3, 7);
+  const Field u = random_field(nodes, 1e-3, 5), v = random_field(nodes, 0.1, 6), load = random_field(nodes, 1e-3, 7);
   testing::DenseCoupling coupling({1, 5, 17, nodes - 1}, 9);
   const std::vector<double> added(coupling.nodes.size(), 2e-4);
   for (bool coupled : {false, true})
@@ -159,8 +156,7 @@ TYPED_TEST(TensorMassOf, StateGivesTheSameMotionAgain) {
   second.set_state(kept);
   for (auto* model : {&first, &second})
     for (int i = 0; i < 50; ++i) model->step(1e-3);
-  EXPECT_TRUE(
-      std::equal(first.state().begin(), first.state().end(), second.state().begin(), second.state().end()));
+  EXPECT_TRUE(std::equal(first.state().begin(), first.state().end(), second.state().begin(), second.state().end()));
   EXPECT_FALSE(std::equal(kept.begin(), kept.end(), second.state().begin(), second.state().end()));
   EXPECT_THROW(second.set_state(std::span(kept).first(8)), std::runtime_error);
 }
@@ -168,13 +164,12 @@ TYPED_TEST(TensorMassOf, StateGivesTheSameMotionAgain) {
 TYPED_TEST(TensorMassOf, EnergyIsElasticPlusKinetic) {
   const DynamicBody body = dynamic_block({2, 2, 2});
   TensorMass<TypeParam> model(body.mesh, Integrator::rk4, 0);
-  const Field u = random_field(body.mesh.rest.size(), 1e-3, 5),
-              v = random_field(body.mesh.rest.size(), 0.1, 6);
+  const Field u = random_field(body.mesh.rest.size(), 1e-3, 5), v = random_field(body.mesh.rest.size(), 0.1, 6);
   for (int n = 0; n < model.nodes(); ++n) model.set_motion(n, u[n], v[n]);
   double expected = 0;
   for (int n = 0; n < model.nodes(); ++n)
-    expected += 0.5 * model.mass(n) * model.velocity(n).squaredNorm() -
-                0.5 * model.displacement(n).dot(model.elastic_force(n));
+    expected +=
+        0.5 * model.mass(n) * model.velocity(n).squaredNorm() - 0.5 * model.displacement(n).dot(model.elastic_force(n));
   EXPECT_NEAR(model.energy(), expected, 1e-12 * expected);
 }
 

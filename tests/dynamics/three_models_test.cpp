@@ -24,12 +24,11 @@ TEST(ThreeModels, PrecomputedAndTensorMassEqualTheDirectSolve) {
 TEST(ThreeModels, SinglePrecisionRestsWhereDoubleDoes) {
   auto solid = make_loaded_solid(Meshing::five, kSoft);
   for (auto& force : solid.load) force *= 10;  // strains of some 0.1 %
-  EXPECT_LT(field_error(solid, rest_field<SpringMass<float>>(solid, {}, 1e-4),
-                        rest_field<SpringMass<double>>(solid)),
+  EXPECT_LT(field_error(solid, rest_field<SpringMass<float>>(solid, {}, 1e-4), rest_field<SpringMass<double>>(solid)),
             1e-3);
-  EXPECT_LT(field_error(solid, rest_field<Corotational<float>>(solid, {}, 1e-4),
-                        rest_field<Corotational<double>>(solid)),
-            1e-3);
+  EXPECT_LT(
+      field_error(solid, rest_field<Corotational<float>>(solid, {}, 1e-4), rest_field<Corotational<double>>(solid)),
+      1e-3);
 }
 
 TEST(ThreeModels, SpringsAreOffByTenPerCentAndMoreWhereTheirPoissonRatioIsNotTheTissues) {

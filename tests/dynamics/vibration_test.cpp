@@ -22,8 +22,8 @@ struct Modes {
     Eigen::VectorXd mass(dofs.size());
     for (int i = 0; i < dofs.size(); ++i) mass[i] = lumped.mass(dofs.dof(i) / 3);
     const Eigen::MatrixXd stiffness = lower.selfadjointView<Eigen::Lower>();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-        stiffness, Eigen::MatrixXd(mass.asDiagonal()));
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness,
+                                                                           Eigen::MatrixXd(mass.asDiagonal()));
     frequency = solver.eigenvalues().cwiseSqrt();
     for (int k : {0, 1, 2, 3, 4}) {
       shape.emplace_back(body.mesh.rest.size(), Vector3d::Zero());
@@ -77,18 +77,16 @@ TEST(Vibration, LowestFrequenciesAreThoseOfTheEigenproblem) {
 TEST(Vibration, ABarSwingsAtItsClosedFormFrequency) {
   const int cells = 24;
   TetMesh tets = make_block({0, 0, 0}, {0.01, 0.01, 0.01 * cells}, {1, 1, cells});
-  const auto body =
-      testing::make_dynamic(tets, {4e3, 0, 1000},
-                            {testing::fix_group("bottom"), testing::fix_group("x0", {true, true, false}),
-                             testing::fix_group("x1", {true, true, false})});
+  const auto body = testing::make_dynamic(tets, {4e3, 0, 1000},
+                                          {testing::fix_group("bottom"), testing::fix_group("x0", {true, true, false}),
+                                           testing::fix_group("x1", {true, true, false})});
   TensorMass<float> model(body.mesh, Integrator::rk4, 0);
   const double length = 0.01 * cells, wave = std::numbers::pi / (2 * length);
   Field shape;
   for (const Vector3d& x : body.mesh.rest) shape.emplace_back(0, 0, 1e-3 * std::sin(wave * x.z()));
   set_displacement(model, shape);
   const double frequency = wave * std::sqrt(4e3 / 1000);
-  const double period =
-      measured_period(model, shape, 0.1 * largest_step(Integrator::rk4, model.frequency_bound(), 0));
+  const double period = measured_period(model, shape, 0.1 * largest_step(Integrator::rk4, model.frequency_bound(), 0));
   EXPECT_NEAR(period * frequency / (2 * std::numbers::pi), 1, 1e-3);
 }
 
@@ -111,8 +109,7 @@ TEST(Vibration, Rk4LosesEnergyAtTheFifthPowerOfTheStep) {
   const auto body = testing::dynamic_block({3, 3, 3});
   const auto start = testing::random_field(body.mesh.rest.size(), 1e-4, 4);
   const double h =
-      largest_step(Integrator::rk4, TensorMass<double>(body.mesh, Integrator::rk4, 0).frequency_bound(), 0) /
-      8;
+      largest_step(Integrator::rk4, TensorMass<double>(body.mesh, Integrator::rk4, 0).frequency_bound(), 0) / 8;
   const double coarse = energy_change(body, start, Integrator::rk4, h, 256 * h);
   const double fine = energy_change(body, start, Integrator::rk4, h / 2, 256 * h);
   EXPECT_LT(coarse, 2e-3);
@@ -147,8 +144,7 @@ TEST(Vibration, TheLargestStepOfTheTrueFrequencyDividesBoundedFromGrowingMotion)
     for (Integrator integrator : {Integrator::rk4, Integrator::semi_implicit, Integrator::forward_euler}) {
       const double h = largest_step(integrator, highest, damping);
       if (h == 0) continue;
-      EXPECT_LT(growth(body, integrator, damping, 0.99 * h), 20)
-          << static_cast<int>(integrator) << ", " << damping;
+      EXPECT_LT(growth(body, integrator, damping, 0.99 * h), 20) << static_cast<int>(integrator) << ", " << damping;
       // Forward Euler with a small step grows slowly.
       const double beyond = integrator == Integrator::forward_euler && damping < 0.3 * highest ? 1.5 : 1.01;
       EXPECT_FALSE(growth(body, integrator, damping, beyond * h) < 1e3)
@@ -158,8 +154,7 @@ TEST(Vibration, TheLargestStepOfTheTrueFrequencyDividesBoundedFromGrowingMotion)
 
 TEST(Vibration, TheBoundLiesAboveTheHighestFrequency) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
-    const double jitter = seed % 2 ? 0.1 : 0.3, poisson = seed % 3 ? 0.45 : 0.1,
-                 flatness = seed % 4 ? 1 : 0.05;
+    const double jitter = seed % 2 ? 0.1 : 0.3, poisson = seed % 3 ? 0.45 : 0.1, flatness = seed % 4 ? 1 : 0.05;
     const auto tets = testing::make_jittered_block({0.03, 0.04, 0.03 * flatness}, {3, 4, 3}, jitter, seed);
     const auto body = testing::make_dynamic(tets, {3e3, poisson, 1000}, {testing::fix_group("bottom")});
     const double bound = TensorMass<float>(body.mesh, Integrator::rk4, 0).frequency_bound();

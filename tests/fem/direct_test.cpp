@@ -59,8 +59,7 @@ std::vector<Constraint> some_holds(const StaticProblem& problem, int count) {
   const auto nodes = extract_surface(problem.mesh).nodes;
   for (std::size_t i = 0; i < nodes.size() && static_cast<int>(holds.size()) < 3 * count; i += 3) {
     if (!problem.dofs.is_free(nodes[i], 0)) continue;
-    for (int axis = 0; axis < 3; ++axis)
-      holds.push_back(hold(nodes[i], axis, 1e-3 * std::sin(7.0 * i + 2.0 * axis)));
+    for (int axis = 0; axis < 3; ++axis) holds.push_back(hold(nodes[i], axis, 1e-3 * std::sin(7.0 * i + 2.0 * axis)));
   }
   return holds;
 }
@@ -69,8 +68,7 @@ TEST(Direct, EqualsTheAugmentedSystemOfAnotherLibrary) {
   for (double poisson : {0.0, 0.3, 0.45, 0.499})
     for (double young : {1.0, 1e4, 1e12})
       for (int count : {1, 3, 12}) {
-        const auto problem =
-            make_static_problem(testing::make_body(young, poisson), testing::make_organ({5, 4, 3}));
+        const auto problem = make_static_problem(testing::make_body(young, poisson), testing::make_organ({5, 4, 3}));
         const auto holds = some_holds(problem, count);
         ASSERT_EQ(holds.size(), 3u * count);
         const auto direct = solve_direct(problem, holds), augmented = solve_augmented(problem, holds);
@@ -95,8 +93,7 @@ TEST(Direct, HoldsExactlyAndBalancesForcesAndMoments) {
   const auto problem = make_static_problem(testing::make_body(), testing::make_organ({5, 4, 3}));
   const auto holds = some_holds(problem, 3);
   const auto solution = solve_direct(problem, holds);
-  for (const auto& one : holds)
-    EXPECT_EQ(solution.displacement[one.terms[0].node][one.terms[0].axis], one.value);
+  for (const auto& one : holds) EXPECT_EQ(solution.displacement[one.terms[0].node][one.terms[0].axis], one.value);
   Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
   double size = 0;
   for (std::size_t i = 0; i < solution.force.size(); ++i) {

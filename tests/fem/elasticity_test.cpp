@@ -11,9 +11,8 @@ namespace {
 using Displacement = Eigen::Matrix<double, 4, 3>;
 using Stiffness = Eigen::Matrix<double, 12, 12>;
 
-const std::array<Eigen::Vector3d, 4> kVertices{
-    Eigen::Vector3d{0.1, -0.2, 0.05}, Eigen::Vector3d{1.2, 0.1, -0.1}, Eigen::Vector3d{0.3, 1.1, 0.2},
-    Eigen::Vector3d{0.2, 0.3, 0.9}};
+const std::array<Eigen::Vector3d, 4> kVertices{Eigen::Vector3d{0.1, -0.2, 0.05}, Eigen::Vector3d{1.2, 0.1, -0.1},
+                                               Eigen::Vector3d{0.3, 1.1, 0.2}, Eigen::Vector3d{0.2, 0.3, 0.9}};
 const Material kMaterial{1000, 0.4, 1000};
 
 Eigen::Matrix<double, 12, 1> as_vector(const Displacement& u) {
@@ -92,8 +91,8 @@ TEST_F(Elasticity, StiffnessIsTheSecondDerivativeOfTheEnergy) {
   };
   for (int a = 0; a < 12; ++a)
     for (int b = 0; b < 12; ++b) {
-      const double derivative = (energy(a, step, b, step) - energy(a, step, b, -step) -
-                                 energy(a, -step, b, step) + energy(a, -step, b, -step)) /
+      const double derivative = (energy(a, step, b, step) - energy(a, step, b, -step) - energy(a, -step, b, step) +
+                                 energy(a, -step, b, -step)) /
                                 (4 * step * step);
       EXPECT_NEAR(derivative, k(a, b), 1e-9 * k.norm()) << a << " " << b;
     }

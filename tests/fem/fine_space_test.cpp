@@ -60,8 +60,8 @@ TEST(FineStiffness, IsTheDerivativeOfTheInternalForceAndRigidMotionsMakeNone) {
     const auto* pressures = problem.pressures ? &*problem.pressures : nullptr;
     std::vector<char> used(problem.space.nodes.size(), 1);
     const DofMap all(used);
-    const auto stiffness = assemble_stiffness(problem.space, problem.materials, pressures, all,
-                                              fine_graph(problem.space, pressures));
+    const auto stiffness =
+        assemble_stiffness(problem.space, problem.materials, pressures, all, fine_graph(problem.space, pressures));
     std::vector<Vector3d> u, turn;
     for (std::size_t i = 0; i < problem.space.nodes.size(); ++i) {
       u.push_back({std::sin(3.0 * i), std::cos(5.0 * i), std::sin(2.0 * i + 1)});
@@ -88,7 +88,8 @@ std::vector<Vector3d> hat_centroids(const TetMesh& mesh) {
       for (int b : t) centroid[a] += size / (a == b ? 6 : 12) * mesh.nodes[b];
     }
   }
-  for (std::size_t i = 0; i < area.size(); ++i) centroid[i] = area[i] > 0 ? Vector3d(centroid[i] / area[i]) : mesh.nodes[i];
+  for (std::size_t i = 0; i < area.size(); ++i)
+    centroid[i] = area[i] > 0 ? Vector3d(centroid[i] / area[i]) : mesh.nodes[i];
   return centroid;
 }
 
@@ -164,15 +165,16 @@ TEST(Pressures, AreAllFeltOnIrregularMeshes) {
       const auto& pressures = *problem.pressures;
       auto none = pressures;
       none.modulus.setZero();
-      const auto stiffness = assemble_stiffness(problem.space, problem.materials, &none, problem.dofs,
-                                                fine_graph(problem.space, &none));
+      const auto stiffness =
+          assemble_stiffness(problem.space, problem.materials, &none, problem.dofs, fine_graph(problem.space, &none));
       Factorisation factor(stiffness);
       factor.factorise(stiffness);
       Eigen::MatrixXd divergence = Eigen::MatrixXd::Zero(problem.dofs.size(), pressures.modulus.size());
       for (Eigen::Index a = 0; a < divergence.cols(); ++a) {
         const double scale = std::sqrt(pressures.modulus[a] / lame({1, 0.25, 1}).lambda);  // 1/sqrt(volume)
         for (Eigen::SparseMatrix<double>::InnerIterator it(pressures.divergence, a); it; ++it)
-          if (const int row = problem.dofs.index(static_cast<int>(it.row() / 3), static_cast<int>(it.row() % 3)); row >= 0)
+          if (const int row = problem.dofs.index(static_cast<int>(it.row() / 3), static_cast<int>(it.row() % 3));
+              row >= 0)
             divergence(row, a) = scale * it.value();
       }
       const Eigen::MatrixXd schur = divergence.transpose() * factor.solve(divergence);

@@ -25,8 +25,7 @@ TetMesh cube() {
 
 TEST(Fixation, EliminatesAxisByAxis) {
   const auto mesh = cube();
-  const auto dofs =
-      apply_fixation(mesh, {fix_group("bottom"), fix_group("x1", {true, false, false})}, "body");
+  const auto dofs = apply_fixation(mesh, {fix_group("bottom"), fix_group("x1", {true, false, false})}, "body");
   EXPECT_EQ(dofs.size(), 3 * 27 - 3 * 9 - 6);
   EXPECT_FALSE(dofs.is_free(0, 2));
   EXPECT_FALSE(dofs.is_free(26, 0));
@@ -42,8 +41,7 @@ TEST(Fixation, RefusesAnEmptySet) {
   FixedRegion nowhere;
   nowhere.where.box = Box{{5, 5, 5}, {6, 6, 6}};
   EXPECT_NE(refusal(cube(), {nowhere}).find("empty fixed set"), std::string::npos);
-  EXPECT_NE(refusal(cube(), {fix_group("bottom", {false, false, false})}).find("empty fixed set"),
-            std::string::npos);
+  EXPECT_NE(refusal(cube(), {fix_group("bottom", {false, false, false})}).find("empty fixed set"), std::string::npos);
 }
 
 TEST(Fixation, RefusesANodeOutOfRangeAndAnUnknownGroup) {

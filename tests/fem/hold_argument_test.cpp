@@ -31,16 +31,14 @@ TEST(HoldArgument, LeavesAnEmptyComponentFree) {
 }
 
 TEST(HoldArgument, RefusesWhatIsNotANumber) {
-  for (const char* text : {"7:a,0,0", "7:1,2", "7:1,2,3,4", "7", "x:1,2,3", "7.5:1,2,3", "7:nan,0,0",
-                           "7:0,inf,0", "7:1e999,0,0", "7:1m,0,0", ":1,2,3", "7:1:2,3,4", "", "7:,,"})
+  for (const char* text : {"7:a,0,0", "7:1,2", "7:1,2,3,4", "7", "x:1,2,3", "7.5:1,2,3", "7:nan,0,0", "7:0,inf,0",
+                           "7:1e999,0,0", "7:1m,0,0", ":1,2,3", "7:1:2,3,4", "", "7:,,"})
     EXPECT_NE(refusal([&] { parse_hold(text); }).find("--hold"), std::string::npos) << text;
 }
 
 TEST(HoldArgument, RefusesANodeOutsideTheMesh) {
-  EXPECT_NE(refusal([] { parse_holds({"10:1,1,1"}, 10); }).find("node 10 is not in the mesh"),
-            std::string::npos);
-  EXPECT_NE(refusal([] { parse_holds({"-1:1,1,1"}, 10); }).find("node -1 is not in the mesh"),
-            std::string::npos);
+  EXPECT_NE(refusal([] { parse_holds({"10:1,1,1"}, 10); }).find("node 10 is not in the mesh"), std::string::npos);
+  EXPECT_NE(refusal([] { parse_holds({"-1:1,1,1"}, 10); }).find("node -1 is not in the mesh"), std::string::npos);
 }
 
 TEST(HoldArgument, RefusesAnAxisHeldTwice) {
@@ -53,8 +51,8 @@ TEST(HoldArgument, RefusesAnAxisHeldTwice) {
 
 TEST(HoldArgument, TouchMovesTheNearestSurfacePoint) {
   const std::vector<Eigen::Vector3d> position{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}};
-  const auto constraints = touch_constraints(parse_touch("0.25,0.5,-3:0,,-0.1"), position, {10, 11, 12, 13},
-                                             {{0, 1, 2}, {1, 2, 3}});
+  const auto constraints =
+      touch_constraints(parse_touch("0.25,0.5,-3:0,,-0.1"), position, {10, 11, 12, 13}, {{0, 1, 2}, {1, 2, 3}});
   ASSERT_EQ(constraints.size(), 2u);
   EXPECT_EQ(constraints[1].value, -0.1);
   Eigen::Vector3d point = Eigen::Vector3d::Zero();

@@ -9,8 +9,8 @@
 namespace palpate::testing {
 
 /// A block whose inner nodes are moved at random by up to `share` of a cell; the outer faces stay flat.
-inline TetMesh make_jittered_block(const Eigen::Vector3d& extent, const std::array<int, 3>& cells,
-                                   double share, unsigned seed = 1) {
+inline TetMesh make_jittered_block(const Eigen::Vector3d& extent, const std::array<int, 3>& cells, double share,
+                                   unsigned seed = 1) {
   auto mesh = make_block(Eigen::Vector3d::Zero(), extent, cells);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> jitter(-share, share);
@@ -30,8 +30,7 @@ inline TetMesh make_organ(const std::array<int, 3>& cells) {
   for (auto& node : mesh.nodes) {
     const double u = 2 * node.x() - 1, v = 2 * node.y() - 1, w = node.z();
     const double round = 1 - 0.25 * (u * u + v * v);
-    node = {0.10 * u * (1 - 0.2 * v * v), 0.07 * v * (1 - 0.2 * u * u) + 0.02 * u * u,
-            0.06 * w * round + 0.02 * u * w};
+    node = {0.10 * u * (1 - 0.2 * v * v), 0.07 * v * (1 - 0.2 * u * u) + 0.02 * u * u, 0.06 * w * round + 0.02 * u * w};
   }
   return mesh;
 }
@@ -60,8 +59,7 @@ inline Body make_body(double young = 10e3, double poisson = 0.45) {
 }
 
 /// max |a - b| over max |b|.
-inline double relative_difference(const std::vector<Eigen::Vector3d>& a,
-                                  const std::vector<Eigen::Vector3d>& b) {
+inline double relative_difference(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
   double difference = 0, size = 0;
   for (std::size_t i = 0; i < b.size(); ++i) {
     difference = std::max(difference, (a[i] - b[i]).cwiseAbs().maxCoeff());

@@ -27,7 +27,8 @@ class TouchedBlock {
     const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
     for (int k = 0; k < archive.surface.touchable; ++k) {
       Eigen::Matrix3d c;
-      for (int axis = 0; axis < 3; ++axis) c.col(axis) = Eigen::Map<const Eigen::Vector3d>(compliance.column(k, axis) + 3 * k);
+      for (int axis = 0; axis < 3; ++axis)
+        c.col(axis) = Eigen::Map<const Eigen::Vector3d>(compliance.column(k, axis) + 3 * k);
       const Eigen::Vector3d& at = archive.surface.position[k];
       if (at.head<2>().norm() < 1e-9 && at.z() > -1e-9) held_ = archive.surface.node_number[k], compliance_ = c;
       bool whole = true;
@@ -93,7 +94,8 @@ class TouchedBlock {
           Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
           for (const auto& [node, stiffness] : stiffness_)
             if (node == nodes[v]) k = stiffer * stiffness;
-          m.nodes.push_back({0, static_cast<std::uint32_t>(nodes[v]), copy3(position(nodes[v])), copy3(model_->velocity(nodes[v])), copy9(k)});
+          m.nodes.push_back({0, static_cast<std::uint32_t>(nodes[v]), copy3(position(nodes[v])),
+                             copy3(model_->velocity(nodes[v])), copy9(k)});
         }
         at[v] = static_cast<std::uint32_t>(place);
       }

@@ -11,7 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-Anchor vertex(int node) { return {{node, node, node}, Vector3d::UnitX()}; }
+Anchor vertex(int node) {
+  return {{node, node, node}, Vector3d::UnitX()};
+}
 
 class ContactLawTest : public ::testing::Test {
  protected:
@@ -53,7 +55,8 @@ TEST_F(ContactLawTest, FrictionStaysWithinItsCone) {
   std::uniform_real_distribution<double> depth(-1e-3, 2e-3), side(-3e-3, 3e-3);
   for (int round = 0; round < 200; ++round) {
     ContactLaw rough = law(0.3);
-    for (int node = round % 5; node < 144; node += 9) rough.add(press(vertex(node), depth(random), {side(random), side(random), 0}));
+    for (int node = round % 5; node < 144; node += 9)
+      rough.add(press(vertex(node), depth(random), {side(random), side(random), 0}));
     const LawOutcome outcome = rough.solve();
     for (const TouchContact& c : rough.contacts()) {
       const double pressing = c.force.dot(c.normal);

@@ -35,7 +35,8 @@ TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
     log.write(header_channel, 1, LogHeader{.schema = schema_text()});
     for (std::uint64_t step = 40; step < 60; ++step) {
       if (step == 45) continue;  // lost
-      log.write(topics::tool_state.name, 2, ToolState{.tool = 0, .run = 7, .seq = step, .step = step, .depth = 1e-3 * static_cast<double>(step)});
+      log.write(topics::tool_state.name, 2,
+                ToolState{.tool = 0, .run = 7, .seq = step, .step = step, .depth = 1e-3 * static_cast<double>(step)});
       log.write(topics::tool_state.name, 2, ToolState{.tool = 1, .run = 7, .seq = step, .step = step, .depth = 9});
     }
   }

@@ -22,11 +22,14 @@ constexpr double wide_open = 0.8;
 /// The wall as the deformation node shows it: all nodes, those too that the haptic step has no need of.
 class ShownWall {
  public:
-  explicit ShownWall(const Archive& archive) : rest_(archive.surface.position), shape_(archive) { state_.coordinates.resize(shape_.modes()); }
+  explicit ShownWall(const Archive& archive) : rest_(archive.surface.position), shape_(archive) {
+    state_.coordinates.resize(shape_.modes());
+  }
   const std::vector<Vector3d>& of(const ModalBody& duct) {
     state_.forces.clear();
     duct.show(state_.coordinates.data(), [&](int node, const Vector3d& f) {
-      state_.forces.push_back({static_cast<std::uint32_t>(node), {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}});
+      state_.forces.push_back({static_cast<std::uint32_t>(node),
+                               {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}});
     });
     shape_.displace(state_, displacement_);
     nodes_ = rest_;
@@ -69,7 +72,8 @@ double from_mouths(const ModalBody& duct, const std::vector<Vector3d>& x, const 
     Vector3d centre = Vector3d::Zero();
     for (int n : loop) centre += x[n] / static_cast<double>(loop.size());
     for (std::size_t i = 0; i < loop.size(); ++i)
-      squared = std::min(squared, closest_point(p, {centre, x[loop[i]], x[loop[(i + 1) % loop.size()]]}).squared_distance);
+      squared =
+          std::min(squared, closest_point(p, {centre, x[loop[i]], x[loop[(i + 1) % loop.size()]]}).squared_distance);
   }
   return std::sqrt(squared);
 }
@@ -91,7 +95,9 @@ struct Theatre {
     dofs = {at(0, {0, 0.03, -0.02}, wide_open), at(1, {0, 0.03, 0.02}, wide_open)};
     haptic->start(dofs);
   }
-  ToolDofs at(int tool, const Vector3d& joint, double grip) const { return duct_tip_at(duct.scene.tools[tool], joint, grip, std::numbers::pi / 2); }
+  ToolDofs at(int tool, const Vector3d& joint, double grip) const {
+    return duct_tip_at(duct.scene.tools[tool], joint, grip, std::numbers::pi / 2);
+  }
   void hold_still(int steps) {
     for (int i = 0; i < steps; ++i) haptic->step(dofs);
   }
@@ -225,9 +231,9 @@ TEST(DuctManipulation, ARestoredStateGoesOnBitForBit) {
   EXPECT_EQ(a.task().wall_contacts, b.task().wall_contacts);
 }
 
-/// Two forceps at all rates, in hands with the mass, damping and stiffness of a person's. One takes the catheter wherever
-/// it is and leads or throws it about, mostly towards the duct; the other goes where chance sends it above the duct, and
-/// grasps and lets go.
+/// Two forceps at all rates, in hands with the mass, damping and stiffness of a person's. One takes the catheter
+/// wherever it is and leads or throws it about, mostly towards the duct; the other goes where chance sends it above the
+/// duct, and grasps and lets go.
 class RandomHands {
  public:
   explicit RandomHands(unsigned seed) : random_(seed) {}
@@ -285,7 +291,8 @@ class RandomHands {
   }
 
   std::mt19937 random_;
-  std::array<Hand, 2> hands_{Hand{.at = {0, 0.03, -0.02}, .to = {0, 0.03, -0.02}}, Hand{.at = {0, 0.03, 0.02}, .to = {0, 0.03, 0.02}}};
+  std::array<Hand, 2> hands_{Hand{.at = {0, 0.03, -0.02}, .to = {0, 0.03, -0.02}},
+                             Hand{.at = {0, 0.03, 0.02}, .to = {0, 0.03, 0.02}}};
 };
 
 TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
@@ -310,7 +317,8 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
     if (i % 50 != 0) continue;
     const std::vector<Vector3d>& nodes = wall.of(t.wall());
     for (int p = 0; p < t.catheter().size(); ++p) {
-      if (from_mouths(t.wall(), nodes, t.catheter().positions()[p]) < t.catheter().radius()) continue;  // half in, half out
+      if (from_mouths(t.wall(), nodes, t.catheter().positions()[p]) < t.catheter().radius())
+        continue;  // half in, half out
       const bool inside = winding(t.wall(), nodes, t.catheter().positions()[p]) > 0.5;
       const bool led_in = t.catheter().inside()[p] != 0;
       ++looks;
@@ -321,10 +329,12 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   }
   RecordProperty("largest_energy_J", std::to_string(largest_energy));
   RecordProperty("largest_force_N", std::to_string(largest_force));
-  std::printf("%d s: largest energy %.3g J, largest force %.3g N, %d grasps, %d drops; of %d looks at a particle %d find it inside, %d outside "
-              "the wall that it was led into, %d within the wall that it was not led into\n",
-              steps / 1000, largest_energy, largest_force, static_cast<int>(t.task().grasps), static_cast<int>(t.task().drops), looks, inside_checks,
-              outside, strayed);
+  std::printf(
+      "%d s: largest energy %.3g J, largest force %.3g N, %d grasps, %d drops; of %d looks at a particle %d find it "
+      "inside, %d outside "
+      "the wall that it was led into, %d within the wall that it was not led into\n",
+      steps / 1000, largest_energy, largest_force, static_cast<int>(t.task().grasps), static_cast<int>(t.task().drops),
+      looks, inside_checks, outside, strayed);
   EXPECT_LT(largest_energy, 0.1);
   EXPECT_LT(largest_force, 60);
   EXPECT_GT(t.task().grasps, static_cast<std::uint64_t>(steps / 10000));

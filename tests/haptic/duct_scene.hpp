@@ -54,7 +54,8 @@ struct DuctScene {
     body.name = "catheter";
     body.model = "catheter";
     body.material = {.young = 30e6, .poisson = 0.45, .density = 1100};
-    body.catheter = Catheter{.inside = "duct", .tail = {0, 0, -0.06 - ahead}, .tip = {0, 0, -ahead}, .particles = particles, .sleeve = 0.02};
+    body.catheter = Catheter{
+        .inside = "duct", .tail = {0, 0, -0.06 - ahead}, .tip = {0, 0, -ahead}, .particles = particles, .sleeve = 0.02};
     scene.bodies.push_back(body);
     archives.push_back({});
   }

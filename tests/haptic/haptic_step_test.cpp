@@ -105,7 +105,8 @@ TEST_F(HapticStepTest, AToolThatStartsInTheOrganIsRefusedByName) {
     haptic.start(std::array{tip_at(s.scene.tools[0], {0, 0, -0.01})});
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("tool 'probe0' starts inside body 'block'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("tool 'probe0' starts inside body 'block'"), std::string::npos)
+        << error.what();
   }
 }
 
@@ -144,7 +145,8 @@ TEST_F(HapticStepTest, AClosedMotionGivesNoEnergyToTheHand) {
     Vector3d last_force = Vector3d::Zero();
     for (int i = 1; i <= 4000; ++i) {
       const double t = i / 4000.0, turn = 2 * std::numbers::pi * t;
-      const Vector3d p{0.012 * std::sin(2 * turn), 0.008 * std::sin(3 * turn), 0.012 - 0.01 * std::sin(std::numbers::pi * t)};
+      const Vector3d p{0.012 * std::sin(2 * turn), 0.008 * std::sin(3 * turn),
+                       0.012 - 0.01 * std::sin(std::numbers::pi * t)};
       haptic.step(std::array{tip_at(tool, p)});
       taken += -0.5 * (haptic.force(0) + last_force).dot(p - last);
       largest = std::max(largest, taken);

@@ -1,9 +1,10 @@
+#include "common/contact/held_points.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <random>
 
-#include "common/contact/held_points.hpp"
 #include "tests/haptic/synthetic_body.hpp"
 
 namespace palpate {
@@ -13,7 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-Anchor vertex(int node) { return {{node, node, node}, Vector3d::UnitX()}; }
+Anchor vertex(int node) {
+  return {{node, node, node}, Vector3d::UnitX()};
+}
 
 /// J C J^T by plain sums.
 MatrixXd compliance_of(const std::vector<Anchor>& anchors, const Compliance<double>& c) {
@@ -24,7 +27,8 @@ MatrixXd compliance_of(const std::vector<Anchor>& anchors, const Compliance<doub
         for (int w = 0; w < 3; ++w)
           for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-              a(3 * p + i, 3 * q + j) += anchors[p].weights[v] * anchors[q].weights[w] * c.column(anchors[q].nodes[w], j)[3 * anchors[p].nodes[v] + i];
+              a(3 * p + i, 3 * q + j) += anchors[p].weights[v] * anchors[q].weights[w] *
+                                         c.column(anchors[q].nodes[w], j)[3 * anchors[p].nodes[v] + i];
   return a;
 }
 

@@ -128,8 +128,11 @@ TEST_F(LocalBodyTest, StiffnessIsThatOfTheTriangleWhereItIsTouched) {
 TEST_F(LocalBodyTest, AroundAConvexEdgeTheForceTurnsButNeverJumpsNorAttracts) {
   // A wedge: one square up, one facing +x, sharing an edge; the tip goes round it at constant depth.
   LocalContactModel m = model(far);
-  const auto node = [&](double x, double y, double z) { m.nodes.push_back({0, 0, {x, y, z}, {}, testing::isotropic(200)}); };
-  node(-0.05, -0.05, 0), node(0, -0.05, 0), node(0, 0.05, 0), node(-0.05, 0.05, 0), node(0, -0.05, -0.05), node(0, 0.05, -0.05);
+  const auto node = [&](double x, double y, double z) {
+    m.nodes.push_back({0, 0, {x, y, z}, {}, testing::isotropic(200)});
+  };
+  node(-0.05, -0.05, 0), node(0, -0.05, 0), node(0, 0.05, 0), node(-0.05, 0.05, 0), node(0, -0.05, -0.05),
+      node(0, 0.05, -0.05);
   m.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
   Vector3d last = Vector3d::Zero();
   for (int i = 0; i <= 90; ++i) {
@@ -206,7 +209,9 @@ TEST_F(LocalBodyTest, ARunGoesOnBitForBitFromASavedState) {
   std::uniform_real_distribution<double> any(-1, 1);
   HapticStep copy(scene_, std::vector<Archive>(1));
   std::vector<std::uint8_t> state(haptic_->state_size());
-  const auto tip = [](int i) { return Vector3d(0.01 * std::sin(0.02 * i), 0.003 * std::cos(0.05 * i), 0.006 + 0.005 * std::sin(0.03 * i)); };
+  const auto tip = [](int i) {
+    return Vector3d(0.01 * std::sin(0.02 * i), 0.003 * std::cos(0.05 * i), 0.006 + 0.005 * std::sin(0.03 * i));
+  };
   int touched = 0;
   for (int i = 0; i < 1200; ++i) {
     const bool twice = i >= 600;

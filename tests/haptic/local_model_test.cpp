@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector3d;
 using testing::Hand;
 using testing::LoopTrace;
-using testing::TouchedBlock;
 using testing::tip_at;
+using testing::TouchedBlock;
 
 constexpr double dt = 1e-3, radius = 0.008;
 
@@ -23,12 +23,11 @@ Vector3d intended(double t) {
   return {0, 0, radius + 0.002 - depth};
 }
 
-
-/// Five seconds of the loop: the hand comes down, presses, holds still, shakes for a second, holds still and leaves. The
-/// hand feels the full model of the same step if `lock_step`; else the local model, which comes `delay` steps later
+/// Five seconds of the loop: the hand comes down, presses, holds still, shakes for a second, holds still and leaves.
+/// The hand feels the full model of the same step if `lock_step`; else the local model, which comes `delay` steps later
 /// than it could, claims `stiffer` times the stiffness, and comes no more from step `silent_from` on.
-LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step, double stiffer = 1, std::uint64_t silent_from = 5000,
-              bool controller = true) {
+LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step, double stiffer = 1,
+              std::uint64_t silent_from = 5000, bool controller = true) {
   Scene scene = testing::moving_block_scene(radius);
   scene.passivity.controller = controller;
   const Tool& tool = scene.tools[0];
@@ -104,14 +103,15 @@ const Setting settings[] = {{"loose hand, 5 kPa", {0.1, 2, 100}, 5e3},   {"usual
 constexpr double tissue_damping = 5;  // [1/s]: the block swings for a second by itself
 
 TEST(LocalModelInTheLoop, ItsForceFollowsTheFullModelAndNoSwingGrowsAtAnyDelay) {
-  const std::pair<int, double> bounds[] = {{0, 0.005}, {1, 0.005}, {5, 0.006}, {20, 0.01}, {50, 0.02}};  // rms, of the peak
+  const std::pair<int, double> bounds[] = {
+      {0, 0.005}, {1, 0.005}, {5, 0.006}, {20, 0.01}, {50, 0.02}};  // rms, of the peak
   for (const Setting& s : settings) {
     const LoopTrace reference = run(s.hand, s.young, tissue_damping, 0, true);
     for (const auto& [delay, bound] : bounds) {
       const LoopTrace trace = run(s.hand, s.young, tissue_damping, delay, false);
       const ForceError e = error_of(trace, reference);
-      fmt::print("| {} | {} | {:.3f} | {:.4f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", s.name, delay, e.peak, e.rms, 100 * e.rms / e.peak, e.pressed,
-                 e.largest, 1e3 * e.path);
+      fmt::print("| {} | {} | {:.3f} | {:.4f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", s.name, delay, e.peak, e.rms,
+                 100 * e.rms / e.peak, e.pressed, e.largest, 1e3 * e.path);
       SCOPED_TRACE(fmt::format("{}, {} ms", s.name, delay));
       EXPECT_GT(e.peak, 0.5);
       EXPECT_LT(e.rms, bound * e.peak);

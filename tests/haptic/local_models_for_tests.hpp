@@ -5,11 +5,16 @@
 /// Local contact models made by hand.
 namespace palpate::testing {
 
-inline std::array<double, 3> plain(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
-inline std::array<double, 9> isotropic(double k) { return {k, 0, 0, 0, k, 0, 0, 0, k}; }
+inline std::array<double, 3> plain(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+inline std::array<double, 9> isotropic(double k) {
+  return {k, 0, 0, 0, k, 0, 0, 0, k};
+}
 
 /// A model with the tool's pose at `tip` and nothing near it.
-inline LocalContactModel empty_model(const Tool& tool, const Eigen::Vector3d& tip, std::uint64_t step, std::uint64_t seq = 1) {
+inline LocalContactModel empty_model(const Tool& tool, const Eigen::Vector3d& tip, std::uint64_t step,
+                                     std::uint64_t seq = 1) {
   const ToolDofs dofs = tip_at(tool, tip);
   LocalContactModel m;
   m.run = 77, m.seq = seq, m.tick = step, m.tool_run = 5, m.tool_step = step;
@@ -18,7 +23,8 @@ inline LocalContactModel empty_model(const Tool& tool, const Eigen::Vector3d& ti
 }
 
 /// Adds a horizontal square of 0.1 m at height `z` about (x, y), facing up, of two triangles.
-inline void add_square(LocalContactModel& m, double z, double stiffness, const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero()) {
+inline void add_square(LocalContactModel& m, double z, double stiffness,
+                       const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero()) {
   const auto first = static_cast<std::uint32_t>(m.nodes.size());
   for (const auto& [x, y] : {std::pair{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}})
     m.nodes.push_back({0, first, {x, y, z}, plain(velocity), isotropic(stiffness)});
@@ -27,7 +33,8 @@ inline void add_square(LocalContactModel& m, double z, double stiffness, const E
 }
 
 /// Adds a place held below the tip at height `z`, pressed down with `force` [N].
-inline void add_contact(LocalContactModel& m, const Eigen::Vector3d& at, const Eigen::Vector3d& force, double stiffness) {
+inline void add_contact(LocalContactModel& m, const Eigen::Vector3d& at, const Eigen::Vector3d& force,
+                        double stiffness) {
   m.contacts.push_back({0, 0, plain(at), {0, 0, -1}, plain(force), isotropic(stiffness)});
 }
 

@@ -142,7 +142,8 @@ TEST(ModalBody, ItsShownFieldIsTheFullOne) {
   std::vector<double> coordinates(p.haptic->modal(0).modes());
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * archive.surface.size());
   p.haptic->modal(0).show(coordinates.data(), [&](int node, const Vector3d& f) {
-    for (int axis = 0; axis < 3; ++axis) u += f[axis] * Eigen::Map<const Eigen::VectorXd>(compliance.column(node, axis), u.size());
+    for (int axis = 0; axis < 3; ++axis)
+      u += f[axis] * Eigen::Map<const Eigen::VectorXd>(compliance.column(node, axis), u.size());
   });
   for (std::size_t m = 0; m < coordinates.size(); ++m)
     u += coordinates[m] * Eigen::Map<const Eigen::VectorXd>(archive.modal->shape.data() + u.size() * m, u.size());

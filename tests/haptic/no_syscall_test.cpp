@@ -11,9 +11,9 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/spsc_ring.hpp"
-#include "common/bus/memory_bus.hpp"
 #include "haptic_node/local_feed.hpp"
 #include "haptic_node/step_record.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
@@ -89,19 +89,28 @@ class Ticks {
   long contacts_ = 0;
 };
 
-/// The same with a body of moving tissue beside the block, whose models another thread has put where the loop finds them.
+/// The same with a body of moving tissue beside the block, whose models another thread has put where the loop finds
+/// them.
 class TicksOnMovingTissue {
  public:
-  TicksOnMovingTissue() : scene_(1), haptic_(both(), archives()), models_(make_memory_bus(make_memory_network())),
-                          writer_(models_->writer(topics::local_contact_model)), feed_(*models_, haptic_, 5), ring_(64), state_(haptic_.state_size()) {
+  TicksOnMovingTissue()
+      : scene_(1),
+        haptic_(both(), archives()),
+        models_(make_memory_bus(make_memory_network())),
+        writer_(models_->writer(topics::local_contact_model)),
+        feed_(*models_, haptic_, 5),
+        ring_(64),
+        state_(haptic_.state_size()) {
     haptic_.start(input(0));
   }
   /// A model as the deform node would send it with the pose of step i: the other thread's part of the work.
   void send(int i) {
     const Eigen::Vector3d at = tip(i);
-    LocalContactModel m = testing::empty_model(both_.tools[0], at, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(i) + 1);
+    LocalContactModel m =
+        testing::empty_model(both_.tools[0], at, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(i) + 1);
     testing::add_square(m, 0.001, 300);
-    m.contacts.push_back({1, 0, testing::plain(at - Eigen::Vector3d(0, 0, 0.008)), {0, 0, -1}, {0, 0, -0.5}, testing::isotropic(300)});
+    m.contacts.push_back(
+        {1, 0, testing::plain(at - Eigen::Vector3d(0, 0, 0.008)), {0, 0, -1}, {0, 0, -0.5}, testing::isotropic(300)});
     for (LocalNode& n : m.nodes) n.body = 1;
     writer_->write(m);
     feed_.take();
@@ -192,7 +201,8 @@ void forbid_system_calls() {
       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
   };
   const sock_fprog program{4, filter};
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) _exit(77);
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
+    _exit(77);
 }
 
 template <class Work>
@@ -212,7 +222,8 @@ TEST(NoSyscall, TheHapticStepMakesNoSystemCall) {
   Ticks ticks;
   ticks.run(1, 10);
   const int forbidden = status_without_system_calls([] { (void)!write(2, "", 0); });
-  if (WIFEXITED(forbidden) && WEXITSTATUS(forbidden) == 77) GTEST_SKIP() << "this kernel does not grant seccomp filters";
+  if (WIFEXITED(forbidden) && WEXITSTATUS(forbidden) == 77)
+    GTEST_SKIP() << "this kernel does not grant seccomp filters";
   ASSERT_TRUE(WIFSIGNALED(forbidden)) << "a system call must kill the child, or the test below proves nothing";
   const int status = status_without_system_calls([&] { ticks.run(10, 2000); });
   EXPECT_TRUE(WIFEXITED(status)) << "killed by signal " << (WIFSIGNALED(status) ? WTERMSIG(status) : 0);
@@ -221,7 +232,8 @@ TEST(NoSyscall, TheHapticStepMakesNoSystemCall) {
   moving.run(1, 10);
   moving.send(10);
   const int moving_status = status_without_system_calls([&] { moving.run(10, 600); });
-  EXPECT_TRUE(WIFEXITED(moving_status)) << "killed by signal " << (WIFSIGNALED(moving_status) ? WTERMSIG(moving_status) : 0);
+  EXPECT_TRUE(WIFEXITED(moving_status)) << "killed by signal "
+                                        << (WIFSIGNALED(moving_status) ? WTERMSIG(moving_status) : 0);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ constexpr double dt = 1e-3;
 
 /// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
 struct Port {
-  explicit Port(bool controller = true, double reserve = 0.01) : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, dt) {}
+  explicit Port(bool controller = true, double reserve = 0.01)
+      : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, dt) {}
 
   PortForce tick(const Vector3d& to, const PortForce& asked) {
     const PortMotion motion{.shift = to - at};
@@ -77,7 +78,8 @@ TEST(Passivity, TorqueAndGripCount) {
   EXPECT_NEAR(guard.energy(), 0.1 * 0.01 - 0.2 * 0.005, 1e-7);
 }
 
-// A force that drives whatever moves, as a model gone wrong would: with the controller the hand gains the reserve at most.
+// A force that drives whatever moves, as a model gone wrong would: with the controller the hand gains the reserve at
+// most.
 TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
   for (const double reserve : {0.001, 0.01, 0.1}) {
     for (const double strength : {0.5, 5.0, 20.0}) {
@@ -119,7 +121,8 @@ TEST(Passivity, WhereEnergyIsAmpleNothingIsTouched) {
   EXPECT_EQ(port.limited, 0);
 }
 
-// The smallest case of a force that stood against the motion and pushes once it has turned round: a place that goes to and fro.
+// The smallest case of a force that stood against the motion and pushes once it has turned round: a place that goes to
+// and fro.
 TEST(Passivity, AForceAgainstAMotionThatTurnsRoundTakesOutNoMoreThanTheReserve) {
   for (const bool controller : {true, false}) {
     Port port(controller);
@@ -145,7 +148,8 @@ TEST(Passivity, AForceThatWasTakenAwayEarnsItsReturn) {
   }
 }
 
-// Whatever the motion within the acceleration, and whatever is asked, if the slew limit lets the force fall within a tick.
+// Whatever the motion within the acceleration, and whatever is asked, if the slew limit lets the force fall within a
+// tick.
 TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -165,7 +169,8 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
         const PortMotion m{.shift = motion};
         guard.observe({&m, 1});
         least = std::min(least, guard.energy());
-        if (i % (1 + run % 7) == 0) asked = run % 2 ? Vector3d(12 * vector()) : Vector3d(-20 * motion.stableNormalized());
+        if (i % (1 + run % 7) == 0)
+          asked = run % 2 ? Vector3d(12 * vector()) : Vector3d(-20 * motion.stableNormalized());
         PortForce f{.force = asked};
         guard.control({&f, 1});
         chain.apply(f.force, f.torque, true);
@@ -244,8 +249,9 @@ TEST(Passivity, ADelayedWallGivesTheHandNoMoreThanTheReserve) {
   for (const int delay : {0, 5, 20, 50}) {
     const DelayedWall wall{1500, delay};
     const auto with = wall.run(true), without = wall.run(false);
-    std::printf("delay %2d ms: without swing %.2f mm, least energy %.2f mJ; with %.2f mm, %.2f mJ, %d of 6000 steps damped\n", delay,
-                1e3 * without.swing, 1e3 * without.least, 1e3 * with.swing, 1e3 * with.least, with.limited);
+    std::printf(
+        "delay %2d ms: without swing %.2f mm, least energy %.2f mJ; with %.2f mm, %.2f mJ, %d of 6000 steps damped\n",
+        delay, 1e3 * without.swing, 1e3 * without.least, 1e3 * with.swing, 1e3 * with.least, with.limited);
     EXPECT_GE(with.least, -0.01) << delay;
     EXPECT_LE(with.largest, 20 + 1e-9) << delay;
     if (delay >= 20) {

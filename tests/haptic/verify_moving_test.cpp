@@ -29,7 +29,8 @@ constexpr int steps = 2500;
 Scene moving_scene(const fs::path& folder) {
   std::string tools;
   for (const int x : {0, 2})
-    tools += fmt::format("[[tool]]\nname = \"probe{0}\"\npivot = [0.0{0}, 0.0, 0.2]\nradius = 0.008\ndevice = \"bus\"\n", x);
+    tools +=
+        fmt::format("[[tool]]\nname = \"probe{0}\"\npivot = [0.0{0}, 0.0, 0.2]\nradius = 0.008\ndevice = \"bus\"\n", x);
   return parse_scene(R"([[body]]
 name = "block"
 mesh = "block.msh"
@@ -60,11 +61,20 @@ class VerifyMoving : public ::testing::Test {
     Recorder recorder(*recorders, {.file = log(), .version = "test"});
     const auto models = bus->writer(topics::local_contact_model);
     const auto text = bus->writer(topics::scene);
-    text->write({.run = run_id, .seq = 1, .scene_hash = "hash", .text = to_toml(scene), .version = "test", .code_path = code_path()});
+    text->write({.run = run_id,
+                 .seq = 1,
+                 .scene_hash = "hash",
+                 .text = to_toml(scene),
+                 .version = "test",
+                 .code_path = code_path()});
     HapticStep haptic(scene, std::vector<Archive>(1));
     Publisher publisher(*bus, haptic, run_id);
-    const auto tip = [](int tool, int i) { return Vector3d(0.02 * tool, 0, 0.008 - 0.003 * std::sin(0.01 * i + tool)); };
-    const auto dofs_at = [&](int i) { return std::array{tip_at(scene.tools[0], tip(0, i)), tip_at(scene.tools[1], tip(1, i))}; };
+    const auto tip = [](int tool, int i) {
+      return Vector3d(0.02 * tool, 0, 0.008 - 0.003 * std::sin(0.01 * i + tool));
+    };
+    const auto dofs_at = [&](int i) {
+      return std::array{tip_at(scene.tools[0], tip(0, i)), tip_at(scene.tools[1], tip(1, i))};
+    };
     haptic.start(dofs_at(0));
     auto record = std::make_unique<StepRecord>();
     std::uint64_t seq = 0;
@@ -142,7 +152,8 @@ TEST_F(VerifyMoving, AModelThatTheLogLacksIsAGapUpToTheNextKeyframe) {
   const VerifyReport report = verify_log(changed());
   EXPECT_TRUE(report.mismatch.empty()) << report.mismatch;
   ASSERT_EQ(report.gaps.size(), 1u);
-  EXPECT_EQ(report.gaps[0], "cannot verify steps 1201 to 1999: the local contact model 1201 of tool 0 of step 1201 is not in the log");
+  EXPECT_EQ(report.gaps[0],
+            "cannot verify steps 1201 to 1999: the local contact model 1201 of tool 0 of step 1201 is not in the log");
   EXPECT_EQ(report.forces, 2u * (steps - 799));
 }
 

@@ -42,8 +42,7 @@ struct System {
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) {
             const int j = column[e];
-            const long double k_ab = block[kBlockSize * e + 3 * b + a],
-                              k_ba = block[kBlockSize * e + 3 * a + b];
+            const long double k_ab = block[kBlockSize * e + 3 * b + a], k_ba = block[kBlockSize * e + 3 * a + b];
             const long double d = static_cast<long double>(x[at(j, first + b)]) - x[at(i, first + b)];
             y[3 * i + a] += k_ab * d;
             y[3 * j + a] -= k_ba * d;
@@ -92,8 +91,7 @@ void check_rk4(const Table& table, System<T> s) {
   of_type<T>(table.rk4_first_f, table.rk4_first_d)(s.blocks(), s.arrays(), kDamping);
   for (int i = 0; i < s.rows; ++i)
     for (int a = 0; a < 3; ++a) {
-      const long double m = s.response[s.at(i, a)], g = s.response[s.at(i, a + 4)],
-                        v = before[s.at(i, a + 4)];
+      const long double m = s.response[s.at(i, a)], g = s.response[s.at(i, a + 4)], v = before[s.at(i, a + 4)];
       const long double v1 = g - m * ku[3 * i + a] - kDamping * v;
       expect_near(s.rates[s.at(i, a)], v1);
       expect_near(s.rates[s.at(i, a + 4)], -m * kv[3 * i + a] - kDamping * v1);

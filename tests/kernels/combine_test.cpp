@@ -21,8 +21,7 @@ struct Data {
 
   long double sum(std::ptrdiff_t row) const {
     long double total = 0;
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      total += static_cast<long double>(weights[c]) * columns[c][row];
+    for (std::size_t c = 0; c < columns.size(); ++c) total += static_cast<long double>(weights[c]) * columns[c][row];
     return total;
   }
 
@@ -61,8 +60,7 @@ TEST_P(Combine, ListedNodesEqualTheSameRowsOfTheWhole) {
     const Data<double> data(count, 300, 1);
     std::vector<double> out(3 * nodes.size() + 1, 77);
     const int node_count = static_cast<int>(nodes.size());
-    table().combine_nodes_d(data.columns.data(), data.weights.data(), count, nodes.data(), node_count,
-                            out.data());
+    table().combine_nodes_d(data.columns.data(), data.weights.data(), count, nodes.data(), node_count, out.data());
     for (int i = 0; i < 3 * node_count; ++i) {
       const double sum = static_cast<double>(data.sum(3 * nodes[i / 3] + i % 3));
       ASSERT_NEAR(out[i], sum, 2e-16 * (count + 1)) << count << " columns";

@@ -1,3 +1,5 @@
+#include "tools/keys/key_folder.hpp"
+
 #include <gtest/gtest.h>
 #include <openssl/bio.h>
 #include <openssl/pem.h>
@@ -9,7 +11,6 @@
 #include "common/bus/roles.hpp"
 #include "common/bus/security.hpp"
 #include "tests/keys/own_folder.hpp"
-#include "tools/keys/key_folder.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -22,7 +23,8 @@ Names listing(const fs::path& folder) {
   Names files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file())
-      files.insert(fmt::format("{} {:o}", fs::relative(entry.path(), folder).string(), static_cast<unsigned>(entry.status().permissions())));
+      files.insert(fmt::format("{} {:o}", fs::relative(entry.path(), folder).string(),
+                               static_cast<unsigned>(entry.status().permissions())));
   return files;
 }
 
@@ -45,7 +47,8 @@ X509_STORE* trusting(const fs::path& authority) {
 
 /// libcrypto's word on a signed document.
 bool signature_holds(const std::string& document, const fs::path& authority) {
-  BIO *in = BIO_new_mem_buf(document.data(), static_cast<int>(document.size())), *content = nullptr, *out = BIO_new(BIO_s_mem());
+  BIO *in = BIO_new_mem_buf(document.data(), static_cast<int>(document.size())), *content = nullptr,
+      *out = BIO_new(BIO_s_mem());
   PKCS7* signature = SMIME_read_PKCS7(in, &content);
   X509_STORE* store = trusting(authority);
   const bool holds = signature && PKCS7_verify(signature, nullptr, store, content, out, PKCS7_TEXT) == 1;
@@ -83,13 +86,16 @@ class KeyFolder : public ::testing::Test {
 TEST_F(KeyFolder, HoldsAnAuthorityAndForEachRoleWhatItsHostNeeds) {
   Names expected{"authority/certificate.pem 644", "authority/key.pem 600"};
   for (const std::string& role : bus_roles())
-    for (const char* file : {"authority.pem 644", "certificate.pem 644", "governance.p7s 644", "key.pem 600", "permissions.p7s 644"})
+    for (const char* file :
+         {"authority.pem 644", "certificate.pem 644", "governance.p7s 644", "key.pem 600", "permissions.p7s 644"})
       expected.insert(role + "/" + file);
   EXPECT_EQ(listing(keys_), expected);
-  for (const auto& entry : fs::directory_iterator(keys_)) EXPECT_EQ(entry.status().permissions(), fs::perms::owner_all) << entry.path();
+  for (const auto& entry : fs::directory_iterator(keys_))
+    EXPECT_EQ(entry.status().permissions(), fs::perms::owner_all) << entry.path();
   const std::string secret = text_of(keys_ / "authority/key.pem");
   std::set<std::string> own{secret};
-  for (const std::string& role : bus_roles()) EXPECT_TRUE(own.insert(text_of(keys_ / role / "key.pem")).second) << role << " has a key of its own";
+  for (const std::string& role : bus_roles())
+    EXPECT_TRUE(own.insert(text_of(keys_ / role / "key.pem")).second) << role << " has a key of its own";
 }
 
 TEST_F(KeyFolder, EverySignatureIsTheAuthorities) {
@@ -107,7 +113,8 @@ TEST_F(KeyFolder, EverySignatureIsTheAuthorities) {
   }
   keys::make_folder(folder_ / "foreign", now_and_on());
   EXPECT_FALSE(is_of(keys_ / "haptic/certificate.pem", folder_ / "foreign/authority/certificate.pem"));
-  EXPECT_FALSE(signature_holds(text_of(keys_ / "haptic/permissions.p7s"), folder_ / "foreign/authority/certificate.pem"));
+  EXPECT_FALSE(
+      signature_holds(text_of(keys_ / "haptic/permissions.p7s"), folder_ / "foreign/authority/certificate.pem"));
 }
 
 TEST_F(KeyFolder, NoCertificateButTheAuthoritiesCanSignOthers) {
@@ -115,7 +122,8 @@ TEST_F(KeyFolder, NoCertificateButTheAuthoritiesCanSignOthers) {
   const keys::Identity child = keys::make_member(haptic, "child", now_and_on());
   std::ofstream(folder_ / "child.pem") << child.certificate;
   EXPECT_FALSE(is_of(folder_ / "child.pem", keys_ / "authority/certificate.pem", keys_ / "haptic/certificate.pem"));
-  EXPECT_TRUE(is_of(keys_ / "deform/certificate.pem", keys_ / "authority/certificate.pem", keys_ / "haptic/certificate.pem"));
+  EXPECT_TRUE(
+      is_of(keys_ / "deform/certificate.pem", keys_ / "authority/certificate.pem", keys_ / "haptic/certificate.pem"));
 }
 
 TEST_F(KeyFolder, AnAuthorityIsNeverWrittenOver) {
@@ -141,7 +149,8 @@ TEST_F(KeyFolder, FurtherKeysComeFromTheSameAuthority) {
   std::strftime(day_of_end, sizeof day_of_end, "%F", std::gmtime(&end));
   EXPECT_EQ(last_day(find_keys(keys_ / "second-theatre", "haptic")), day_of_end);
 
-  EXPECT_THROW(keys::add_keys(keys_, "haptic", "second-theatre", now_and_on()), std::runtime_error) << "is there already";
+  EXPECT_THROW(keys::add_keys(keys_, "haptic", "second-theatre", now_and_on()), std::runtime_error)
+      << "is there already";
   EXPECT_THROW(keys::add_keys(keys_, "haptic", "../out", now_and_on()), std::runtime_error);
   EXPECT_THROW(keys::add_keys(keys_, "haptic", "authority", now_and_on()), std::runtime_error);
   EXPECT_THROW(keys::add_keys(keys_, "surgeon", "third", now_and_on()), std::runtime_error);

@@ -13,7 +13,9 @@ namespace palpate::testing {
 /// A folder of this process's own, removed with the object.
 class OwnFolder {
  public:
-  OwnFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("palpate-keys-{}", getpid())) { std::filesystem::create_directories(path_); }
+  OwnFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("palpate-keys-{}", getpid())) {
+    std::filesystem::create_directories(path_);
+  }
   ~OwnFolder() { std::filesystem::remove_all(path_); }
   OwnFolder(const OwnFolder&) = delete;
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
@@ -29,6 +31,8 @@ inline std::string text_of(const std::filesystem::path& file) {
 
 constexpr std::time_t day = 24 * 60 * 60;
 /// From yesterday for a month.
-inline keys::Period now_and_on() { return {std::time(nullptr) - day, std::time(nullptr) + 30 * day}; }
+inline keys::Period now_and_on() {
+  return {std::time(nullptr) - day, std::time(nullptr) + 30 * day};
+}
 
 }  // namespace palpate::testing

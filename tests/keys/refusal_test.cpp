@@ -36,13 +36,16 @@ class KeyRefusal : public ::testing::Test {
     ASSERT_NE(text.find(from), text.npos);
     std::ofstream(file, std::ios::binary) << text.replace(text.find(from), from.size(), to);
   }
-  keys::Identity authority() const { return {text_of(keys_ / "authority/key.pem"), text_of(keys_ / "authority/certificate.pem")}; }
+  keys::Identity authority() const {
+    return {text_of(keys_ / "authority/key.pem"), text_of(keys_ / "authority/certificate.pem")};
+  }
   /// Keys of the haptic role whose certificate and permissions hold for periods of their own.
   void renew(const keys::Period& certificate, const keys::Period& permissions) const {
     const keys::Identity member = keys::make_member(authority(), "haptic", certificate);
     std::ofstream(haptic_.certificate) << member.certificate;
     std::ofstream(haptic_.key) << member.key;
-    std::ofstream(haptic_.permissions) << keys::sign(authority(), keys::permissions_document("haptic", "CN=haptic", rights_of("haptic"), permissions));
+    std::ofstream(haptic_.permissions) << keys::sign(
+        authority(), keys::permissions_document("haptic", "CN=haptic", rights_of("haptic"), permissions));
   }
 
   OwnFolder folder_;
@@ -59,7 +62,8 @@ TEST_F(KeyRefusal, GoodKeysJoin) {
 
 TEST_F(KeyRefusal, AnAuthorityThatHasExpired) {
   const std::time_t now = std::time(nullptr);
-  const keys::Identity old = keys::make_authority("palpate old", {now - 3 * day, now - day}), member = keys::make_member(old, "haptic", now_and_on());
+  const keys::Identity old = keys::make_authority("palpate old", {now - 3 * day, now - day}),
+                       member = keys::make_member(old, "haptic", now_and_on());
   std::ofstream(haptic_.authority) << old.certificate;
   std::ofstream(haptic_.certificate) << member.certificate;
   std::ofstream(haptic_.key) << member.key;
@@ -77,7 +81,8 @@ TEST_F(KeyRefusal, NoKeysOfTheRole) {
 }
 
 TEST_F(KeyRefusal, AMissingFile) {
-  for (const fs::path& file : {haptic_.authority, haptic_.certificate, haptic_.key, haptic_.governance, haptic_.permissions}) {
+  for (const fs::path& file :
+       {haptic_.authority, haptic_.certificate, haptic_.key, haptic_.governance, haptic_.permissions}) {
     fs::rename(file, folder_ / "away");
     expect("there is no " + file.string() + "; docs/security.md says what a folder of keys holds");
     fs::rename(folder_ / "away", file);
@@ -85,7 +90,9 @@ TEST_F(KeyRefusal, AMissingFile) {
 }
 
 TEST_F(KeyRefusal, KeysOfAnotherRole) {
-  EXPECT_TRUE(std::regex_match(refusal(keys_ / "render", "haptic"), std::regex("network: .*/render holds keys of the role 'render', and this program's is 'haptic'")));
+  EXPECT_TRUE(std::regex_match(
+      refusal(keys_ / "render", "haptic"),
+      std::regex("network: .*/render holds keys of the role 'render', and this program's is 'haptic'")));
 }
 
 TEST_F(KeyRefusal, AnOpenPrivateKey) {
@@ -166,7 +173,8 @@ TEST_F(KeyRefusal, WhatTheRoleMayNot) {
     bus->writer(topics::tool_state);
     FAIL() << "an observer writes";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), "network: creating the writer of palpate/tool_state is not permitted to the role of these keys");
+    EXPECT_EQ(std::string(error.what()),
+              "network: creating the writer of palpate/tool_state is not permitted to the role of these keys");
   }
 }
 
@@ -177,7 +185,9 @@ TEST_F(KeyRefusal, TwoRolesInOneProcess) {
   EXPECT_THROW(make_dds_bus({.domain = one.domain, .keys = keys_, .role = "haptic"}), std::runtime_error);
   EXPECT_THROW(make_dds_bus({.domain = one.domain}), std::runtime_error) << "nor with keys and without";
   keys::make_folder(folder_ / "foreign", now_and_on());
-  EXPECT_THROW(make_dds_bus({.domain = one.domain, .keys = folder_ / "foreign", .role = "observer"}), std::runtime_error) << "nor with those of two authorities";
+  EXPECT_THROW(make_dds_bus({.domain = one.domain, .keys = folder_ / "foreign", .role = "observer"}),
+               std::runtime_error)
+      << "nor with those of two authorities";
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
+#include "common/bus/roles.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <regex>
 #include <set>
 
-#include "common/bus/roles.hpp"
 #include "idl/topics.hpp"
 #include "tools/keys/documents.hpp"
 
@@ -13,7 +14,9 @@ namespace {
 
 using Names = std::set<std::string>;
 
-Names names(const std::vector<std::string>& list) { return {list.begin(), list.end()}; }
+Names names(const std::vector<std::string>& list) {
+  return {list.begin(), list.end()};
+}
 
 Names all_topics() {
   Names all;
@@ -33,7 +36,8 @@ TEST(BusRoles, FollowTheTableOfTopics) {
       if (cell == "all") return nodes;
       Names found;
       for (const std::string& role : nodes)
-        if (std::regex_search(cell, std::regex("\\b" + role + "\\b")) != cell.starts_with("all but")) found.insert(role);
+        if (std::regex_search(cell, std::regex("\\b" + role + "\\b")) != cell.starts_with("all but"))
+          found.insert(role);
       return found;
     };
     Names writers, readers;
@@ -48,7 +52,8 @@ TEST(BusRoles, FollowTheTableOfTopics) {
     EXPECT_EQ(readers, expected_readers) << topic.name;
     const std::string own = recorders_name(topic);
     for (const std::string& role : nodes) {
-      EXPECT_EQ(names(rights_of(role).writes).contains(own), topic.qos.recorder_depth > 0 && writers.contains(role)) << own;
+      EXPECT_EQ(names(rights_of(role).writes).contains(own), topic.qos.recorder_depth > 0 && writers.contains(role))
+          << own;
       EXPECT_EQ(names(rights_of(role).reads).contains(own), topic.qos.recorder_depth > 0 && role == "recorder") << own;
     }
   });
@@ -88,16 +93,19 @@ TEST(BusRoles, PermissionsNameTheirRightsAndDenyTheRest) {
     EXPECT_EQ(between(text, "subscribe"), names(rights_of(role).reads)) << role;
     EXPECT_EQ(text.find("<publish>") == text.npos, rights_of(role).writes.empty()) << role;
     EXPECT_NE(text.find("<default>DENY</default>"), text.npos);
-    EXPECT_NE(text.find("<not_before>1970-01-01T00:00:00Z</not_before><not_after>1970-01-02T00:00:00Z</not_after>"), text.npos);
+    EXPECT_NE(text.find("<not_before>1970-01-01T00:00:00Z</not_before><not_after>1970-01-02T00:00:00Z</not_after>"),
+              text.npos);
   }
 }
 
 TEST(BusRoles, GovernanceLeavesNothingOpen) {
   const std::string text = keys::governance_document();
-  for (const char* element : {"discovery_protection_kind", "liveliness_protection_kind", "metadata_protection_kind", "data_protection_kind"})
+  for (const char* element :
+       {"discovery_protection_kind", "liveliness_protection_kind", "metadata_protection_kind", "data_protection_kind"})
     EXPECT_NE(text.find(std::string("<") + element + ">ENCRYPT<"), text.npos) << element;
-  for (const char* element : {"enable_join_access_control", "enable_discovery_protection", "enable_liveliness_protection", "enable_read_access_control",
-                              "enable_write_access_control"})
+  for (const char* element :
+       {"enable_join_access_control", "enable_discovery_protection", "enable_liveliness_protection",
+        "enable_read_access_control", "enable_write_access_control"})
     EXPECT_NE(text.find(std::string("<") + element + ">true<"), text.npos) << element;
   EXPECT_NE(text.find("<allow_unauthenticated_participants>false<"), text.npos);
   EXPECT_NE(text.find("<topic_expression>*<"), text.npos);

@@ -26,7 +26,8 @@ struct CuttingScene : LoopbackScene {
     replace("quasi_static", "tensor_mass");
     replace("radius = 0.008", "radius = 0.008\ncautery = { radius = 0.009 }");
     write("motion.csv",
-          "time,yaw,pitch,depth,roll,grip,pedal\n0,0.3,0,0.17,0,0,0\n0.3,0.3,0,0.21,0,0,1\n2.0,-0.3,0,0.21,0,0,1\n2.3,-0.3,0,0.17,0,0,0\n3.5,0,0,0.17,0,0,0\n");
+          "time,yaw,pitch,depth,roll,grip,pedal\n0,0.3,0,0.17,0,0,0\n0.3,0.3,0,0.21,0,0,1\n2.0,-0.3,0,0.21,0,0,1\n2.3,-"
+          "0.3,0,0.17,0,0,0\n3.5,0,0,0.17,0,0,0\n");
   }
 };
 
@@ -47,8 +48,8 @@ TEST(CuttingTest, EveryNodeEndsWithTheSameTissueAndTheLogProvesIt) {
   std::string output;
   ASSERT_EQ(run_command(program("palpate") + " precompute " + scene.scene(), &output), 0) << output;
 
-  ChildProcess run("run", {program("palpate"), "run", scene.scene(), "--domain", std::to_string(own_domain()), "--record", log, "--still",
-                           scene.folder() / "cut.png"});
+  ChildProcess run("run", {program("palpate"), "run", scene.scene(), "--domain", std::to_string(own_domain()),
+                           "--record", log, "--still", scene.folder() / "cut.png"});
   // An observer that comes when the cut is half done.
   std::this_thread::sleep_for(2500ms);
   const Scene loaded = load_scene(scene.scene());
@@ -68,7 +69,8 @@ TEST(CuttingTest, EveryNodeEndsWithTheSameTissueAndTheLogProvesIt) {
   const std::set<std::uint32_t> gone = removed_in(log);
   EXPECT_GT(gone.size(), 30u);
   EXPECT_EQ(feed.cuts(), gone.size()) << "who comes late gets every cut";
-  for (int t = 0; t < feed.mesh(0).size(); ++t) ASSERT_EQ(feed.mesh(0).alive(t), !gone.contains(static_cast<std::uint32_t>(t))) << t;
+  for (int t = 0; t < feed.mesh(0).size(); ++t)
+    ASSERT_EQ(feed.mesh(0).alive(t), !gone.contains(static_cast<std::uint32_t>(t))) << t;
   EXPECT_GT(std::filesystem::file_size(scene.folder() / "cut.png"), 1000u);
 
   ASSERT_EQ(run_command(program("palpate") + " replay " + log + " --verify", &output), 0) << output;

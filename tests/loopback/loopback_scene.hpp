@@ -20,7 +20,8 @@ class LoopbackScene {
     std::filesystem::create_directories(folder_);
     write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {8, 8, 4}), folder_ / "block.msh");
     write("motion.csv",
-          "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.18,0,0\n1.0,0,0,0.198,0,0\n1.5,0.06,0.02,0.199,0.3,0\n"
+          "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.18,0,0\n1.0,0,0,0.198,0,0\n1.5,0.06,0.02,0.199,0."
+          "3,0\n"
           "2.0,0.06,0.02,0.17,0.3,0\n2.2,0,0,0.17,0,0\n");
     write("scene.toml", fmt::format(R"(title = "loopback block"
 [[body]]
@@ -47,7 +48,8 @@ height = 240
 [render.camera]
 eye = [0.0, -0.15, 0.1]
 target = [0.0, 0.0, 0.0]
-)", young, more_body));
+)",
+                                    young, more_body));
   }
   ~LoopbackScene() { std::filesystem::remove_all(folder_); }
 
@@ -66,10 +68,14 @@ target = [0.0, 0.0, 0.0]
   std::filesystem::path folder_;
 };
 
-inline std::string program(const std::string& name) { return std::string(PALPATE_BIN) + "/" + name; }
+inline std::string program(const std::string& name) {
+  return std::string(PALPATE_BIN) + "/" + name;
+}
 
 /// A DDS domain of this process's own.
-inline int own_domain() { return 1 + getpid() % 200; }
+inline int own_domain() {
+  return 1 + getpid() % 200;
+}
 
 /// Runs a command line and returns its exit status; standard output and error go to `output`.
 inline int run_command(const std::string& command, std::string* output = nullptr) {

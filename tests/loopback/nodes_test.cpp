@@ -66,13 +66,17 @@ class Ear {
   std::unique_ptr<Reader<ForceState>> force_;
 };
 
-Eigen::Vector3d vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+Eigen::Vector3d vec(const std::array<double, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 /// The contacts of one step as bilateral conditions for the direct solver: sticking anchors lie where the tool's pose
 /// puts them, sliding ones on the tip's surface along their normal. Sliding friction is left to the caller.
-std::vector<Constraint> conditions(const Scene& scene, const Archive& archive, const ToolState& tool, const ContactState& contacts) {
+std::vector<Constraint> conditions(const Scene& scene, const Archive& archive, const ToolState& tool,
+                                   const ContactState& contacts) {
   const Tool& t = scene.tools[0];
-  const Eigen::Isometry3d tip = tip_pose(make_trocar(t.pivot, t.axis, t.up), {tool.yaw, tool.pitch, tool.depth, tool.roll, tool.grip});
+  const Eigen::Isometry3d tip =
+      tip_pose(make_trocar(t.pivot, t.axis, t.up), {tool.yaw, tool.pitch, tool.depth, tool.roll, tool.grip});
   std::vector<Constraint> all;
   for (const HeldContact& c : contacts.contacts) {
     Eigen::Vector3d rest = Eigen::Vector3d::Zero();
@@ -103,7 +107,8 @@ LoopbackScene* NodesTest::scene_ = nullptr;
 TEST_F(NodesTest, TheSurfaceThatARenderNodeReceivesIsTheDirectSolversForTheSameContact) {
   const Scene scene = load_scene(scene_->scene());
   const Archive archive = find_archive(scene, scene.bodies[0], ArchivePart::surface);
-  const StaticProblem problem = make_static_problem(scene.bodies[0], load_tet_mesh(scene.bodies[0].mesh, scene.bodies[0].scale));
+  const StaticProblem problem =
+      make_static_problem(scene.bodies[0], load_tet_mesh(scene.bodies[0].mesh, scene.bodies[0].scale));
   Ear ear;
   Heard heard;
   ChildProcess deform("deform_node", node("deform_node", *scene_));
@@ -119,14 +124,16 @@ TEST_F(NodesTest, TheSurfaceThatARenderNodeReceivesIsTheDirectSolversForTheSameC
     const auto contacts = heard.contacts.find(step);
     const auto tool = heard.tools.find(step);
     if (contacts == heard.contacts.end() || tool == heard.tools.end() || contacts->second.contacts.empty()) continue;
-    const bool all_stick = std::all_of(contacts->second.contacts.begin(), contacts->second.contacts.end(), [](const auto& c) { return c.sticking; });
+    const bool all_stick = std::all_of(contacts->second.contacts.begin(), contacts->second.contacts.end(),
+                                       [](const auto& c) { return c.sticking; });
     const bool softened = heard.forces[step].flags & regularised;
     if (!all_stick || softened || step % 8 != 0 || compared >= 12) continue;
     const StaticSolution direct = solve_direct(problem, conditions(scene, archive, tool->second, contacts->second));
     double error = 0, size = 0;
     for (int n = 0; n < archive.surface.size(); ++n) {
       const Eigen::Vector3f shown(surface.position[3 * n], surface.position[3 * n + 1], surface.position[3 * n + 2]);
-      const Eigen::Vector3d expected = archive.surface.position[n] + direct.displacement[archive.surface.node_number[n]];
+      const Eigen::Vector3d expected =
+          archive.surface.position[n] + direct.displacement[archive.surface.node_number[n]];
       error = std::max(error, (shown.cast<double>() - expected).norm());
       size = std::max(size, direct.displacement[archive.surface.node_number[n]].norm());
     }
@@ -153,22 +160,26 @@ TEST_F(NodesTest, AnyNodeMayStartFirstDieAndComeBack) {
   std::this_thread::sleep_for(500ms);
   {
     ChildProcess haptic("haptic_node", node("haptic_node", *scene_, {"--seconds", "10"}));
-    ASSERT_TRUE(ear.listen(heard, 20s, [&] { return !heard.surfaces.empty() && heard.surfaces.rbegin()->second.run != 0; }));
+    ASSERT_TRUE(
+        ear.listen(heard, 20s, [&] { return !heard.surfaces.empty() && heard.surfaces.rbegin()->second.run != 0; }));
     const std::uint64_t first_step = heard.surfaces.rbegin()->first;
     kill(deform.pid(), SIGKILL);
     ASSERT_TRUE(deform.wait(5s));
     const std::uint64_t at_death = heard.tools.rbegin()->first;
-    ASSERT_TRUE(ear.listen(heard, 5s, [&] { return heard.tools.rbegin()->first > at_death + 300; })) << "the haptic loop goes on alone";
+    ASSERT_TRUE(ear.listen(heard, 5s, [&] { return heard.tools.rbegin()->first > at_death + 300; }))
+        << "the haptic loop goes on alone";
     EXPECT_GE(heard.surfaces.rbegin()->first, first_step);
     heard.surfaces.clear();
     ChildProcess again("deform_node", node("deform_node", *scene_));
-    EXPECT_TRUE(ear.listen(heard, 10s, [&] { return !heard.surfaces.empty(); })) << "a deformation node that comes back serves the same run";
+    EXPECT_TRUE(ear.listen(heard, 10s, [&] { return !heard.surfaces.empty(); }))
+        << "a deformation node that comes back serves the same run";
     kill(haptic.pid(), SIGKILL);
     ASSERT_TRUE(haptic.wait(5s));
     heard = {};
     ChildProcess second("haptic_node", node("haptic_node", *scene_, {"--seconds", "2.2"}));
     EXPECT_TRUE(ear.listen(heard, 20s, [&] {
-      return !heard.surfaces.empty() && !heard.tools.empty() && heard.surfaces.rbegin()->second.run == heard.tools.rbegin()->second.run;
+      return !heard.surfaces.empty() && !heard.tools.empty() &&
+             heard.surfaces.rbegin()->second.run == heard.tools.rbegin()->second.run;
     })) << "a haptic node that comes back is followed";
   }
 }
@@ -180,7 +191,8 @@ TEST_F(NodesTest, AnotherScenesContactsAreRefusedInWords) {
   Ear ear;
   Heard heard;
   ChildProcess haptic("haptic_node", node("haptic_node", other, {"--seconds", "3"}));
-  const std::string command = fmt::format("{} {} --domain {} --seconds 3", program("deform_node"), scene_->scene(), own_domain());
+  const std::string command =
+      fmt::format("{} {} --domain {} --seconds 3", program("deform_node"), scene_->scene(), own_domain());
   EXPECT_EQ(run_command(command, &said), 0);
   EXPECT_NE(said.find("refusing haptic"), std::string::npos) << said;
   ear.listen(heard, 200ms, [] { return false; });

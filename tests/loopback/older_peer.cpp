@@ -13,9 +13,12 @@ int main(int count, char** words) {
   if (count != 3) return 2;
   const auto domain = static_cast<dds_domainid_t>(std::atoi(words[1]));
   const std::string network =
-      "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
-      "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer "
-      "address=\"127.0.0.1\"/></Peers><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex></Discovery></Domain></CycloneDDS>";
+      "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface address=\"127.0.0.1\" "
+      "multicast=\"false\"/></Interfaces>"
+      "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</"
+      "ParticipantIndex><Peers><Peer "
+      "address=\"127.0.0.1\"/></Peers><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex></Discovery></Domain></"
+      "CycloneDDS>";
   dds_create_domain(domain, network.c_str());
   const std::string own = "palpate;0.0.9;0123456789abcdef;" + std::to_string(getpid()) + "@earlier";
   dds_qos_t* about = dds_create_qos();
@@ -24,8 +27,10 @@ int main(int count, char** words) {
   dds_delete_qos(about);
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, 0);
-  const dds_entity_t tool = dds_create_topic(participant, &palpate_ToolState_desc, "palpate/tool_state", nullptr, nullptr);
-  const dds_entity_t force = dds_create_topic(participant, &palpate_ForceState_desc, "palpate/force_state", nullptr, nullptr);
+  const dds_entity_t tool =
+      dds_create_topic(participant, &palpate_ToolState_desc, "palpate/tool_state", nullptr, nullptr);
+  const dds_entity_t force =
+      dds_create_topic(participant, &palpate_ForceState_desc, "palpate/force_state", nullptr, nullptr);
   const dds_entity_t writer = dds_create_writer(participant, tool, qos, nullptr);
   const dds_entity_t reader = dds_create_reader(participant, force, qos, nullptr);
   dds_delete_qos(qos);

@@ -26,15 +26,20 @@ TEST(OlderMessages, AreToldInWordsAndNeverTakenForOurs) {
   const int domain = own_domain();
   const std::string said = scene.folder() / "said";
   ChildProcess peer("older_peer", {program("older_peer"), std::to_string(domain), "5"});
-  ChildProcess deform("deform_node", {"/bin/sh", "-c", fmt::format("exec {} {} --supervised --domain {} 2>{}", program("deform_node"), scene.scene(), domain, said)});
-  ChildProcess haptic("haptic_node", {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--seconds", "3"});
+  ChildProcess deform("deform_node", {"/bin/sh", "-c",
+                                      fmt::format("exec {} {} --supervised --domain {} 2>{}", program("deform_node"),
+                                                  scene.scene(), domain, said)});
+  ChildProcess haptic("haptic_node",
+                      {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--seconds", "3"});
   const pid_t older = peer.pid();
   ASSERT_TRUE(peer.wait(20s));
   ASSERT_TRUE(haptic.wait(20s));
   deform.interrupt();
   ASSERT_TRUE(deform.wait(5s));
   EXPECT_EQ(deform.status(), 0);
-  EXPECT_NE(text_of(said).find(fmt::format("cannot talk with process {}@earlier: its palpate 0.0.9 has other messages (version 0123456789abcdef)", older)),
+  EXPECT_NE(text_of(said).find(fmt::format(
+                "cannot talk with process {}@earlier: its palpate 0.0.9 has other messages (version 0123456789abcdef)",
+                older)),
             std::string::npos)
       << text_of(said);
   EXPECT_EQ(text_of(said).find("cannot talk", text_of(said).find("cannot talk") + 1), std::string::npos) << "once";
@@ -48,7 +53,8 @@ TEST(OlderMessages, AreKnownByTheWordsOfTheirParticipant) {
   EXPECT_EQ(version_fault("another program"), "");
   EXPECT_EQ(version_fault("other;1;2;3"), "");
   const std::string fault = version_fault("palpate;9.9;ffff;1@\n\x1b[2J");
-  EXPECT_NE(fault.find("1@??[2J"), std::string::npos) << fault << "what comes from outside does not rule the operator's terminal";
+  EXPECT_NE(fault.find("1@??[2J"), std::string::npos)
+      << fault << "what comes from outside does not rule the operator's terminal";
 }
 
 }  // namespace

@@ -20,7 +20,10 @@ using testing::run_command;
 /// A driver that holds the tool at a depth, as a device elsewhere would.
 class Driver {
  public:
-  Driver() : bus_(make_dds_bus({.domain = own_domain()})), writer_(bus_->writer(topics::device_state)), forces_(bus_->reader(topics::force_state)) {}
+  Driver()
+      : bus_(make_dds_bus({.domain = own_domain()})),
+        writer_(bus_->writer(topics::device_state)),
+        forces_(bus_->reader(topics::force_state)) {}
 
   /// Publishes for a while at about 500 Hz and returns the last force that came back.
   std::optional<ForceState> drive(double from, double to, std::chrono::milliseconds time) {
@@ -48,7 +51,9 @@ TEST(Resume, AHapticNodeKilledInContactComesBackIntoItAndAFreshOneIsRefused) {
   std::string said;
   ASSERT_EQ(run_command(program("palpate") + " precompute " + scene.scene(), &said), 0) << said;
   const std::vector<std::string> network{"--domain", std::to_string(own_domain())};
-  const auto start = [&](const std::string& name) { return ChildProcess(name, {program(name), scene.scene(), network[0], network[1]}); };
+  const auto start = [&](const std::string& name) {
+    return ChildProcess(name, {program(name), scene.scene(), network[0], network[1]});
+  };
 
   Driver driver;
   ChildProcess deform = start("deform_node");

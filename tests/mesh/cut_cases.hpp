@@ -36,8 +36,7 @@ inline TetMesh cut_case(unsigned kind, std::mt19937& random) {
       for (int t = 0; t < 20; ++t) {
         const Eigen::Vector3d corner(at(random), at(random), at(random));
         mesh.nodes.push_back(corner);
-        for (int axis = 0; axis < 3; ++axis)
-          mesh.nodes.push_back(corner + 0.01 * Eigen::Vector3d::Unit(axis));
+        for (int axis = 0; axis < 3; ++axis) mesh.nodes.push_back(corner + 0.01 * Eigen::Vector3d::Unit(axis));
         mesh.tetrahedra.push_back({4 * t, 4 * t + 1, 4 * t + 2, 4 * t + 3});
       }
       return mesh;
@@ -66,8 +65,7 @@ class Cutter {
     for (int t = 0; t < cut.size(); ++t) {
       if (!cut.alive(t)) continue;
       const auto& n = cut.tetrahedron(t);
-      const double at =
-          along_.dot(mesh_.nodes[n[0]] + mesh_.nodes[n[1]] + mesh_.nodes[n[2]] + mesh_.nodes[n[3]]);
+      const double at = along_.dot(mesh_.nodes[n[0]] + mesh_.nodes[n[1]] + mesh_.nodes[n[2]] + mesh_.nodes[n[3]]);
       if (foremost < 0 || at < least) foremost = t, least = at;
     }
     return foremost;

@@ -51,8 +51,7 @@ std::string fault_of(const TetMesh& mesh) {
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
     for (int n : mesh.tetrahedra[t]) stars[n].push_back(t);
   for (const auto& [node, star] : stars)
-    if (!star_hangs_together(mesh, node, star))
-      return "parts meet only in node or edges at " + std::to_string(node);
+    if (!star_hangs_together(mesh, node, star)) return "parts meet only in node or edges at " + std::to_string(node);
 
   std::map<Edge, int> uses;                             // directed edges of the surface
   std::map<int, std::map<int, std::vector<int>>> ring;  // around each node: which follows which
@@ -144,8 +143,7 @@ TEST(CutMesh, RemovesATetrahedronAloneWhereThatIsEnough) {
   std::vector<int> removed;
   for (int t = 0; t < cut.size(); ++t) {  // amid the tissue: a closed hollow
     bool inside = true;
-    for (int n : cut.tetrahedron(t))
-      inside &= (mesh.nodes[n].array() > 0).all() && (mesh.nodes[n].array() < 1).all();
+    for (int n : cut.tetrahedron(t)) inside &= (mesh.nodes[n].array() > 0).all() && (mesh.nodes[n].array() < 1).all();
     if (!inside) continue;
     cut.remove(t, removed);
     EXPECT_EQ(removed, std::vector<int>{t});
@@ -320,7 +318,8 @@ bool hang_together(const CutMesh& mesh, const std::vector<int>& nodes) {
       if (std::ranges::find(reached, t) != reached.end()) continue;
       std::vector<int> shared;
       for (int n : mesh.tetrahedron(t))
-        if (std::ranges::find(mesh.tetrahedron(reached[i]), n) != mesh.tetrahedron(reached[i]).end()) shared.push_back(n);
+        if (std::ranges::find(mesh.tetrahedron(reached[i]), n) != mesh.tetrahedron(reached[i]).end())
+          shared.push_back(n);
       if (shared.size() == 3 && holds(shared)) reached.push_back(t);
     }
   return reached.size() == star.size();
@@ -340,10 +339,12 @@ TEST(CutMesh, HangsOnALargerBodyThroughFacesAlone) {
   std::mt19937 random(3);
   int removals = 0;
   for (int trial = 0; trial < 6; ++trial) {
-    CutMesh whole(block.tetrahedra, static_cast<int>(block.nodes.size())), cut(part, static_cast<int>(block.nodes.size()));
+    CutMesh whole(block.tetrahedra, static_cast<int>(block.nodes.size())),
+        cut(part, static_cast<int>(block.nodes.size()));
     std::vector<int> joints;
     for (int facet : cut.visible())
-      if (std::ranges::all_of(cut.facet(facet), [&](int n) { return block.nodes[n].z() == 2; })) joints.push_back(facet);
+      if (std::ranges::all_of(cut.facet(facet), [&](int n) { return block.nodes[n].z() == 2; }))
+        joints.push_back(facet);
     ASSERT_EQ(joints.size(), 60u);
     cut.join(joints);
     while (cut.alive_count() > 0) {

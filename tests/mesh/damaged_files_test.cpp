@@ -37,8 +37,7 @@ TEST(DamagedFile, CutAnywhereIsRefused) {
     for (std::size_t size = 0; size + 12 < sample.bytes.size(); size += 5) {
       const auto file = folder.write(sample.name, sample.bytes.substr(0, size));
       const std::string text = sentence_of([&] { load_tet_mesh(file, 1); });
-      EXPECT_TRUE(text.starts_with(file.string() + ": "))
-          << sample.name << " cut at " << size << ": " << text;
+      EXPECT_TRUE(text.starts_with(file.string() + ": ")) << sample.name << " cut at " << size << ": " << text;
     }
   }
 }
@@ -60,9 +59,8 @@ TEST(DamagedFile, OfRealSizeWithFlippedBytesIsReadOrRefusedInWords) {
   const TestFolder folder;
   const TetMesh liver = load_tet_mesh(PALPATE_SOURCE "/scenes/meshes/liver.msh", 1);
   std::mt19937 random(2);
-  for (const auto& [name, format] : {std::pair{"a.msh", MshFormat{4.1, true}},
-                                     {"b.msh", MshFormat{2.2, true}},
-                                     {"c.vtk", MshFormat{4.1, true}}}) {
+  for (const auto& [name, format] :
+       {std::pair{"a.msh", MshFormat{4.1, true}}, {"b.msh", MshFormat{2.2, true}}, {"c.vtk", MshFormat{4.1, true}}}) {
     write_tet_mesh(liver, folder.path(name), format);
     const std::string good = bytes_of(folder.path(name));
     for (int round = 0; round < 12; ++round) {
@@ -76,10 +74,8 @@ TEST(DamagedFile, OfRealSizeWithFlippedBytesIsReadOrRefusedInWords) {
 
 TEST(Child, ReturnsBytesAndPassesReasonsOn) {
   EXPECT_EQ(run_in_child([] { return std::string("a\0b", 3); }), std::string("a\0b", 3));
-  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { throw std::runtime_error("no good"); }); }),
-            "no good");
-  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { throw std::string("no string"); }); }),
-            "no string");
+  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { throw std::runtime_error("no good"); }); }), "no good");
+  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { throw std::string("no string"); }); }), "no string");
 }
 
 TEST(Child, ThatCrashesOrLeavesIsReportedInWords) {
@@ -90,10 +86,8 @@ TEST(Child, ThatCrashesOrLeavesIsReportedInWords) {
               });
             }),
             "the reader crashed (signal 11)");
-  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { _exit(0); }); }),
-            "the reader ended without an answer");
-  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { _exit(3); }); }),
-            "the reader ended without an answer");
+  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { _exit(0); }); }), "the reader ended without an answer");
+  EXPECT_EQ(sentence_of([] { run_in_child([]() -> std::string { _exit(3); }); }), "the reader ended without an answer");
 }
 
 TEST(Child, CannotWriteToTheTerminal) {

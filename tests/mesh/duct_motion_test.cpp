@@ -45,8 +45,7 @@ class ScriptedForceps {
         if (p.norm() > 0.1) break;
         for (const auto& [a, b, c] : mesh.triangles) {
           if ((mesh.nodes[a] - p).norm() > 0.02) continue;
-          const double d =
-              std::sqrt(closest_point(p, {mesh.nodes[a], mesh.nodes[b], mesh.nodes[c]}).squared_distance);
+          const double d = std::sqrt(closest_point(p, {mesh.nodes[a], mesh.nodes[b], mesh.nodes[c]}).squared_distance);
           least = std::min(least, d - radius - 0.5 * thickness);
         }
       }
@@ -125,8 +124,7 @@ TEST_F(DuctScene, TheFeedingForcepsHasTheCatheterBetweenItsJawsAndClosesOnIt) {
       EXPECT_LT(to_jaw, touching);
       if (held) fed += before - here;
     } else if (opening > 0.85 && middle.z() > 0 && middle.z() < scene.tools[0].jaws->length) {
-      EXPECT_GT(to_jaw - std::abs(middle.y()),
-                middle.z() > 0.6 * scene.tools[0].jaws->length - 1e-4 ? touching : 0);
+      EXPECT_GT(to_jaw - std::abs(middle.y()), middle.z() > 0.6 * scene.tools[0].jaws->length - 1e-4 ? touching : 0);
     }
     held = opening < 0.35;
     before = here;
@@ -144,9 +142,10 @@ TEST_F(DuctScene, TheOtherForcepsPushesTheDuctLightlyWithBothJaws) {
     double least = 1;
     for (double s = 0; s <= 1; s += 0.02)
       for (const auto& [a, b, c] : duct.triangles)
-        least = std::min(least, std::sqrt(closest_point(parts[jaw].first.at(s),
-                                                        {duct.nodes[a], duct.nodes[b], duct.nodes[c]})
-                                              .squared_distance));
+        least = std::min(
+            least,
+            std::sqrt(
+                closest_point(parts[jaw].first.at(s), {duct.nodes[a], duct.nodes[b], duct.nodes[c]}).squared_distance));
     EXPECT_NEAR(least - parts[jaw].second - 0.5 * thickness, -0.0015, 0.0004);
   }
   EXPECT_GT(gap(1, tools[1].duration() - 0.2, tools[1].duration()), 0.005);

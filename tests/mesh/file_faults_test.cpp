@@ -17,8 +17,7 @@ std::string complaint(const std::string& name, const std::string& bytes) {
 
 TEST(FileFault, AMissingFileIsNamed) {
   EXPECT_EQ(sentence_of([] { load_tet_mesh("/no/such.msh", 1); }), "/no/such.msh: the file does not exist");
-  EXPECT_EQ(sentence_of([] { load_triangle_mesh("/no/such.stl", 1); }),
-            "/no/such.stl: the file does not exist");
+  EXPECT_EQ(sentence_of([] { load_triangle_mesh("/no/such.stl", 1); }), "/no/such.stl: the file does not exist");
 }
 
 TEST(FileFault, AFolderIsNotAFile) {
@@ -28,10 +27,8 @@ TEST(FileFault, AFolderIsNotAFile) {
 TEST(FileFault, TheScaleMustBePositive) {
   const TestFolder folder;
   const auto file = folder.write("a.msh", kGmsh1);
-  for (double scale :
-       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    EXPECT_NE(sentence_of([&] { load_tet_mesh(file, scale); }).find("is not a positive number"),
-              std::string::npos);
+  for (double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(sentence_of([&] { load_tet_mesh(file, scale); }).find("is not a positive number"), std::string::npos);
   }
 }
 
@@ -63,8 +60,7 @@ TEST(FileFault, ACoordinateThatIsNoNumberIsNamed) {
             "element 1: node 5 has a coordinate that is not a finite number");
   EXPECT_EQ(complaint("a.msh", replaced(kGmsh1, "8 1 1 1", "8 1 inf 1")),
             "element 1: node 5 has a coordinate that is not a finite number");
-  EXPECT_EQ(complaint("a.msh", replaced(kGmsh1, "8 1 1 1", "8 1 x1 1")),
-            "\"x1\" stands where a number should");
+  EXPECT_EQ(complaint("a.msh", replaced(kGmsh1, "8 1 1 1", "8 1 x1 1")), "\"x1\" stands where a number should");
 }
 
 TEST(FileFault, InvertedDegenerateAndDuplicateElementsAreNamed) {
@@ -88,8 +84,8 @@ TEST(FileFault, OtherSolidsThanTetrahedraAreRefused) {
 
 TEST(FileFault, AFileWithoutTetrahedraIsRefused) {
   const std::string only_triangle =
-      replaced(replaced(replaced(kGmsh2, "9 4 2 5 1 10 3 5 2\n", ""), "4 4 2 6 1 3 8 5 2\n", ""),
-               "$Elements\n3", "$Elements\n1");
+      replaced(replaced(replaced(kGmsh2, "9 4 2 5 1 10 3 5 2\n", ""), "4 4 2 6 1 3 8 5 2\n", ""), "$Elements\n3",
+               "$Elements\n1");
   EXPECT_EQ(complaint("a.msh", only_triangle), "the mesh has no tetrahedra");
 }
 
@@ -100,8 +96,7 @@ TEST(FileFault, VersionsThatAreNotReadSayWhatToDo) {
             "VTK files of version 5 are not read; save it as version 4.2 or as Gmsh 4.1");
   std::string other = gmsh2_binary();
   other.replace(other.find("8\n") + 2, 4, raw<int>({1}, true));
-  EXPECT_EQ(complaint("a.msh", other),
-            "it is binary with the byte order of another machine; save it as text");
+  EXPECT_EQ(complaint("a.msh", other), "it is binary with the byte order of another machine; save it as text");
 }
 
 TEST(FileFault, CountsBeyondTheFileAreRefusedBeforeAnyMemoryIsTaken) {
@@ -130,13 +125,10 @@ TEST(FileFault, AnStlThatIsCutShortIsRefused) {
 
 TEST(FileFault, AFileThatCannotBeWrittenIsNamed) {
   const TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {}};
-  EXPECT_TRUE(sentence_of([&] {
-                write_tet_mesh(mesh, "/no/such/folder/a.msh");
-              }).starts_with("/no/such/folder/a.msh: "));
   EXPECT_TRUE(
-      sentence_of([&] { write_stl({}, "/no/such/folder/a.stl"); }).starts_with("/no/such/folder/a.stl: "));
-  EXPECT_EQ(sentence_of([&] { write_tet_mesh(mesh, "a.obj"); }),
-            "a.obj: a mesh is written to .msh and .vtk files");
+      sentence_of([&] { write_tet_mesh(mesh, "/no/such/folder/a.msh"); }).starts_with("/no/such/folder/a.msh: "));
+  EXPECT_TRUE(sentence_of([&] { write_stl({}, "/no/such/folder/a.stl"); }).starts_with("/no/such/folder/a.stl: "));
+  EXPECT_EQ(sentence_of([&] { write_tet_mesh(mesh, "a.obj"); }), "a.obj: a mesh is written to .msh and .vtk files");
 }
 
 }  // namespace

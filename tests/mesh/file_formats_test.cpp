@@ -12,8 +12,7 @@ namespace {
 
 // Every literal file holds the same mesh: six nodes with scrambled numbers, the third in no element.
 void expect_literal_mesh(const TetMesh& mesh, double scale) {
-  const std::vector<Eigen::Vector3d> expected{{0, 0, 0}, {1, 0, 0}, {9, 9, 9},
-                                              {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  const std::vector<Eigen::Vector3d> expected{{0, 0, 0}, {1, 0, 0}, {9, 9, 9}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
   ASSERT_EQ(mesh.nodes.size(), 6u);
   for (int n = 0; n < 6; ++n) EXPECT_EQ(mesh.nodes[n], scale * expected[n]) << "node " << n;
   EXPECT_EQ(mesh.tetrahedra, (std::vector<std::array<int, 4>>{{0, 1, 3, 4}, {1, 5, 3, 4}}));
@@ -94,8 +93,8 @@ TEST(LiteralFile, ThatIsNegativeThroughoutIsTurned) {
 
 TEST(Groups, AnElementRepeatedForItsSecondGroupIsOneElement) {
   const TestFolder folder;
-  const std::string text = replaced(replaced(kGmsh2, "$Elements\n3", "$Elements\n4"), "$EndElements",
-                                    "12 4 2 6 1 10 3 5 2\n$EndElements");
+  const std::string text =
+      replaced(replaced(kGmsh2, "$Elements\n3", "$Elements\n4"), "$EndElements", "12 4 2 6 1 10 3 5 2\n$EndElements");
   const TetMesh mesh = load_tet_mesh(folder.write("a.msh", text), 1);
   EXPECT_EQ(mesh.tetrahedra.size(), 2u);
   EXPECT_EQ(mesh.groups.at("5").tetrahedra, (std::vector<int>{0}));
@@ -114,8 +113,7 @@ TEST(Groups, ANumberUsedInTwoDimensionsIsFoundByItsKind) {
 // node.
 TetMesh rich_mesh(bool with_unused_node) {
   TetMesh mesh = make_block({0, 0, 0}, {0.3, 0.2, 0.1}, {3, 2, 2});
-  for (auto& x : mesh.nodes)
-    x += 1e-3 * Eigen::Vector3d(std::sin(70 * x.y()), std::cos(90 * x.z()), x.x() / 3);
+  for (auto& x : mesh.nodes) x += 1e-3 * Eigen::Vector3d(std::sin(70 * x.y()), std::cos(90 * x.z()), x.x() / 3);
   const auto fill = [&](const char* name, int first, int last) {
     MeshGroup& group = mesh.groups[name];
     for (int t = first; t < last; ++t) {
@@ -142,8 +140,7 @@ TetMesh rich_mesh(bool with_unused_node) {
 
 void expect_same_mesh(const TetMesh& read, const TetMesh& written) {
   ASSERT_EQ(read.nodes.size(), written.nodes.size());
-  for (std::size_t n = 0; n < read.nodes.size(); ++n)
-    EXPECT_LT((read.nodes[n] - written.nodes[n]).norm(), 1e-14);
+  for (std::size_t n = 0; n < read.nodes.size(); ++n) EXPECT_LT((read.nodes[n] - written.nodes[n]).norm(), 1e-14);
   EXPECT_EQ(read.tetrahedra, written.tetrahedra);
 }
 
@@ -233,8 +230,7 @@ TEST(TriangleFile, OfGmshGivesItsTrianglesOrElseTheBoundary) {
 
 TEST(RealLiver, IsReadWithItsNodesInOrder) {
   const std::filesystem::path file = PALPATE_SOURCE "/../shared/data/liver.msh";
-  if (!std::filesystem::exists(file))
-    GTEST_SKIP() << "the real liver (" << file << ") is not on this machine";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the real liver (" << file << ") is not on this machine";
   const TetMesh liver = load_tet_mesh(file, 0.01);
   EXPECT_EQ(liver.nodes.size(), 181u);
   EXPECT_EQ(liver.tetrahedra.size(), 596u);
@@ -246,8 +242,7 @@ TEST(RealLiver, IsReadWithItsNodesInOrder) {
 
 TEST(MeshFile, LoadingPrintsNothing) {
   const TestFolder folder;
-  const auto good = folder.write("a.msh", kGmsh2),
-             bad = folder.write("b.msh", replaced(kGmsh2, "$EndElements", ""));
+  const auto good = folder.write("a.msh", kGmsh2), bad = folder.write("b.msh", replaced(kGmsh2, "$EndElements", ""));
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   load_tet_mesh(good, 1);

@@ -27,8 +27,7 @@ TEST(Block, NumbersNodesWithXFastestAndEndsExactly) {
   const TetMesh mesh = make_block({0.1, 0.2, 0.3}, {0.7, 0.9, 1.1}, {3, 4, 5});
   const int i = 2, j = 3, k = 4;
   const Eigen::Vector3d x = mesh.nodes[(k * 5 + j) * 4 + i];
-  EXPECT_NEAR((x - Eigen::Vector3d(0.1 + 0.6 * 2 / 3, 0.2 + 0.7 * 3 / 4, 0.3 + 0.8 * 4 / 5)).norm(), 0,
-              1e-15);
+  EXPECT_NEAR((x - Eigen::Vector3d(0.1 + 0.6 * 2 / 3, 0.2 + 0.7 * 3 / 4, 0.3 + 0.8 * 4 / 5)).norm(), 0, 1e-15);
   EXPECT_EQ(mesh.nodes.front(), Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(mesh.nodes.back(), Eigen::Vector3d(0.7, 0.9, 1.1));
 }
@@ -75,8 +74,7 @@ TEST(BlockOfFive, HasOneThirdOfEachCellInTheMiddleAndASixthAtFourCorners) {
 }
 
 // Node-number sets of all tetrahedra after a mirroring of the grid.
-std::set<std::set<int>> mirrored(const TetMesh& mesh,
-                                 const std::function<Eigen::Vector3d(Eigen::Vector3d)>& mirror) {
+std::set<std::set<int>> mirrored(const TetMesh& mesh, const std::function<Eigen::Vector3d(Eigen::Vector3d)>& mirror) {
   std::vector<int> image;
   for (const auto& x : mesh.nodes) {
     const Eigen::Vector3d y = mirror(x);
@@ -87,8 +85,7 @@ std::set<std::set<int>> mirrored(const TetMesh& mesh,
     image.push_back(nearest);
   }
   std::set<std::set<int>> tetrahedra;
-  for (const auto& t : mesh.tetrahedra)
-    tetrahedra.insert({image[t[0]], image[t[1]], image[t[2]], image[t[3]]});
+  for (const auto& t : mesh.tetrahedra) tetrahedra.insert({image[t[0]], image[t[1]], image[t[2]], image[t[3]]});
   return tetrahedra;
 }
 
@@ -154,8 +151,7 @@ TEST(Cylinder, GroupsHoldTheEndsAndTheSide) {
 
 TEST(Cylinder, WithEvenLayersIsSymmetricAboutMidHeight) {
   const TetMesh mesh = make_cylinder(1, 2, 3, 4);
-  const auto flipped =
-      mirrored(mesh, [](Eigen::Vector3d x) { return Eigen::Vector3d(x.x(), x.y(), 2 - x.z()); });
+  const auto flipped = mirrored(mesh, [](Eigen::Vector3d x) { return Eigen::Vector3d(x.x(), x.y(), 2 - x.z()); });
   EXPECT_EQ(flipped, mirrored(mesh, [](Eigen::Vector3d x) { return x; }));
 }
 

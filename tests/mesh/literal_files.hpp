@@ -163,11 +163,10 @@ inline std::string gmsh2_binary() {
 
 inline std::string gmsh4_binary() {
   using Size = std::size_t;
-  std::string f =
-      "$MeshFormat\n4.1 1 8\n" + raw<int>({1}) + "\n$EndMeshFormat\n$Entities\n" + raw<Size>({0, 0, 1, 2});
+  std::string f = "$MeshFormat\n4.1 1 8\n" + raw<int>({1}) + "\n$EndMeshFormat\n$Entities\n" + raw<Size>({0, 0, 1, 2});
   const auto entity = [](int number, int group) {
-    return raw<int>({double(number)}) + raw<double>({0, 0, 0, 1, 1, 1}) + raw<Size>({1}) +
-           raw<int>({double(group)}) + raw<Size>({0});
+    return raw<int>({double(number)}) + raw<double>({0, 0, 0, 1, 1, 1}) + raw<Size>({1}) + raw<int>({double(group)}) +
+           raw<Size>({0});
   };
   f += entity(3, 7) + entity(1, 5) + entity(2, 6) + "\n$EndEntities\n$Nodes\n" + raw<Size>({2, 6, 2, 10});
   const auto nodes = [](std::size_t begin, std::size_t end) {
@@ -181,15 +180,13 @@ inline std::string gmsh4_binary() {
   };
   f += raw<int>({3, 2, 0}) + nodes(0, 2) + raw<int>({3, 1, 0}) + nodes(2, 6) + "\n$EndNodes\n$Elements\n";
   f += raw<Size>({3, 3, 4, 9}) + raw<int>({3, 1, 4}) + raw<Size>({1, 9, 10, 3, 5, 2});
-  f +=
-      raw<int>({3, 2, 4}) + raw<Size>({1, 4, 3, 8, 5, 2}) + raw<int>({2, 3, 2}) + raw<Size>({1, 6, 10, 3, 5});
+  f += raw<int>({3, 2, 4}) + raw<Size>({1, 4, 3, 8, 5, 2}) + raw<int>({2, 3, 2}) + raw<Size>({1, 6, 10, 3, 5});
   return f + "\n$EndElements\n";
 }
 
 template <class Real>
 std::string vtk_binary(const std::string& real) {
-  std::string f =
-      "# vtk DataFile Version 3.0\nliteral\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 " + real + "\n";
+  std::string f = "# vtk DataFile Version 3.0\nliteral\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 " + real + "\n";
   for (const auto& n : kLiteralNodes) f += raw<Real>({n[1], n[2], n[3]}, true);
   f += "\nCELLS 2 10\n" + raw<int>({4, 0, 1, 3, 4, 4, 1, 5, 3, 4}, true);
   return f + "\nCELL_TYPES 2\n" + raw<int>({10, 10}, true) + "\n";

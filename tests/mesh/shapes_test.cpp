@@ -23,8 +23,7 @@ const std::filesystem::path kMeshes = PALPATE_SOURCE "/scenes/meshes";
 
 void expect_same(const TetMesh& made, const TetMesh& stored) {
   ASSERT_EQ(made.nodes.size(), stored.nodes.size());
-  for (std::size_t n = 0; n < made.nodes.size(); ++n)
-    EXPECT_LT((made.nodes[n] - stored.nodes[n]).norm(), 1e-9);
+  for (std::size_t n = 0; n < made.nodes.size(); ++n) EXPECT_LT((made.nodes[n] - stored.nodes[n]).norm(), 1e-9);
   EXPECT_EQ(made.tetrahedra, stored.tetrahedra);
   for (const auto& [name, group] : made.groups) {
     EXPECT_EQ(group.nodes, stored.groups.at(name).nodes) << name;
@@ -45,8 +44,7 @@ TEST(Liver, HasThePapersSizeAHumansExtentAndGoodElements) {
   EXPECT_LT((high - low - Eigen::Vector3d(0.26, 0.165, 0.125)).cwiseAbs().maxCoeff(), 0.006);
   EXPECT_LT((0.5 * (high + low)).cwiseAbs().maxCoeff(), 0.006);
   EXPECT_NEAR(volume_of(liver), 1.9e-3, 0.1e-3);
-  for (const auto& t : liver.tetrahedra)
-    EXPECT_GT(smallest_dihedral_angle(liver, t), 18 * std::numbers::pi / 180);
+  for (const auto& t : liver.tetrahedra) EXPECT_GT(smallest_dihedral_angle(liver, t), 18 * std::numbers::pi / 180);
 }
 
 TEST(Liver, SurfaceNodesLieOnTheShapeAndTrianglesAreEven) {

@@ -157,14 +157,12 @@ TEST(ShellFile, WhatIsNoShellIsRefusedInWords) {
   EXPECT_EQ(complaint("lines.msh", lines + "1\n1 1 2 4 1 10 3\n$EndElements\n"), "the mesh has no triangles");
   std::string lost = kShell2;
   lost.replace(lost.find("3 2 5\n$End"), 5, "3 77 5");
-  EXPECT_EQ(complaint("lost.msh", lost),
-            "entry 3 of the element list: node number 77 is not in the node list");
+  EXPECT_EQ(complaint("lost.msh", lost), "entry 3 of the element list: node number 77 is not in the node list");
   EXPECT_EQ(complaint("shape.obj", "v 0 0 0\n"), "a surface is read from .msh, .vtk and .stl files");
   EXPECT_EQ(complaint("short.stl", std::string(84, '\x01')), "the file ends before its last triangle");
   EXPECT_EQ(sentence_of([] { load_shell_mesh("/no/such.msh", 1); }), "/no/such.msh: the file does not exist");
   const auto good = folder.write("good.msh", kShell2);
-  EXPECT_NE(sentence_of([&] { load_shell_mesh(good, 0); }).find("is not a positive number"),
-            std::string::npos);
+  EXPECT_NE(sentence_of([&] { load_shell_mesh(good, 0); }).find("is not a positive number"), std::string::npos);
 }
 
 // Damaged files end in a mesh or in one sentence that names the file.
@@ -184,8 +182,7 @@ TEST(ShellFile, WithFlippedBytesIsReadOrRefusedInWords) {
         bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
       if (round % 5 == 4) bytes.resize(random() % bytes.size());
       const auto file = folder.write(name, bytes);
-      const std::string text =
-          sentence_of([&] { check_shell_mesh(load_shell_mesh(file, 1), "after loading"); });
+      const std::string text = sentence_of([&] { check_shell_mesh(load_shell_mesh(file, 1), "after loading"); });
       EXPECT_TRUE(text.empty() || text.starts_with(file.string() + ": ")) << text;
       refused += !text.empty();
     }

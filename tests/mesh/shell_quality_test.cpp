@@ -61,17 +61,15 @@ TEST(ShellMesh, FaultsAreNamedWithTheirTriangle) {
   mesh = square();
   mesh.nodes.push_back({0.5, 0.5, 1});
   mesh.triangles.push_back({0, 2, 4});
-  EXPECT_EQ(complaint(mesh),
-            "duct.msh: triangle 2: 3 triangles share the edge between nodes 0 and 2, two at most can");
+  EXPECT_EQ(complaint(mesh), "duct.msh: triangle 2: 3 triangles share the edge between nodes 0 and 2, two at most can");
 }
 
 TEST(ShellMesh, PartsThatDoNotHangTogetherAreRefused) {
   ShellMesh mesh = square();
   mesh.nodes.insert(mesh.nodes.end(), {{3, 0, 0}, {4, 0, 0}, {3, 1, 0}});
   mesh.triangles.push_back({4, 5, 6});
-  EXPECT_EQ(
-      complaint(mesh),
-      "duct.msh: triangle 2: disconnected, it and 0 further triangles share no edge with triangle 0's part");
+  EXPECT_EQ(complaint(mesh),
+            "duct.msh: triangle 2: disconnected, it and 0 further triangles share no edge with triangle 0's part");
   mesh = square();  // a further triangle that hangs on by a node alone
   mesh.nodes.insert(mesh.nodes.end(), {{2, 1, 0}, {2, 2, 0}});
   mesh.triangles.push_back({2, 4, 5});
@@ -86,8 +84,7 @@ TEST(ShellMesh, TwoMouthsThatTouchInANodeAreRefused) {
   for (auto& t : mesh.triangles)
     for (int& n : t)
       if (n == b) n = a;
-  EXPECT_NE(complaint(mesh).find("node 0: parts of the shell meet only in it"), std::string::npos)
-      << complaint(mesh);
+  EXPECT_NE(complaint(mesh).find("node 0: parts of the shell meet only in it"), std::string::npos) << complaint(mesh);
 }
 
 TEST(ShellOrientation, RandomlyTurnedTrianglesOfATubeComeOutOutward) {
@@ -159,8 +156,7 @@ TEST(EnclosedVolume, OfATubeIsThatOfThePrism) {
 
 TEST(LumenRadius, OfAStraightTubeIsThatOfThePolygonsInscribedCircle) {
   for (int around : {8, 20, 40})
-    EXPECT_NEAR(lumen_radius(make_tube(0.005, 0.06, around, 24)), 0.005 * std::cos(std::numbers::pi / around),
-                1e-9);
+    EXPECT_NEAR(lumen_radius(make_tube(0.005, 0.06, around, 24)), 0.005 * std::cos(std::numbers::pi / around), 1e-9);
 }
 
 TEST(LumenRadius, FindsTheWaist) {

@@ -33,9 +33,7 @@ class BrainCylinder : public testing::TestWithParam<const char*> {
 
   /// Holds the bottom's height, one point of it and its turn about the axis.
   void slide_at_the_bottom() {
-    const auto on_x_axis = [&](int n) {
-      return std::hypot(mesh.nodes[n].x() - kRadius, mesh.nodes[n].y()) < 1e-9;
-    };
+    const auto on_x_axis = [&](int n) { return std::hypot(mesh.nodes[n].x() - kRadius, mesh.nodes[n].y()) < 1e-9; };
     const std::vector<int>& bottom = mesh.groups.at("bottom").nodes;
     const auto rim = std::find_if(bottom.begin(), bottom.end(), on_x_axis);
     ASSERT_NE(rim, bottom.end());
@@ -65,9 +63,7 @@ class BrainCylinder : public testing::TestWithParam<const char*> {
     return nodes;
   }
 
-  double outward(const std::vector<double>& field, int n) const {
-    return std::hypot(field[3 * n], field[3 * n + 1]);
-  }
+  double outward(const std::vector<double>& field, int n) const { return std::hypot(field[3 * n], field[3 * n + 1]); }
 
   TetMesh mesh = make_cylinder(kRadius, kHeight, 10, 6);
   Body body;
@@ -90,10 +86,10 @@ TEST_P(BrainCylinder, FitFollowsTheMeasuredCurves) {
   const double widest = measured(body.nonlinear->radial_curve, "radial_m", kDeepest);
   for (int i = 1; i <= 40; ++i) {
     const double x = kDeepest * i / 40;
-    EXPECT_NEAR(law.force_curve().value(linear.force * x),
-                measured(body.nonlinear->force_curve, "force_N", x), 2e-3 * greatest);
-    EXPECT_NEAR(law.radial_curve().value(linear.radial * x),
-                measured(body.nonlinear->radial_curve, "radial_m", x), 2e-3 * widest);
+    EXPECT_NEAR(law.force_curve().value(linear.force * x), measured(body.nonlinear->force_curve, "force_N", x),
+                2e-3 * greatest);
+    EXPECT_NEAR(law.radial_curve().value(linear.radial * x), measured(body.nonlinear->radial_curve, "radial_m", x),
+                2e-3 * widest);
   }
 }
 

@@ -18,9 +18,11 @@ std::vector<Eigen::Vector3d> reference(const Archive& archive, const ModalState&
   std::vector<Eigen::Vector3d> u(n, Eigen::Vector3d::Zero());
   for (int row = 0; row < 3 * n; ++row) {
     double& sum = u[row / 3][row % 3];
-    for (std::size_t m = 0; m < state.coordinates.size(); ++m) sum += archive.modal->shape[3 * n * m + row] * state.coordinates[m];
+    for (std::size_t m = 0; m < state.coordinates.size(); ++m)
+      sum += archive.modal->shape[3 * n * m + row] * state.coordinates[m];
     for (const ShellForce& f : state.forces)
-      for (int axis = 0; axis < 3; ++axis) sum += compliance.column(static_cast<int>(f.node), axis)[row] * f.force[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        sum += compliance.column(static_cast<int>(f.node), axis)[row] * f.force[axis];
   }
   return u;
 }
@@ -67,7 +69,8 @@ TEST(Deformer, WithoutForcesOnlyTheModesShow) {
   const auto& shape = s.archives[duct_body].modal->shape;
   const std::size_t rows = 3 * s.archives[duct_body].surface.position.size();
   for (std::size_t row = 0; row < rows; ++row)
-    EXPECT_NEAR(deformer.surface(duct_body).displacement[row / 3][static_cast<int>(row % 3)], 1e-4 * shape[3 * rows + row], 1e-9);
+    EXPECT_NEAR(deformer.surface(duct_body).displacement[row / 3][static_cast<int>(row % 3)],
+                1e-4 * shape[3 * rows + row], 1e-9);
 }
 
 TEST(Deformer, DrawsACatheterAsATubeAboutItsParticles) {
@@ -79,7 +82,8 @@ TEST(Deformer, DrawsACatheterAsATubeAboutItsParticles) {
   deformer.deform();
   std::vector<Eigen::Vector3f> line;
   for (std::size_t i = 0; i < state.position.size(); i += 3)
-    line.emplace_back(static_cast<float>(state.position[i]), static_cast<float>(state.position[i + 1]), static_cast<float>(state.position[i + 2]));
+    line.emplace_back(static_cast<float>(state.position[i]), static_cast<float>(state.position[i + 1]),
+                      static_cast<float>(state.position[i + 2]));
   const auto distance = [&](const Eigen::Vector3f& p) {
     float least = 1;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {

@@ -29,7 +29,8 @@ inline void add_compliance(Archive& archive, int touchable, int fixed, unsigned 
   }
   const std::size_t columns = archive.touchable_dofs.size();
   for (std::size_t k = 0; k < columns * (columns + 1) / 2; ++k) archive.touchable_compliance.push_back(number(random));
-  for (std::size_t k = 0; k < archive.other_dofs.size() * columns; ++k) archive.other_compliance.push_back(number(random));
+  for (std::size_t k = 0; k < archive.other_dofs.size() * columns; ++k)
+    archive.other_compliance.push_back(number(random));
 }
 
 struct DuctScene {
@@ -43,8 +44,8 @@ struct DuctScene {
     scene.bodies[duct_body].model = "modal_shell";
     scene.bodies[duct_body].shell = Shell{.thickness = 0.001, .modes = modes};
     scene.bodies[catheter_body].model = "catheter";
-    scene.bodies[catheter_body].catheter =
-        Catheter{.inside = "duct", .tail = {0, 0, -0.05}, .tip = {0, 0, 0.045}, .radius = 0.00125, .particles = particles};
+    scene.bodies[catheter_body].catheter = Catheter{
+        .inside = "duct", .tail = {0, 0, -0.05}, .tip = {0, 0, 0.045}, .radius = 0.00125, .particles = particles};
     make_organ();
     make_duct();
     make_catheter();

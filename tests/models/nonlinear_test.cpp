@@ -26,9 +26,7 @@ class QuasiNonlinearLaw : public testing::Test {
   }
   ~QuasiNonlinearLaw() override { std::filesystem::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   void write_force(const std::function<double(double)>& y, int points = 30) const {
     write("force.csv", "displacement_m,force_N\n" + rows(y, points));
   }
@@ -86,8 +84,7 @@ TEST_F(QuasiNonlinearLaw, TakesTheSlopesOfTheSpecimenFromTheArchive) {
 
 TEST_F(QuasiNonlinearLaw, SplitsADisplacementAlongAndAcrossThePress) {
   const QuasiNonlinear q = law();
-  const Eigen::Vector3d press = Eigen::Vector3d(1, 2, -2) / 3,
-                        across = Eigen::Vector3d(2, 0, 1).normalized() * 0.001;
+  const Eigen::Vector3d press = Eigen::Vector3d(1, 2, -2) / 3, across = Eigen::Vector3d(2, 0, 1).normalized() * 0.001;
   const Eigen::Vector3d u = 0.002 * press + across;
   const Eigen::Vector3d expected = 0.002 * press + q.radial_scale(0.001) * across;
   EXPECT_NEAR((q.correct(u, press) - expected).norm(), 0, 1e-15);

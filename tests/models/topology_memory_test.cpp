@@ -19,7 +19,9 @@ class TopologyMemoryTest : public ::testing::Test {
     archives_.resize(3);
     archives_[1].tetrahedra.resize(100);
   }
-  Presence deform_node(std::uint64_t run, const std::string& scene = "same") { return {*there_, "deform", run, scene, "archive"}; }
+  Presence deform_node(std::uint64_t run, const std::string& scene = "same") {
+    return {*there_, "deform", run, scene, "archive"};
+  }
   void change(std::uint64_t run, std::uint64_t seq, std::vector<std::uint32_t> removed, std::uint32_t body = 1) {
     ASSERT_TRUE(changes_->write({.body = body, .run = run, .seq = seq, .removed = std::move(removed)}));
   }

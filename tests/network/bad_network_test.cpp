@@ -13,12 +13,10 @@ struct Condition {
   std::size_t surfaces;   ///< that come in the time of a measurement, at least
 };
 constexpr Condition good{"both clear", 0, 20};
-constexpr Condition conditions[]{{"both delay 0.2", 0.4, 20},
-                                 {"both jitter 0.05", 0.1, 20},
-                                 {"both loss 0.3", 0, 3},
-                                 {"both duplicate 0.3 reorder 0.2", 0.02, 10},
-                                 {"both rate 20e6", 0.06, 10},
-                                 {"both delay 0.1 jitter 0.05 loss 0.2 duplicate 0.1 reorder 0.1", 0.32, 2}};
+constexpr Condition conditions[]{
+    {"both delay 0.2", 0.4, 20},  {"both jitter 0.05", 0.1, 20},
+    {"both loss 0.3", 0, 3},      {"both duplicate 0.3 reorder 0.2", 0.02, 10},
+    {"both rate 20e6", 0.06, 10}, {"both delay 0.1 jitter 0.05 loss 0.2 duplicate 0.1 reorder 0.1", 0.32, 2}};
 
 class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
  protected:
@@ -55,9 +53,11 @@ class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
     const std::uint64_t step = observer_->tool.step;
     observer_->listen(800ms);
     const double seconds = 1e-9 * static_cast<double>(now_ns() - begin);
-    const Measured s{static_cast<double>(observer_->tool.step - step) / seconds, ages(observer_->surfaces, begin), ages(observer_->pictures, begin)};
-    fmt::print("{:64} {:4} surfaces p50 {:5.1f} ms p99 {:5.1f} ms, {:2} pictures p50 {:5.1f} ms, haptic {:.0f} Hz\n", c.line, s.surfaces.size(),
-               1e3 * at_share(s.surfaces, 0.5), 1e3 * at_share(s.surfaces, 0.99), s.pictures.size(), 1e3 * at_share(s.pictures, 0.5), s.haptic_hz);
+    const Measured s{static_cast<double>(observer_->tool.step - step) / seconds, ages(observer_->surfaces, begin),
+                     ages(observer_->pictures, begin)};
+    fmt::print("{:64} {:4} surfaces p50 {:5.1f} ms p99 {:5.1f} ms, {:2} pictures p50 {:5.1f} ms, haptic {:.0f} Hz\n",
+               c.line, s.surfaces.size(), 1e3 * at_share(s.surfaces, 0.5), 1e3 * at_share(s.surfaces, 0.99),
+               s.pictures.size(), 1e3 * at_share(s.pictures, 0.5), s.haptic_hz);
     return s;
   }
 
@@ -93,17 +93,20 @@ TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
     const std::int64_t back = now_ns();
     EXPECT_EQ(first_since(observer_->surfaces, begin + 100'000'000), 0) << "nothing crosses the cut";
     hosts_->impair("both cut 0");
-    EXPECT_EQ(nodes_->said("deform_node").find("nothing from haptic") != std::string::npos, cut >= 5s) << "the operator is told";
+    EXPECT_EQ(nodes_->said("deform_node").find("nothing from haptic") != std::string::npos, cut >= 5s)
+        << "the operator is told";
     EXPECT_TRUE(observer_->listen(60s, [&] { return first_since(observer_->pictures, back) != 0; }));
     const double surface = 1e-9 * static_cast<double>(first_since(observer_->surfaces, back) - back);
     const double picture = 1e-9 * static_cast<double>(first_since(observer_->pictures, back) - back);
-    fmt::print("cut of {} s: surface back after {:.1f} ms, picture after {:.1f} ms\n", cut.count() / 1000, 1e3 * surface, 1e3 * picture);
+    fmt::print("cut of {} s: surface back after {:.1f} ms, picture after {:.1f} ms\n", cut.count() / 1000,
+               1e3 * surface, 1e3 * picture);
     // Within 200 ms; what a loaded machine takes from the tool to the picture without any cut comes on top.
     EXPECT_LT(surface, 0.2 + at_share(undisturbed.surfaces, 1));
     EXPECT_LT(picture, 0.2 + at_share(undisturbed.pictures, 1));
     observer_->listen(300ms);
   }
-  EXPECT_TRUE(observer_->listen(3s, [&] { return nodes_->said("deform_node").find("is back") != std::string::npos; })) << "and that it is over";
+  EXPECT_TRUE(observer_->listen(3s, [&] { return nodes_->said("deform_node").find("is back") != std::string::npos; }))
+      << "and that it is over";
 }
 
 }  // namespace

@@ -10,7 +10,9 @@ using namespace std::chrono_literals;
 /// The tool comes to rest deep in the block, so that every run ends in the same state.
 struct RestingScene : NetworkScene {
   explicit RestingScene(const std::string& name) : NetworkScene(name) {
-    write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n0.8,0.05,0.02,0.197,0,0\n600,0.05,0.02,0.197,0,0\n");
+    write("motion.csv",
+          "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n0.8,0.05,0.02,0.197,0,0\n600,0.05,0.02,0."
+          "197,0,0\n");
   }
 };
 constexpr std::uint64_t at_rest = 1000;  ///< a step after that
@@ -51,7 +53,8 @@ class Death : public NodesTest<RestingScene, TwoHosts::Link::veth> {
   /// A surface of the running haptic node has come that shows its tool at rest.
   bool settled() {
     return observer_->listen(20s, [&] {
-      return observer_->surface.run != 0 && observer_->surface.run == observer_->tool.run && observer_->surface.step > at_rest;
+      return observer_->surface.run != 0 && observer_->surface.run == observer_->tool.run &&
+             observer_->surface.step > at_rest;
     });
   }
   bool comes_after(const Observer::Frames& frames, std::int64_t moment) {
@@ -62,7 +65,8 @@ class Death : public NodesTest<RestingScene, TwoHosts::Link::veth> {
     const std::vector<float>& now = observer_->surface.position;
     if (now.size() != undisturbed_.size()) return 1;
     double largest = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) largest = std::max<double>(largest, std::abs(now[i] - undisturbed_[i]));
+    for (std::size_t i = 0; i < now.size(); ++i)
+      largest = std::max<double>(largest, std::abs(now[i] - undisturbed_[i]));
     return largest;
   }
 

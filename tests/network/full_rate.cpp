@@ -1,5 +1,5 @@
-/// Writes every topic, for a recorder to keep up with: full_rate HZ SECONDS DOMAIN [INTERFACE [PEER]]. It waits until every topic
-/// has a reader, and at the end until all is delivered; then it prints what it wrote, as JSON.
+/// Writes every topic, for a recorder to keep up with: full_rate HZ SECONDS DOMAIN [INTERFACE [PEER]]. It waits until
+/// every topic has a reader, and at the end until all is delivered; then it prints what it wrote, as JSON.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -38,7 +38,11 @@ struct Stream {
 
 template <class... M>
 auto make_streams(Bus& bus, const std::tuple<Topic<M>...>& all) {
-  return std::apply([&](const auto&... topic) { return std::tuple{Stream<M>{topic, bus.writer(topic), realistic<M>()}...}; }, all);
+  return std::apply(
+      [&](const auto&... topic) {
+        return std::tuple{Stream<M>{topic, bus.writer(topic), realistic<M>()}...};
+      },
+      all);
 }
 
 template <class Condition>
@@ -52,7 +56,9 @@ int run(double rate_hz, double seconds, const BusSettings& settings) {
   const auto bus = make_dds_bus(settings);
   auto streams = make_streams(*bus, topics::all);
   const auto each = [&](const auto& f) { std::apply([&](auto&... stream) { (f(stream), ...); }, streams); };
-  const auto every = [&](const auto& f) { return std::apply([&](auto&... stream) { return (f(stream) && ...); }, streams); };
+  const auto every = [&](const auto& f) {
+    return std::apply([&](auto&... stream) { return (f(stream) && ...); }, streams);
+  };
   const bool heard = wait_for([&] { return every([](const auto& s) { return s.writer->readers() > 0; }); });
 
   sleep_until_ns(now_ns() + ns_per_s);  // the readers find their writers a moment later than these find them
@@ -67,7 +73,8 @@ int run(double rate_hz, double seconds, const BusSettings& settings) {
       each([&](auto& s) { s.write(seq); });
     }
   leave_realtime();
-  const bool delivered = wait_for([&] { return every([](const auto& s) { return !s.topic.qos.reliable || s.writer->delivered(); }); });
+  const bool delivered =
+      wait_for([&] { return every([](const auto& s) { return !s.topic.qos.reliable || s.writer->delivered(); }); });
 
   nlohmann::ordered_json out{{"heard", heard}, {"delivered", delivered}, {"skipped", timer.statistics().skipped}};
   each([&](auto& s) {

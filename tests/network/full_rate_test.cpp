@@ -75,15 +75,19 @@ class FullRate : public ::testing::TestWithParam<Way> {
   }
   ChildProcess publisher(double seconds, double rate = rate_hz) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->a()) : nullptr;
-    return start("full_rate", fmt::format("{} {} {} {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
+    return start("full_rate",
+                 fmt::format("{} {} {} {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
   }
   ChildProcess recorder(const fs::path& file) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->b()) : nullptr;
-    const std::string over = hosts_ ? fmt::format("--interface {} --peer {}", TwoHosts::device, TwoHosts::address_a) : "";
-    return start("palpate", fmt::format("{} record --supervised --domain {} {} -o {}", program("palpate"), own_domain(), over, file.string()));
+    const std::string over =
+        hosts_ ? fmt::format("--interface {} --peer {}", TwoHosts::device, TwoHosts::address_a) : "";
+    return start("palpate", fmt::format("{} record --supervised --domain {} {} -o {}", program("palpate"), own_domain(),
+                                        over, file.string()));
   }
 
-  /// Records a publisher for so long; `meanwhile` runs with the recorder's process in the midst of it. Every topic has to be whole.
+  /// Records a publisher for so long; `meanwhile` runs with the recorder's process in the midst of it. Every topic has
+  /// to be whole.
   void expect_nothing_lost(double seconds, const std::function<void(pid_t)>& meanwhile) {
     ChildProcess listening = recorder(log());
     ASSERT_TRUE(says_ready(listening));
@@ -114,8 +118,10 @@ class FullRate : public ::testing::TestWithParam<Way> {
       EXPECT_EQ(recorded.sequence.at(topic.name).missing(), 0u) << topic.name;
       EXPECT_EQ(recorded.sequence.at(topic.name).repeated(), 0u) << topic.name;
     });
-    fmt::print("{} topics at {} Hz for {} s, {:.1f} MB/s: {} messages recorded, {} missing; the publisher skipped {} ticks\n", recorded.samples.size(), rate_hz, seconds,
-               1e-6 * rate_hz * static_cast<double>(bytes), summary["messages"].dump(), summary["missing"].dump(), written["skipped"].dump());
+    fmt::print(
+        "{} topics at {} Hz for {} s, {:.1f} MB/s: {} messages recorded, {} missing; the publisher skipped {} ticks\n",
+        recorded.samples.size(), rate_hz, seconds, 1e-6 * rate_hz * static_cast<double>(bytes),
+        summary["messages"].dump(), summary["missing"].dump(), written["skipped"].dump());
   }
 
   fs::path log() const { return folder_ / "full.lcmlog"; }
@@ -170,18 +176,22 @@ TEST_P(KilledRecorder, LeavesALogThatOpensWhateverTheMoment) {
     ++opened;
 
     std::string said;
-    ASSERT_EQ(run_command(fmt::format("{} info {} --json", program("palpate"), log().string()), &said), 0) << ms << " ms: " << said;
+    ASSERT_EQ(run_command(fmt::format("{} info {} --json", program("palpate"), log().string()), &said), 0)
+        << ms << " ms: " << said;
     const json info = json::parse(said);
     EXPECT_FALSE(info["complete"].get<bool>()) << ms;
     EXPECT_NE(info["version"], "") << ms;
     ASSERT_LE(info["damage"].size(), 1u) << said;
     for (const json& damage : info["damage"]) EXPECT_TRUE(damage["tail"].get<bool>()) << ms;
     // What a topic keeps for late joiners is older than what follows once the recorder has joined.
-    for (const auto& [name, topic] : info["topics"].items()) EXPECT_TRUE(topic["missing"] == 0 || kept_for_late_joiners(name)) << ms << " ms: " << name;
+    for (const auto& [name, topic] : info["topics"].items())
+      EXPECT_TRUE(topic["missing"] == 0 || kept_for_late_joiners(name)) << ms << " ms: " << name;
 
-    const std::uint64_t forces = info["topics"].value("palpate/force_state", json::object()).value("samples", std::uint64_t{0});
+    const std::uint64_t forces =
+        info["topics"].value("palpate/force_state", json::object()).value("samples", std::uint64_t{0});
     const std::string table = (folder_ / "force.csv").string();
-    const int status = run_command(fmt::format("{} export {} --topic force_state --csv -o {}", program("palpate"), log().string(), table), &said);
+    const int status = run_command(
+        fmt::format("{} export {} --topic force_state --csv -o {}", program("palpate"), log().string(), table), &said);
     EXPECT_EQ(status, forces > 0 ? 0 : 1) << ms << " ms: " << said;
     std::ifstream in(table);
     EXPECT_EQ(std::count(std::istreambuf_iterator<char>(in), {}, '\n'), static_cast<std::ptrdiff_t>(forces + 1)) << ms;
@@ -198,16 +208,20 @@ TEST_P(KilledRecorder, HadWrittenAllButTheLastTenthOfASecond) {
     fs::remove(log());
     ChildProcess listening = recorder(log());
     ASSERT_TRUE(says_ready(listening));
-    for (int i = 0; i < 1000 && fs::file_size(log()) < 100'000; ++i) std::this_thread::sleep_for(5ms);  // the writer is heard
+    for (int i = 0; i < 1000 && fs::file_size(log()) < 100'000; ++i)
+      std::this_thread::sleep_for(5ms);  // the writer is heard
     std::this_thread::sleep_for(span);
     kill(listening.pid(), SIGKILL);
     const std::int64_t killed = now_ns();
     ASSERT_TRUE(listening.wait(5s));
-    EXPECT_GT(count(log()).last_ns, killed - 400'000'000) << "a tenth of a second, the publisher's period, and this machine's load";
+    EXPECT_GT(count(log()).last_ns, killed - 400'000'000)
+        << "a tenth of a second, the publisher's period, and this machine's load";
   }
 }
 
-std::string name_of_way(const ::testing::TestParamInfo<Way>& way) { return way.param == Way::loopback ? "Loopback" : "Veth"; }
+std::string name_of_way(const ::testing::TestParamInfo<Way>& way) {
+  return way.param == Way::loopback ? "Loopback" : "Veth";
+}
 INSTANTIATE_TEST_SUITE_P(Over, FullRate, ::testing::Values(Way::loopback, Way::veth), name_of_way);
 INSTANTIATE_TEST_SUITE_P(Over, KilledRecorder, ::testing::Values(Way::loopback), name_of_way);
 

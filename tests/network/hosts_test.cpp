@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 /// The kernel's number of a namespace.
 ino_t number_of(const NetworkNamespace& space) {
-  struct stat status{};
+  struct stat status {};
   fstat(space.descriptor(), &status);
   return status.st_ino;
 }

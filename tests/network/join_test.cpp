@@ -26,7 +26,8 @@ TEST_F(OverVeth, AllNodesJoinAndTheSurfaceFollowsTheTool) {
   RecordProperty("age_p99_ms", fmt::format("{:.2f}", 1e3 * at_share(shown, 0.99)));
   RecordProperty("frames", std::to_string(shown.size()));
   EXPECT_LT(at_share(shown, 0.5), 0.1);
-  EXPECT_TRUE(observer_->listen(3s, [&] { return first_since(observer_->pictures, begin) != 0; })) << "the picture follows";
+  EXPECT_TRUE(observer_->listen(3s, [&] { return first_since(observer_->pictures, begin) != 0; }))
+      << "the picture follows";
 
   haptic.interrupt();
   ASSERT_TRUE(haptic.wait(5s));
@@ -53,9 +54,12 @@ TEST_F(OverVeth, AllNodesJoinAndTheSurfaceFollowsTheTool) {
 
 TEST_F(OverVeth, ANodeSaysWhereItListensAndWhomItRefuses) {
   ChildProcess deform = nodes_->on_b("deform_node");
-  const auto says = [&](const char* name, const std::string& words) { return nodes_->said(name).find(words) != std::string::npos; };
+  const auto says = [&](const char* name, const std::string& words) {
+    return nodes_->said(name).find(words) != std::string::npos;
+  };
   EXPECT_TRUE(observer_->listen(20s, [&] { return says("deform_node", "alone for 5 s"); }));
-  EXPECT_TRUE(says("deform_node", "listening in domain 3 on link0 (10.77.0.2), UDP ports from 8150, asking 10.77.0.1")) << nodes_->said("deform_node");
+  EXPECT_TRUE(says("deform_node", "listening in domain 3 on link0 (10.77.0.2), UDP ports from 8150, asking 10.77.0.1"))
+      << nodes_->said("deform_node");
 
   const NetworkScene other("other", 9000);
   precompute(other);
@@ -63,7 +67,8 @@ TEST_F(OverVeth, ANodeSaysWhereItListensAndWhomItRefuses) {
   ChildProcess haptic = stranger.on_a("haptic_node");
   EXPECT_TRUE(observer_->listen(10s, [&] { return says("deform_node", "refusing haptic"); }));
   EXPECT_TRUE(says("deform_node", "it runs another scene"));
-  EXPECT_TRUE(observer_->listen(10s, [&] { return stranger.said("haptic_node").find("refusing deform") != std::string::npos; }));
+  EXPECT_TRUE(observer_->listen(
+      10s, [&] { return stranger.said("haptic_node").find("refusing deform") != std::string::npos; }));
   observer_->listen(500ms);
   EXPECT_EQ(observer_->surface.run, 0u) << "nothing of the other scene is shown";
 }

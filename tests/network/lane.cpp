@@ -8,7 +8,9 @@ namespace {
 
 constexpr std::int64_t overtaken_ns = 5'000'000;
 
-std::int64_t ns(double seconds) { return static_cast<std::int64_t>(1e9 * seconds); }
+std::int64_t ns(double seconds) {
+  return static_cast<std::int64_t>(1e9 * seconds);
+}
 
 }  // namespace
 
@@ -20,15 +22,24 @@ bool change(Impairment& impairment, std::istream& words) {
     }
     double value = 0;
     if (!(words >> value) || value < 0) return false;
-    if (key == "delay") impairment.delay = value;
-    else if (key == "jitter") impairment.jitter = value;
-    else if (key == "loss") impairment.loss = value;
-    else if (key == "duplicate") impairment.duplicate = value;
-    else if (key == "reorder") impairment.reorder = value;
-    else if (key == "rate") impairment.rate = value;
-    else if (key == "queue") impairment.queue = value;
-    else if (key == "cut") impairment.cut = value != 0;
-    else return false;
+    if (key == "delay")
+      impairment.delay = value;
+    else if (key == "jitter")
+      impairment.jitter = value;
+    else if (key == "loss")
+      impairment.loss = value;
+    else if (key == "duplicate")
+      impairment.duplicate = value;
+    else if (key == "reorder")
+      impairment.reorder = value;
+    else if (key == "rate")
+      impairment.rate = value;
+    else if (key == "queue")
+      impairment.queue = value;
+    else if (key == "cut")
+      impairment.cut = value != 0;
+    else
+      return false;
   }
   return true;
 }

@@ -22,7 +22,8 @@ struct Impairment {
   bool cut = false;      ///< nothing arrives, and what is on its way is lost
 };
 
-/// Changes what the words say, as in "delay 0.1 loss 0.3 cut 1"; "clear" sets everything back. False if one is not understood.
+/// Changes what the words say, as in "delay 0.1 loss 0.3 cut 1"; "clear" sets everything back. False if one is not
+/// understood.
 bool change(Impairment& impairment, std::istream& words);
 
 /// One direction: packets go in, and come out when they are due. Chances come from the seed alone.

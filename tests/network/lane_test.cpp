@@ -15,7 +15,8 @@ struct Arrival {
 };
 
 /// Sends numbered packets of `bytes`, one each `gap`, and takes each at the moment when it is due.
-std::vector<Arrival> cross(const std::string& words, int packets, std::int64_t gap, int bytes = 100, std::uint64_t seed = 1) {
+std::vector<Arrival> cross(const std::string& words, int packets, std::int64_t gap, int bytes = 100,
+                           std::uint64_t seed = 1) {
   Lane lane(seed);
   Impairment impairment;
   std::istringstream in(words);
@@ -108,7 +109,8 @@ TEST(Lane, ACutLosesWhatIsOnItsWay) {
 TEST(Lane, TheSameSeedDoesTheSame) {
   const auto numbers = [](std::uint64_t seed) {
     std::vector<std::int64_t> all;
-    for (const Arrival& a : cross("delay 0.01 jitter 0.01 loss 0.2 duplicate 0.1 reorder 0.1", 500, ms, 100, seed)) all.push_back(a.time);
+    for (const Arrival& a : cross("delay 0.01 jitter 0.01 loss 0.2 duplicate 0.1 reorder 0.1", 500, ms, 100, seed))
+      all.push_back(a.time);
     return all;
   };
   EXPECT_EQ(numbers(7), numbers(7));

@@ -16,7 +16,9 @@ class LinkWatchTest : public ::testing::Test {
     own_.watch();
     return link_.look(own_, start_ + static_cast<std::int64_t>(time * second));
   }
-  std::string silence(double time) { return link_.silence("haptic", start_ + static_cast<std::int64_t>(time * second)); }
+  std::string silence(double time) {
+    return link_.silence("haptic", start_ + static_cast<std::int64_t>(time * second));
+  }
 
   static constexpr std::int64_t start_ = 1000 * second;
   std::shared_ptr<MemoryNetwork> network_ = make_memory_network();

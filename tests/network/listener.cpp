@@ -1,5 +1,5 @@
-/// An observer: hears all samples of every topic, writes nothing, and prints at the end how many came and how many are missing by
-/// their sequence numbers, as JSON. listener [--domain N] [--interface NAME] [--peer HOST]
+/// An observer: hears all samples of every topic, writes nothing, and prints at the end how many came and how many are
+/// missing by their sequence numbers, as JSON. listener [--domain N] [--interface NAME] [--peer HOST]
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -30,7 +30,11 @@ struct Ear {
 
 template <class... M>
 auto make_ears(Bus& bus, const std::tuple<Topic<M>...>& all) {
-  return std::apply([&](const auto&... topic) { return std::tuple{Ear<M>{topic, bus.reader(topic, Keep::all)}...}; }, all);
+  return std::apply(
+      [&](const auto&... topic) {
+        return std::tuple{Ear<M>{topic, bus.reader(topic, Keep::all)}...};
+      },
+      all);
 }
 
 void run(const BusSettings& settings) {
@@ -50,7 +54,9 @@ void run(const BusSettings& settings) {
     missing += ear.sequence.missing();
     if (ear.samples > 0) of_topics[ear.topic.name] = {{"samples", ear.samples}, {"missing", ear.sequence.missing()}};
   });
-  fmt::print("{}\n", nlohmann::json{{"node", "listener"}, {"messages", messages}, {"missing", missing}, {"topics", of_topics}}.dump());
+  fmt::print(
+      "{}\n",
+      nlohmann::json{{"node", "listener"}, {"messages", messages}, {"missing", missing}, {"topics", of_topics}}.dump());
 }
 
 }  // namespace

@@ -94,9 +94,14 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
 
   const fs::path again = scene_.folder() / "again.lcmlog";
   const auto on_a = std::make_unique<Inside>(hosts_->a());  // where nothing else is, on its loopback
-  ChildProcess recorder = start("palpate", fmt::format("{} record --supervised --domain {} -o {}", program("palpate"), own_domain(), again.string()));
+  ChildProcess recorder = start("palpate", fmt::format("{} record --supervised --domain {} -o {}", program("palpate"),
+                                                       own_domain(), again.string()));
   ASSERT_TRUE(says_ready(recorder));
-  ASSERT_EQ(run_command(fmt::format("{} replay {} --domain {} --json", program("palpate"), log().string(), own_domain()), &said), 0) << said;
+  ASSERT_EQ(
+      run_command(fmt::format("{} replay {} --domain {} --json", program("palpate"), log().string(), own_domain()),
+                  &said),
+      0)
+      << said;
   recorder.interrupt();
   ASSERT_TRUE(recorder.wait(10s));
   const json report = json::parse(said);
@@ -116,8 +121,10 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
   std::ranges::sort(offset);
   for (const double o : offset) error.push_back(std::abs(o - at_share(offset, 0.5)));
   std::ranges::sort(error);
-  fmt::print("replay: handed to the bus {:.1f} us (p99 {:.1f} us) after the recorded times; another process hears it {:.1f} us (median) off the even pace\n",
-             report["pace_us"]["p50"].get<double>(), report["pace_us"]["p99"].get<double>(), 1e6 * at_share(error, 0.5));
+  fmt::print(
+      "replay: handed to the bus {:.1f} us (p99 {:.1f} us) after the recorded times; another process hears it {:.1f} "
+      "us (median) off the even pace\n",
+      report["pace_us"]["p50"].get<double>(), report["pace_us"]["p99"].get<double>(), 1e6 * at_share(error, 0.5));
   EXPECT_LT(at_share(error, 0.5), 1e-6 * bound_us);
 }
 
@@ -139,14 +146,16 @@ TEST_F(LogOfQuasiStatic, AGapIsNamedAndNotPassedOver) {
 struct HybridScene : CutScene {
   explicit HybridScene(const std::string& name) : CutScene("hybrid-" + name) {
     replace("tensor_mass", "hybrid");
-    replace("[body.dynamic]", "[[body.hybrid.region]]\nbox = [[-0.03, -0.06, -0.03], [0.03, 0.06, 0.01]]\n[body.dynamic]");
+    replace("[body.dynamic]",
+            "[[body.hybrid.region]]\nbox = [[-0.03, -0.06, -0.03], [0.03, 0.06, 0.01]]\n[body.dynamic]");
   }
 };
 
 template <class Scene>
 class LogOfMoving : public LogOf<Scene> {
  protected:
-  /// The step's force comes from local contact models of the other host; one that a step used and the log lacks is a gap.
+  /// The step's force comes from local contact models of the other host; one that a step used and the log lacks is a
+  /// gap.
   void expect_proof() {
     this->record(3500ms);
     std::string said;
@@ -167,19 +176,27 @@ class LogOfMoving : public LogOf<Scene> {
     ASSERT_GT(used.local_model_seq, 0u);
     this->copy_without([&](const LogEvent& event) {
       LocalContactModel model;
-      return event.read(topics::local_contact_model, model) && model.run == used.local_model_run && model.seq == used.local_model_seq;
+      return event.read(topics::local_contact_model, model) && model.run == used.local_model_run &&
+             model.seq == used.local_model_seq;
     });
     EXPECT_EQ(this->verify(this->changed(), said), 1) << said;
-    EXPECT_NE(said.find(fmt::format("the local contact model {} of tool 0 of step {} is not in the log", used.local_model_seq, used.step)), std::string::npos) << said;
+    EXPECT_NE(said.find(fmt::format("the local contact model {} of tool 0 of step {} is not in the log",
+                                    used.local_model_seq, used.step)),
+              std::string::npos)
+        << said;
     EXPECT_NE(said.find("cannot verify"), std::string::npos) << said;
   }
 };
 
 using LogOfDynamic = LogOfMoving<CutScene>;
-TEST_F(LogOfDynamic, IsVerifiedOnceItsModelsAreThere) { expect_proof(); }
+TEST_F(LogOfDynamic, IsVerifiedOnceItsModelsAreThere) {
+  expect_proof();
+}
 
 using LogOfHybrid = LogOfMoving<HybridScene>;
-TEST_F(LogOfHybrid, IsVerifiedOnceItsModelsAreThere) { expect_proof(); }
+TEST_F(LogOfHybrid, IsVerifiedOnceItsModelsAreThere) {
+  expect_proof();
+}
 
 }  // namespace
 }  // namespace palpate::testing

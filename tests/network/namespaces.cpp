@@ -15,7 +15,9 @@
 namespace palpate::testing {
 namespace {
 
-int own_namespace() { return open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC); }
+int own_namespace() {
+  return open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC);
+}
 
 void enter(int descriptor) {
   if (setns(descriptor, CLONE_NEWNET) != 0)
@@ -30,21 +32,29 @@ NetworkNamespace::NetworkNamespace() {
     if (unshare(CLONE_NEWNET) == 0) descriptor_ = own_namespace();
     if (descriptor_ < 0) error = errno;
   }).join();
-  if (descriptor_ < 0) throw std::runtime_error(fmt::format("this process may not make network namespaces: {}", std::strerror(error)));
+  if (descriptor_ < 0)
+    throw std::runtime_error(fmt::format("this process may not make network namespaces: {}", std::strerror(error)));
   ip("link set lo up");
 }
 
-NetworkNamespace::~NetworkNamespace() { close(descriptor_); }
+NetworkNamespace::~NetworkNamespace() {
+  close(descriptor_);
+}
 
-std::string NetworkNamespace::path() const { return fmt::format("/proc/{}/fd/{}", getpid(), descriptor_); }
+std::string NetworkNamespace::path() const {
+  return fmt::format("/proc/{}/fd/{}", getpid(), descriptor_);
+}
 
 void NetworkNamespace::ip(const std::string& arguments) const {
   const Inside here(*this);
   std::string said;
-  if (run_command("ip " + arguments, &said) != 0) throw std::runtime_error(fmt::format("`ip {}` failed: {}", arguments, said));
+  if (run_command("ip " + arguments, &said) != 0)
+    throw std::runtime_error(fmt::format("`ip {}` failed: {}", arguments, said));
 }
 
-Inside::Inside(const NetworkNamespace& space) : before_(own_namespace()) { enter(space.descriptor()); }
+Inside::Inside(const NetworkNamespace& space) : before_(own_namespace()) {
+  enter(space.descriptor());
+}
 
 Inside::~Inside() {
   enter(before_);

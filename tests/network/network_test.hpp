@@ -12,7 +12,9 @@
 namespace palpate::testing {
 
 /// Tests that take many minutes in all run only where the environment asks for them.
-inline bool long_tests() { return std::getenv("PALPATE_LONG_TESTS") != nullptr; }
+inline bool long_tests() {
+  return std::getenv("PALPATE_LONG_TESTS") != nullptr;
+}
 
 /// A scene with its tensors, two hosts, and what the programs said if the test fails.
 template <class Scene, TwoHosts::Link link>
@@ -26,14 +28,16 @@ class NodesTest : public ::testing::Test {
   }
   void TearDown() override {
     if (!HasFailure() || !nodes_) return;
-    for (const char* name : {"haptic_node", "deform_node", "render_node", "palpate"}) fmt::print("{}:\n{}\n", name, nodes_->said(name));
+    for (const char* name : {"haptic_node", "deform_node", "render_node", "palpate"})
+      fmt::print("{}:\n{}\n", name, nodes_->said(name));
   }
 
   /// Waits until the surfaces show the run of the haptic node that is there now, in contact.
   bool joined(std::chrono::milliseconds limit = std::chrono::seconds(20)) {
     const std::uint64_t before = observer_->tool.step;
     return observer_->listen(limit, [&] {
-      return observer_->tool.run != 0 && observer_->surface.run == observer_->tool.run && observer_->surface.step > before;
+      return observer_->tool.run != 0 && observer_->surface.run == observer_->tool.run &&
+             observer_->surface.step > before;
     });
   }
 

@@ -9,8 +9,8 @@ NetworkScene::NetworkScene(const std::string& name, double young) : LoopbackScen
   std::string motion = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n";
   for (int i = 1; i <= 4000; ++i) {
     const double phase = 0.05 * i * 2 * 3.14159265358979;
-    motion += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f},0,0\n", 0.5 + 0.05 * i, 0.05 * std::sin(0.5 * phase), 0.03 * std::sin(0.3 * phase),
-                          0.197 + 0.001 * std::sin(phase));
+    motion += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f},0,0\n", 0.5 + 0.05 * i, 0.05 * std::sin(0.5 * phase),
+                          0.03 * std::sin(0.3 * phase), 0.197 + 0.001 * std::sin(phase));
   }
   write("motion.csv", motion);
   replace("width = 320\nheight = 240", "width = 160\nheight = 120");
@@ -21,7 +21,8 @@ CutScene::CutScene(const std::string& name) : LoopbackScene("network-" + name, "
   replace("radius = 0.008", "radius = 0.008\ncautery = { radius = 0.009 }");
   replace("width = 320\nheight = 240", "width = 160\nheight = 120");
   write("motion.csv",
-        "time,yaw,pitch,depth,roll,grip,pedal\n0,0.3,0,0.17,0,0,0\n0.7,0.3,0,0.17,0,0,0\n1.0,0.3,0,0.21,0,0,1\n3.0,-0.3,0,0.21,0,0,1\n"
+        "time,yaw,pitch,depth,roll,grip,pedal\n0,0.3,0,0.17,0,0,0\n0.7,0.3,0,0.17,0,0,0\n1.0,0.3,0,0.21,0,0,1\n3.0,-0."
+        "3,0,0.21,0,0,1\n"
         "3.3,-0.3,0,0.17,0,0,0\n60,0,0,0.17,0,0,0\n");
 }
 
@@ -30,20 +31,25 @@ void precompute(const LoopbackScene& scene) {
   if (run_command(program("palpate") + " precompute " + scene.scene(), &said) != 0) throw std::runtime_error(said);
 }
 
-ChildProcess Nodes::start(const NetworkNamespace& host, const char* peer, const std::string& name, const std::vector<std::string>& more) const {
+ChildProcess Nodes::start(const NetworkNamespace& host, const char* peer, const std::string& name,
+                          const std::vector<std::string>& more) const {
   std::string command = fmt::format("{} {}", program(name), scene_.scene());
   for (const std::string& word : more) command += " " + word;
   return launch(host, peer, name, command);
 }
 
 ChildProcess Nodes::recorder_on_b(const std::string& file) const {
-  return launch(hosts_.b(), TwoHosts::address_a, "palpate", fmt::format("{} record -o {}", program("palpate"), (scene_.folder() / file).string()));
+  return launch(hosts_.b(), TwoHosts::address_a, "palpate",
+                fmt::format("{} record -o {}", program("palpate"), (scene_.folder() / file).string()));
 }
 
-ChildProcess Nodes::launch(const NetworkNamespace& host, const char* peer, const std::string& name, const std::string& command) const {
+ChildProcess Nodes::launch(const NetworkNamespace& host, const char* peer, const std::string& name,
+                           const std::string& command) const {
   const Inside here(host);
   const std::string network = fmt::format("--domain {} --interface {} --peer {}", domain, TwoHosts::device, peer);
-  return ChildProcess(name, {"/bin/sh", "-c", fmt::format("exec {} {} 2>>{}", command, network, (scene_.folder() / (name + ".said")).string())});
+  return ChildProcess(
+      name, {"/bin/sh", "-c",
+             fmt::format("exec {} {} 2>>{}", command, network, (scene_.folder() / (name + ".said")).string())});
 }
 
 std::string Nodes::said(const std::string& name) const {

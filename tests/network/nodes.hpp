@@ -31,16 +31,22 @@ class Nodes {
   Nodes(const TwoHosts& hosts, const LoopbackScene& scene) : hosts_(hosts), scene_(scene) {}
 
   /// `name`: haptic_node, deform_node or render_node.
-  ChildProcess on_a(const std::string& name, const std::vector<std::string>& more = {}) const { return start(hosts_.a(), TwoHosts::address_b, name, more); }
-  ChildProcess on_b(const std::string& name, const std::vector<std::string>& more = {}) const { return start(hosts_.b(), TwoHosts::address_a, name, more); }
+  ChildProcess on_a(const std::string& name, const std::vector<std::string>& more = {}) const {
+    return start(hosts_.a(), TwoHosts::address_b, name, more);
+  }
+  ChildProcess on_b(const std::string& name, const std::vector<std::string>& more = {}) const {
+    return start(hosts_.b(), TwoHosts::address_a, name, more);
+  }
   /// `palpate record` to a file in the scene's folder.
   ChildProcess recorder_on_b(const std::string& file) const;
   /// All that programs of this name have said.
   std::string said(const std::string& name) const;
 
  private:
-  ChildProcess start(const NetworkNamespace& host, const char* peer, const std::string& name, const std::vector<std::string>& more) const;
-  ChildProcess launch(const NetworkNamespace& host, const char* peer, const std::string& name, const std::string& command) const;
+  ChildProcess start(const NetworkNamespace& host, const char* peer, const std::string& name,
+                     const std::vector<std::string>& more) const;
+  ChildProcess launch(const NetworkNamespace& host, const char* peer, const std::string& name,
+                      const std::string& command) const;
 
   const TwoHosts& hosts_;
   const LoopbackScene& scene_;

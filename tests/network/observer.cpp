@@ -18,7 +18,11 @@ bool all_finite(const ForceState& f) {
 
 Observer::Observer(const TwoHosts& hosts, const std::filesystem::path& keys) {
   const Inside here(hosts.a());
-  bus_ = make_dds_bus({.domain = Nodes::domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}, .keys = keys, .role = "observer"});
+  bus_ = make_dds_bus({.domain = Nodes::domain,
+                       .interface = TwoHosts::device,
+                       .peers = {TwoHosts::address_b},
+                       .keys = keys,
+                       .role = "observer"});
   tools_ = bus_->reader(topics::tool_state);
   forces_ = bus_->reader(topics::force_state, Keep::all);
   surface_reader_ = bus_->reader(topics::surface_state);
@@ -54,7 +58,8 @@ void Observer::take(const ForceState& next) {
   finite = finite && all_finite(next);
   least_energy = std::min(least_energy, next.energy);
   if (next.run == force.run)
-    largest_jump = std::max(largest_jump, std::hypot(next.force[0] - force.force[0], next.force[1] - force.force[1], next.force[2] - force.force[2]));
+    largest_jump = std::max(largest_jump, std::hypot(next.force[0] - force.force[0], next.force[1] - force.force[1],
+                                                     next.force[2] - force.force[2]));
   force = next;
 }
 

@@ -34,15 +34,15 @@ class Observer {
   /// A node of this role that announced itself last, empty if there is none.
   NodeStatus status(const std::string& role) const;
 
-  ToolState tool;            ///< newest
-  ForceState force;          ///< newest
-  SurfaceState surface;      ///< newest
+  ToolState tool;        ///< newest
+  ForceState force;      ///< newest
+  SurfaceState surface;  ///< newest
   Frames surfaces, pictures;
   std::vector<TopologyChange> changes;
-  SequenceCheck forces;      ///< every force sample
-  bool finite = true;        ///< all forces so far
-  double least_energy = 0;   ///< [J]
-  double largest_jump = 0;   ///< [N] between forces of successive steps of one run; set it back as needed
+  SequenceCheck forces;     ///< every force sample
+  bool finite = true;       ///< all forces so far
+  double least_energy = 0;  ///< [J]
+  double largest_jump = 0;  ///< [N] between forces of successive steps of one run; set it back as needed
 
  private:
   void take();

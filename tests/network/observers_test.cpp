@@ -17,7 +17,8 @@ class Observed : public NodesTest<NetworkScene, TwoHosts::Link::veth> {
   /// A listener or recorder on host B.
   ChildProcess watcher(const std::string& command) const {
     const Inside here(hosts_->b());
-    return start("watcher", fmt::format("{} --domain {} --interface {} --peer {}", command, Nodes::domain, TwoHosts::device, TwoHosts::address_a));
+    return start("watcher", fmt::format("{} --domain {} --interface {} --peer {}", command, Nodes::domain,
+                                        TwoHosts::device, TwoHosts::address_a));
   }
   static json end(ChildProcess& process) {
     process.interrupt();
@@ -31,7 +32,8 @@ TEST_F(Observed, ObserversAndARecorderHearEverySampleWhileOneDraws) {
   ChildProcess deform = nodes_->on_b("deform_node");
   ChildProcess render = nodes_->on_b("render_node");
   ChildProcess listener = watcher(program("listener"));
-  ChildProcess recorder = watcher(program("palpate") + " record --supervised -o " + (scene_.folder() / "observed.lcmlog").string());
+  ChildProcess recorder =
+      watcher(program("palpate") + " record --supervised -o " + (scene_.folder() / "observed.lcmlog").string());
   ASSERT_TRUE(says_ready(listener));
   ASSERT_TRUE(says_ready(recorder));
   std::this_thread::sleep_for(500ms);
@@ -45,7 +47,8 @@ TEST_F(Observed, ObserversAndARecorderHearEverySampleWhileOneDraws) {
   EXPECT_GT(summary["ring_to_wire_us_p50"].get<double>(), 0);
   const json heard = end(listener);
   EXPECT_EQ(heard["missing"], 0) << heard;
-  for (const char* topic : {"palpate/tool_state", "palpate/force_state"}) EXPECT_EQ(heard["topics"][topic]["samples"], ticks) << topic;
+  for (const char* topic : {"palpate/tool_state", "palpate/force_state"})
+    EXPECT_EQ(heard["topics"][topic]["samples"], ticks) << topic;
   EXPECT_GT(heard["topics"]["palpate/surface_state"]["samples"], 50) << heard;
   EXPECT_GT(heard["topics"]["palpate/picture_state"]["samples"], 5) << heard;
   const json recorded = end(recorder);
@@ -82,14 +85,17 @@ class Listened : public ::testing::Test {
     for (int i = 0; i < listeners; ++i) {
       const Inside here(hosts_->b());
       const std::string peer = multicast ? "" : fmt::format("--peer {}", TwoHosts::address_a);
-      all.push_back(start("listener", fmt::format("{} --domain {} --interface {} {}", program("listener"), own_domain(), TwoHosts::device, peer)));
+      all.push_back(start("listener", fmt::format("{} --domain {} --interface {} {}", program("listener"), own_domain(),
+                                                  TwoHosts::device, peer)));
     }
     for (ChildProcess& listener : all) EXPECT_TRUE(says_ready(listener));
     std::this_thread::sleep_for(200ms);
     const double before = datagrams();
     {
       const Inside here(hosts_->a());
-      ChildProcess writing = start("full_rate", fmt::format("{} {} 1 {} {} {}", program("full_rate"), rate_hz, own_domain(), TwoHosts::device, multicast ? "" : TwoHosts::address_b));
+      ChildProcess writing =
+          start("full_rate", fmt::format("{} {} 1 {} {} {}", program("full_rate"), rate_hz, own_domain(),
+                                         TwoHosts::device, multicast ? "" : TwoHosts::address_b));
       EXPECT_TRUE(writing.wait(40s));
       EXPECT_EQ(writing.status(), 0) << last_line(writing);
     }
@@ -110,7 +116,8 @@ class Listened : public ::testing::Test {
 
 TEST_F(Listened, WithMulticastOneDatagramServesAllListeners) {
   const double one = datagrams_for(1, true), four = datagrams_for(4, true), one_by_one = datagrams_for(4, false);
-  fmt::print("datagrams by multicast for 1 listener: {:.0f}, for 4: {:.0f}; to 4 peers: {:.0f}\n", one, four, one_by_one);
+  fmt::print("datagrams by multicast for 1 listener: {:.0f}, for 4: {:.0f}; to 4 peers: {:.0f}\n", one, four,
+             one_by_one);
   EXPECT_GT(one, rate_hz * 20);
   EXPECT_LT(four, 1.5 * one);
   EXPECT_GT(one_by_one, 2.5 * one);

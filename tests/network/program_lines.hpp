@@ -31,6 +31,8 @@ inline bool says_ready(ChildProcess& program) {
 }
 
 /// Starts a command line, its standard output on a pipe.
-inline ChildProcess start(const std::string& name, const std::string& command) { return {name, {"/bin/sh", "-c", "exec " + command}}; }
+inline ChildProcess start(const std::string& name, const std::string& command) {
+  return {name, {"/bin/sh", "-c", "exec " + command}};
+}
 
 }  // namespace palpate::testing

@@ -26,7 +26,8 @@ struct Way {
 
   void take_in() {
     std::array<std::uint8_t, 65536> buffer;
-    for (ssize_t n; (n = read(from, buffer.data(), buffer.size())) > 0;) lane.put({buffer.data(), static_cast<std::size_t>(n)}, now_ns());
+    for (ssize_t n; (n = read(from, buffer.data(), buffer.size())) > 0;)
+      lane.put({buffer.data(), static_cast<std::size_t>(n)}, now_ns());
   }
   void give_out() {
     while (const auto packet = lane.take(now_ns()))
@@ -57,7 +58,8 @@ bool take_lines(std::string& partial, std::array<Way, 2>& ways) {
   if (n <= 0) return false;
   partial.append(buffer.data(), static_cast<std::size_t>(n));
   for (std::size_t end; (end = partial.find('\n')) != std::string::npos; partial.erase(0, end + 1))
-    if (!obey(partial.substr(0, end), ways)) fmt::print(stderr, "relay: '{}' is not understood\n", partial.substr(0, end));
+    if (!obey(partial.substr(0, end), ways))
+      fmt::print(stderr, "relay: '{}' is not understood\n", partial.substr(0, end));
   return true;
 }
 
@@ -71,8 +73,10 @@ void carry(std::array<Way, 2>& ways) {
     ppoll(ready.data(), ready.size(), &timeout, nullptr);
     if (ready[2].revents != 0 && !take_lines(partial, ways)) return;
     for (int w = 0; w < 2; ++w) {
-      if (ready[w].revents & POLLIN) ways[w].take_in();
-      else if (ready[w].revents != 0) sleep_until_ns(now_ns() + ns_per_s / 100);  // the device is down or gone
+      if (ready[w].revents & POLLIN)
+        ways[w].take_in();
+      else if (ready[w].revents != 0)
+        sleep_until_ns(now_ns() + ns_per_s / 100);  // the device is down or gone
       ways[w].give_out();
     }
   }

@@ -28,7 +28,8 @@ class Socket {
     const Inside here(space);
     descriptor_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const sockaddr_in own = of(address);
-    if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) throw std::runtime_error(std::strerror(errno));
+    if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0)
+      throw std::runtime_error(std::strerror(errno));
   }
   ~Socket() { close(descriptor_); }
   Socket(const Socket&) = delete;
@@ -59,7 +60,7 @@ class Socket {
 
 class RelayTest : public ::testing::Test {
  protected:
-  void SetUp() override { PALPATE_TWO_HOSTS_OR_SKIP(hosts_, TwoHosts::Link::relay) }
+  void SetUp() override{PALPATE_TWO_HOSTS_OR_SKIP(hosts_, TwoHosts::Link::relay)}
 
   /// Sends packets from A to B, one a millisecond, under what the line asks for.
   std::vector<Socket::Arrival> cross(const std::string& line, int packets, std::int64_t after = 100'000'000) {
@@ -73,7 +74,8 @@ class RelayTest : public ::testing::Test {
       from.send(TwoHosts::address_b, i);
       to.take(arrivals);
     }
-    for (const std::int64_t end = now_ns() + after; now_ns() < end; sleep_until_ns(now_ns() + 500'000)) to.take(arrivals);
+    for (const std::int64_t end = now_ns() + after; now_ns() < end; sleep_until_ns(now_ns() + 500'000))
+      to.take(arrivals);
     hosts_->impair("both clear");
     return arrivals;
   }

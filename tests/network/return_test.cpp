@@ -23,7 +23,8 @@ class Return : public NodesTest<CutScene, TwoHosts::Link::veth> {
     for (const TopologyChange& change : observer_->changes) {
       if (change.run != run) continue;
       EXPECT_EQ(change.seq, ++seq);
-      for (const std::uint32_t t : change.removed) EXPECT_TRUE(all.insert(t).second) << "tetrahedron " << t << " of run " << run;
+      for (const std::uint32_t t : change.removed)
+        EXPECT_TRUE(all.insert(t).second) << "tetrahedron " << t << " of run " << run;
     }
     return all;
   }
@@ -35,7 +36,8 @@ class Return : public NodesTest<CutScene, TwoHosts::Link::veth> {
   /// For 300 ms nothing more is removed.
   void wait_until_whole_cut() {
     std::size_t count = 0;
-    while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; })) count = observer_->changes.size();
+    while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; }))
+      count = observer_->changes.size();
   }
 };
 
@@ -56,7 +58,8 @@ TEST_F(Return, OfADeformationNodeThatDiedWhileItCutKeepsWhatWasCut) {
     ASSERT_TRUE(deform->wait(5s));
     deform = std::make_unique<ChildProcess>(nodes_->on_b("deform_node"));
     ASSERT_TRUE(begins_after(run)) << "death " << i;
-    EXPECT_TRUE(contains(gone(), before)) << "death " << i << ": " << before.size() << " were gone, " << gone().size() << " are";
+    EXPECT_TRUE(contains(gone(), before))
+        << "death " << i << ": " << before.size() << " were gone, " << gone().size() << " are";
   }
   wait_until_whole_cut();
   const Gone end = gone();

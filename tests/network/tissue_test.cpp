@@ -12,7 +12,9 @@ using namespace std::chrono_literals;
 struct TissueScene : CutScene {
   explicit TissueScene(const std::string& name) : CutScene(name) {
     replace("\ncautery = { radius = 0.009 }", "");
-    write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n0.8,0.05,0.02,0.197,0,0\n600,0.05,0.02,0.197,0,0\n");
+    write("motion.csv",
+          "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n0.8,0.05,0.02,0.197,0,0\n600,0.05,0.02,0."
+          "197,0,0\n");
   }
 };
 
@@ -27,7 +29,8 @@ class TissueOverRelay : public NodesTest<TissueScene, TwoHosts::Link::relay> {
   /// Largest distance [m] of what is shown now from that.
   double deepest(const std::vector<float>& rest) const {
     double largest = 0;
-    for (std::size_t i = 0; i < rest.size(); ++i) largest = std::max<double>(largest, std::abs(observer_->surface.position[i] - rest[i]));
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      largest = std::max<double>(largest, std::abs(observer_->surface.position[i] - rest[i]));
     return largest;
   }
   bool fresh_within(std::chrono::milliseconds limit) {
@@ -44,7 +47,8 @@ TEST_F(TissueOverRelay, ItsForceFadesInACutAndComesBackWithoutAJump) {
   ASSERT_GT(force, 0.1);
 
   hosts_->impair("both cut 1");
-  EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; })) << "nothing is felt that nobody computes";
+  EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; }))
+      << "nothing is felt that nobody computes";
   observer_->listen(1500ms);
   hosts_->impair("both cut 0");
   const std::int64_t back = now_ns();
@@ -112,7 +116,10 @@ TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
   recorder.interrupt();
   ASSERT_TRUE(recorder.wait(5s));
   std::string output;
-  EXPECT_EQ(run_command(program("palpate") + " replay " + (scene_.folder() / "left.lcmlog").string() + " --verify", &output), 0) << output;
+  EXPECT_EQ(
+      run_command(program("palpate") + " replay " + (scene_.folder() / "left.lcmlog").string() + " --verify", &output),
+      0)
+      << output;
   EXPECT_NE(output.find("ticks of the tissue end in the recorded state, bit for bit"), std::string::npos) << output;
 }
 

@@ -37,7 +37,8 @@ class LateNode {
     feed_ = std::make_unique<TopologyFeed>(*bus_, *presence_, archives_);
   }
   bool has_lost(std::size_t count, std::chrono::milliseconds limit) {
-    for (const auto end = std::chrono::steady_clock::now() + limit; std::chrono::steady_clock::now() < end; bus_->wait(10ms)) {
+    for (const auto end = std::chrono::steady_clock::now() + limit; std::chrono::steady_clock::now() < end;
+         bus_->wait(10ms)) {
       presence_->watch();
       feed_->take();
       if (feed_->cuts() == count) return true;
@@ -63,13 +64,15 @@ TEST_F(CutOverRelay, EveryChangeArrivesInOrderThroughLossAndACut) {
   hosts_->impair("both cut 0");
   // The cut ends, and for a second nothing more is removed.
   std::size_t count = 0;
-  while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; })) count = observer_->changes.size();
+  while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; }))
+    count = observer_->changes.size();
 
   const std::set<std::uint32_t> gone = in_order(observer_->changes);
   EXPECT_GT(gone.size(), 30u);
   LateNode late(*hosts_, scene_);
   ASSERT_TRUE(late.has_lost(gone.size(), 20s)) << "who comes late gets every change";
-  for (int t = 0; t < late.mesh().size(); ++t) ASSERT_EQ(late.mesh().alive(t), !gone.contains(static_cast<std::uint32_t>(t))) << t;
+  for (int t = 0; t < late.mesh().size(); ++t)
+    ASSERT_EQ(late.mesh().alive(t), !gone.contains(static_cast<std::uint32_t>(t))) << t;
 
   deform.interrupt();
   ASSERT_TRUE(deform.wait(5s));

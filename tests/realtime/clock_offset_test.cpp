@@ -32,7 +32,9 @@ double error(const ClockOffset& offset, const Link& link, std::int64_t own) {
   return static_cast<double>(offset.at(own)->offset_ns) - static_cast<double>(link.theirs(own) - own);
 }
 
-TEST(ClockOffset, KnowsNothingBeforeTheFirstExchange) { EXPECT_FALSE(ClockOffset().at(0)); }
+TEST(ClockOffset, KnowsNothingBeforeTheFirstExchange) {
+  EXPECT_FALSE(ClockOffset().at(0));
+}
 
 TEST(ClockOffset, HoldsTheTrueOffsetOverUnequalWaysAShiftAndADrift) {
   std::mt19937 random(1);
@@ -55,7 +57,8 @@ TEST(ClockOffset, HoldsTheTrueOffsetOverUnequalWaysAShiftAndADrift) {
   const auto last = *offset.at(1'000'000'000 + 2000 * kInterval);
   EXPECT_GE(last.uncertainty_ns, 19'900'000);
   EXPECT_LE(last.uncertainty_ns, 21'000'000);
-  EXPECT_NEAR(error(offset, link, 1'000'000'000 + 2000 * kInterval), -10e6, 1e6);  // as a ping-pong, half the asymmetry off
+  EXPECT_NEAR(error(offset, link, 1'000'000'000 + 2000 * kInterval), -10e6,
+              1e6);  // as a ping-pong, half the asymmetry off
 }
 
 TEST(ClockOffset, FindsTheDriftOverAGoodLink) {

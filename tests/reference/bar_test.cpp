@@ -15,8 +15,7 @@ struct Bar {
 
   explicit Bar(double poisson) {
     body = testing::make_body(kYoung, poisson);
-    body.fixed = {testing::fix_group("x0", {true, false, false}),
-                  testing::fix_group("y0", {false, true, false}),
+    body.fixed = {testing::fix_group("x0", {true, false, false}), testing::fix_group("y0", {false, true, false}),
                   testing::fix_group("z0", {false, false, true})};
   }
 

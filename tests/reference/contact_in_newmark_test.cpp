@@ -1,6 +1,6 @@
-// Why ModalBody meets contacts at the step's end velocity: met in the end position, as in (J Phi K^^-1 Phi^T J^T + R + c) f
-// = gap, the force of a tool that rests on a modal body alternates from step to step and the contact is lost again and
-// again; met by h v(t+h) it settles.
+// Why ModalBody meets contacts at the step's end velocity: met in the end position, as in (J Phi K^^-1 Phi^T J^T + R +
+// c) f = gap, the force of a tool that rests on a modal body alternates from step to step and the contact is lost again
+// and again; met by h v(t+h) it settles.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -55,7 +55,8 @@ Forces meet_position(const Pressed& body) {
   newmark.start(rest, rest, rest);
   double compliance = body.residual + tool_compliance;
   for (int m = 0; m < modes; ++m)
-    compliance += body.at_point[m] * body.at_point[m] / (body.omega[m] * body.omega[m] + 2 * damping[m] / h + 4 / (h * h));
+    compliance +=
+        body.at_point[m] * body.at_point[m] / (body.omega[m] * body.omega[m] + 2 * damping[m] / h + 4 / (h * h));
   Forces forces;
   for (int step = 1; step <= steps; ++step) {
     ModalNewmark free = newmark;

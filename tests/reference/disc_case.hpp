@@ -9,8 +9,8 @@
 #include "common/mesh/surface.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
-/// The named box of the 2 % claim: 1 x 1 x 0.5 m, E = 1 Pa, base fixed, a disc of radius 0.25 m in the middle of the top
-/// under a uniform normal traction of resultant 1 N. Its answer is the mean normal displacement of the disc [m].
+/// The named box of the 2 % claim: 1 x 1 x 0.5 m, E = 1 Pa, base fixed, a disc of radius 0.25 m in the middle of the
+/// top under a uniform normal traction of resultant 1 N. Its answer is the mean normal displacement of the disc [m].
 namespace palpate::testing {
 
 using bench::kDisc;
@@ -45,8 +45,10 @@ inline Eigen::Vector3d disc_integral(const std::array<Eigen::Vector2d, 3>& x, in
   if (middle.norm() > kDisc + reach) return Eigen::Vector3d::Zero();
   if (depth == 0) return middle.norm() < kDisc ? Eigen::Vector3d::Constant(size / 3) : Eigen::Vector3d::Zero();
   const std::array<Eigen::Vector2d, 3> m{(x[0] + x[1]) / 2, (x[1] + x[2]) / 2, (x[2] + x[0]) / 2};
-  const Eigen::Vector3d a = disc_integral({x[0], m[0], m[2]}, depth - 1), b = disc_integral({m[0], x[1], m[1]}, depth - 1),
-                        c = disc_integral({m[2], m[1], x[2]}, depth - 1), d = disc_integral({m[0], m[1], m[2]}, depth - 1);
+  const Eigen::Vector3d a = disc_integral({x[0], m[0], m[2]}, depth - 1),
+                        b = disc_integral({m[0], x[1], m[1]}, depth - 1),
+                        c = disc_integral({m[2], m[1], x[2]}, depth - 1),
+                        d = disc_integral({m[0], m[1], m[2]}, depth - 1);
   Eigen::Vector3d sum;
   sum[0] = a[0] + 0.5 * (a[1] + a[2] + b[0] + c[0] + d[0] + d[2]);
   sum[1] = b[1] + 0.5 * (a[1] + b[0] + b[2] + c[1] + d[0] + d[1]);

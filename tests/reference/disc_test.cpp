@@ -3,8 +3,8 @@
 #include "tests/reference/disc_case.hpp"
 
 /// The compliance of a fixed-size disc near incompressibility. The run-time mesh is irregular, h = 1/12 and the disc's
-/// radius 3 h; what is measured is what a tensor archive gives, (f, C~ f) with the consistent forces f_i = int phi_i t of
-/// the disc's traction t on the run-time triangles.
+/// radius 3 h; what is measured is what a tensor archive gives, (f, C~ f) with the consistent forces f_i = int phi_i t
+/// of the disc's traction t on the run-time triangles.
 namespace palpate {
 namespace {
 
@@ -34,7 +34,8 @@ double run_time_disc(int cells, double poisson, const Offline& offline, SurfaceW
 double plain_disc(int cells, double poisson) {
   const auto mesh = testing::make_disc_box(cells);
   const auto load = consistent_load(mesh);
-  return testing::disc_work(load, solve_loads(make_static_problem(testing::make_body(1, poisson), mesh), load).displacement);
+  return testing::disc_work(load,
+                            solve_loads(make_static_problem(testing::make_body(1, poisson), mesh), load).displacement);
 }
 
 /// A quarter of the box on a regular mesh, the disc's traction integrated on the fine elements themselves.
@@ -64,7 +65,8 @@ double extrapolated(double poisson) {
 TEST(Disc, ComplianceNearIncompressibilityIsWithinTwoPercentOfTheReferenceWherePlainLinearElementsAreFarOff) {
   for (double poisson : {0.4999, 0.4999999}) {
     const double reference = extrapolated(poisson), plain = plain_disc(12, poisson);
-    std::printf("nu %.7f: reference %.5f, plain %.5f (%.1f %%)\n", poisson, reference, plain, 100 * (plain / reference - 1));
+    std::printf("nu %.7f: reference %.5f, plain %.5f (%.1f %%)\n", poisson, reference, plain,
+                100 * (plain / reference - 1));
     EXPECT_LT(plain, 0.35 * reference);
     const double quadratic = run_time_disc(12, poisson, {0, "p2", "locking_free"});
     std::printf("p2 locking_free %.5f (%.2f %%)\n", quadratic, 100 * (quadratic / reference - 1));

@@ -29,15 +29,12 @@ std::vector<double> frequencies(const std::string& name, const ShellSystem& syst
 }
 
 TEST(Frequencies, OfASupportedPlateConvergeAtSecondOrder) {
-  const double rigidity =
-      kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
-  const double exact = std::numbers::pi / bench::kSide / bench::kSide *
-                       std::sqrt(rigidity / (kSteel.density * kSteel.thickness));
+  const double rigidity = kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
+  const double exact =
+      std::numbers::pi / bench::kSide / bench::kSide * std::sqrt(rigidity / (kSteel.density * kSteel.thickness));
   const auto error = [&](int cells) {
     return std::abs(
-        frequencies(fmt::format("plate_supported_n{}", cells), bench::supported_plate(cells), 0, 8)[0] /
-            exact -
-        1);
+        frequencies(fmt::format("plate_supported_n{}", cells), bench::supported_plate(cells), 0, 8)[0] / exact - 1);
   };
   EXPECT_NEAR(testing::order(error(7), error(14)), 2, 0.2);
 }
@@ -45,10 +42,8 @@ TEST(Frequencies, OfASupportedPlateConvergeAtSecondOrder) {
 TEST(Frequencies, OfTheOtherKnownShellsComeNearerOnTheFinerMesh) {
   for (int cells : {7, 14}) {
     const auto free = frequencies(fmt::format("plate_free_n{}", cells), bench::free_plate(cells), 6, 7, 100);
-    const auto membrane =
-        frequencies(fmt::format("tapered_membrane_n{}", cells), bench::tapered_membrane(cells), 0, 6);
-    const auto strip =
-        frequencies(fmt::format("cantilever_strip_n{}", cells), bench::cantilever_strip(cells), 0, 3);
+    const auto membrane = frequencies(fmt::format("tapered_membrane_n{}", cells), bench::tapered_membrane(cells), 0, 6);
+    const auto strip = frequencies(fmt::format("cantilever_strip_n{}", cells), bench::cantilever_strip(cells), 0, 3);
     const double close = cells == 7 ? 0.15 : 0.04;
     EXPECT_NEAR(free[0], 1.622, close * 1.622);
     EXPECT_NEAR(membrane[0], 44.623, close * 44.623);

@@ -42,14 +42,12 @@ TEST(HalfSpace, ClosedFormsAreInEquilibriumAndTheDiscTendsToThePoint) {
   }
   EXPECT_NEAR(boussinesq({0.5, 0, 0}, poisson).z(), (1 - poisson) / (2 * M_PI * shear * 0.5), 1e-12);
   const Vector3d far(30, 0, 40);
-  EXPECT_LT((pressed_disc(far, poisson) - boussinesq(far, poisson)).norm(),
-            1e-4 * boussinesq(far, poisson).norm());
+  EXPECT_LT((pressed_disc(far, poisson) - boussinesq(far, poisson)).norm(), 1e-4 * boussinesq(far, poisson).norm());
 }
 
 TEST(HalfSpace, PointForcesAreRightAFewElementsAway) {
   for (const bool infinite : {true, false}) {
-    const auto coarse = halfway(4, kP2, infinite), fine = halfway(8, kP2, infinite),
-               linear = halfway(8, kP1, infinite);
+    const auto coarse = halfway(4, kP2, infinite), fine = halfway(8, kP2, infinite), linear = halfway(8, kP1, infinite);
     for (int i = 0; i < 2; ++i) {
       EXPECT_LT(fine[i], 0.01);
       EXPECT_GT(testing::order(coarse[i], fine[i]), 2);

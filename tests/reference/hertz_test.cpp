@@ -17,8 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double tip_radius = 0.01, young = 5000, poisson = 0.3;
-constexpr std::array<std::array<double, 2>, 4> places{
-    {{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
+constexpr std::array<std::array<double, 2>, 4> places{{{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
 
 /// Grid coordinates from 0 outwards: steps of h to `fine`, then growing by 1.5 to exactly `end`.
 std::vector<double> graded(double h, double fine, double end) {
@@ -132,8 +131,7 @@ TEST(HertzReference, ATipFollowsHertzWithinTenPercentFromTwoElementsToItsRadius)
       EXPECT_NEAR(pressed.mean(), last.mean(), 0.05) << "halving h to R / " << per_radius;
     }
     last = pressed;
-    const auto shallow =
-        press_everywhere(block, 0.25 * tip_radius, fmt::format("p1_shallow_h{}", per_radius));
+    const auto shallow = press_everywhere(block, 0.25 * tip_radius, fmt::format("p1_shallow_h{}", per_radius));
     EXPECT_LT(shallow.worst(), per_radius == 2 ? 0.25 : 0.12) << "R = " << per_radius << " h";
   }
 }

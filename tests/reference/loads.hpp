@@ -22,8 +22,7 @@ inline std::vector<Eigen::Vector3d> traction_load(
   return load;
 }
 
-inline double work(const std::vector<Eigen::Vector3d>& force,
-                   const std::vector<Eigen::Vector3d>& displacement) {
+inline double work(const std::vector<Eigen::Vector3d>& force, const std::vector<Eigen::Vector3d>& displacement) {
   double sum = 0;
   for (std::size_t i = 0; i < force.size(); ++i) sum += force[i].dot(displacement[i]);
   return sum;

@@ -13,8 +13,7 @@ double node_stiffness(int cells, double poisson, double jitter = 0) {
   const auto mesh = testing::make_jittered_block({1, 1, 0.5}, {cells, cells, cells / 2}, jitter);
   const auto problem = make_static_problem(testing::make_body(1, poisson), mesh);
   const int n = cells + 1, middle = (cells / 2 * n + cells / 2) * n + cells / 2;
-  const auto solution =
-      solve_direct(problem, {hold(middle, 0, 0), hold(middle, 1, 0), hold(middle, 2, -1e-3)});
+  const auto solution = solve_direct(problem, {hold(middle, 0, 0), hold(middle, 1, 0), hold(middle, 2, -1e-3)});
   return -solution.force[middle].z() / 1e-3 * cells;
 }
 

@@ -37,8 +37,7 @@ double patch_error(ShellMotion (*motion)(const Eigen::Vector3d&)) {
       load[i] = -force[at];
       expected[i] = exact[at];
     }
-    const auto stiffness =
-        assemble_shell_stiffness(mesh, testing::kWall, Bending::discrete_kirchhoff, inner, "patch");
+    const auto stiffness = assemble_shell_stiffness(mesh, testing::kWall, Bending::discrete_kirchhoff, inner, "patch");
     Factorisation factor(stiffness);
     factor.factorise(stiffness);
     const double error = (factor.solve(load) - expected).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff();
@@ -55,8 +54,7 @@ ShellMotion stretched(const Eigen::Vector3d& x) {
 
 ShellMotion bent(const Eigen::Vector3d& x) {
   const double u = x.x(), v = x.y();
-  return 1e-3 *
-         (ShellMotion() << 0, 0, 0.5 * (u * u + u * v + v * v), 0.5 * u + v, -u - 0.5 * v, 0).finished();
+  return 1e-3 * (ShellMotion() << 0, 0, 0.5 * (u * u + u * v + v * v), 0.5 * u + v, -u - 0.5 * v, 0).finished();
 }
 
 /// The fields are those of MacNeal and Harder's patch for membranes and plates.
@@ -73,11 +71,9 @@ TEST(PublishedShells, PatchesCarryConstantStrainAndCurvatureToRounding) {
 bench::ShellCase pierced_hemisphere(int n) {
   const auto wall = [](double u, double v) -> Eigen::Vector3d {
     const double around = u * std::numbers::pi / 2, up = v * 72 * std::numbers::pi / 180;
-    return 10 *
-           Eigen::Vector3d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
+    return 10 * Eigen::Vector3d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
   };
-  bench::ShellCase shell(bench::shell_grid(n, n, wall, bench::Diagonals::alternating),
-                         {6.825e7, 0.3, 0, 0.04});
+  bench::ShellCase shell(bench::shell_grid(n, n, wall, bench::Diagonals::alternating), {6.825e7, 0.3, 0, 0.04});
   shell.mirror([](auto& x) { return bench::near(x.x(), 0); }, 0);
   shell.mirror([](auto& x) { return bench::near(x.y(), 0); }, 1);
   shell.dofs.fix(0, 2);  // the loads balance: any node will do
@@ -93,8 +89,7 @@ TEST(PublishedShells, HemisphereWithAHoleComesToThePublishedDisplacement) {
     if (n == 64 && !std::getenv("PALPATE_LONG_TESTS")) continue;
     auto shell = pierced_hemisphere(n);
     const auto answer = bench::solve(shell);
-    RecordProperty(fmt::format("pierced_hemisphere_n{}", n),
-                   fmt::format("{:.8g} {}", answer.value, answer.size));
+    RecordProperty(fmt::format("pierced_hemisphere_n{}", n), fmt::format("{:.8g} {}", answer.value, answer.size));
     const double error = std::abs(answer.value / shell.target - 1);
     EXPECT_LT(error, last) << n;
     last = error;

@@ -21,7 +21,8 @@ TEST(PublishedSolids, StraightBeamOfMacNealAndHarder) {
 
 TEST(PublishedSolids, TwistedBeamComesToSaintVenantLessWhatItsClampedRootHolds) {
   EXPECT_NEAR(twist_target(), 0.0341, 0.0001);
-  const double coarse = straight_beam_twist(2, kP2).value / twist_target() - 1, fine = straight_beam_twist(4, kP2).value / twist_target() - 1;
+  const double coarse = straight_beam_twist(2, kP2).value / twist_target() - 1,
+               fine = straight_beam_twist(4, kP2).value / twist_target() - 1;
   EXPECT_LT(std::abs(coarse), 0.06);
   EXPECT_LT(std::abs(fine), 0.01);
   EXPECT_LT(straight_beam_twist(2, kP1).value, 0.5 * twist_target()) << "linear elements lock in torsion";

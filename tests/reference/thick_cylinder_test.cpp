@@ -28,15 +28,13 @@ struct Errors {
 Errors errors(double poisson, int cells) {
   // A block in (radius, angle, z) bent into the quarter ring; squarish cells.
   auto mesh = make_block({kInner, 0, 0}, {kOuter, kQuarter, 1}, {cells, cells, 1});
-  for (auto& node : mesh.nodes)
-    node = {node.x() * std::cos(node.y()), node.x() * std::sin(node.y()), node.z()};
+  for (auto& node : mesh.nodes) node = {node.x() * std::cos(node.y()), node.x() * std::sin(node.y()), node.z()};
   auto body = testing::make_body(kYoung, poisson);
-  body.fixed = {
-      testing::fix_group("y0", {false, true, false}), testing::fix_group("y1", {true, false, false}),
-      testing::fix_group("z0", {false, false, true}), testing::fix_group("z1", {false, false, true})};
+  body.fixed = {testing::fix_group("y0", {false, true, false}), testing::fix_group("y1", {true, false, false}),
+                testing::fix_group("z0", {false, false, true}), testing::fix_group("z1", {false, false, true})};
   const auto inner = [](const Eigen::Vector3d& x) { return x.head<2>().norm() < kInner * (1 + 1e-9); };
-  const auto load = testing::traction_load(
-      mesh, inner, [](const auto& normal) -> Eigen::Vector3d { return -kPressure * normal; });
+  const auto load =
+      testing::traction_load(mesh, inner, [](const auto& normal) -> Eigen::Vector3d { return -kPressure * normal; });
   const auto solution = solve_loads(make_static_problem(body, mesh), load);
   double radial = 0;
   int count = 0;
@@ -46,8 +44,7 @@ Errors errors(double poisson, int cells) {
     ++count;
   }
   const double energy = 0.5 * testing::work(load, solution.displacement);
-  return {std::abs(1 - radial / count / exact_radial(poisson, kInner)),
-          std::abs(1 - energy / exact_energy(poisson))};
+  return {std::abs(1 - radial / count / exact_radial(poisson, kInner)), std::abs(1 - energy / exact_energy(poisson))};
 }
 
 TEST(ThickCylinder, ClosedFormAgreesWithThePublishedFigures) {
@@ -59,8 +56,8 @@ TEST(ThickCylinder, DisplacementAndEnergyConvergeAtSecondOrder) {
   for (double poisson : {0.0, 0.3}) {
     const auto coarse = errors(poisson, 8), middle = errors(poisson, 16), fine = errors(poisson, 32);
     SCOPED_TRACE(::testing::Message() << "nu " << poisson << ": displacement " << coarse.displacement << " "
-                                      << middle.displacement << " " << fine.displacement << ", energy "
-                                      << coarse.energy << " " << middle.energy << " " << fine.energy);
+                                      << middle.displacement << " " << fine.displacement << ", energy " << coarse.energy
+                                      << " " << middle.energy << " " << fine.energy);
     EXPECT_LT(fine.displacement, 0.005);
     EXPECT_LT(fine.energy, 0.005);
     EXPECT_NEAR(testing::order(coarse.displacement, middle.displacement), 2, 0.35);

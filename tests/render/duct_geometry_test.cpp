@@ -44,7 +44,8 @@ class Surface {
  private:
   int vertex(const Eigen::Vector3f& p) {
     const auto key = [](float x) { return std::lround(x * 1e7f); };
-    const auto [entry, is_new] = known_.try_emplace({key(p.x()), key(p.y()), key(p.z())}, static_cast<int>(points_.size()));
+    const auto [entry, is_new] =
+        known_.try_emplace({key(p.x()), key(p.y()), key(p.z())}, static_cast<int>(points_.size()));
     if (is_new) points_.push_back(p.cast<double>());
     return entry->second;
   }
@@ -53,7 +54,8 @@ class Surface {
   Triangles triangles_;
 };
 
-bool looks_outward(const std::vector<Eigen::Vector3f>& position, const std::vector<Eigen::Vector3f>& normal, const Triangles& triangles) {
+bool looks_outward(const std::vector<Eigen::Vector3f>& position, const std::vector<Eigen::Vector3f>& normal,
+                   const Triangles& triangles) {
   for (const auto& [a, b, c] : triangles) {
     const Eigen::Vector3f area = (position[b] - position[a]).cross(position[c] - position[a]);
     if (area.norm() < 1e-12f) continue;
@@ -95,7 +97,8 @@ TEST(ThickWall, LooksOutwardOnBothSidesAndAtTheRims) {
     for (std::size_t v = 0; v < side->normal.size(); ++v) EXPECT_NEAR(side->normal[v].norm(), 1, 1e-4) << v;
   }
   const ThickWall::Side& inner = duct.wall.inner();
-  ASSERT_EQ(inner.position.size(), duct.position.size() + 4 * 40);  // two mouths of 40 nodes, each with two rims' corners
+  ASSERT_EQ(inner.position.size(),
+            duct.position.size() + 4 * 40);  // two mouths of 40 nodes, each with two rims' corners
   for (std::size_t v = duct.position.size(); v < inner.position.size(); ++v) {
     EXPECT_NEAR(std::abs(inner.normal[v].z()), 1, 1e-3);
     EXPECT_GT(inner.normal[v].z() * (inner.position[v].z() - 0.025f), 0);
@@ -137,7 +140,8 @@ TEST(Straighten, RunsAlongABentTube) {
     const double a = 0.5 * std::numbers::pi * t;
     return Eigen::Vector3d(bend * std::cos(a), bend * std::sin(a), 0);
   };
-  const ShellMesh tube = make_tube(centre, [&](double) { return wide; }, 16, 30);
+  const ShellMesh tube = make_tube(
+      centre, [&](double) { return wide; }, 16, 30);
   SurfaceMap map;
   map.position = tube.nodes;
   map.triangles = tube.triangles;
@@ -198,7 +202,8 @@ TEST(Forceps, EachJawLiesAlongTheSegmentThatCollides) {
   for (const int jaw : {1, 2}) {
     const double side = jaw == 1 ? 1 : -1;
     const Eigen::Vector3d along(0, side * std::sin(0.5 * opening), std::cos(0.5 * opening));
-    const Eigen::Vector3d across(0, side * std::cos(0.5 * opening), -std::sin(0.5 * opening));  // away from the other jaw
+    const Eigen::Vector3d across(0, side * std::cos(0.5 * opening),
+                                 -std::sin(0.5 * opening));  // away from the other jaw
     const Eigen::Isometry3d pose = view.tip.inverse() * part_pose(view, shape, jaw);
     double farthest = 0, inward = 0;
     for (const auto& p : shape.parts[jaw].position) {
@@ -217,7 +222,8 @@ TEST(Forceps, JawsHaveTeethAndTaper) {
   std::map<long, float> bite;  // deepest y of the upper jaw by place along it [10 um]
   float wide_at_root = 0, wide_at_nose = 0;
   for (const auto& p : shape.parts[1].position) {
-    if (p.z() > 0.003f && p.z() < 0.012f) bite[std::lround(1e5f * p.z())] = std::min(bite[std::lround(1e5f * p.z())], p.y());
+    if (p.z() > 0.003f && p.z() < 0.012f)
+      bite[std::lround(1e5f * p.z())] = std::min(bite[std::lround(1e5f * p.z())], p.y());
     if (p.z() > 0.004f && p.z() < 0.007f) wide_at_root = std::max(wide_at_root, p.x());
     if (p.z() > 0.011f && p.z() < 0.012f) wide_at_nose = std::max(wide_at_nose, p.x());
   }

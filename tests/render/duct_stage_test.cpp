@@ -44,7 +44,8 @@ const MeshView& mesh_of(const Frame& frame, Finish finish) {
 }
 
 Frame only(Frame frame, std::initializer_list<Finish> finishes) {
-  std::erase_if(frame.meshes, [&](const MeshView& m) { return std::ranges::find(finishes, m.finish) == finishes.end(); });
+  std::erase_if(frame.meshes,
+                [&](const MeshView& m) { return std::ranges::find(finishes, m.finish) == finishes.end(); });
   return frame;
 }
 
@@ -52,7 +53,8 @@ TEST(DuctStage, ADuctHasTwoSidesAndACatheterIsOneTube) {
   const DuctStage d;
   const Stage stage = d.stage();
   const Frame frame = stage.frame();
-  const MeshView &outer = mesh_of(frame, Finish::duct), &inner = mesh_of(frame, Finish::mucosa), &tube = mesh_of(frame, Finish::plastic);
+  const MeshView &outer = mesh_of(frame, Finish::duct), &inner = mesh_of(frame, Finish::mucosa),
+                 &tube = mesh_of(frame, Finish::plastic);
   EXPECT_EQ(frame.meshes.size(), 4u);
   EXPECT_NE(outer.id, inner.id);
   const auto radius = [](const Eigen::Vector3f& p) { return p.head<2>().norm(); };
@@ -132,7 +134,8 @@ TEST(DuctStage, FollowsShapesAndDrawsThem) {
   stage.set_surface(duct_body, position, deformer.surface(duct_body).normal);
   const Frame frame = stage.frame();
   EXPECT_GT(difference(moved, picture(frame), 8), 0.01);
-  for (const auto& p : mesh_of(frame, Finish::duct).position) EXPECT_NEAR((p - Eigen::Vector3f(0.004f, 0, 0)).head<2>().norm(), 0.005, 0.0002);
+  for (const auto& p : mesh_of(frame, Finish::duct).position)
+    EXPECT_NEAR((p - Eigen::Vector3f(0.004f, 0, 0)).head<2>().norm(), 0.005, 0.0002);
 }
 
 TEST(DuctStage, ColourByDisplacementCoversBothSidesButNotTheCatheter) {
@@ -199,8 +202,15 @@ struct TaskWorld {
 
 TEST(DuctStage, TheOverlayTellsHowTheTaskGoes) {
   TaskWorld world;
-  const TaskRecord task{.body = catheter_body, .run = 5, .inserted = 0.0221, .deepest = 0.0243, .inserting_s = 8.24,
-                        .largest_force = 0.612, .wall_contacts = 5, .grasps = 2, .drops = 1};
+  const TaskRecord task{.body = catheter_body,
+                        .run = 5,
+                        .inserted = 0.0221,
+                        .deepest = 0.0243,
+                        .inserting_s = 8.24,
+                        .largest_force = 0.612,
+                        .wall_contacts = 5,
+                        .grasps = 2,
+                        .drops = 1};
   const std::vector<std::string> lines = world.lines(task);
   const auto has = [&](const std::string& line) { return std::ranges::find(lines, line) != lines.end(); };
   EXPECT_TRUE(has("inserted 22 mm, deepest 24 mm in 8.2 s"));
@@ -209,7 +219,8 @@ TEST(DuctStage, TheOverlayTellsHowTheTaskGoes) {
 }
 
 TEST(DuctStage, TaskRecordsOfOtherRunsAndBodiesAreNotShown) {
-  for (const TaskRecord& task : {TaskRecord{.body = catheter_body, .run = 8}, TaskRecord{.body = duct_body, .run = 5}, TaskRecord{.body = 7, .run = 5}}) {
+  for (const TaskRecord& task : {TaskRecord{.body = catheter_body, .run = 8}, TaskRecord{.body = duct_body, .run = 5},
+                                 TaskRecord{.body = 7, .run = 5}}) {
     TaskWorld world;
     for (const std::string& line : world.lines(task)) EXPECT_EQ(line.find("inserted"), std::string::npos);
   }
@@ -222,7 +233,8 @@ TEST(DuctStage, ScenesWithoutACatheterAskForNoTaskRecord) {
   const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.d.s.scene, world.d.s.archives));
   Renderer renderer(160, 120);
   std::vector<SurfaceMap> surfaces{world.d.s.archives[0].surface};
-  const RenderLoop loop(world.d.s.scene, Stage(world.d.s.scene, surfaces, {}), *source, *world.bus, world.presence, renderer);
+  const RenderLoop loop(world.d.s.scene, Stage(world.d.s.scene, surfaces, {}), *source, *world.bus, world.presence,
+                        renderer);
   EXPECT_EQ(world.tasks->readers(), 0);
 }
 

@@ -19,8 +19,7 @@ using namespace testing;
 Image test_picture(int width, int height, int i) {
   Image image{width, height, std::vector<std::uint8_t>(4u * width * height, 60)};
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < 8; ++x)
-      image.rgba[4 * (static_cast<std::size_t>(y) * width + (4 * i + x) % width)] = 250;
+    for (int x = 0; x < 8; ++x) image.rgba[4 * (static_cast<std::size_t>(y) * width + (4 * i + x) % width)] = 250;
   return image;
 }
 
@@ -70,8 +69,7 @@ TEST(Film, HasAllFramesAtItsRate) {
                       "stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 " +
                       file.string()),
             "h264,160,120,yuv420p,30/1,45\n");
-  EXPECT_EQ(output_of("ffprobe -v error -show_entries format=duration -of csv=p=0 " + file.string()),
-            "1.500000\n");
+  EXPECT_EQ(output_of("ffprobe -v error -show_entries format=duration -of csv=p=0 " + file.string()), "1.500000\n");
 }
 
 TEST(Film, ColoursSurvive) {
@@ -82,8 +80,8 @@ TEST(Film, ColoursSurvive) {
   Film film(file, 64, 48, 30);
   film.add(red, 10);
   film.finish();
-  const std::string raw = output_of(fmt::format(
-      "ffmpeg -v error -i {} -frames:v 1 -vf crop=8:8:30:20 -f rawvideo -pix_fmt rgb24 -", file.string()));
+  const std::string raw = output_of(
+      fmt::format("ffmpeg -v error -i {} -frames:v 1 -vf crop=8:8:30:20 -f rawvideo -pix_fmt rgb24 -", file.string()));
   ASSERT_EQ(raw.size(), 8u * 8 * 3);
   EXPECT_NEAR(static_cast<unsigned char>(raw[0]), 150, 3);
   EXPECT_NEAR(static_cast<unsigned char>(raw[1]), 50, 3);
@@ -115,8 +113,7 @@ TEST(Film, SaysThatFfmpegIsMissing) {
   ::setenv("PATH", folder.path.c_str(), 1);
   const std::string said = complaint([&] { Film(folder.path / "a.mp4", 160, 120, 30); });
   ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(said,
-            (folder.path / "a.mp4").string() + ": films need the program ffmpeg, which is not installed");
+  EXPECT_EQ(said, (folder.path / "a.mp4").string() + ": films need the program ffmpeg, which is not installed");
   EXPECT_EQ(folder.files(), 0);
 }
 
@@ -150,15 +147,13 @@ TEST(Film, FullDiskIsASentence) {
   const Folder folder;
   const auto small = folder.path / "small";
   std::filesystem::create_directory(small);
-  if (::mount("tmpfs", small.c_str(), "tmpfs", 0, "size=64k") != 0)
-    GTEST_SKIP() << "needs the right to mount";
+  if (::mount("tmpfs", small.c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "needs the right to mount";
   const std::string said = complaint([&] {
     Film film(small / "a.mp4", 320, 240, 30);
     Image noise{320, 240, std::vector<std::uint8_t>(4u * 320 * 240)};
     unsigned seed = 1;
     for (int i = 0; i < 60; ++i) {
-      for (auto& byte : noise.rgba)
-        byte = static_cast<std::uint8_t>((seed = seed * 1664525u + 1013904223u) >> 24);
+      for (auto& byte : noise.rgba) byte = static_cast<std::uint8_t>((seed = seed * 1664525u + 1013904223u) >> 24);
       film.add(noise);
     }
     film.finish();

@@ -71,8 +71,7 @@ TEST(Instrument, TrianglesLookOutwards) {
   const InstrumentShape shape = make_instrument({});
   for (const InstrumentPart& part : shape.parts)
     for (const auto& [a, b, c] : part.triangles) {
-      const Eigen::Vector3f area =
-          (part.position[b] - part.position[a]).cross(part.position[c] - part.position[a]);
+      const Eigen::Vector3f area = (part.position[b] - part.position[a]).cross(part.position[c] - part.position[a]);
       if (area.norm() < 1e-12f) continue;
       EXPECT_GT(area.dot(part.normal[a] + part.normal[b] + part.normal[c]), 0);
     }

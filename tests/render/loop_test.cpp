@@ -37,8 +37,7 @@ struct World {
     for (int i = 0; i < n; ++i) archive.surface.node_number.push_back(i);
     for (int dof = 0; dof < 3 * n; ++dof) {
       archive.touchable_dofs.push_back({dof / 3, dof % 3});
-      for (int j = 0; j <= dof; ++j)
-        archive.touchable_compliance.push_back(dof == j ? 1e-3 : 0);  // springs of 1 N/mm
+      for (int j = 0; j <= dof; ++j) archive.touchable_compliance.push_back(dof == j ? 1e-3 : 0);  // springs of 1 N/mm
     }
     presence.watch();
   }

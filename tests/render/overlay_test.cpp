@@ -51,14 +51,11 @@ TEST(Overlay, GaugeGrowsWithTheValue) {
 TEST(Overlay, LatinLettersBeyondAsciiAreDrawn) {
   const FontAtlas font(default_font(), 16);
   Frame frame = empty_frame();
-  frame.overlay =
-      Overlay{{"\xC2\xB5\xC3\xA9\xE2\x82\xAC"}, {}};  // micro, e acute, and the euro, which becomes '?'
+  frame.overlay = Overlay{{"\xC2\xB5\xC3\xA9\xE2\x82\xAC"}, {}};  // micro, e acute, and the euro, which becomes '?'
   const auto vertices = lay_out(frame, font, 640, 480);
   ASSERT_EQ(vertices.size(), 6u * 4);  // the panel and three characters
-  EXPECT_FLOAT_EQ(vertices[6 * 1].u * static_cast<float>(font.width()),
-                  static_cast<float>(font.glyph(0xB5).x));
-  EXPECT_FLOAT_EQ(vertices[6 * 3].u * static_cast<float>(font.width()),
-                  static_cast<float>(font.glyph('?').x));
+  EXPECT_FLOAT_EQ(vertices[6 * 1].u * static_cast<float>(font.width()), static_cast<float>(font.glyph(0xB5).x));
+  EXPECT_FLOAT_EQ(vertices[6 * 3].u * static_cast<float>(font.width()), static_cast<float>(font.glyph('?').x));
 }
 
 TEST(Overlay, MissingFontIsNamed) {
@@ -75,8 +72,7 @@ TEST(Legend, StepsAreRound) {
 
 /// Direction of a colour, brightness apart.
 Eigen::Vector3d chroma(const std::uint8_t* p) {
-  return (Eigen::Vector3d(p[0] * p[0], p[1] * p[1], p[2] * p[2]) + Eigen::Vector3d::Constant(1e-3))
-      .normalized();
+  return (Eigen::Vector3d(p[0] * p[0], p[1] * p[1], p[2] * p[2]) + Eigen::Vector3d::Constant(1e-3)).normalized();
 }
 
 TEST(Legend, TissueTakesTheColoursOfTheScale) {
@@ -120,8 +116,7 @@ TEST(Legend, ColourWithoutScaleIsRefused) {
   ball.scalar.assign(ball.rest.size(), 0.0f);
   Frame frame = empty_frame();
   frame.meshes.push_back(ball.view(3));
-  EXPECT_EQ(complaint([&] { picture(frame); }),
-            "mesh 3: colour by scalar needs a legend with a positive range");
+  EXPECT_EQ(complaint([&] { picture(frame); }), "mesh 3: colour by scalar needs a legend with a positive range");
 }
 
 }  // namespace

@@ -82,8 +82,7 @@ InstrumentView instrument_at(const Eigen::Vector3d& tip) {
   InstrumentView tool;
   tool.tip.translation() = tip;
   tool.tip.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.8, 0, -0.6))
-          .toRotationMatrix();
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.8, 0, -0.6)).toRotationMatrix();
   return tool;
 }
 
@@ -100,9 +99,8 @@ TEST(Renderer, InstrumentIsGreyAndShadesTheTissue) {
   // Just below the tip the tissue lies in its shade.
   EXPECT_LT(brightness(with, centre_x, centre_y + 7), 0.9 * brightness(without, centre_x, centre_y + 7));
   // The shaft leaves the picture at the upper right.
-  EXPECT_GT(std::abs(brightness(with, centre_x + 40, centre_y - 30) -
-                     brightness(without, centre_x + 40, centre_y - 30)),
-            5);
+  EXPECT_GT(
+      std::abs(brightness(with, centre_x + 40, centre_y - 30) - brightness(without, centre_x + 40, centre_y - 30)), 5);
 }
 
 TEST(Renderer, OpenJawsLetTheBackgroundThrough) {
@@ -209,8 +207,7 @@ TEST(Renderer, RefusesWhatItCannotDraw) {
   EXPECT_EQ(complaint([&] { renderer.draw(frame, image); }), "a picture shows at most 8 instruments, not 9");
   frame = empty_frame();
   frame.camera.up = {0, 1, 0};
-  EXPECT_EQ(complaint([&] { renderer.draw(frame, image); }),
-            "the camera looks nowhere: check its eye, target and up");
+  EXPECT_EQ(complaint([&] { renderer.draw(frame, image); }), "the camera looks nowhere: check its eye, target and up");
   EXPECT_EQ(complaint([] { Renderer(0, 100); }), "a picture has 16 to 8192 pixels a side, not 0 x 100");
   renderer.draw(empty_frame(), image);  // and still works afterwards
   EXPECT_EQ(image.width, 64);

@@ -22,8 +22,7 @@ TEST(Csv, ReadsNumbersBelowItsHeaderAndKeepsLineNumbers) {
 
 TEST(Csv, AnOptionalLastColumnIsThereForAllRowsOrForNone) {
   const SceneFolder folder;
-  EXPECT_EQ(read_csv(folder.write("a.csv", "a,b\n1,2\n"), {"a", "b"}, "c").rows[0].values,
-            (std::vector<double>{1, 2}));
+  EXPECT_EQ(read_csv(folder.write("a.csv", "a,b\n1,2\n"), {"a", "b"}, "c").rows[0].values, (std::vector<double>{1, 2}));
   EXPECT_EQ(read_csv(folder.write("b.csv", "a,b,c\n1,2,3\n"), {"a", "b"}, "c").rows[0].values,
             (std::vector<double>{1, 2, 3}));
   EXPECT_THROW(read_csv(folder.write("c.csv", "a,b,c\n1,2,3\n1,2\n"), {"a", "b"}, "c"), std::runtime_error);

@@ -14,8 +14,8 @@ class SceneFolder {
   SceneFolder() {
     char name[] = "/tmp/palpate_scene_XXXXXX";
     path_ = mkdtemp(name);
-    for (const char* file :
-         {"liver.msh", "tube.stl", "force.csv", "radial.csv", "specimen.msh", "coarse.msh", "move.csv", "session.lcmlog", "ribs.stl"})
+    for (const char* file : {"liver.msh", "tube.stl", "force.csv", "radial.csv", "specimen.msh", "coarse.msh",
+                             "move.csv", "session.lcmlog", "ribs.stl"})
       write(file, "some bytes\n");
   }
   ~SceneFolder() { std::filesystem::remove_all(path_); }

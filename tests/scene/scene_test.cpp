@@ -173,8 +173,7 @@ TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
 
 TEST_F(SceneFile, DoublesRoundTripBitForBit) {
   Scene scene = parse(kLeastScene);
-  for (double young :
-       {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 6000.0, 1e22, 123456789.123456789, 1e16}) {
+  for (double young : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 6000.0, 1e22, 123456789.123456789, 1e16}) {
     scene.bodies[0].material.young = young;
     EXPECT_EQ(parse(to_toml(scene)).bodies[0].material.young, young);
   }
@@ -245,9 +244,7 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
 
 TEST_F(SceneFile, HashSeesTheCurvesContentsAndNotTheirPlace) {
   const SceneFolder elsewhere;
-  const auto hash_in = [](const SceneFolder& f) {
-    return scene_hash(parse_scene(kFullScene, f / "other.toml"));
-  };
+  const auto hash_in = [](const SceneFolder& f) { return scene_hash(parse_scene(kFullScene, f / "other.toml")); };
   EXPECT_EQ(hash_in(folder), hash_in(elsewhere));
   elsewhere.write("force.csv", "other bytes\n");
   EXPECT_NE(hash_in(folder), hash_in(elsewhere));

@@ -10,8 +10,7 @@ namespace {
 /// Every key is read: a date, which no key takes, is refused at each, and the sentence names the key.
 TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
   const SceneFolder folder;
-  const std::string body = kLeastScene,
-                    tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
+  const std::string body = kLeastScene, tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
   int tried = 0;
   for (const TableSchema& table : scene_schema()) {
     for (std::string_view key : table.keys) {
@@ -19,8 +18,8 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
       std::string text = kFullScene;
       if (table.name == "scene") {
         text = line;
-        if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" || key == "record" ||
-            key == "render")
+        if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" ||
+            key == "record" || key == "render")
           text += body;
         if (key == "title") text += body;
       } else {
@@ -41,8 +40,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           text = held + "model = \"modal_shell\"\n" + line;
         } else if (key == "catheter") {
           text = "[[body]]\nname = \"a\"\nmodel = \"catheter\"\nyoung = 1\n" + line;
-        } else if (table.name == "[tool.jaws]" && key != "length" && key != "width" &&
-                   key != "closed_below") {
+        } else if (table.name == "[tool.jaws]" && key != "length" && key != "width" && key != "closed_below") {
           text = body + tool + "kind = \"forceps\"\n[tool.jaws]\n" + line;
         } else if (key == "damping_ratio") {
           text = shell + "fixed = [{ group = \"a\" }]\n[body.shell]\nthickness = 1\n" + line;
@@ -69,8 +67,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         }
       }
       const std::string said = refusal(text, folder / "scene.toml");
-      EXPECT_NE(said.find(": " + std::string(key) + " must "), said.npos)
-          << table.name << " " << key << ": " << said;
+      EXPECT_NE(said.find(": " + std::string(key) + " must "), said.npos) << table.name << " " << key << ": " << said;
       ++tried;
     }
   }

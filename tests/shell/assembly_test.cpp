@@ -48,8 +48,7 @@ TEST(ShellStiffness, HoldsRotationsOfACoplanarPatchAndACurvedTube) {
     const Eigen::MatrixXd whole = whole_stiffness(mesh, dofs);
     const int rotations = dofs.size() - dofs.translations();
     const Eigen::MatrixXd turning = whole.bottomRightCorner(rotations, rotations);
-    const auto values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(turning, Eigen::EigenvaluesOnly).eigenvalues();
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(turning, Eigen::EigenvaluesOnly).eigenvalues();
     EXPECT_GT(values[0], 1e-6 * values[rotations - 1]);
   }
 }
@@ -59,11 +58,10 @@ TEST(ShellStiffness, IsTheSumOfItsTriangles) {
   const ShellDofs dofs = all_free(mesh);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dofs.size(), dofs.size());
   for (const auto& t : mesh.triangles) {
-    const auto element = shell_element_stiffness({mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]]},
-                                                 kWall, Bending::discrete_kirchhoff);
+    const auto element = shell_element_stiffness({mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]]}, kWall,
+                                                 Bending::discrete_kirchhoff);
     for (int i = 0; i < 18; ++i)
-      for (int j = 0; j < 18; ++j)
-        sum(dofs.index(t[i / 6], i % 6), dofs.index(t[j / 6], j % 6)) += element(i, j);
+      for (int j = 0; j < 18; ++j) sum(dofs.index(t[i / 6], i % 6), dofs.index(t[j / 6], j % 6)) += element(i, j);
   }
   EXPECT_TRUE(Eigen::MatrixXd(whole_stiffness(mesh, dofs)).isApprox(sum, 1e-14));
 }

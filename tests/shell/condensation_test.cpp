@@ -33,8 +33,7 @@ double disagreement(const SparseMatrix& lower, int translations) {
   std::uniform_real_distribution<double> force(-1, 1);
   for (int i = 0; i < translations; ++i) load[i] = force(random);
   const Eigen::VectorXd full = factor.solve(load).col(0).head(translations);
-  const Eigen::VectorXd condensed =
-      condense_rotations(lower, translations).llt().solve(load.head(translations));
+  const Eigen::VectorXd condensed = condense_rotations(lower, translations).llt().solve(load.head(translations));
   return (condensed - full).cwiseAbs().maxCoeff() / full.cwiseAbs().maxCoeff();
 }
 
@@ -44,12 +43,11 @@ TEST(CondensedRotations, AnswerForcesLikeTheFullSystem) {
   const ShellMesh plate = irregular_patch();
   const ShellDofs held_plate = clamped(plate, [](const Eigen::Vector3d& x) { return x.x() < 1e-9; });
   for (auto bending : {Bending::discrete_kirchhoff, Bending::polynomial}) {
-    EXPECT_LT(disagreement(assemble_shell_stiffness(tube, kWall, bending, held_tube, "tube"),
-                           held_tube.translations()),
+    EXPECT_LT(disagreement(assemble_shell_stiffness(tube, kWall, bending, held_tube, "tube"), held_tube.translations()),
               1e-10);
-    EXPECT_LT(disagreement(assemble_shell_stiffness(plate, kWall, bending, held_plate, "plate"),
-                           held_plate.translations()),
-              1e-10);
+    EXPECT_LT(
+        disagreement(assemble_shell_stiffness(plate, kWall, bending, held_plate, "plate"), held_plate.translations()),
+        1e-10);
   }
 }
 

@@ -13,8 +13,7 @@ namespace {
 using testing::kWall;
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-const Corners kScalene{Eigen::Vector3d(0.1, 0.2, -0.3), Eigen::Vector3d(1.2, 0.4, 0.1),
-                       Eigen::Vector3d(0.5, 1.3, 0.2)};
+const Corners kScalene{Eigen::Vector3d(0.1, 0.2, -0.3), Eigen::Vector3d(1.2, 0.4, 0.1), Eigen::Vector3d(0.5, 1.3, 0.2)};
 const Corners kIsosceles{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.01, 0, 0), Eigen::Vector3d(0, 0.01, 0)};
 constexpr std::array kBoth{Bending::discrete_kirchhoff, Bending::polynomial};
 
@@ -104,14 +103,12 @@ double change_by_renumbering(Bending bending, const std::array<int, 3>& order) {
   double change = 0;
   for (int i = 0; i < 18; ++i)
     for (int j = 0; j < 18; ++j)
-      change =
-          std::max(change, std::abs(other(i, j) - k(6 * order[i / 6] + i % 6, 6 * order[j / 6] + j % 6)));
+      change = std::max(change, std::abs(other(i, j) - k(6 * order[i / 6] + i % 6, 6 * order[j / 6] + j % 6)));
   return change / k.cwiseAbs().maxCoeff();
 }
 
 TEST(ShellElement, KnowsNoFirstCornerAndNoFaceWithDiscreteKirchhoff) {
-  for (const auto& order :
-       {std::array{1, 2, 0}, std::array{2, 0, 1}, std::array{1, 0, 2}, std::array{0, 2, 1}})
+  for (const auto& order : {std::array{1, 2, 0}, std::array{2, 0, 1}, std::array{1, 0, 2}, std::array{0, 2, 1}})
     EXPECT_LT(change_by_renumbering(Bending::discrete_kirchhoff, order), 1e-13);
 }
 
@@ -125,8 +122,8 @@ double bending_ratio(double length, double height, double poisson) {
   const double curvature = 1e-3;
   const auto corner = [&](int i, int j) { return Eigen::Vector3d(i * length, (j - 0.5) * height, 0); };
   double energy = 0;
-  for (const Corners& corners : {Corners{corner(0, 0), corner(1, 0), corner(1, 1)},
-                                 Corners{corner(0, 0), corner(1, 1), corner(0, 1)}}) {
+  for (const Corners& corners :
+       {Corners{corner(0, 0), corner(1, 0), corner(1, 1)}, Corners{corner(0, 0), corner(1, 1), corner(0, 1)}}) {
     const auto [axes, flat] = triangle_frame(corners);
     const Eigen::Matrix2d plane = axes.topLeftCorner<2, 2>();
     Eigen::Vector<double, 9> u;
@@ -145,8 +142,7 @@ TEST(Membrane, BendsInItsPlaneLikeABeamAtAnyAspectRatio) {
     for (double aspect : {0.1, 1.0, 4.0, 16.0, 100.0}) {
       // The energies of the parts cancel by as much as the fourth power of the aspect ratio.
       const double rounding = 1e-12 + 3e-15 * std::pow(aspect, 4);
-      EXPECT_NEAR(bending_ratio(aspect, 1, poisson), 1, rounding)
-          << "nu " << poisson << ", aspect " << aspect;
+      EXPECT_NEAR(bending_ratio(aspect, 1, poisson), 1, rounding) << "nu " << poisson << ", aspect " << aspect;
     }
 }
 
@@ -198,18 +194,17 @@ TEST(PolynomialBending, IsRefusedWhereItsInterpolationIsSingularAtAnySize) {
 
 TEST(PolynomialBending, IsTakenWhenTheRightAngleIsAtAnotherCorner) {
   for (int first : {1, 2})
-    EXPECT_EQ(refusal({kIsosceles[first], kIsosceles[(first + 1) % 3], kIsosceles[(first + 2) % 3]},
-                      Bending::polynomial),
-              "");
+    EXPECT_EQ(
+        refusal({kIsosceles[first], kIsosceles[(first + 1) % 3], kIsosceles[(first + 2) % 3]}, Bending::polynomial),
+        "");
 }
 
 /// The paper's determinant of the interpolation, x3^5 y2^5 (x3 + 2 y3 - y2), seen through the stiffness: the
 /// strain energy grows with the inverse square of the last factor.
 TEST(PolynomialBending, StiffensWithTheInverseSquareOfTheVanishingFactor) {
   const auto largest = [](double factor) {
-    const FlatTriangle flat = triangle_frame({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0),
-                                              Eigen::Vector3d(factor / 2, 1, 0)})
-                                  .flat;
+    const FlatTriangle flat =
+        triangle_frame({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(factor / 2, 1, 0)}).flat;
     return polynomial_stiffness(flat, plane_stress(1, 0.3)).norm();
   };
   EXPECT_NEAR(largest(0.01) / largest(0.02), 4, 0.2);

@@ -17,8 +17,7 @@ std::string sentence_of(const auto& work) {
   return "";
 }
 
-FixedRegion region_of(std::vector<int> nodes, std::array<bool, 3> axes = {true, true, true},
-                      bool rotations = true) {
+FixedRegion region_of(std::vector<int> nodes, std::array<bool, 3> axes = {true, true, true}, bool rotations = true) {
   FixedRegion region;
   region.where.indices = std::move(nodes);
   region.axes = axes;
@@ -132,8 +131,7 @@ TEST_F(ShellCheck, OfAShellThatIsNoTubeHalfItsExtentCounts) {
   body.shell->thickness = 0.0299;
   EXPECT_EQ(complaint(cup), "");
   body.shell->thickness = 0.0301;
-  EXPECT_NE(complaint(cup).find("half extent of its middle surface is 30 mm"), std::string::npos)
-      << complaint(cup);
+  EXPECT_NE(complaint(cup).find("half extent of its middle surface is 30 mm"), std::string::npos) << complaint(cup);
 }
 
 TEST_F(ShellCheck, MoreModesThanFreeDisplacementsAreRefused) {
@@ -184,8 +182,7 @@ TEST_F(DuctCheck, AHoleInTheWallIsRefused) {
 TEST_F(DuctCheck, AClosedEndIsRefusedWhereACatheterIsLedInAlone) {
   ShellMesh cup = tube;
   cup.nodes.push_back({0, 0, 0});
-  for (int j = 0; j < 20; ++j)
-    cup.triangles.push_back({static_cast<int>(cup.nodes.size()) - 1, (j + 1) % 20, j});
+  for (int j = 0; j < 20; ++j) cup.triangles.push_back({static_cast<int>(cup.nodes.size()) - 1, (j + 1) % 20, j});
   EXPECT_NE(complaint(cup).find("and the surface has 1 boundary line"), std::string::npos) << complaint(cup);
   scene.bodies[1].catheter->inside.clear();
   EXPECT_EQ(complaint(cup), "");

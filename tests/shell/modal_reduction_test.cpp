@@ -34,15 +34,14 @@ VectorXd push(const ShellSystem& system, int dof, double t) {
 // A plate under a pressure that sets in at once, Navier's series in each mode's time:
 // w = sum 16 p / (pi^2 m n rho t omega^2) sin sin (1 - cos omega t), m, n odd, omega of Kirchhoff's plate.
 double plate_centre(double pressure, double t) {
-  const double rigidity =
-      kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
+  const double rigidity = kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - kSteel.poisson * kSteel.poisson);
   const double area_mass = kSteel.density * kSteel.thickness;
   double w = 0;
   for (int m = 1; m < 40; m += 2)
     for (int n = 1; n < 40; n += 2) {
       const double omega = pi * pi / (kSide * kSide) * (m * m + n * n) * std::sqrt(rigidity / area_mass);
-      w += 16 * pressure / (pi * pi * m * n * area_mass * omega * omega) * std::sin(m * pi / 2) *
-           std::sin(n * pi / 2) * (1 - std::cos(omega * t));
+      w += 16 * pressure / (pi * pi * m * n * area_mass * omega * omega) * std::sin(m * pi / 2) * std::sin(n * pi / 2) *
+           (1 - std::cos(omega * t));
     }
   return w;
 }
@@ -131,8 +130,7 @@ TEST(ModalReduction, ResidualFlexibilityRestoresTheStaticAnswerToAPointLoad) {
     const auto modes = lowest_modes(system.stiffness, system.mass, r);
     const VectorXd soft = modes.omega.cwiseAbs2().cwiseInverse();
     // Integrated until it rests, not taken from the same formula.
-    const auto constants =
-        make_modal_constants(view(modes.omega), modal_damping(view(modes.omega), 0.7, 0), 2e-3);
+    const auto constants = make_modal_constants(view(modes.omega), modal_damping(view(modes.omega), 0.7, 0), 2e-3);
     const VectorXd f = modes.shape.transpose() * load;
     VectorXd x = VectorXd::Zero(r), v = x, y = x;
     for (int i = 0; i < 3000; ++i) {

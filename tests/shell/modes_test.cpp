@@ -53,8 +53,7 @@ TEST(ShellModes, ASimplySupportedSquarePlateHasTheFrequenciesOfTheClosedForm) {
 // Leissa 1973 gives 13.489, 19.789, 24.432, 35.024 (twice), 61.526 as upper bounds; the Ritz method with 16 x
 // 16 Legendre polynomials gives what stands here, and NAFEMS FV12 the first three of it.
 TEST(ShellModes, AFreeSquarePlateHasSixRigidMotionsAndThePublishedFrequencies) {
-  const auto system =
-      make_system(square_plate(28), kSteel, [](const Eigen::Vector3d&, int) { return false; });
+  const auto system = make_system(square_plate(28), kSteel, [](const Eigen::Vector3d&, int) { return false; });
   const auto f = hertz(lowest_modes(system.stiffness, system.mass, 13, 100));
   const double rigidity = kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - 0.3 * 0.3);
   const double unit = std::sqrt(rigidity / (kSteel.density * kSteel.thickness)) / (kSide * kSide) / (2 * pi);
@@ -68,8 +67,7 @@ TEST(ShellModes, AFreeSquarePlateHasSixRigidMotionsAndThePublishedFrequencies) {
 /// sin of n theta.
 double sanders_omega(int m, int n, double radius, double length, const ShellMaterial& s) {
   const double l = m * pi / length, nu = s.poisson, r = radius;
-  const double stretch = s.young * s.thickness / (1 - nu * nu),
-               bend = stretch * s.thickness * s.thickness / 12;
+  const double stretch = s.young * s.thickness / (1 - nu * nu), bend = stretch * s.thickness * s.thickness / 12;
   using Row = Eigen::RowVector3d;
   const Row axial(-l, 0, 0), around(0, n / r, 1 / r), shear(-n / r, l, 0);
   const Row bend_axial(0, 0, l * l), bend_around(0, n / (r * r), n * n / (r * r));
@@ -79,23 +77,19 @@ double sanders_omega(int m, int n, double radius, double length, const ShellMate
     return rigidity * (a.transpose() * a + b.transpose() * b + nu * (cross + cross.transpose()) +
                        (1 - nu) / 2 * c.transpose() * c);
   };
-  const Eigen::Matrix3d k =
-      energy(axial, around, shear, stretch) + energy(bend_axial, bend_around, twist, bend);
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(k).eigenvalues()[0] /
-                   (s.density * s.thickness));
+  const Eigen::Matrix3d k = energy(axial, around, shear, stretch) + energy(bend_axial, bend_around, twist, bend);
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(k).eigenvalues()[0] / (s.density * s.thickness));
 }
 
 TEST(ShellModes, AThinCylinderBetweenDiaphragmsHasThePairsOfTheClosedForm) {
   const ShellMaterial steel{200e9, 0.3, 8000, 0.01};
   const double radius = 1, length = 4;
-  const auto system =
-      make_system(make_tube(radius, length, 64, 40), steel, [&](const Eigen::Vector3d& x, int dof) {
-        return (x[2] < 1e-9 || x[2] > length - 1e-9) && dof <= 1;  // free to slide along the axis as a whole
-      });
+  const auto system = make_system(make_tube(radius, length, 64, 40), steel, [&](const Eigen::Vector3d& x, int dof) {
+    return (x[2] < 1e-9 || x[2] > length - 1e-9) && dof <= 1;  // free to slide along the axis as a whole
+  });
   std::vector<double> expected;
   for (int m = 1; m <= 4; ++m)
-    for (int n = 1; n <= 8; ++n)
-      expected.insert(expected.end(), 2, sanders_omega(m, n, radius, length, steel));
+    for (int n = 1; n <= 8; ++n) expected.insert(expected.end(), 2, sanders_omega(m, n, radius, length, steel));
   std::sort(expected.begin(), expected.end());
   const VectorXd omega = lowest_modes(system.stiffness, system.mass, 11, 1e4).omega;
   EXPECT_LT(omega[0], 1);
@@ -126,10 +120,8 @@ TEST(ShellModes, LanczosAndTheDenseMatrixAgree) {
   const VectorXd root = system.mass.cwiseSqrt().cwiseInverse();
   const MatrixXd symmetric =
       root.asDiagonal() * condense_rotations(system.stiffness, system.translations()) * root.asDiagonal();
-  const VectorXd square =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-  for (int i = 0; i < square.size(); ++i)
-    EXPECT_NEAR(all.omega[i], std::sqrt(square[i]), 1e-5 * all.omega[i]) << i;
+  const VectorXd square = Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  for (int i = 0; i < square.size(); ++i) EXPECT_NEAR(all.omega[i], std::sqrt(square[i]), 1e-5 * all.omega[i]) << i;
 }
 
 TEST(ShellModes, EveryCopyOfARepeatedFrequencyIsFound) {
@@ -181,8 +173,7 @@ TEST(ShellModes, MassesOfDifferentSizeCount) {
 
 TEST(ShellModes, SameBitsEachTimeAndTheFirstLargestEntryIsPositive) {
   const auto system = duct(12, 10);
-  const auto a = lowest_modes(system.stiffness, system.mass, 20),
-             b = lowest_modes(system.stiffness, system.mass, 20);
+  const auto a = lowest_modes(system.stiffness, system.mass, 20), b = lowest_modes(system.stiffness, system.mass, 20);
   EXPECT_EQ(a.omega, b.omega);
   EXPECT_EQ(a.shape, b.shape);
   for (const auto& mode : a.shape.colwise()) {

@@ -43,10 +43,8 @@ TEST(Newmark, TheTrapezoidalFormEqualsAppendixBUnderTheMeanForceOfEachStep) {
       free_motion(constants, x.data(), v.data(), mean.data(), y.data());
       advance(constants, x.data(), v.data(), y.data());
       for (int i = 0; i < r; ++i) {
-        ASSERT_NEAR(x[i], literal.position()[i], 1e-12 * (1 + std::abs(x[i])))
-            << "mode " << i << " step " << step;
-        ASSERT_NEAR(v[i], literal.velocity()[i], 1e-9 * (1 + std::abs(v[i])))
-            << "mode " << i << " step " << step;
+        ASSERT_NEAR(x[i], literal.position()[i], 1e-12 * (1 + std::abs(x[i]))) << "mode " << i << " step " << step;
+        ASSERT_NEAR(v[i], literal.velocity()[i], 1e-9 * (1 + std::abs(v[i]))) << "mode " << i << " step " << step;
       }
     }
   }
@@ -121,8 +119,7 @@ TEST(Newmark, SparseWithRotationsAndDenseCondensedAreOneSystem) {
   const int n = system.translations();
   FullNewmark sparse(system.stiffness, system.mass, 15, 1e-3);
   FullNewmark dense(condense_rotations(system.stiffness, n), system.mass, 15, 1e-3);
-  const VectorXd u = 1e-4 * random_vector(n, 2), v = 1e-2 * random_vector(n, 3),
-                 load = 1e-3 * random_vector(n, 1);
+  const VectorXd u = 1e-4 * random_vector(n, 2), v = 1e-2 * random_vector(n, 3), load = 1e-3 * random_vector(n, 1);
   sparse.start(u, v, load);
   dense.start(u, v, load);
   EXPECT_LT((sparse.acceleration() - dense.acceleration()).norm(), 1e-9 * dense.acceleration().norm());

@@ -23,8 +23,8 @@ void check(const std::vector<Point>& points, const Expected& expected) {
   }
 }
 
-/// Under the controller the hand gains no more than the reserve of 10 mJ, however stiff or late; of a place sensed in steps, the
-/// largest force over one step more.
+/// Under the controller the hand gains no more than the reserve of 10 mJ, however stiff or late; of a place sensed in
+/// steps, the largest force over one step more.
 TEST(StabilityCases, TheClosedLoopKeepsToTheReserveWhereTheControllerIsOn) {
   int without = 0;
   for (const Point& p : loop_points({.quick = true})) {
@@ -55,12 +55,16 @@ TEST(StabilityCases, MovingTissueGivesTheSameRowEachTime) {
 // What each quick point is expected to be, where that is not plain `stable`.
 
 TEST(StabilityCases, Materials) {
-  check(material_points({.quick = true}), {{"young|E [Pa]|1e+12", "regularised"}, {"contrast|E upper / E lower [1]|1e+08", "regularised"}});
+  check(material_points({.quick = true}),
+        {{"young|E [Pa]|1e+12", "regularised"}, {"contrast|E upper / E lower [1]|1e+08", "regularised"}});
 }
-TEST(StabilityCases, Geometry) { check(geometry_points({.quick = true}), {{"units|size of the block / 0.1 m [1]|1e+06", "regularised"}}); }
+TEST(StabilityCases, Geometry) {
+  check(geometry_points({.quick = true}), {{"units|size of the block / 0.1 m [1]|1e+06", "regularised"}});
+}
 TEST(StabilityCases, HeldNodes) {
-  check(hold_points({.quick = true}),
-        {{"held_nodes|adjacent|8", "regularised"}, {"held_nodes|coincident|8", "regularised"}, {"held_nodes|contradictory|8", "regularised"}});
+  check(hold_points({.quick = true}), {{"held_nodes|adjacent|8", "regularised"},
+                                       {"held_nodes|coincident|8", "regularised"},
+                                       {"held_nodes|contradictory|8", "regularised"}});
 }
 TEST(StabilityCases, PressesAndSpeeds) {
   check(press_points({.quick = true}), {{"press|depth [m] of 0.05|0.07", "regularised"},
@@ -68,18 +72,27 @@ TEST(StabilityCases, PressesAndSpeeds) {
                                         {"tool_pose|tip jumps to|out of range", "regularised"},
                                         {"tool_pose|tip jumps to|not a number", "regularised"}});
 }
-TEST(StabilityCases, Curves) { check(curve_points({.quick = true}), {{"curve|data|a force that falls", "refused"}}); }
+TEST(StabilityCases, Curves) {
+  check(curve_points({.quick = true}), {{"curve|data|a force that falls", "refused"}});
+}
 TEST(StabilityCases, MovingTissue) {
   check(dynamic_points({.quick = true}), {{"step tensor_mass rk4|step / bound [1]|1.5", "refused"},
                                           {"step tensor_mass semi_implicit|step / bound [1]|1.5", "refused"},
                                           {"step spring_mass rk4|step / bound [1]|1.5", "refused"},
                                           {"step spring_mass semi_implicit|step / bound [1]|1.5", "refused"}});
 }
-TEST(StabilityCases, Cuts) { check(cut_points({.quick = true}), {}); }
-TEST(StabilityCases, Hybrids) { check(hybrid_points({.quick = true}), {{"hybrid|step / what the bound gives about [1]|10", "refused"}}); }
-TEST(StabilityCases, Shells) { check(shell_points({.quick = true}), {{"singular triangle|bending|polynomial", "refused"}}); }
+TEST(StabilityCases, Cuts) {
+  check(cut_points({.quick = true}), {});
+}
+TEST(StabilityCases, Hybrids) {
+  check(hybrid_points({.quick = true}), {{"hybrid|step / what the bound gives about [1]|10", "refused"}});
+}
+TEST(StabilityCases, Shells) {
+  check(shell_points({.quick = true}), {{"singular triangle|bending|polynomial", "refused"}});
+}
 TEST(StabilityCases, Catheters) {
-  check(catheter_points({.quick = true}), {{"catheter semi_implicit|E [Pa]|1e+12", "refused"}, {"catheter semi_implicit|tick [s]|0.01", "refused"}});
+  check(catheter_points({.quick = true}),
+        {{"catheter semi_implicit|E [Pa]|1e+12", "refused"}, {"catheter semi_implicit|tick [s]|0.01", "refused"}});
 }
 
 }  // namespace

@@ -33,8 +33,10 @@ class StabilityOfAScene : public ::testing::Test {
   }
   Scene scene(const std::string& model) const {
     std::ofstream(folder_ / "small.toml")
-        << "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\nmodel = \"" << model
-        << "\"\n[[body.fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.3]\naxis = [0, 0, -1]\nup = [0, 1, 0]\n"
+        << "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\nmodel = \""
+        << model
+        << "\"\n[[body.fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.3]\naxis = [0, 0, "
+           "-1]\nup = [0, 1, 0]\n"
            "radius = 0.006\ndevice = \"scripted\"\ntrajectory = \"press.csv\"\n";
     return load_scene(folder_ / "small.toml");
   }
@@ -46,7 +48,8 @@ class StabilityOfAScene : public ::testing::Test {
     return found;
   }
 
-  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("stability_scene" + std::to_string(getpid()));
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("stability_scene" + std::to_string(getpid()));
 };
 
 TEST_F(StabilityOfAScene, HeldNodesGoAsFarAsTheHapticStepHoldsThem) {
@@ -57,7 +60,8 @@ TEST_F(StabilityOfAScene, HeldNodesGoAsFarAsTheHapticStepHoldsThem) {
     EXPECT_GT(found.at(count).max_force, 0);
   }
   EXPECT_LT(found.at("96").max_force, found.at("1").max_force * 96);
-  for (const char* count : {"256", "512"}) EXPECT_EQ(found.at(count).note, "a haptic step holds at most 96 contacts of a body") << count;
+  for (const char* count : {"256", "512"})
+    EXPECT_EQ(found.at(count).note, "a haptic step holds at most 96 contacts of a body") << count;
 }
 
 TEST_F(StabilityOfAScene, MovingTissueTakesStepsUpToItsBoundAndRefusesThoseBeyond) {

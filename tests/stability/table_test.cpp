@@ -22,10 +22,14 @@ class StabilityTable : public ::testing::Test {
 };
 
 Point stable(const std::string& name, double force) {
-  return {.name = name, .parameter = "p", .value = "1", .run = [force] { return Result{.max_force = force, .note = "x, y"}; }};
+  return {.name = name, .parameter = "p", .value = "1", .run = [force] {
+            return Result{.max_force = force, .note = "x, y"};
+          }};
 }
 Point failing(const std::string& name) {
-  return {.name = name, .parameter = "p", .value = "1", .run = [] { return Result{.outcome = Outcome::failed, .note = {}}; }};
+  return {.name = name, .parameter = "p", .value = "1", .run = [] {
+            return Result{.outcome = Outcome::failed, .note = {}};
+          }};
 }
 
 TEST_F(StabilityTable, ARunGoesOnWhereItWasRepeatsWhatFailedAndBeginsAnewForAnotherSubject) {
@@ -43,7 +47,9 @@ TEST_F(StabilityTable, ARunGoesOnWhereItWasRepeatsWhatFailedAndBeginsAnewForAnot
 
 TEST_F(StabilityTable, EachValueOfAParameterHasItsOwnRow) {
   const auto at = [](const std::string& value, double force) {
-    return Point{.name = "press", .parameter = "depth", .value = value, .run = [force] { return Result{.max_force = force, .note = {}}; }};
+    return Point{.name = "press", .parameter = "depth", .value = value, .run = [force] {
+                   return Result{.max_force = force, .note = {}};
+                 }};
   };
   run_table({at("1", 1)}, folder_, "one");
   run_table({at("1", 10), at("2", 20)}, folder_, "one");
@@ -55,7 +61,9 @@ TEST_F(StabilityTable, EachValueOfAParameterHasItsOwnRow) {
 
 TEST_F(StabilityTable, RunningSomeCasesAloneKeepsTheRowsOfTheOthers) {
   run_table({stable("wall", 1), stable("shell", 2), stable("wall of tissue", 3)}, folder_, "one");
-  EXPECT_EQ(run_table({failing("wall"), stable("shell", 5), stable("wall of tissue", 6), stable("shell too", 7)}, folder_, "one", "shell"), 0);
+  EXPECT_EQ(run_table({failing("wall"), stable("shell", 5), stable("wall of tissue", 6), stable("shell too", 7)},
+                      folder_, "one", "shell"),
+            0);
   std::vector<std::string> names;
   for (const Row& r : read_rows(csv())) names.push_back(r.name);
   EXPECT_EQ(names, (std::vector<std::string>{"wall", "shell", "wall of tissue", "shell too"}));
@@ -66,7 +74,15 @@ TEST_F(StabilityTable, AnInterruptionCostsNoRowThatWasThere) {
   run_table({failing("first"), stable("second", 2)}, folder_, "one");
   const pid_t child = fork();
   if (child == 0) {
-    run_table({{.name = "first", .parameter = "p", .value = "1", .run = []() -> Result { sleep(2); return {}; }}, stable("second", 5)}, folder_, "one");
+    run_table({{.name = "first",
+                .parameter = "p",
+                .value = "1",
+                .run = []() -> Result {
+                  sleep(2);
+                  return {};
+                }},
+               stable("second", 5)},
+              folder_, "one");
     _exit(0);
   }
   usleep(300000);

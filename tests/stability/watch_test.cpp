@@ -47,7 +47,8 @@ TEST(StabilityWatch, ADuctIsMovedByTheCatheterThatLeansOnIt) {
 }
 
 TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
-  const Result shallow = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.002, 200), deep = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.004, 200);
+  const Result shallow = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.002, 200),
+               deep = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.004, 200);
   EXPECT_GT(shallow.max_force, 1e-3);
   EXPECT_GT(deep.max_force, 1.5 * shallow.max_force);
   EXPECT_GT(deep.energy_growth, -1e-12);
@@ -67,7 +68,8 @@ Result pulled_by_a_couple(double force) {
     m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     for (const double side : {1.0, -1.0})
-      m.contacts.push_back({0, 0, {0.005 * side, 0, 0}, {0, 0, -side}, {0, 0, -side * force}, {0, 0, 0, 0, 0, 0, 0, 0, 0}});
+      m.contacts.push_back(
+          {0, 0, {0.005 * side, 0, 0}, {0, 0, -side}, {0, 0, -side * force}, {0, 0, 0, 0, 0, 0, 0, 0, 0}});
     haptic.consume(m);
     haptic.step(std::array{dofs});
     watch.look(haptic);

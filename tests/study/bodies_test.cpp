@@ -72,17 +72,18 @@ sleeve = 0.02
   EXPECT_GT(strongest, 1e-3);
 }
 
-/// A block below and one above it, which move as one hybrid; `across`, `up`: cells of the upper one, the lower has 6 across.
+/// A block below and one above it, which move as one hybrid; `across`, `up`: cells of the upper one, the lower has 6
+/// across.
 Scene stacked_scene(const Folder& folder, int across, int up) {
   write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.02}, {6, 6, 2}), folder.at / "below.msh");
-  write_tet_mesh(make_block({-0.03, -0.03, 0.02}, {0.03, 0.03, 0.04}, {across, across, up}),
-                 folder.at / "above.msh");
+  write_tet_mesh(make_block({-0.03, -0.03, 0.02}, {0.03, 0.03, 0.04}, {across, across, up}), folder.at / "above.msh");
   write_trajectory(folder.at);
-  return write_scene(folder.at,
-                     "[[body]]\nname = \"stack\"\nmesh = \"below.msh\"\nmodel = \"hybrid\"\nyoung = 4000\npoisson = 0.4\n"
-                     "density = 1000\n[[body.fixed]]\nbox = [[-1, -1, -1], [1, 1, 0.000001]]\n[body.hybrid]\nmesh = "
-                     "\"above.msh\"\n",
-                     kProbe);
+  return write_scene(
+      folder.at,
+      "[[body]]\nname = \"stack\"\nmesh = \"below.msh\"\nmodel = \"hybrid\"\nyoung = 4000\npoisson = 0.4\n"
+      "density = 1000\n[[body.fixed]]\nbox = [[-1, -1, -1], [1, 1, 0.000001]]\n[body.hybrid]\nmesh = "
+      "\"above.msh\"\n",
+      kProbe);
 }
 
 TEST(Study, AHybridOfTwoMeshesThatMeetInAllNodesIsStudiedAsOneBody) {
@@ -98,7 +99,8 @@ TEST(Study, AHybridOfTwoMeshesThatMeetInAllNodesIsStudiedAsOneBody) {
   for (const Patch& patch : solid->presses().patches) EXPECT_GT(patch.point.z(), 0.001);
   const auto method = make_dynamic(solid, "hybrid");
   const Result result = method->evaluate(method->points()[0]);
-  const Row *fine = find(result, "hybrid", "scene", "", "fine_linear"), *same = find(result, "hybrid", "scene", "", "same_mesh");
+  const Row *fine = find(result, "hybrid", "scene", "", "fine_linear"),
+            *same = find(result, "hybrid", "scene", "", "same_mesh");
   ASSERT_TRUE(fine && same);
   EXPECT_TRUE(std::isfinite(fine->err_f_rel));
   for (const DepthRow& d : result.depths)

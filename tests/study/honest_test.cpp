@@ -52,7 +52,9 @@ TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
 TEST(Budget, BuysNothingWhoseForceOrTimeCourseHasNoFigure) {
   struct One : Method {
     int body() const override { return 0; }
-    std::vector<Point> points() const override { return {{"m", "k", "v", [](Scene&) {}, true}}; }
+    std::vector<Point> points() const override {
+      return {{"m", "k", "v", [](Scene&) {}, true}};
+    }
     Result evaluate(const Point&) override { return {}; }
   };
   Methods methods;

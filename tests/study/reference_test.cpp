@@ -57,14 +57,13 @@ TEST(NeoHookean, ForcesAreTheDerivativeOfTheEnergyAndTheTangentThatOfTheForces) 
       auto more = u, less = u;
       more(i / 3, i % 3) += h;
       less(i / 3, i % 3) -= h;
-      const double slope = (element_energy(Law::neo_hookean, kTet, kLame, more) -
-                            element_energy(Law::neo_hookean, kTet, kLame, less)) /
-                           (2 * h);
-      EXPECT_NEAR(slope, r.gradient[i], 1e-6 * r.gradient.norm());
-      const Eigen::Matrix<double, 12, 1> column =
-          (element_response(Law::neo_hookean, kTet, kLame, more).gradient -
-           element_response(Law::neo_hookean, kTet, kLame, less).gradient) /
+      const double slope =
+          (element_energy(Law::neo_hookean, kTet, kLame, more) - element_energy(Law::neo_hookean, kTet, kLame, less)) /
           (2 * h);
+      EXPECT_NEAR(slope, r.gradient[i], 1e-6 * r.gradient.norm());
+      const Eigen::Matrix<double, 12, 1> column = (element_response(Law::neo_hookean, kTet, kLame, more).gradient -
+                                                   element_response(Law::neo_hookean, kTet, kLame, less).gradient) /
+                                                  (2 * h);
       EXPECT_LT((column - r.tangent.col(i)).norm(), 1e-6 * r.tangent.norm());
     }
   }
@@ -157,15 +156,13 @@ double volume(const TetMesh& mesh) {
 
 TEST(Graded, AFinerMeshIsConformingHasTheSameShapeAndKeepsItsNodes) {
   Body body = block_body();
-  body.materials.push_back({.where = {.indices = {}, .box = Box{{-1, -1, 0.015}, {1, 1, 1}}, .group = {}},
-                            .material = {9000, 0.2, 1000}});
-  const StaticProblem coarse =
-      make_static_problem(body, make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {4, 4, 2}));
+  body.materials.push_back(
+      {.where = {.indices = {}, .box = Box{{-1, -1, 0.015}, {1, 1, 1}}, .group = {}}, .material = {9000, 0.2, 1000}});
+  const StaticProblem coarse = make_static_problem(body, make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {4, 4, 2}));
   const StaticProblem fine =
       refine_graded(coarse, size_around({0, 0, 0.03}, Vector3d::UnitZ(), 0.008, 0.003, 0.5, 0.012), 100000);
   EXPECT_GT(fine.mesh.nodes.size(), 4 * coarse.mesh.nodes.size());
-  for (std::size_t n = 0; n < coarse.mesh.nodes.size(); ++n)
-    EXPECT_EQ(fine.mesh.nodes[n], coarse.mesh.nodes[n]);
+  for (std::size_t n = 0; n < coarse.mesh.nodes.size(); ++n) EXPECT_EQ(fine.mesh.nodes[n], coarse.mesh.nodes[n]);
   EXPECT_NEAR(volume(fine.mesh), volume(coarse.mesh), 1e-12 * volume(coarse.mesh));
   // Were a face not matched by its neighbour it would be part of the surface, whose area would then be
   // larger.
@@ -181,8 +178,7 @@ TEST(Graded, AFinerMeshIsConformingHasTheSameShapeAndKeepsItsNodes) {
   double largest = 0;
   for (const auto& t : fine.mesh.tetrahedra)
     for (int v = 0; v < 4; ++v)
-      for (int w = 0; w < v; ++w)
-        largest = std::max(largest, (fine.mesh.nodes[t[v]] - fine.mesh.nodes[t[w]]).norm());
+      for (int w = 0; w < v; ++w) largest = std::max(largest, (fine.mesh.nodes[t[v]] - fine.mesh.nodes[t[w]]).norm());
   EXPECT_LE(largest, 0.012 + 1e-12);
   for (std::size_t e = 0; e < fine.mesh.tetrahedra.size(); ++e) {
     double z = 0;
@@ -197,8 +193,7 @@ TEST(LinearContact, AShallowPressOnALargeBlockComesToHertzAsTheMeshGetsFiner) {
   const StaticProblem block =
       make_static_problem(block_body(), make_block({-0.3, -0.3, 0}, {0.3, 0.3, 0.3}, {4, 4, 2}));
   double last = 1;
-  for (const double share :
-       {0.55, 0.36}) {  // of the contact's radius; the edges grow as slowly as they are small
+  for (const double share : {0.55, 0.36}) {  // of the contact's radius; the edges grow as slowly as they are small
     const double h = share * a;
     const StaticProblem fine =
         refine_graded(block, size_around({0, 0, 0.3}, Vector3d::UnitZ(), a, h, share, 0.2), 100000);

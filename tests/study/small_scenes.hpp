@@ -18,7 +18,8 @@ namespace palpate::study::testing {
 struct Folder {
   Folder()
       : at(std::filesystem::path(::testing::TempDir()) /
-           ("study_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+           ("study_" + std::to_string(getpid()) + "_" +
+            ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::remove_all(at);
     std::filesystem::create_directories(at);
   }
@@ -52,11 +53,10 @@ inline void write_trajectory(const std::filesystem::path& folder) {
 inline Scene block_scene(const std::filesystem::path& folder, const std::string& more = "") {
   write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3}), folder / "block.msh");
   write_trajectory(folder);
-  return write_scene(
-      folder,
-      "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\n" +
-          more + "[[body.fixed]]\ngroup = \"bottom\"\n",
-      kProbe);
+  return write_scene(folder,
+                     "[[body]]\nname = \"block\"\nmesh = \"block.msh\"\nyoung = 4000\npoisson = 0.4\ndensity = 1000\n" +
+                         more + "[[body.fixed]]\ngroup = \"bottom\"\n",
+                     kProbe);
 }
 
 inline OneMesh on_one(const Scene& scene) {
@@ -64,10 +64,9 @@ inline OneMesh on_one(const Scene& scene) {
 }
 
 inline const Row* find(const Result& result, const std::string& method, const std::string& knob,
-                const std::string& value, const std::string& reference) {
+                       const std::string& value, const std::string& reference) {
   for (const Row& r : result.rows)
-    if (r.method == method && r.knob == knob && (value.empty() || r.value == value) &&
-        r.reference == reference)
+    if (r.method == method && r.knob == knob && (value.empty() || r.value == value) && r.reference == reference)
       return &r;
   return nullptr;
 }

@@ -35,8 +35,7 @@ TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
     EXPECT_GT(patch.point.z(), 0.001);  // the bottom is fixed
     EXPECT_NEAR(patch.inward.norm(), 1, 1e-12);
     EXPECT_LT(patch.inward.dot(patch.point - Eigen::Vector3d(0, 0, 0.015)), 0);
-    for (std::size_t q = 0; q < p; ++q)
-      EXPECT_GT((patch.point - one.presses().patches[q].point).norm(), 0.01);
+    for (std::size_t q = 0; q < p; ++q) EXPECT_GT((patch.point - one.presses().patches[q].point).norm(), 0.01);
   }
 }
 
@@ -184,7 +183,10 @@ TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {
     const PressAnswer &law = reference[0][d], &fine = solid.fine(0)[d];
     EXPECT_NEAR(law.force - fine.force, both.neo_hookean[d].force - both.linear[d].force, 1e-9 * fine.force);
     for (std::size_t n = 0; n < fine.displacement.size(); n += 7)
-      EXPECT_NEAR((law.displacement[n] - fine.displacement[n] - both.neo_hookean[d].displacement[n] + both.linear[d].displacement[n]).norm(), 0, 1e-12);
+      EXPECT_NEAR((law.displacement[n] - fine.displacement[n] - both.neo_hookean[d].displacement[n] +
+                   both.linear[d].displacement[n])
+                      .norm(),
+                  0, 1e-12);
   }
 }
 
@@ -208,8 +210,7 @@ TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
   EXPECT_EQ(found->courses[0].reference_displacement_m, 4);
   EXPECT_EQ(found->notes[0].text, "with; commas");
   for (const auto& file : std::filesystem::directory_iterator(folder.at / "points"))
-    if (file.path().extension() == ".csv")
-      std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+    if (file.path().extension() == ".csv") std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
   EXPECT_FALSE(store.find(point)) << "a torn file counts as none";
   store.keep(point, result);
   Scene other = scene;
@@ -248,8 +249,7 @@ modes = 20
   EXPECT_LT(row("modes without residual", "50", "all_modes").err_u_rel,
             row("modes without residual", "20", "all_modes").err_u_rel);
   EXPECT_LT(row("modes", "5", "all_modes").err_u_rel, 1e-3);
-  EXPECT_LT(row("modes", "50", "all_modes_in_time").err_f_rel,
-            row("modes", "5", "all_modes_in_time").err_f_rel);
+  EXPECT_LT(row("modes", "50", "all_modes_in_time").err_f_rel, row("modes", "5", "all_modes_in_time").err_f_rel);
 
   // With time in plenty the budget buys what is most accurate, and the scene that it writes is that one.
   const Scene bought = load_scene(folder.at / "out/small_within_1s.toml");
@@ -257,8 +257,8 @@ modes = 20
   double least = 1e9;
   for (const Row& still : result.rows)
     for (const Row& moving : result.rows) {
-      const bool pair = still.knob == moving.knob && still.value == moving.value &&
-                        still.reference == "all_modes" && moving.reference == "all_modes_in_time";
+      const bool pair = still.knob == moving.knob && still.value == moving.value && still.reference == "all_modes" &&
+                        moving.reference == "all_modes_in_time";
       const double worst = std::max({still.err_u_rel, still.err_f_rel, moving.err_u_rel, moving.err_f_rel});
       if (pair && worst < least) best = still, least = worst;
     }
@@ -271,18 +271,16 @@ modes = 20
   again.say = [&](const std::string& line) { said.push_back(line); };
   run_study(scene, folder.at / "out", again);
   ASSERT_FALSE(said.empty());
-  for (std::size_t i = 0; i + 1 < said.size(); ++i)
-    EXPECT_NE(said[i].find("kept"), std::string::npos) << said[i];
+  for (std::size_t i = 0; i + 1 < said.size(); ++i) EXPECT_NE(said[i].find("kept"), std::string::npos) << said[i];
 }
 
 TEST(Study, ACathetersErrorFallsWithItsParticles) {
   const Folder folder;
   write_trajectory(folder.at);
-  const Scene scene =
-      write_scene(folder.at,
-                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
-                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 40\n",
-                  kProbe);
+  const Scene scene = write_scene(folder.at,
+                                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
+                                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 40\n",
+                                  kProbe);
   const Result result = run_study(scene, folder.at / "out", {.quick = true});
   const Row *coarse = find(result, "catheter", "particles", "10", "finest_chain"),
             *own = find(result, "catheter", "scene", "", "finest_chain"),

@@ -12,9 +12,9 @@
 namespace palpate {
 namespace {
 
-using testing::spread_holds;
 using Eigen::Vector3d;
 using testing::relative_difference;
+using testing::spread_holds;
 
 constexpr double kTolerance = 1e-8;
 
@@ -36,8 +36,8 @@ void expect_agreement(const Body& body, const TetMesh& mesh, const std::vector<i
   const auto archive = precompute(body, mesh);
   for (int count : counts) {
     const auto holds = spread_holds(archive, count);
-    SCOPED_TRACE(::testing::Message()
-                 << count << " nodes, nu " << body.material.poisson << ", E " << body.material.young);
+    SCOPED_TRACE(::testing::Message() << count << " nodes, nu " << body.material.poisson << ", E "
+                                      << body.material.young);
     expect_agreement(archive, solve_direct(problem, holds), solve_tensors(archive, holds));
   }
 }
@@ -67,8 +67,7 @@ TEST(Agreement, HoldsForNodesSideBySide) {
   const auto& numbers = archive.surface.node_number;
   for (int k = archive.surface.touchable - 40; k < archive.surface.touchable; ++k)
     for (int axis = 0; axis < 3; ++axis) holds.push_back(hold(numbers[k], axis, 1e-3 * (axis - 1)));
-  expect_agreement(archive, solve_direct(make_static_problem(body, mesh), holds),
-                   solve_tensors(archive, holds));
+  expect_agreement(archive, solve_direct(make_static_problem(body, mesh), holds), solve_tensors(archive, holds));
 }
 
 TEST(Agreement, HoldsForSingleAxes) {
@@ -85,8 +84,7 @@ TEST(Agreement, HoldsForSingleAxes) {
 
 TEST(Agreement, HoldsForPartlyFixedNodes) {
   auto body = testing::make_body();
-  body.fixed = {testing::fix_group("z0", {false, false, true}),
-                testing::fix_group("x0", {true, false, false}),
+  body.fixed = {testing::fix_group("z0", {false, false, true}), testing::fix_group("x0", {true, false, false}),
                 testing::fix_group("y1", {false, true, false})};
   expect_agreement(body, testing::make_organ({7, 6, 5}), {1, 3, 12, 64});
 }

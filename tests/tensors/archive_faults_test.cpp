@@ -27,8 +27,7 @@ TEST(ArchiveFaults, TruncatedAtAnyLengthIsRefused) {
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 7) {
     testing::write_bytes(folder / "b.h5", bytes, length);
     const auto sentence = refusal(folder / "b.h5", ArchivePart::header);
-    EXPECT_TRUE(says(sentence, "truncated") || says(sentence, "not a palpate archive") ||
-                says(sentence, "damaged"))
+    EXPECT_TRUE(says(sentence, "truncated") || says(sentence, "not a palpate archive") || says(sentence, "damaged"))
         << length << ": " << sentence;
   }
   testing::write_bytes(folder / "b.h5", bytes, bytes.size() - 1);
@@ -88,8 +87,7 @@ TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
   later.attribute("format", "palpate compliance archive");
   later.attribute("format_version", std::int64_t{4});
   later.close();
-  EXPECT_EQ(refusal(folder / "a.h5"),
-            (folder / "a.h5").string() + ": format version 4, this program reads 3");
+  EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": format version 4, this program reads 3");
 }
 
 TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
@@ -118,7 +116,8 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
     auto archive = testing::make_hybrid_archive(20, 8);
     faults[i](archive);
     write_archive(archive, folder / "a.h5");
-    EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": damaged: its datasets do not fit together") << i;
+    EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": damaged: its datasets do not fit together")
+        << i;
   }
 }
 

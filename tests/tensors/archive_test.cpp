@@ -18,8 +18,7 @@ TEST(Archive, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
   const auto archive = make_archive(20, 8);
   write_archive(archive, folder / "a.h5");
-  EXPECT_TRUE(
-      testing::same(read_archive(folder / "a.h5", ArchivePart::surface, archive.content_hash), archive));
+  EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, archive.content_hash), archive));
   EXPECT_EQ(folder.files(), std::vector<std::string>{"a.h5"});
 }
 
@@ -97,9 +96,8 @@ TEST(Archive, TouchablePartDoesNotReadTheOtherRows) {
   std::fill(place, place + 64, '\0');
   testing::write_bytes(folder / "a.h5", bytes, bytes.size());
   EXPECT_EQ(testing::refusal(folder / "a.h5", ArchivePart::touchable), "");
-  EXPECT_NE(
-      testing::refusal(folder / "a.h5", ArchivePart::surface).find("'other/compliance' fails its checksum"),
-      std::string::npos);
+  EXPECT_NE(testing::refusal(folder / "a.h5", ArchivePart::surface).find("'other/compliance' fails its checksum"),
+            std::string::npos);
 }
 
 TEST(Archive, LivesBesideTheSceneOrInTheCache) {
@@ -112,8 +110,7 @@ TEST(Archive, LivesBesideTheSceneOrInTheCache) {
 
 /// What a stranger to this program sees.
 TEST(Archive, OpensInH5pyWithUnitsAndDescriptions) {
-  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0)
-    GTEST_SKIP() << "there is no h5py here";
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "there is no h5py here";
   const TemporaryFolder folder;
   const auto archive = make_archive(20, 8);
   write_archive(archive, folder / "a.h5");

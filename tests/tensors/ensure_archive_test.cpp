@@ -18,8 +18,7 @@ void write_mesh(const TetMesh& mesh, const std::filesystem::path& file) {
   std::ofstream out(file);
   out.precision(17);
   out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << mesh.nodes.size() << "\n";
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-    out << i + 1 << " " << mesh.nodes[i].transpose() << "\n";
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) out << i + 1 << " " << mesh.nodes[i].transpose() << "\n";
   out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << "\n";
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
     out << e + 1 << " 4 2 1 1";
@@ -68,8 +67,7 @@ TEST_F(EnsureArchive, SeveralBehavioursOfOneGeometryLiveSideBySide) {
   const auto stiff = ensure_archive(scene, body()).file;
   EXPECT_NE(soft, stiff);
   EXPECT_TRUE(std::filesystem::exists(soft));
-  const auto a = read_archive(soft, ArchivePart::touchable, {}),
-             b = read_archive(stiff, ArchivePart::touchable, {});
+  const auto a = read_archive(soft, ArchivePart::touchable, {}), b = read_archive(stiff, ArchivePart::touchable, {});
   EXPECT_NEAR(a.touchable_compliance[0], 2 * b.touchable_compliance[0], 1e-12 * a.touchable_compliance[0]);
 }
 
@@ -120,7 +118,8 @@ TEST_F(EnsureArchive, StoresTheTetrahedraOfBodiesThatMoveWithInertia) {
     // Touchable nodes, other surface nodes, inner ones; each group ascends.
     const auto surface = extract_surface(mesh);
     const auto on_surface = [&](int node) { return std::ranges::binary_search(surface.nodes, node); };
-    const auto middle = map.node_number.begin() + map.touchable, inner = map.node_number.begin() + static_cast<long>(surface.nodes.size());
+    const auto middle = map.node_number.begin() + map.touchable,
+               inner = map.node_number.begin() + static_cast<long>(surface.nodes.size());
     EXPECT_TRUE(std::is_sorted(map.node_number.begin(), middle));
     EXPECT_TRUE(std::is_sorted(middle, inner) && std::all_of(map.node_number.begin(), inner, on_surface));
     EXPECT_TRUE(std::is_sorted(inner, map.node_number.end()) && std::none_of(inner, map.node_number.end(), on_surface));

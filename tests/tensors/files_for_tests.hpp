@@ -29,8 +29,7 @@ class TemporaryFolder {
 
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      names.push_back(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
     return names;
   }
 
@@ -43,10 +42,8 @@ inline std::vector<char> read_bytes(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-inline void write_bytes(const std::filesystem::path& file, const std::vector<char>& bytes,
-                        std::size_t count) {
-  std::ofstream(file, std::ios::binary | std::ios::trunc)
-      .write(bytes.data(), static_cast<std::streamsize>(count));
+inline void write_bytes(const std::filesystem::path& file, const std::vector<char>& bytes, std::size_t count) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(count));
 }
 
 /// An archive of the right shape with numbers of no meaning.
@@ -140,8 +137,7 @@ inline bool same(const Archive& a, const Archive& b) {
          a.surface.triangles == b.surface.triangles && a.surface.touchable == b.surface.touchable &&
          same_dofs(a.touchable_dofs, b.touchable_dofs) && same_dofs(a.other_dofs, b.other_dofs) &&
          a.touchable_compliance == b.touchable_compliance && a.other_compliance == b.other_compliance &&
-         a.specimen_force_slope == b.specimen_force_slope &&
-         a.specimen_radial_slope == b.specimen_radial_slope;
+         a.specimen_force_slope == b.specimen_force_slope && a.specimen_radial_slope == b.specimen_radial_slope;
 }
 
 /// The sentence with which an archive is refused; empty if it is read.

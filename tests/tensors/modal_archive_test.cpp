@@ -54,8 +54,7 @@ TEST(ModalArchive, AFlippedModeIsNamed) {
   ASSERT_NE(place, bytes.end());
   place[17] ^= 4;
   testing::write_bytes(folder / "a.h5", bytes, bytes.size());
-  EXPECT_NE(testing::refusal(folder / "a.h5").find("damaged: 'modal/shape' fails its checksum"),
-            std::string::npos);
+  EXPECT_NE(testing::refusal(folder / "a.h5").find("damaged: 'modal/shape' fails its checksum"), std::string::npos);
   EXPECT_EQ(testing::refusal(folder / "a.h5", ArchivePart::header), "");
 }
 
@@ -120,8 +119,7 @@ TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
     for (int j = 0; j < surface.touchable; ++j)
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
-          const int row = dofs.index(surface.node_number[i], a),
-                    column = dofs.index(surface.node_number[j], b);
+          const int row = dofs.index(surface.node_number[i], a), column = dofs.index(surface.node_number[j], b);
           ASSERT_NEAR(compliance.column(j, b)[3 * i + a], row < 0 ? 0 : expected(row, column), 1e-9 * scale);
         }
 
@@ -131,9 +129,7 @@ TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
   for (int i = 0; i < mass.size(); ++i) mass[i] = modal.mass[i / 3];
   ASSERT_EQ(modal.modes(), 30);
   EXPECT_EQ(modal.thickness, 8e-4);
-  EXPECT_LT(
-      (shape.transpose() * mass.asDiagonal() * shape - MatrixXd::Identity(30, 30)).cwiseAbs().maxCoeff(),
-      1e-10);
+  EXPECT_LT((shape.transpose() * mass.asDiagonal() * shape - MatrixXd::Identity(30, 30)).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_EQ(shape.bottomRows(3 * 12).norm(), 0);  // the clamped ring
   // C M phi = phi / omega^2, the modes' rows and the compliance's being in one order.
   for (int m = 0; m < modal.modes(); ++m) {
@@ -141,8 +137,7 @@ TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
     VectorXd answer = VectorXd::Zero(mass.size());
     for (int j = 0; j < 3 * surface.touchable; ++j)
       answer += inertia[j] * Eigen::Map<const VectorXd>(compliance.column(j / 3, j % 3), mass.size());
-    EXPECT_LT((modal.omega[m] * modal.omega[m] * answer - shape.col(m)).norm(), 1e-7 * shape.col(m).norm())
-        << m;
+    EXPECT_LT((modal.omega[m] * modal.omega[m] * answer - shape.col(m)).norm(), 1e-7 * shape.col(m).norm()) << m;
   }
 }
 
@@ -153,12 +148,10 @@ TEST(ModalArchive, TheResidualFlexibilityIsSemidefinite) {
   const Eigen::Map<const MatrixXd> shape(archive.modal->shape.data(), 3 * archive.surface.size(),
                                          archive.modal->modes());
   MatrixXd residual(t, t);
-  for (int j = 0; j < t; ++j)
-    residual.col(j) = Eigen::Map<const VectorXd>(compliance.column(j / 3, j % 3), t);
+  for (int j = 0; j < t; ++j) residual.col(j) = Eigen::Map<const VectorXd>(compliance.column(j / 3, j % 3), t);
   const double largest = residual.diagonal().maxCoeff();
   for (int m = 0; m < archive.modal->modes(); ++m)
-    residual -=
-        shape.col(m).head(t) * shape.col(m).head(t).transpose() / std::pow(archive.modal->omega[m], 2);
+    residual -= shape.col(m).head(t) * shape.col(m).head(t).transpose() / std::pow(archive.modal->omega[m], 2);
   EXPECT_GT(residual.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9 * largest);
   EXPECT_GT(residual.diagonal().minCoeff(), 0);
 }
@@ -342,10 +335,9 @@ TEST(CatheterArchive, TheContentHashCoversItsRestShapeAlone) {
     change(body);
     return content_hash(body);
   };
-  std::set<std::string> hashes{original, with([](Body& b) { b.catheter->tail[1] = 0.01; }),
-                               with([](Body& b) { b.catheter->tip[0] = 0.2; }),
-                               with([](Body& b) { b.catheter->radius = 0.001; }),
-                               with([](Body& b) { b.catheter->particles = 61; })};
+  std::set<std::string> hashes{
+      original, with([](Body& b) { b.catheter->tail[1] = 0.01; }), with([](Body& b) { b.catheter->tip[0] = 0.2; }),
+      with([](Body& b) { b.catheter->radius = 0.001; }), with([](Body& b) { b.catheter->particles = 61; })};
   EXPECT_EQ(hashes.size(), 5u);
   EXPECT_EQ(with([](Body& b) { b.catheter->damping = 1; }), original);
   EXPECT_EQ(with([](Body& b) { b.material.young = 1; }), original);

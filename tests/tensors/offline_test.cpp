@@ -14,11 +14,14 @@
 namespace palpate {
 namespace {
 
-using testing::spread_holds;
 using Eigen::Vector3d;
+using testing::spread_holds;
 
-const std::vector<Offline> kFiner{{1, "p1", "displacement"}, {1, "p1", "locking_free"}, {0, "p2", "displacement"},
-                                  {0, "p2", "locking_free"}, {1, "p2", "locking_free"}};
+const std::vector<Offline> kFiner{{1, "p1", "displacement"},
+                                  {1, "p1", "locking_free"},
+                                  {0, "p2", "displacement"},
+                                  {0, "p2", "locking_free"},
+                                  {1, "p2", "locking_free"}};
 
 Eigen::MatrixXd touchable_matrix(const Archive& archive) {
   const auto t = static_cast<Eigen::Index>(archive.touchable_dofs.size());
@@ -62,7 +65,8 @@ TEST(Offline, DirectSolutionEqualsSuperposition) {
   for (const auto& offline : kFiner)
     expect_agreement(testing::make_body(10e3, 0.45), testing::make_organ({5, 4, 3}), offline);
   expect_agreement(testing::make_body(10e3, 0.4999), testing::make_organ({5, 4, 3}), {0, "p2", "locking_free"});
-  expect_agreement(testing::make_body(10e3, 0.4999999), testing::make_organ({5, 4, 3}), {0, "p2", "locking_free"}, 1e-7);
+  expect_agreement(testing::make_body(10e3, 0.4999999), testing::make_organ({5, 4, 3}), {0, "p2", "locking_free"},
+                   1e-7);
 }
 
 TEST(Offline, DirectSolutionEqualsSuperpositionWithPartlyFixedNodes) {
@@ -106,7 +110,8 @@ TEST(Offline, ComplianceIsSymmetricPositiveDefinite) {
       const auto archive = precompute(body, mesh);
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(touchable_matrix(archive), Eigen::EigenvaluesOnly);
       // Pressed all around, incompressible tissue does not give way: that eigenvalue is 1 - 2 nu times smaller.
-      EXPECT_GT(eigen.eigenvalues()[0], 1e-3 * (1 - 2 * poisson) * eigen.eigenvalues().tail(1)[0]) << offline.element << " " << poisson;
+      EXPECT_GT(eigen.eigenvalues()[0], 1e-3 * (1 - 2 * poisson) * eigen.eigenvalues().tail(1)[0])
+          << offline.element << " " << poisson;
       EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(touchable_matrix(archive)).info(), Eigen::Success);
 
       body.touchable = Selector{};
@@ -115,7 +120,8 @@ TEST(Offline, ComplianceIsSymmetricPositiveDefinite) {
       std::vector<int> top;  // C_ot of the subset must be the same numbers as C_tt of the whole
       std::vector<int> place(3 * mesh.nodes.size(), -1);
       for (std::size_t i = 0; i < archive.touchable_dofs.size(); ++i)
-        place[3 * archive.surface.node_number[archive.touchable_dofs[i].node] + archive.touchable_dofs[i].axis] = static_cast<int>(i);
+        place[3 * archive.surface.node_number[archive.touchable_dofs[i].node] + archive.touchable_dofs[i].axis] =
+            static_cast<int>(i);
       const auto whole = touchable_matrix(archive);
       double worst = 0;
       for (std::size_t i = 0; i < part.other_dofs.size(); ++i)

@@ -47,10 +47,10 @@ TEST(Forceps, TurningTheJawsAllocatesNothing) {
 
 TEST(Forceps, BetweenTheJawsIsTheirWedge) {
   EXPECT_TRUE(between_jaws(shape, 0.6, {0, 0.001, 0.01}));
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0.004, 0.01}));   // above jaw A
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0.002, 0, 0.01}));   // beside
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, 0.016}));      // ahead
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, -0.001}));     // behind the joint
+  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0.004, 0.01}));  // above jaw A
+  EXPECT_FALSE(between_jaws(shape, 0.6, {0.002, 0, 0.01}));  // beside
+  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, 0.016}));     // ahead
+  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, -0.001}));    // behind the joint
 }
 
 TEST(Instruments, AProbeIsSpheresAndAForcepsSegments) {
@@ -59,7 +59,8 @@ TEST(Instruments, AProbeIsSpheresAndAForcepsSegments) {
   ASSERT_GT(spheres.size(), 10u);
   EXPECT_EQ(spheres[0].radius, tool.radius);
   EXPECT_EQ(spheres[0].axis(Eigen::Isometry3d::Identity()).start, Vector3d::Zero());
-  EXPECT_EQ(spheres[2].axis(Eigen::Isometry3d::Identity()).start, Vector3d(0, 0, -(tool.radius + 1.5 * tool.shaft_radius)));
+  EXPECT_EQ(spheres[2].axis(Eigen::Isometry3d::Identity()).start,
+            Vector3d(0, 0, -(tool.radius + 1.5 * tool.shaft_radius)));
   for (const ToolPart& s : spheres) EXPECT_EQ(s.length, 0);
   tool.kind = "forceps";
   tool.jaws = Jaws{.length = 0.02, .radius = 0.0015};

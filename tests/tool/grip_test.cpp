@@ -24,14 +24,16 @@ double away(double opening, ForcepsPart jaw, const Vector3d& p) {
 
 TEST(OpeningAtContact, TheLaterJawJustTouchesTheBall) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> along(0.004, 0.014), aside(-0.0015, 0.0015), height(-0.002, 0.002), size(0.0002, 0.0015);
+  std::uniform_real_distribution<double> along(0.004, 0.014), aside(-0.0015, 0.0015), height(-0.002, 0.002),
+      size(0.0002, 0.0015);
   int touched = 0;
   for (int round = 0; round < 2000; ++round) {
     const Vector3d p(aside(random), height(random), along(random));
     const double radius = size(random), opening = opening_at_contact(shape, p, radius);
     if (opening == 0) continue;
     ++touched;
-    const double a = away(opening, forceps_jaw_a, p), b = away(opening, forceps_jaw_b, p), reach = shape.jaw_radius + radius;
+    const double a = away(opening, forceps_jaw_a, p), b = away(opening, forceps_jaw_b, p),
+                 reach = shape.jaw_radius + radius;
     ASSERT_NEAR(std::max(a, b), reach, 1e-9);  // the other one is at it already
     ASSERT_GT(std::max(away(opening + 0.01, forceps_jaw_a, p), away(opening + 0.01, forceps_jaw_b, p)), reach);
   }
@@ -67,7 +69,9 @@ TEST(OpeningAtContact, EachJawStopsAtItsOwnWallOfATube) {
 
 class GripTest : public ::testing::Test {
  protected:
-  GripEvent step(double commanded, double load = 0) { return work_grip(grip_, law_, commanded, touch_, distance_, load, dt); }
+  GripEvent step(double commanded, double load = 0) {
+    return work_grip(grip_, law_, commanded, touch_, distance_, load, dt);
+  }
   /// Steps until the jaws come to rest; the last event other than none.
   GripEvent settle(double commanded, double load = 0) {
     GripEvent last = GripEvent::none;

@@ -14,15 +14,10 @@ constexpr double kPi = std::numbers::pi;
 class Kinematics : public testing::Test {
  protected:
   double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
-  Eigen::Vector3d vector(double size) {
-    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
-  }
+  Eigen::Vector3d vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
   Trocar trocar() { return make_trocar(vector(1), vector(1), vector(1)); }
   ToolDofs dofs() {
-    return {.yaw = uniform(-3, 3),
-            .pitch = uniform(-1.5, 1.5),
-            .depth = uniform(0.01, 0.3),
-            .roll = uniform(-3, 3)};
+    return {.yaw = uniform(-3, 3), .pitch = uniform(-1.5, 1.5), .depth = uniform(0.01, 0.3), .roll = uniform(-3, 3)};
   }
 
  private:
@@ -40,9 +35,7 @@ TEST_F(Kinematics, ZeroPoseLiesAlongTheAxisWithYUp) {
 
 TEST_F(Kinematics, SignsFollowTheRightHandRule) {
   const Trocar trocar = make_trocar(Eigen::Vector3d::Zero(), {0, 0, 1}, {0, 1, 0});
-  const auto tip = [&](const ToolDofs& dofs) {
-    return Eigen::Vector3d(tip_pose(trocar, dofs).translation());
-  };
+  const auto tip = [&](const ToolDofs& dofs) { return Eigen::Vector3d(tip_pose(trocar, dofs).translation()); };
   EXPECT_NEAR((tip({.yaw = kPi / 2, .depth = 1}) - Eigen::Vector3d(1, 0, 0)).norm(), 0, 1e-15);
   EXPECT_NEAR((tip({.pitch = kPi / 2, .depth = 1}) - Eigen::Vector3d(0, -1, 0)).norm(), 0, 1e-15);
   const Eigen::Isometry3d rolled = tip_pose(trocar, {.depth = 1, .roll = kPi / 2});
@@ -103,18 +96,19 @@ TEST(TrocarReaction, ForcesAndMomentsBalanceInEveryPose) {
   const auto vector = [&] { return Eigen::Vector3d(unit(random), unit(random), unit(random)); };
   for (int round = 0; round < 500; ++round) {
     const Trocar trocar = make_trocar(vector(), vector(), vector());
-    const ToolDofs dofs{.yaw = angle(random), .pitch = angle(random), .depth = depth(random), .roll = 3 * angle(random)};
+    const ToolDofs dofs{
+        .yaw = angle(random), .pitch = angle(random), .depth = depth(random), .roll = 3 * angle(random)};
     const Eigen::Vector3d force = 5 * vector(), torque = 0.1 * vector();
     const double length = 0.3;
     const LeverForces lever = trocar_reaction(trocar, dofs, length, force, torque);
     const Eigen::Isometry3d tip = tip_pose(trocar, dofs);
     const Eigen::Vector3d along = tip.linear().col(2), handle = tip.translation() - length * along;
     ASSERT_LT((force + lever.trocar + lever.hand).norm(), 1e-12);
-    const Eigen::Vector3d moments =
-        torque + tip.translation().cross(force) + trocar.pivot.cross(lever.trocar) + handle.cross(lever.hand) + lever.twist;
+    const Eigen::Vector3d moments = torque + tip.translation().cross(force) + trocar.pivot.cross(lever.trocar) +
+                                    handle.cross(lever.hand) + lever.twist;
     ASSERT_LT(moments.norm(), 1e-12);
-    ASSERT_LT(std::abs(lever.trocar.dot(along)), 1e-12);           // a pivot holds nothing along the shaft
-    ASSERT_LT(lever.twist.cross(along).norm(), 1e-12);             // and the hand's moment is against the roll alone
+    ASSERT_LT(std::abs(lever.trocar.dot(along)), 1e-12);  // a pivot holds nothing along the shaft
+    ASSERT_LT(lever.twist.cross(along).norm(), 1e-12);    // and the hand's moment is against the roll alone
     ASSERT_NEAR(lever.twist.dot(along), -torque.dot(along), 1e-12);
     ASSERT_NEAR(lever.hand.dot(along), -force.dot(along), 1e-12);
   }

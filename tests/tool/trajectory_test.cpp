@@ -38,8 +38,7 @@ class TrajectoryFile : public testing::Test {
 };
 
 const std::string kHeader = "time,yaw,pitch,depth,roll,grip\n";
-const std::string kRows =
-    "0,0,0,0.1,0,0\n0.5,0.2,-0.1,0.15,1,0.3\n1,0.2,-0.3,0.15,0,0\n2,0.5,-0.35,0.05,2,0\n";
+const std::string kRows = "0,0,0,0.1,0,0\n0.5,0.2,-0.1,0.15,1,0.3\n1,0.2,-0.3,0.15,0,0\n2,0.5,-0.35,0.05,2,0\n";
 
 TEST_F(TrajectoryFile, PassesThroughItsRows) {
   const Trajectory move = load_trajectory(file("# a comment\n" + kHeader + kRows));
@@ -68,8 +67,7 @@ TEST_F(TrajectoryFile, SpeedIsContinuousAndNothingOvershoots) {
     const double left = (move.at(t).depth - move.at(t - h).depth) / h;
     const double right = (move.at(t + h).depth - move.at(t).depth) / h;
     EXPECT_NEAR(left, right, 1e-4);
-    EXPECT_NEAR((move.at(t).pitch - move.at(t - h).pitch) / h, (move.at(t + h).pitch - move.at(t).pitch) / h,
-                1e-4);
+    EXPECT_NEAR((move.at(t).pitch - move.at(t - h).pitch) / h, (move.at(t + h).pitch - move.at(t).pitch) / h, 1e-4);
   }
   for (double t = 0; t <= 2; t += 1e-3) {
     ASSERT_LE(move.at(t).depth, 0.15);

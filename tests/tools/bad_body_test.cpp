@@ -14,17 +14,21 @@ using testing::text_of;
 /// A good scene that one thing spoils.
 class ToolsBadBody : public ::testing::Test {
  protected:
-  void replace(const std::string& from, const std::string& to) { scene_.write("scene.toml", replaced(text_of(scene_.scene()), from, to)); }
+  void replace(const std::string& from, const std::string& to) {
+    scene_.write("scene.toml", replaced(text_of(scene_.scene()), from, to));
+  }
 
   /// Whoever reads the scene refuses it with the same place and reason.
   void expect_scene_refused(const std::vector<std::string>& fragments) {
-    for (const char* start : {"palpate check", "palpate precompute", "palpate run", "haptic_node", "deform_node", "render_node"})
+    for (const char* start :
+         {"palpate check", "palpate precompute", "palpate run", "haptic_node", "deform_node", "render_node"})
       expect_refusal(program(start) + " " + scene_.scene(), fragments);
   }
   void expect_mesh_refused(const std::vector<std::string>& fragments) {
     for (const char* command : {"check", "precompute", "run"})
       expect_refusal(fmt::format("{} {} {}", program("palpate"), command, scene_.scene()), fragments);
-    expect_refusal(fmt::format("{} solve {} --method direct --hold 200:0,0,0.001", program("palpate"), scene_.scene()), fragments);
+    expect_refusal(fmt::format("{} solve {} --method direct --hold 200:0,0,0.001", program("palpate"), scene_.scene()),
+                   fragments);
   }
 
   LoopbackScene scene_{"bad-body"};
@@ -86,7 +90,9 @@ TEST_F(ToolsBadBody, AFixedBoxWithoutANodeIsRefused) {
 TEST_F(ToolsBadBody, AHoldThatCannotBeIsRefused) {
   const auto refused = [&](const std::string& hold, const std::vector<std::string>& fragments) {
     for (const char* method : {"direct", "tensors"})
-      expect_refusal(fmt::format("{} solve {} --method {} --hold \"{}\"", program("palpate"), scene_.scene(), method, hold), fragments);
+      expect_refusal(
+          fmt::format("{} solve {} --method {} --hold \"{}\"", program("palpate"), scene_.scene(), method, hold),
+          fragments);
   };
   refused("0:0,0,0.001", {"node 0 cannot be held", "it is fixed"});
   refused("400:0,high,0", {"400:0,high,0", "'high' is not a number"});

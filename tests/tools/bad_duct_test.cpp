@@ -65,9 +65,7 @@ width = 320
 height = 240
 )");
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   std::string scene() const { return folder_ / "scene.toml"; }
   void replace(const std::string& from, const std::string& to) {
     write("scene.toml", replaced(text_of(scene()), from, to));
@@ -89,8 +87,8 @@ TEST_F(ToolsBadDuct, TheSceneIsGoodBeforeItIsSpoiledAndCheckDescribesIt) {
   const auto before = run_program(palpate_on("check"));
   EXPECT_EQ(before.status, 0) << before.err;
   for (const char* fragment :
-       {"model modal_shell", "108 nodes, 192 triangles", "a tube with two open ends", "12 of 288 are kept",
-        "clamped", "model catheter", "24 particles", "implicit, 1 step in each haptic one",
+       {"model modal_shell", "108 nodes, 192 triangles", "a tube with two open ends", "12 of 288 are kept", "clamped",
+        "model catheter", "24 particles", "implicit, 1 step in each haptic one",
         "jaws of 0.012 m that open from 0 to 1 rad", "not computed yet"})
     EXPECT_NE(before.out.find(fragment), std::string::npos) << fragment << "\n" << before.out;
   const auto precomputed = run_program(palpate_on("precompute"));
@@ -154,8 +152,7 @@ TEST_F(ToolsBadDuct, AGripThatTheJawsCannotReachIsRefused) {
   write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.10,0,-0.1\n");
   expect_refusal(palpate_on("check"), {"motion.csv: the grip of -0.1 rad at 0 s is out of range"});
   replace("most_open = 1.0", "most_open = 2.7");
-  expect_refusal(palpate_on("check"),
-                 {"scene.toml:", "most_open must be greater than 0 and at most 2.5, and is 2.7"});
+  expect_refusal(palpate_on("check"), {"scene.toml:", "most_open must be greater than 0 and at most 2.5, and is 2.7"});
 }
 
 TEST_F(ToolsBadDuct, AToolThatStartsOnTheWallOrTheCatheterIsRefused) {
@@ -168,8 +165,7 @@ TEST_F(ToolsBadDuct, AToolThatStartsOnTheWallOrTheCatheterIsRefused) {
 
 TEST_F(ToolsBadDuct, AMeshOfTetrahedraIsNoShell) {
   write_tet_mesh(make_block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), folder_ / "duct.msh");
-  expect_refused(
-      {"duct.msh: it has solid elements of 4 nodes; a shell is made of triangles of 3 nodes alone"});
+  expect_refused({"duct.msh: it has solid elements of 4 nodes; a shell is made of triangles of 3 nodes alone"});
 }
 
 TEST_F(ToolsBadDuct, AShellIsSolvedThroughItsArchiveAlone) {
@@ -177,8 +173,7 @@ TEST_F(ToolsBadDuct, AShellIsSolvedThroughItsArchiveAlone) {
   EXPECT_EQ(run_program(solve + " --body duct").status, 0);
   expect_refusal(solve + " --body duct --method direct",
                  {"body 'duct' is a shell, and the direct method is for tetrahedra"});
-  expect_refusal(solve + " --body wire",
-                 {"body 'wire' is a catheter, which has no static state to solve for"});
+  expect_refusal(solve + " --body wire", {"body 'wire' is a catheter, which has no static state to solve for"});
 }
 
 }  // namespace

@@ -21,7 +21,9 @@ const std::string columns = "time,yaw,pitch,depth,roll,grip\n";
 /// A good scene with its archive, beside which one file is spoiled.
 class ToolsBadFile : public ::testing::Test {
  protected:
-  static std::string on_own_domain(const std::string& command) { return fmt::format("{} --domain {}", command, testing::own_domain()); }
+  static std::string on_own_domain(const std::string& command) {
+    return fmt::format("{} --domain {}", command, testing::own_domain());
+  }
   void precompute() {
     const auto result = run_program(program("palpate") + " precompute " + scene_.scene());
     ASSERT_EQ(result.status, 0) << result.err;
@@ -50,7 +52,8 @@ TEST_F(ToolsBadFile, AMissingTrajectoryIsRefusedAtItsPlaceInTheScene) {
   precompute();
   fs::remove(file("motion.csv"));
   for (const char* start : {"palpate check", "palpate run", "haptic_node"})
-    expect_refusal(program(start) + " " + scene_.scene(), {"scene.toml:", "motion.csv", "is not a file that can be read"});
+    expect_refusal(program(start) + " " + scene_.scene(),
+                   {"scene.toml:", "motion.csv", "is not a file that can be read"});
 }
 
 TEST_F(ToolsBadFile, AMalformedCurveIsRefusedWithItsLine) {
@@ -103,8 +106,11 @@ TEST_F(ToolsBadFile, ADamagedArchiveIsRefusedAndRebuilt) {
 TEST_F(ToolsBadFile, AFileThatIsNoLogIsRefused) {
   const std::string info = program("palpate") + " info ", replay = on_own_domain(program("palpate") + " replay ");
   scene_.write("empty.lcmlog", "");
-  for (const auto& [name, reason] : {std::pair{"motion.csv", "is not a topic log"}, {"empty.lcmlog", "is empty"}, {"none.lcmlog", "cannot be opened"}})
-    for (const std::string& command : {info + file(name), info + "--json " + file(name), replay + " " + file(name), replay + " --verify " + file(name)})
+  for (const auto& [name, reason] : {std::pair{"motion.csv", "is not a topic log"},
+                                     {"empty.lcmlog", "is empty"},
+                                     {"none.lcmlog", "cannot be opened"}})
+    for (const std::string& command : {info + file(name), info + "--json " + file(name), replay + " " + file(name),
+                                       replay + " --verify " + file(name)})
       expect_refusal(command, {std::string(name) + ": ", reason});
 }
 
@@ -113,9 +119,11 @@ TEST_F(ToolsBadFile, AToolThatStartsInsideTheOrganIsRefused) {
   scene_.write("motion.csv", columns + "0,0,0,0.22,0,0\n5,0,0,0.22,0,0\n");
   const auto node = run_program(haptic_node());
   EXPECT_EQ(node.status, 1);
-  for (const char* fragment : {"haptic_node: ", "probe", "inside", "block"}) EXPECT_NE(node.err.find(fragment), std::string::npos) << node.err;
+  for (const char* fragment : {"haptic_node: ", "probe", "inside", "block"})
+    EXPECT_NE(node.err.find(fragment), std::string::npos) << node.err;
 
-  const auto run = run_program(on_own_domain(program("palpate") + " run " + scene_.scene()) + " --summary " + file("summary.json"));
+  const auto run =
+      run_program(on_own_domain(program("palpate") + " run " + scene_.scene()) + " --summary " + file("summary.json"));
   EXPECT_EQ(run.status, 1);
   for (const char* fragment : {"haptic_node: ", "inside", "palpate: haptic_node stopped with status 1"})
     EXPECT_NE(run.err.find(fragment), std::string::npos) << run.err;

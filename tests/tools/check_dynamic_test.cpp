@@ -53,8 +53,7 @@ TEST_F(ToolsCheckDynamic, SaysWhatMovesAndWhereItIsJoined) {
 }
 
 TEST_F(ToolsCheckDynamic, ATensorMassBodyMovesAsAWhole) {
-  std::string text =
-      replaced(scene_, "hybrid = { region = [{ group = \"lower\" }] }", "tearing = { threshold = 0.5 }");
+  std::string text = replaced(scene_, "hybrid = { region = [{ group = \"lower\" }] }", "tearing = { threshold = 0.5 }");
   text = replaced(text, "\"hybrid\"", "\"tensor_mass\"");
   const ProgramResult said = testing::run_program(check(text));
   expect_line(said, "  moving: 793 nodes, 3456 tetrahedra, 4632 edges\n");
@@ -64,8 +63,7 @@ TEST_F(ToolsCheckDynamic, ATensorMassBodyMovesAsAWhole) {
 TEST_F(ToolsCheckDynamic, AStepAboveTheBoundIsRefusedWithTheBound) {
   expect_refusal(check(replaced(scene_, "step = 0", "step = 0.01")),
                  {"body 'cylinder': a step of 0.01 s is not stable; the bound is 0.0011"});
-  expect_line(testing::run_program(check(replaced(scene_, "step = 0", "step = 0.001"))),
-              "  step: stable up to 0.0011");
+  expect_line(testing::run_program(check(replaced(scene_, "step = 0", "step = 0.001"))), "  step: stable up to 0.0011");
 }
 
 TEST_F(ToolsCheckDynamic, RegionsThatLeaveNothingAreRefused) {
@@ -78,11 +76,9 @@ TEST_F(ToolsCheckDynamic, RegionsThatLeaveNothingAreRefused) {
 TEST_F(ToolsCheckDynamic, ACauteryThatNeverBurnsIsPointedOut) {
   std::ofstream(folder_ / "rest.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.1,0,1\n";
   const ProgramResult said = testing::run_program(check(
-      scene_ +
-      "[[tool]]\nname = \"knife\"\npivot = [0, 0, 1]\ntrajectory = \"rest.csv\"\ncautery = {}\njaws = {}\n"));
+      scene_ + "[[tool]]\nname = \"knife\"\npivot = [0, 0, 1]\ntrajectory = \"rest.csv\"\ncautery = {}\njaws = {}\n"));
   expect_line(said, "warning: tool 'knife' has a cautery, and the pedal of its trajectory is never down\n");
-  expect_line(said,
-              "warning: tool 'knife' has jaws, and the grip of its trajectory never falls below 0.1 rad\n");
+  expect_line(said, "warning: tool 'knife' has jaws, and the grip of its trajectory never falls below 0.1 rad\n");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "tools/check_offline.hpp"
+
+#include <gtest/gtest.h>
 
 namespace palpate {
 namespace {

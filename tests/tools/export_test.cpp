@@ -1,6 +1,5 @@
-#include <sstream>
-
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "common/bus/log_writer.hpp"
 #include "idl/topics.hpp"
@@ -26,7 +25,9 @@ class Export : public ::testing::Test {
     writer.write(topics::contact_state.name, 500, contact);
     writer.finish();
   }
-  ProgramResult run(const std::string& rest) const { return run_program(program("palpate") + " export " + log_ + " " + rest); }
+  ProgramResult run(const std::string& rest) const {
+    return run_program(program("palpate") + " export " + log_ + " " + rest);
+  }
 
   OwnFolder folder_;
   std::string log_;

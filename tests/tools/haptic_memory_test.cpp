@@ -44,9 +44,11 @@ Footprint footprint_of(const LoopbackScene& at) {
                       .packed = 8.0 * static_cast<double>(archive.touchable_compliance.size()),
                       .others = 8.0 * static_cast<double>(archive.other_compliance.size())};
 
-  ChildProcess haptic("haptic_node", {program("haptic_node"), at.scene(), "--domain", std::to_string(testing::own_domain()), "--supervised"});
+  ChildProcess haptic("haptic_node", {program("haptic_node"), at.scene(), "--domain",
+                                      std::to_string(testing::own_domain()), "--supervised"});
   std::vector<std::string> lines;
-  for (const auto end = std::chrono::steady_clock::now() + 20s; lines.empty() && std::chrono::steady_clock::now() < end;) {
+  for (const auto end = std::chrono::steady_clock::now() + 20s;
+       lines.empty() && std::chrono::steady_clock::now() < end;) {
     std::this_thread::sleep_for(10ms);
     lines = haptic.take_lines();
   }
@@ -59,7 +61,8 @@ Footprint footprint_of(const LoopbackScene& at) {
 
 TEST(ToolsHapticMemory, TheHapticNodeHoldsTheTensorsOfTouchableNodesAlone) {
   const Footprint all = footprint_of(LoopbackScene("touch-all"));
-  const Footprint half = footprint_of(LoopbackScene("touch-half", "[body.touchable]\nbox = [[-1.0, -1.0, -1.0], [0.001, 1.0, 1.0]]\n"));
+  const Footprint half =
+      footprint_of(LoopbackScene("touch-half", "[body.touchable]\nbox = [[-1.0, -1.0, -1.0], [0.001, 1.0, 1.0]]\n"));
   const double saved = all.compliance - half.compliance;
   ASSERT_GT(saved, 20e6);
   ASSERT_GT(half.others, 8e6) << "the restricted archive has blocks that the haptic node must leave alone";

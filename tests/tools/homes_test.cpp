@@ -71,7 +71,8 @@ std::string libraries_of(const std::string& name) {
 }
 
 TEST(ToolsHomes, TheHapticNodeLinksNoPictureMeshFilmOrSolverLibrary) {
-  const std::regex heavy(R"(lib(OSMesa|GL|gl2ps|png|freetype|gmsh|avcodec|avformat|avutil|swscale|cholmod|umfpack|openblas|lapack|blas)[.-])");
+  const std::regex heavy(
+      R"(lib(OSMesa|GL|gl2ps|png|freetype|gmsh|avcodec|avformat|avutil|swscale|cholmod|umfpack|openblas|lapack|blas)[.-])");
   std::smatch found;
   const std::string haptic = libraries_of("haptic_node");
   EXPECT_FALSE(std::regex_search(haptic, found, heavy)) << found.str();

@@ -19,8 +19,17 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
     writer.write(header_channel, 1, header);
     for (const std::uint64_t seq : {1u, 2u})
       writer.write(topics::task_record.name, static_cast<std::int64_t>(100'000'000 * seq),
-                   TaskRecord{.body = 1, .run = 0xAB, .seq = seq, .inserted = 0.01, .deepest = 0.011 * static_cast<double>(seq), .inserting_s = 6.5,
-                              .largest_force = 0.75, .wall_contacts = 3, .grasps = 2, .drops = 1, .held_s = 5.25});
+                   TaskRecord{.body = 1,
+                              .run = 0xAB,
+                              .seq = seq,
+                              .inserted = 0.01,
+                              .deepest = 0.011 * static_cast<double>(seq),
+                              .inserting_s = 6.5,
+                              .largest_force = 0.75,
+                              .wall_contacts = 3,
+                              .grasps = 2,
+                              .drops = 1,
+                              .held_s = 5.25});
     writer.finish();
   }
   const ProgramResult text = run_program(program("palpate") + " info " + log);

@@ -19,15 +19,25 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(HopTimes, AreOnTheHapticNodesClock) {
   HopTimes hops;
-  NodeStatus deform{.node = "deform 1@there", .role = "deform", .clock_of = "haptic 2@here", .clock_offset_ns = -500 * kMs, .clock_uncertainty_ns = 40'000};
-  NodeStatus render{.node = "render 3@there", .role = "render", .clock_of = "haptic 2@here", .clock_offset_ns = 1000 * kMs, .clock_uncertainty_ns = 90'000};
+  NodeStatus deform{.node = "deform 1@there",
+                    .role = "deform",
+                    .clock_of = "haptic 2@here",
+                    .clock_offset_ns = -500 * kMs,
+                    .clock_uncertainty_ns = 40'000};
+  NodeStatus render{.node = "render 3@there",
+                    .role = "render",
+                    .clock_of = "haptic 2@here",
+                    .clock_offset_ns = 1000 * kMs,
+                    .clock_uncertainty_ns = 90'000};
   hops.add(deform);
   hops.add(render);
   hops.add(ForceState{.sense_ns = 100 * kMs, .publish_ns = 101 * kMs});
   hops.add(SurfaceState{.body = 0, .run = 7, .step = 1, .sense_ns = 100 * kMs, .publish_ns = 603 * kMs});
-  hops.add(SurfaceState{.body = 0, .run = 7, .step = 1, .sense_ns = 100 * kMs, .publish_ns = 620 * kMs});  // shown anew, nothing new
-  hops.add(SurfaceState{.body = 1, .run = 0, .step = 0, .sense_ns = 0, .publish_ns = 620 * kMs});          // rest shape
-  hops.add(PictureState{.node = "render 3@there", .run = 7, .step = 1, .sense_ns = 1100 * kMs, .publish_ns = 116 * kMs});
+  hops.add(SurfaceState{
+      .body = 0, .run = 7, .step = 1, .sense_ns = 100 * kMs, .publish_ns = 620 * kMs});  // shown anew, nothing new
+  hops.add(SurfaceState{.body = 1, .run = 0, .step = 0, .sense_ns = 0, .publish_ns = 620 * kMs});  // rest shape
+  hops.add(
+      PictureState{.node = "render 3@there", .run = 7, .step = 1, .sense_ns = 1100 * kMs, .publish_ns = 116 * kMs});
   EXPECT_EQ(hops.force().max(), kMs);
   EXPECT_EQ(hops.surface().count(), 1u);
   EXPECT_EQ(hops.surface().max(), 3 * kMs);
@@ -80,8 +90,8 @@ TEST(RoundTrips, CountWhatIsLostAndWhatIsLate) {
 
 TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
   const std::string domain = std::to_string(own_domain());
-  const ProgramResult result = run_program(
-      program("palpate") + " latency --seconds 2 --rate 200 --json --udp-port " + std::to_string(20000 + getpid() % 10000) + " --domain " + domain);
+  const ProgramResult result = run_program(program("palpate") + " latency --seconds 2 --rate 200 --json --udp-port " +
+                                           std::to_string(20000 + getpid() % 10000) + " --domain " + domain);
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);
   for (const char* way : {"round_trip_us", "bare_dds_us", "bare_udp_us"}) {
@@ -98,9 +108,9 @@ TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
 TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
   const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string();
   const OwnFolder folder("latency");
-  const ProgramResult result =
-      run_program(program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() + " --udp-port " +
-                  std::to_string(20000 + getpid() % 10000) + " --domain " + std::to_string(own_domain()));
+  const ProgramResult result = run_program(
+      program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() +
+      " --udp-port " + std::to_string(20000 + getpid() % 10000) + " --domain " + std::to_string(own_domain()));
   ASSERT_EQ(result.status, 0) << result.err;
   const json hops = json::parse(text_of(folder / "latency.json"))["hops_us"];
   EXPECT_GT(hops["tool_to_force"]["p50"].get<double>(), 1);
@@ -110,7 +120,8 @@ TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
 }
 
 TEST(ToolsTop, ShowsNodesForcesAndHopsOfARunningSystem) {
-  const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string(), domain = std::to_string(own_domain());
+  const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string(),
+                    domain = std::to_string(own_domain());
   ChildProcess simulation("palpate", {program("palpate"), "run", scene, "--seconds", "20", "--domain", domain});
   ProgramResult look;
   for (int i = 0; i < 6 && look.out.find("tool to picture") == std::string::npos; ++i)
@@ -118,12 +129,14 @@ TEST(ToolsTop, ShowsNodesForcesAndHopsOfARunningSystem) {
   simulation.interrupt();
   simulation.wait(10s);
   EXPECT_EQ(look.status, 0) << look.err;
-  for (const char* words : {"haptic ", "render ", " up ", "the reference", "tool 0   force", "tool to force", "tool to picture"})
+  for (const char* words :
+       {"haptic ", "render ", " up ", "the reference", "tool 0   force", "tool to force", "tool to picture"})
     EXPECT_NE(look.out.find(words), std::string::npos) << words << "\n" << look.out;
 }
 
 TEST(ToolsTop, SaysThatNobodyIsThere) {
-  const ProgramResult look = run_program(program("palpate") + " top --once --interval 0.3 --domain " + std::to_string(own_domain()));
+  const ProgramResult look =
+      run_program(program("palpate") + " top --once --interval 0.3 --domain " + std::to_string(own_domain()));
   EXPECT_EQ(look.status, 0) << look.err;
   EXPECT_NE(look.out.find("no node is heard of"), std::string::npos) << look.out;
 }

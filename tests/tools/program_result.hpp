@@ -58,7 +58,8 @@ inline void expect_refusal(const std::string& command, const std::vector<std::st
   const std::string speaker = std::filesystem::path(command.substr(0, command.find(' '))).filename().string() + ": ";
   EXPECT_TRUE(result.err.starts_with(speaker)) << result.err;
   for (const std::string& fragment : fragments)
-    EXPECT_NE(result.err.find(fragment), std::string::npos) << command << "\nlacks '" << fragment << "': " << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos)
+        << command << "\nlacks '" << fragment << "': " << result.err;
 }
 
 /// `text` with its only occurrence of `from` replaced.

@@ -27,7 +27,8 @@ using testing::text_of;
 class TopicSpy {
  public:
   /// `keys`: a folder with those of an observer; empty: none.
-  TopicSpy(int domain, const fs::path& keys) : domain_(dds_create_domain(domain, dds_configuration({.domain = domain}).c_str())) {
+  TopicSpy(int domain, const fs::path& keys)
+      : domain_(dds_create_domain(domain, dds_configuration({.domain = domain}).c_str())) {
     const dds_entity_t me = make_participant({.domain = domain, .keys = keys, .role = "observer"});
     for (const dds_entity_t topic : {DDS_BUILTIN_TOPIC_DCPSPUBLICATION, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION})
       readers_.push_back(dds_create_reader(me, topic, nullptr, nullptr));
@@ -71,7 +72,8 @@ std::map<std::string, pid_t> children_of(pid_t parent) {
 int own_threads(pid_t pid, const std::string& name) {
   int count = 0;
   std::error_code gone;
-  for (const auto& entry : fs::directory_iterator(fmt::format("/proc/{}/task", pid), gone)) count += text_of(entry.path() / "comm") == name + "\n";
+  for (const auto& entry : fs::directory_iterator(fmt::format("/proc/{}/task", pid), gone))
+    count += text_of(entry.path() / "comm") == name + "\n";
   return count;
 }
 
@@ -90,19 +92,24 @@ Names open_files(pid_t pid) {
 /// What a scene's sections ask for.
 struct Needs {
   Names programs{"haptic_node"};
-  Names topics{"tool_state", "contact_state", "force_state", "haptic_keyframe", "scene", "node_status", "clock_probe", "clock_answer"};
+  Names topics{"tool_state", "contact_state", "force_state", "haptic_keyframe",
+               "scene",      "node_status",   "clock_probe", "clock_answer"};
   int haptic_threads = 2;  ///< the loop, and what writes to the network
 
   explicit Needs(const Scene& scene) {
     const auto any = [&](auto&& has) { return std::ranges::any_of(scene.bodies, has); };
-    const bool moving = any(is_dynamic), on_bus = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
-    const bool shell = any([](const Body& b) { return b.shell.has_value(); }), catheter = any([](const Body& b) { return b.catheter.has_value(); });
+    const bool moving = any(is_dynamic),
+               on_bus = std::ranges::any_of(scene.tools, [](const Tool&t) { return t.device == "bus"; });
+    const bool shell = any([](const Body&b) { return b.shell.has_value(); }),
+               catheter = any([](const Body&b) { return b.catheter.has_value(); });
     const auto add = [](Names& to, Names names) { to.merge(names); };
     if (scene.render) add(programs, {"render_node"}), add(topics, {"picture_state"});
     if (moving) add(programs, {"deform_node"});
     if (scene.record) add(programs, {"palpate"});
     if (scene.render || moving) add(topics, {"held_contacts"});
-    if (moving) add(topics, {"surface_state", "surface_state/all", "topology_change", "held_topology", "local_contact_model", "deform_step", "deform_keyframe"});
+    if (moving)
+      add(topics, {"surface_state", "surface_state/all", "topology_change", "held_topology", "local_contact_model",
+                   "deform_step", "deform_keyframe"});
     if (shell) add(topics, {"modal_state"});
     if (catheter) add(topics, {"catheter_state", "task_record"});
     if (on_bus) add(topics, {"device_state"});
@@ -120,7 +127,9 @@ TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
   const auto made = testing::run_program(program("palpate") + " precompute " + file.string());
   ASSERT_EQ(made.status, 0) << made.err;
 
-  std::vector<std::string> command{program("palpate"), "run", file, "--seconds", "1", "--domain", std::to_string(domain), "--summary", folder / "summary.json"};
+  std::vector<std::string> command{
+      program("palpate"),     "run", file, "--seconds", "1", "--domain", std::to_string(domain), "--summary",
+      folder / "summary.json"};
   const fs::path keys = load_scene(file).network.security ? folder / "keys" : "";
   if (!keys.empty()) {
     ASSERT_EQ(testing::run_program(program("palpate") + " keys " + keys.string()).status, 0);
@@ -130,7 +139,8 @@ TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
   ChildProcess run("palpate", command);
   Names programs, topics, files;
   int threads = 0;
-  for (const auto limit = std::chrono::steady_clock::now() + 60s; run.running() && std::chrono::steady_clock::now() < limit;) {
+  for (const auto limit = std::chrono::steady_clock::now() + 60s;
+       run.running() && std::chrono::steady_clock::now() < limit;) {
     std::this_thread::sleep_for(20ms);
     topics = spy.look();
     for (const auto& [name, pid] : children_of(run.pid())) {
@@ -164,7 +174,8 @@ std::vector<std::string> example_scenes() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Example, SceneNeeds, ::testing::ValuesIn(example_scenes()), [](const auto& name) { return name.param; });
+INSTANTIATE_TEST_SUITE_P(Example, SceneNeeds, ::testing::ValuesIn(example_scenes()),
+                         [](const auto& name) { return name.param; });
 
 }  // namespace
 }  // namespace palpate

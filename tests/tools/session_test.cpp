@@ -20,10 +20,25 @@ using testing::text_of;
 /// The files that a whole session of `palpate run` leaves.
 struct Session {
   explicit Session(const fs::path& folder)
-      : film(folder / "session.mp4"), still(folder / "session.png"), log(folder / "session.lcmlog"), summary(folder / "session.json") {}
+      : film(folder / "session.mp4"),
+        still(folder / "session.png"),
+        log(folder / "session.lcmlog"),
+        summary(folder / "session.json") {}
   std::vector<std::string> arguments(const LoopbackScene& scene, int processes) const {
-    return {program("palpate"), "run",   scene.scene(), "--processes", std::to_string(processes), "--domain", std::to_string(testing::own_domain()),
-            "--film",           film,    "--still",     still,         "--record",                log,        "--summary",
+    return {program("palpate"),
+            "run",
+            scene.scene(),
+            "--processes",
+            std::to_string(processes),
+            "--domain",
+            std::to_string(testing::own_domain()),
+            "--film",
+            film,
+            "--still",
+            still,
+            "--record",
+            log,
+            "--summary",
             summary};
   }
   fs::path film, still, log, summary;
@@ -37,7 +52,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// Seconds of a film that ffprobe can read to its end.
 double film_seconds(const fs::path& film) {
-  const auto probe = run_program("ffprobe -v error -count_frames -show_entries stream=nb_read_frames:format=duration -of json " + film.string());
+  const auto probe = run_program(
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames:format=duration -of json " + film.string());
   EXPECT_EQ(probe.status, 0);
   EXPECT_EQ(probe.err, "");
   const json found = json::parse(probe.out);
@@ -99,12 +115,14 @@ TEST_P(ToolsSession, ARunLeavesFilmStillSummaryAndALogThatVerifies) {
 
 TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
   const LoopbackScene scene(fmt::format("interrupted{}", GetParam()));
-  scene.write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0.06,0.02,0.199,0.3,0\n");
+  scene.write("motion.csv",
+              "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0.06,0.02,0.199,0.3,0\n");
   const Session session(scene.folder());
   ChildProcess run("palpate", session.arguments(scene, GetParam()));
   std::this_thread::sleep_for(5s);
   ASSERT_TRUE(run.running());
-  EXPECT_GT(processes_of(scene.folder()).size(), static_cast<std::size_t>(GetParam())) << "the run, the nodes and the recorder";
+  EXPECT_GT(processes_of(scene.folder()).size(), static_cast<std::size_t>(GetParam()))
+      << "the run, the nodes and the recorder";
   run.interrupt();
   ASSERT_TRUE(run.wait(20s));
   EXPECT_EQ(run.status(), 0);

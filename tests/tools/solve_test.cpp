@@ -51,7 +51,8 @@ class ToolsSolve : public ::testing::Test {
 
   Table solve(const fs::path& scene, const std::string& method, const std::vector<std::string>& holds) {
     const fs::path csv = folder_ / (method + ".csv");
-    std::string command = fmt::format("{} solve {} --method {} --csv {}", program("palpate"), scene.string(), method, csv.string());
+    std::string command =
+        fmt::format("{} solve {} --method {} --csv {}", program("palpate"), scene.string(), method, csv.string());
     for (const std::string& hold : holds) command += " --hold " + hold;
     const auto result = run_program(command);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -91,12 +92,14 @@ TEST_F(ToolsSolve, TensorsEqualDirectOnThePlateForOneNodeAndForSeveral) {
   };
   const std::string first = hold(0, 0, "0,0,-0.001");
   expect_agreement(plate(), {first});
-  expect_agreement(plate(), {first, hold(-0.02, 0.01, "0.0002,0,-0.002"), hold(0.02, 0, "0,-0.0003,-0.001"), hold(0.01, -0.03, "0,0,0.0005")});
+  expect_agreement(plate(), {first, hold(-0.02, 0.01, "0.0002,0,-0.002"), hold(0.02, 0, "0,-0.0003,-0.001"),
+                             hold(0.01, -0.03, "0,0,0.0005")});
 }
 
 TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
   const int node = nearest_node(plate_mesh(), {0.015, 0.01, 0.008});
-  const std::vector<std::string> some{fmt::format("{}:0.0005,,-0.001", node)}, all{fmt::format("{}:0.0005,0,-0.001", node)};
+  const std::vector<std::string> some{fmt::format("{}:0.0005,,-0.001", node)},
+      all{fmt::format("{}:0.0005,0,-0.001", node)};
   expect_agreement(plate(), some);
   for (const std::string method : {"direct", "tensors"}) {
     const Row row = solve(plate(), method, some).at(node);
@@ -130,12 +133,14 @@ name = "probe"
 pivot = [0.0, 0.0, 1.0]
 radius = 0.005
 device = "bus"
-)", file.string(), scale, low.y() + 0.2 * size.y());
+)",
+                                                       file.string(), scale, low.y() + 0.2 * size.y());
   const auto hold = [&](const Vector3d& direction, const std::string& displacement) {
     const Vector3d point = extent.center() + direction.cwiseProduct(size);
     return fmt::format("{}:{}", nearest_node(mesh, point), displacement);
   };
-  expect_agreement(folder_ / "liver.toml", {hold({0, 1, 0}, "0,-0.005,0"), hold({-1, 0.3, 0}, "0.003,0,0.001"), hold({0.5, 0.5, 1}, "0,0,-0.004")});
+  expect_agreement(folder_ / "liver.toml", {hold({0, 1, 0}, "0,-0.005,0"), hold({-1, 0.3, 0}, "0.003,0,0.001"),
+                                            hold({0.5, 0.5, 1}, "0,0,-0.004")});
 }
 
 }  // namespace

@@ -19,8 +19,9 @@ using testing::ProgramResult;
 using testing::run_program;
 
 /// Copies a log event by event with right checksums; `change` may alter each on its way.
-void rewrite(const fs::path& from, const fs::path& to, const std::function<void(LogEvent&)>& change,
-             const std::function<void(LogHeader&)>& change_header = [](LogHeader&) {}) {
+void rewrite(
+    const fs::path& from, const fs::path& to, const std::function<void(LogEvent&)>& change,
+    const std::function<void(LogHeader&)>& change_header = [](LogHeader&) {}) {
   LogReader reader(from);
   LogWriter writer(to, std::size_t{1} << 30);
   LogHeader header = reader.header();
@@ -43,13 +44,15 @@ void put_back(LogEvent& event, const M& message) {
 class ToolsVerify : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto run = run_program(
-        fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"), scene_.scene(), testing::own_domain(), log().string()));
+    const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"),
+                                             scene_.scene(), testing::own_domain(), log().string()));
     ASSERT_EQ(run.status, 0) << run.err;
   }
   fs::path log() const { return scene_.folder() / "session.lcmlog"; }
   fs::path changed() const { return scene_.folder() / "changed.lcmlog"; }
-  static ProgramResult verify(const fs::path& file) { return run_program(program("palpate") + " replay " + file.string() + " --verify"); }
+  static ProgramResult verify(const fs::path& file) {
+    return run_program(program("palpate") + " replay " + file.string() + " --verify");
+  }
 
   LoopbackScene scene_{"verify"};
 };
@@ -69,7 +72,8 @@ TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   ASSERT_NE(altered, 0u);
   const auto result = verify(changed());
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.err.find(fmt::format("the forces differ: step {}, tool 0", altered)), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(fmt::format("the forces differ: step {}, tool 0", altered)), std::string::npos)
+      << result.err;
 }
 
 TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
@@ -105,15 +109,22 @@ TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
 }
 
 TEST_F(ToolsVerify, ALogWhoseRecorderHeardTheSceneLateIsVerifiedWithTheSceneOfItsTopic) {
-  rewrite(log(), changed(), [](LogEvent&) {}, [](LogHeader& header) { header.scene = header.scene_hash = header.code_path = ""; });
+  rewrite(
+      log(), changed(), [](LogEvent&) {},
+      [](LogHeader& header) { header.scene = header.scene_hash = header.code_path = ""; });
   const auto verified = verify(changed());
   EXPECT_EQ(verified.status, 0) << verified.err;
   const auto info = run_program(program("palpate") + " info " + changed().string() + " --json");
   EXPECT_EQ(nlohmann::json::parse(info.out)["title"], "loopback block");
 
-  rewrite(log(), changed(), [](LogEvent& event) { if (event.channel == topics::scene.name) event.channel = topics::node_status.name; },
-          [](LogHeader& header) { header.scene = ""; });
-  testing::expect_refusal(program("palpate") + " replay --verify " + changed().string(), {"changed.lcmlog: ", "no scene"});
+  rewrite(
+      log(), changed(),
+      [](LogEvent& event) {
+        if (event.channel == topics::scene.name) event.channel = topics::node_status.name;
+      },
+      [](LogHeader& header) { header.scene = ""; });
+  testing::expect_refusal(program("palpate") + " replay --verify " + changed().string(),
+                          {"changed.lcmlog: ", "no scene"});
 }
 
 TEST_F(ToolsVerify, ALogOfAnotherCodePathIsRefusedInWords) {

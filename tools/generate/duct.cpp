@@ -17,8 +17,8 @@ double DuctShape::radius_at(double s) const {
 }
 
 ShellMesh make_duct(const DuctShape& shape) {
-  ShellMesh mesh = make_tube([&](double s) { return shape.centre(s); },
-                             [&](double s) { return shape.radius_at(s); }, shape.around, shape.along);
+  ShellMesh mesh = make_tube([&](double s) { return shape.centre(s); }, [&](double s) { return shape.radius_at(s); },
+                             shape.around, shape.along);
   for (auto& x : mesh.nodes)
     for (int axis = 0; axis < 3; ++axis) x[axis] = std::round(x[axis] * 1e7) / 1e7 + 0.0;
   return mesh;

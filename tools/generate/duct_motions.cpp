@@ -22,15 +22,14 @@ JawTarget back(JawTarget target, double distance) {
 }
 
 /// How far before the duct's centre line the joint lies when both jaws, so far open, touch the wall.
-double ahead_at_touch(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness,
-                      double s, double opening) {
+double ahead_at_touch(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness, double s,
+                      double opening) {
   const double wanted = duct.radius_at(s) + 0.5 * thickness + tool.jaws->radius;
   return wanted / jaw_distance(trocar, {duct.centre(s), along_duct(duct, s), 1}, opening);
 }
 
 /// How far before the duct's centre line the joint lies when the closed jaws' tips touch the wall.
-double ahead_at_poke(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness,
-                     double s) {
+double ahead_at_poke(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness, double s) {
   const Vector3d axis = along_duct(duct, s), shaft = (duct.centre(s) - trocar.pivot).normalized();
   const double steep = shaft.cross(axis).norm();  // 1 where the tool comes straight at the wall
   return tool.jaws->length + (duct.radius_at(s) + 0.5 * thickness + tool.jaws->radius) / steep;
@@ -61,8 +60,7 @@ std::string feeding_motion(const Tool& tool, const Catheter& catheter, const Fee
   return motion.csv("A forceps feeds the catheter into the duct, hand over hand.");
 }
 
-std::string steadying_motion(const Tool& tool, const DuctShape& duct, double thickness,
-                             const SteadyPlan& plan) {
+std::string steadying_motion(const Tool& tool, const DuctShape& duct, double thickness, const SteadyPlan& plan) {
   const Trocar trocar = make_trocar(tool.pivot, tool.axis, tool.up);
   const double ahead = ahead_at_touch(tool, trocar, duct, thickness, plan.place, plan.open);
   const JawTarget touch{duct.centre(plan.place), along_duct(duct, plan.place), ahead};
@@ -117,15 +115,13 @@ std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickn
 
 std::string duct_motion(const Scene& scene, const Tool& tool) {
   const auto duct = std::ranges::find_if(scene.bodies, [](const Body& b) { return b.shell.has_value(); });
-  const auto catheter =
-      std::ranges::find_if(scene.bodies, [](const Body& b) { return b.catheter.has_value(); });
+  const auto catheter = std::ranges::find_if(scene.bodies, [](const Body& b) { return b.catheter.has_value(); });
   if (tool.kind != "forceps" || duct == scene.bodies.end())
     throw std::runtime_error(
         "the motions of the duct's scenes are for a forceps and a body of the model 'modal_shell'");
   if (tool.name == "left") return steadying_motion(tool, {}, duct->shell->thickness);
   if (tool.name == "forceps") return poking_motion(tool, {}, duct->shell->thickness);
-  if (tool.name == "right" && catheter != scene.bodies.end())
-    return feeding_motion(tool, *catheter->catheter);
+  if (tool.name == "right" && catheter != scene.bodies.end()) return feeding_motion(tool, *catheter->catheter);
   throw std::runtime_error("no motion is known for a tool '" + tool.name + "' in this scene");
 }
 

@@ -30,7 +30,7 @@ struct SteadyPlan {
 /// How a forceps pokes the duct with its closed tips, pushes it aside with their flank, grasps and pulls it.
 struct PokePlan {
   double poke_place = 0.30, push_place = 0.72, grasp_place = 0.5;  ///< along the duct
-  double poke = 0.002, push = 0.003, pull = 0.004;  ///< beyond the touch; back with the grasped duct
+  double poke = 0.002, push = 0.003, pull = 0.004;                 ///< beyond the touch; back with the grasped duct
   double open = 1.5, closed = 0.95;
   double share = 0.6;  ///< of the jaws' length at which the duct lies
   double withdrawn = 0.025;
@@ -38,10 +38,8 @@ struct PokePlan {
 
 /// Trajectory files, as text. `catheter`: as it lies at rest; `thickness` [m]: of the duct's wall.
 std::string feeding_motion(const Tool& tool, const Catheter& catheter, const FeedPlan& plan = {});
-std::string steadying_motion(const Tool& tool, const DuctShape& duct, double thickness,
-                             const SteadyPlan& plan = {});
-std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickness,
-                          const PokePlan& plan = {});
+std::string steadying_motion(const Tool& tool, const DuctShape& duct, double thickness, const SteadyPlan& plan = {});
+std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickness, const PokePlan& plan = {});
 
 /// The motion of one tool of an example scene, by the tool's name: "right" feeds, "left" steadies, "forceps"
 /// pokes. Throws std::runtime_error for another name, or where the scene lacks the body that the motion is

@@ -58,8 +58,7 @@ std::vector<Flip> possible_flips(const TetMesh& mesh) {
     }
     if (positive) flips.push_back(flip);
   }
-  std::stable_sort(flips.begin(), flips.end(),
-                   [](const Flip& a, const Flip& b) { return a.angle > b.angle + 1e-9; });
+  std::stable_sort(flips.begin(), flips.end(), [](const Flip& a, const Flip& b) { return a.angle > b.angle + 1e-9; });
   return flips;
 }
 

@@ -45,9 +45,7 @@ void round_to_micrometres(std::vector<Vector3d>& nodes) {
 // triangles inside an ellipsoid there.
 std::vector<int> bare_area(const TetMesh& mesh, const TriangleMesh& surface) {
   const auto inside = [&](int n) {
-    return (mesh.nodes[n] - Vector3d(-0.036, 0.062, 0.036))
-               .cwiseQuotient(Vector3d(0.060, 0.040, 0.042))
-               .norm() < 1;
+    return (mesh.nodes[n] - Vector3d(-0.036, 0.062, 0.036)).cwiseQuotient(Vector3d(0.060, 0.040, 0.042)).norm() < 1;
   };
   std::set<int> nodes;
   for (const auto& t : surface.triangles) {

@@ -59,8 +59,8 @@ void save(const TetMesh& mesh, const std::filesystem::path& file) {
   write_tet_mesh(mesh, file);
   double angle = std::numbers::pi;
   for (const auto& t : mesh.tetrahedra) angle = std::min(angle, smallest_dihedral_angle(mesh, t));
-  std::printf("%s: %zu nodes, %zu tetrahedra, smallest dihedral angle %.1f degrees\n", file.c_str(),
-              mesh.nodes.size(), mesh.tetrahedra.size(), angle * 180 / std::numbers::pi);
+  std::printf("%s: %zu nodes, %zu tetrahedra, smallest dihedral angle %.1f degrees\n", file.c_str(), mesh.nodes.size(),
+              mesh.tetrahedra.size(), angle * 180 / std::numbers::pi);
 }
 
 void save(const TriangleMesh& mesh, const std::filesystem::path& file) {
@@ -111,12 +111,10 @@ int main(int argc, char** argv) {
 
   add_shape("ribs", "the backdrop of the liver scene (.stl)", [&] { save(make_ribs(), file); });
 
-  add_shape("hepatectomy", "the organ a segment of which is cut off (.msh)",
-            [&] { save(make_hepatectomy(), file); });
+  add_shape("hepatectomy", "the organ a segment of which is cut off (.msh)", [&] { save(make_hepatectomy(), file); });
   add_shape("plate_cut", "the plate that is cut (.msh)", [&] { save(make_plate_cut(), file); });
   add_shape("cylinder_tear", "the cylinder that tears (.msh)", [&] { save(make_cylinder_tear(), file); });
-  add_shape("cylinder_hybrid", "the cylinder of two halves (.msh)",
-            [&] { save(make_cylinder_hybrid(), file); });
+  add_shape("cylinder_hybrid", "the cylinder of two halves (.msh)", [&] { save(make_cylinder_hybrid(), file); });
 
   add_shape("duct", "the cystic duct, a surface (.msh)", [&] { save(make_duct(), file); });
   shape = app.add_subcommand("motions", "the trajectories of a scene of the duct");
@@ -128,12 +126,11 @@ int main(int argc, char** argv) {
   shape->add_option("--min", block.min, "lowest corner [m]");
   shape->add_option("--max", block.max, "highest corner [m]");
   shape->add_option("--cells", block.cells, "cells along x, y, z");
-  shape->add_option("--growth", block.growth,
-                    "growth of the cells away from the middle of the top; 1: uniform");
+  shape->add_option("--growth", block.growth, "growth of the cells away from the middle of the top; 1: uniform");
 
   CylinderOptions cylinder;
-  shape = add_shape("cylinder", "a cylinder about the z axis (.msh)",
-                    [&] { save(make_sized_cylinder(cylinder), file); });
+  shape =
+      add_shape("cylinder", "a cylinder about the z axis (.msh)", [&] { save(make_sized_cylinder(cylinder), file); });
   shape->add_option("--radius", cylinder.radius, "[m]")->check(CLI::PositiveNumber);
   shape->add_option("--height", cylinder.height, "[m]")->check(CLI::PositiveNumber);
   shape->add_option("--size", cylinder.size, "edge length aimed at [m]")->check(CLI::PositiveNumber);

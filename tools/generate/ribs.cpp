@@ -25,8 +25,7 @@ void add_triangle(TriangleMesh& mesh, int a, int b, int c) {
   if ((y - x).cross(z - x).norm() > 1e-12) mesh.triangles.push_back({a, b, c});
 }
 
-void add_grid(TriangleMesh& mesh, int rows, int columns, bool closed,
-              const std::function<Vector3d(int, int)>& point) {
+void add_grid(TriangleMesh& mesh, int rows, int columns, bool closed, const std::function<Vector3d(int, int)>& point) {
   const int first = static_cast<int>(mesh.nodes.size()), nodes_per_row = closed ? columns : columns + 1;
   for (int r = 0; r <= rows; ++r) {
     for (int c = 0; c < nodes_per_row; ++c) mesh.nodes.push_back(point(r, c));
@@ -44,8 +43,7 @@ void add_grid(TriangleMesh& mesh, int rows, int columns, bool closed,
 /// A tube along `centre(t)`, t in [0, 1], with half axes radii(t) across (x) and along `up` (y), closed at
 /// both ends by shrinking there.
 void add_tube(TriangleMesh& mesh, int segments, int sides, const Vector3d& up,
-              const std::function<Vector3d(double)>& centre,
-              const std::function<Eigen::Vector2d(double)>& radii) {
+              const std::function<Vector3d(double)>& centre, const std::function<Eigen::Vector2d(double)>& radii) {
   add_grid(mesh, segments, sides, true, [&](int r, int c) {
     const double even = static_cast<double>(r) / segments, angle = 2 * std::numbers::pi * c / sides;
     const double t = even - 0.13 * std::sin(2 * std::numbers::pi * even);  // closer rows make the ends round
@@ -53,8 +51,7 @@ void add_tube(TriangleMesh& mesh, int segments, int sides, const Vector3d& up,
     const Vector3d across = along.cross(up).normalized(), upright = along.cross(across);
     const double end = std::sqrt(std::max(0.0, 1 - std::pow(std::abs(2 * t - 1), 24)));
     const Eigen::Vector2d radius = end * radii(t);
-    return Vector3d(centre(t) + radius.x() * std::cos(angle) * across +
-                    radius.y() * std::sin(angle) * upright);
+    return Vector3d(centre(t) + radius.x() * std::cos(angle) * across + radius.y() * std::sin(angle) * upright);
   });
 }
 
@@ -68,8 +65,7 @@ void add_rib(TriangleMesh& mesh, double height, double scale, double side) {
 
 void add_spine(TriangleMesh& mesh) {
   add_tube(
-      mesh, 60, 8, Vector3d::UnitX(),
-      [](double t) { return Vector3d(kMidline, kDepth + 0.008, -0.13 + 0.28 * t); },
+      mesh, 60, 8, Vector3d::UnitX(), [](double t) { return Vector3d(kMidline, kDepth + 0.008, -0.13 + 0.28 * t); },
       [](double t) {
         const double bulge = 0.0016 * std::cos(2 * std::numbers::pi * 9 * t);  // vertebrae and discs
         return Eigen::Vector2d(0.015 + bulge, 0.019 + bulge);

@@ -24,8 +24,7 @@ ToolDofs dofs_for_jaws(const Trocar& trocar, const JawTarget& target) {
   const Vector3d along = shaft_direction(trocar, target);
   const Vector3d joint = target.point - target.ahead * along;
   const Eigen::Matrix3d plain = tip_pose(trocar, dofs_for_tip(trocar, joint, 0)).linear();
-  return dofs_for_tip(trocar, joint,
-                      std::atan2(target.across.dot(plain.col(1)), target.across.dot(plain.col(0))));
+  return dofs_for_tip(trocar, joint, std::atan2(target.across.dot(plain.col(1)), target.across.dot(plain.col(0))));
 }
 
 double jaw_distance(const Trocar& trocar, const JawTarget& target, double opening) {
@@ -58,9 +57,8 @@ void ScriptedMotion::move(double seconds, const JawTarget& target) {
   for (int i = 1; i <= kRows; ++i) {
     const double t = static_cast<double>(i) / kRows, s = t * t * (3 - 2 * t);
     const auto between = [&](const auto& a, const auto& b) { return ((1 - s) * a + s * b).eval(); };
-    ToolDofs dofs =
-        dofs_for_jaws(trocar_, {between(from.point, target.point), between(from.across, target.across),
-                                (1 - s) * from.ahead + s * target.ahead});
+    ToolDofs dofs = dofs_for_jaws(trocar_, {between(from.point, target.point), between(from.across, target.across),
+                                            (1 - s) * from.ahead + s * target.ahead});
     dofs.grip = grip;
     add(begin + t * seconds, dofs);
   }
@@ -79,8 +77,8 @@ std::string ScriptedMotion::csv(const std::string& comment) const {
   std::string text = fmt::format("# {}\ntime,yaw,pitch,depth,roll,grip\n", comment);
   for (std::size_t i = 0; i < time_.size(); ++i) {
     const ToolDofs& d = dofs_[i];
-    text += fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f}\n", time_[i], rounded(d.yaw),
-                        rounded(d.pitch), rounded(d.depth), rounded(d.roll), d.grip);
+    text += fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f}\n", time_[i], rounded(d.yaw), rounded(d.pitch),
+                        rounded(d.depth), rounded(d.roll), d.grip);
   }
   return text;
 }

@@ -41,8 +41,7 @@ bool flip(TriangleMesh& mesh, int first, int second, const Edge& edge,
   if (angle(mesh, c, a, b) + angle(mesh, d, a, b) <= std::numbers::pi + 1e-6) return false;
   if (edges.contains(edge_of(c, d))) return false;
   const std::array<int, 3> left{c, d, b}, right{d, c, a};
-  const Eigen::Vector3d normal =
-      area_vector(mesh, mesh.triangles[first]) + area_vector(mesh, mesh.triangles[second]);
+  const Eigen::Vector3d normal = area_vector(mesh, mesh.triangles[first]) + area_vector(mesh, mesh.triangles[second]);
   if (area_vector(mesh, left).dot(normal) <= 0 || area_vector(mesh, right).dot(normal) <= 0) return false;
   mesh.triangles[first] = left;
   mesh.triangles[second] = right;
@@ -92,13 +91,11 @@ void relax(TriangleMesh& mesh, const ImplicitShape& shape) {
 
 TriangleMesh geodesic_sphere(int frequency) {
   const double g = std::numbers::phi;
-  const std::vector<Eigen::Vector3d> corner{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                                            {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                                            {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  constexpr int kFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                 {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                 {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                 {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  const std::vector<Eigen::Vector3d> corner{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                            {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  constexpr int kFaces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   TriangleMesh mesh;
   std::map<std::vector<std::array<int, 2>>, int> known;  // by (corner, weight) with weight > 0
   const auto node = [&](const int* face, int i, int j) {

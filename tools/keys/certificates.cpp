@@ -38,8 +38,12 @@ T need(T result, const char* what) {
   throw std::runtime_error(fmt::format("keys: {} failed: {}", what, reason ? reason : "no reason given"));
 }
 
-Bio reads(const std::string& text) { return Bio(need(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), "reading")); }
-Bio writes() { return Bio(need(BIO_new(BIO_s_mem()), "writing")); }
+Bio reads(const std::string& text) {
+  return Bio(need(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), "reading"));
+}
+Bio writes() {
+  return Bio(need(BIO_new(BIO_s_mem()), "writing"));
+}
 
 std::string text_of(const Bio& bio) {
   char* data = nullptr;
@@ -47,7 +51,10 @@ std::string text_of(const Bio& bio) {
   return {data, static_cast<std::size_t>(size)};
 }
 
-Key key_of(const Identity& identity) { return Key(need(PEM_read_bio_PrivateKey(reads(identity.key).get(), nullptr, nullptr, nullptr), "reading a private key")); }
+Key key_of(const Identity& identity) {
+  return Key(
+      need(PEM_read_bio_PrivateKey(reads(identity.key).get(), nullptr, nullptr, nullptr), "reading a private key"));
+}
 Certificate certificate_of(const std::string& pem) {
   return Certificate(need(PEM_read_bio_X509(reads(pem).get(), nullptr, nullptr, nullptr), "reading a certificate"));
 }
@@ -73,7 +80,8 @@ std::pair<Key, Certificate> begin(const std::string& name, const Period& period)
   number(certificate.get());
   need(ASN1_TIME_set(X509_getm_notBefore(certificate.get()), period.from), "dating a certificate");
   need(ASN1_TIME_set(X509_getm_notAfter(certificate.get()), period.to), "dating a certificate");
-  need(X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate.get()), "CN", MBSTRING_UTF8, reinterpret_cast<const unsigned char*>(name.c_str()), -1, -1, 0),
+  need(X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate.get()), "CN", MBSTRING_UTF8,
+                                  reinterpret_cast<const unsigned char*>(name.c_str()), -1, -1, 0),
        "naming a certificate");
   need(X509_set_pubkey(certificate.get(), key.get()), "making a certificate");
   return {std::move(key), std::move(certificate)};

@@ -2,8 +2,8 @@
 #include <ctime>
 #include <string>
 
-/// Certificates and signatures on the curve P-256 (home of libcrypto). All in memory, as PEM and S/MIME text. Everything
-/// throws std::runtime_error in one sentence.
+/// Certificates and signatures on the curve P-256 (home of libcrypto). All in memory, as PEM and S/MIME text.
+/// Everything throws std::runtime_error in one sentence.
 namespace palpate::keys {
 
 /// A private key with the certificate of its public half.

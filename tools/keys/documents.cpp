@@ -24,43 +24,48 @@ std::string topic_list(const std::string& what, const std::vector<std::string>& 
   return fmt::format("      <{0}><topics>\n{1}      </topics></{0}>\n", what, list);
 }
 
-std::string date(std::time_t time) { return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(time)); }
+std::string date(std::time_t time) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(time));
+}
 
 }  // namespace
 
 std::string governance_document() {
-  return document("omg_shared_ca_governance", fmt::format("  <domain_access_rules><domain_rule>\n"
-                                                          "    {}\n"
-                                                          "    <allow_unauthenticated_participants>false</allow_unauthenticated_participants>\n"
-                                                          "    <enable_join_access_control>true</enable_join_access_control>\n"
-                                                          "    <discovery_protection_kind>ENCRYPT</discovery_protection_kind>\n"
-                                                          "    <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>\n"
-                                                          "    <rtps_protection_kind>NONE</rtps_protection_kind>\n"
-                                                          "    <topic_access_rules><topic_rule>\n"
-                                                          "      <topic_expression>*</topic_expression>\n"
-                                                          "      <enable_discovery_protection>true</enable_discovery_protection>\n"
-                                                          "      <enable_liveliness_protection>true</enable_liveliness_protection>\n"
-                                                          "      <enable_read_access_control>true</enable_read_access_control>\n"
-                                                          "      <enable_write_access_control>true</enable_write_access_control>\n"
-                                                          "      <metadata_protection_kind>ENCRYPT</metadata_protection_kind>\n"
-                                                          "      <data_protection_kind>ENCRYPT</data_protection_kind>\n"
-                                                          "    </topic_rule></topic_access_rules>\n"
-                                                          "  </domain_rule></domain_access_rules>\n",
-                                                          domains));
+  return document("omg_shared_ca_governance",
+                  fmt::format("  <domain_access_rules><domain_rule>\n"
+                              "    {}\n"
+                              "    <allow_unauthenticated_participants>false</allow_unauthenticated_participants>\n"
+                              "    <enable_join_access_control>true</enable_join_access_control>\n"
+                              "    <discovery_protection_kind>ENCRYPT</discovery_protection_kind>\n"
+                              "    <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>\n"
+                              "    <rtps_protection_kind>NONE</rtps_protection_kind>\n"
+                              "    <topic_access_rules><topic_rule>\n"
+                              "      <topic_expression>*</topic_expression>\n"
+                              "      <enable_discovery_protection>true</enable_discovery_protection>\n"
+                              "      <enable_liveliness_protection>true</enable_liveliness_protection>\n"
+                              "      <enable_read_access_control>true</enable_read_access_control>\n"
+                              "      <enable_write_access_control>true</enable_write_access_control>\n"
+                              "      <metadata_protection_kind>ENCRYPT</metadata_protection_kind>\n"
+                              "      <data_protection_kind>ENCRYPT</data_protection_kind>\n"
+                              "    </topic_rule></topic_access_rules>\n"
+                              "  </domain_rule></domain_access_rules>\n",
+                              domains));
 }
 
-std::string permissions_document(const std::string& role, const std::string& subject, const Rights& rights, const Period& period) {
-  return document("omg_shared_ca_permissions", fmt::format("  <permissions><grant name=\"{}\">\n"
-                                                           "    <subject_name>{}</subject_name>\n"
-                                                           "    <validity><not_before>{}</not_before><not_after>{}</not_after></validity>\n"
-                                                           "    <allow_rule>\n"
-                                                           "      {}\n"
-                                                           "{}{}"
-                                                           "    </allow_rule>\n"
-                                                           "    <default>DENY</default>\n"
-                                                           "  </grant></permissions>\n",
-                                                           role, subject, date(period.from), date(period.to), domains, topic_list("publish", rights.writes),
-                                                           topic_list("subscribe", rights.reads)));
+std::string permissions_document(const std::string& role, const std::string& subject, const Rights& rights,
+                                 const Period& period) {
+  return document("omg_shared_ca_permissions",
+                  fmt::format("  <permissions><grant name=\"{}\">\n"
+                              "    <subject_name>{}</subject_name>\n"
+                              "    <validity><not_before>{}</not_before><not_after>{}</not_after></validity>\n"
+                              "    <allow_rule>\n"
+                              "      {}\n"
+                              "{}{}"
+                              "    </allow_rule>\n"
+                              "    <default>DENY</default>\n"
+                              "  </grant></permissions>\n",
+                              role, subject, date(period.from), date(period.to), domains,
+                              topic_list("publish", rights.writes), topic_list("subscribe", rights.reads)));
 }
 
 }  // namespace palpate::keys

@@ -12,6 +12,7 @@ std::string governance_document();
 
 /// What the holder of a certificate with this subject may do (DDS Security 1.1, 9.4.1.3). What is not named is denied.
 /// The grant bears the role's name.
-std::string permissions_document(const std::string& role, const std::string& subject, const Rights& rights, const Period& period);
+std::string permissions_document(const std::string& role, const std::string& subject, const Rights& rights,
+                                 const Period& period);
 
 }  // namespace palpate::keys

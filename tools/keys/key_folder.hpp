@@ -12,6 +12,7 @@ void make_folder(const std::filesystem::path& folder, const Period& period);
 
 /// Adds keys of one role to a folder with an authority, in FOLDER/NAME. Refuses to write over any. Returns when they
 /// end: with the authority at the latest.
-std::time_t add_keys(const std::filesystem::path& folder, const std::string& role, const std::string& name, const Period& period);
+std::time_t add_keys(const std::filesystem::path& folder, const std::string& role, const std::string& name,
+                     const Period& period);
 
 }  // namespace palpate::keys

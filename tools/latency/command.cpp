@@ -39,7 +39,8 @@ using Ways = std::array<std::unique_ptr<Echo>, names.size()>;
 
 Ways open_ways(const Options& o, Side side) {
   const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
-  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side), latency::udp_echo(host, o.port, side)};
+  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side),
+          latency::udp_echo(host, o.port, side)};
 }
 
 /// Sends back whatever comes, over each way on a thread of its own, until told to stop.
@@ -68,12 +69,14 @@ std::vector<std::string> with_network(std::vector<std::string> command, const Bu
 /// The other side, on this machine, where no other is named.
 std::optional<ChildProcess> answerer_here(const Options& o) {
   if (!o.network.peers.empty()) return std::nullopt;
-  return ChildProcess("latency --answer",
-                      with_network({sibling_program("palpate"), "latency", "--answer", "--json", "--udp-port", std::to_string(o.port)}, o.network));
+  return ChildProcess("latency --answer", with_network({sibling_program("palpate"), "latency", "--answer", "--json",
+                                                        "--udp-port", std::to_string(o.port)},
+                                                       o.network));
 }
 
 std::vector<std::string> run_command(const Options& o) {
-  std::vector<std::string> command{sibling_program("palpate"), "run", o.scene, "--processes", "3", "--domain", std::to_string(o.network.domain)};
+  std::vector<std::string> command{sibling_program("palpate"),      "run", o.scene, "--processes", "3", "--domain",
+                                   std::to_string(o.network.domain)};
   if (!o.network.keys.empty()) command.insert(command.end(), {"--keys", o.network.keys});
   return command;
 }
@@ -88,9 +91,11 @@ void find_other_side(std::array<std::unique_ptr<RoundTrips>, names.size()>& ways
   };
   while (!silent().empty() && !shutdown_requested()) {
     if (now_ns() > limit)
-      throw std::runtime_error(fmt::format("latency: no answer over {} within 10 s; `palpate latency --answer` has to run on the other host, in domain {}, and "
-                                           "UDP port {} has to be open there",
-                                           silent(), o.network.domain, o.port));
+      throw std::runtime_error(
+          fmt::format("latency: no answer over {} within 10 s; `palpate latency --answer` has to run on the other "
+                      "host, in domain {}, and "
+                      "UDP port {} has to be open there",
+                      silent(), o.network.domain, o.port));
     for (auto& way : ways)
       if (way->back() == 0) way->send();
     sleep_until_ns(now_ns() + 20'000'000);
@@ -115,20 +120,23 @@ Result measure(const Options& o) {
   std::optional<latency::HopObserver> observer;
   std::optional<ChildProcess> simulation;
   if (o.attach || !o.scene.empty()) observer.emplace(*bus);
-  if (!o.scene.empty() && !o.attach)
-    simulation.emplace("run", run_command(o));
+  if (!o.scene.empty() && !o.attach) simulation.emplace("run", run_command(o));
   if (observer) {
-    for (const std::int64_t limit = now_ns() + 30 * ns_per_s; observer->times().force().count() < 100 && !shutdown_requested();) {
+    for (const std::int64_t limit = now_ns() + 30 * ns_per_s;
+         observer->times().force().count() < 100 && !shutdown_requested();) {
       observer->take();
-      if (simulation && !simulation->running()) throw std::runtime_error(fmt::format("latency: {} did not run", o.scene));
-      if (now_ns() > limit) throw std::runtime_error(fmt::format("latency: no haptic node runs in domain {}", o.network.domain));
+      if (simulation && !simulation->running())
+        throw std::runtime_error(fmt::format("latency: {} did not run", o.scene));
+      if (now_ns() > limit)
+        throw std::runtime_error(fmt::format("latency: no haptic node runs in domain {}", o.network.domain));
       sleep_until_ns(now_ns() + 5'000'000);
     }
     observer.emplace(*bus);
   }
 
   PeriodicTimer timer(static_cast<double>(names.size()) * o.rate, 0);
-  const auto warm_up = static_cast<std::uint64_t>(names.size() * o.rate * 0.3), end = warm_up + static_cast<std::uint64_t>(names.size() * o.rate * o.seconds);
+  const auto warm_up = static_cast<std::uint64_t>(names.size() * o.rate * 0.3),
+             end = warm_up + static_cast<std::uint64_t>(names.size() * o.rate * o.seconds);
   bool begun = false;
   for (std::uint64_t i = timer.wait(); i < end && !shutdown_requested(); i = timer.wait()) {
     if (i >= warm_up && !begun) {
@@ -162,9 +170,10 @@ Json bins_of(const Histogram& h) {
 Json json_of(const Options& o, const Result& r) {
   Json json;
   for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i]) + "_us"] = json_of(r.trips[i].time);
-  json["ratio_to_bare_dds"] = json["round_trip_us"].is_null() || json["bare_dds_us"].is_null()
-                                  ? Json(nullptr)
-                                  : Json(json["round_trip_us"]["p50"].get<double>() / json["bare_dds_us"]["p50"].get<double>());
+  json["ratio_to_bare_dds"] =
+      json["round_trip_us"].is_null() || json["bare_dds_us"].is_null()
+          ? Json(nullptr)
+          : Json(json["round_trip_us"]["p50"].get<double>() / json["bare_dds_us"]["p50"].get<double>());
   json["hops_us"] = nullptr;
   if (r.observed)
     json["hops_us"] = {{"tool_to_force", json_of(r.hops.force())},
@@ -202,22 +211,25 @@ void print_row(const std::string& name, const Histogram& h, const std::string& r
 }
 
 void print_text(const Result& r) {
-  fmt::print("{:18} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>7} {:>10} {:>10}\n", "there and back [us]", "p50", "p90", "p99", "p99.9", "max", "sent", "lost",
-             "reordered", "jitter");
+  fmt::print("{:18} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>7} {:>10} {:>10}\n", "there and back [us]", "p50",
+             "p90", "p99", "p99.9", "max", "sent", "lost", "reordered", "jitter");
   constexpr std::array titles{"palpate's bus", "bare Cyclone DDS", "bare UDP"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& t = r.trips[i];
-    print_row(titles[i], t.time, fmt::format(" {:9} {:7} {:10} {:10.1f}", t.sent, t.lost, t.reordered, 1e-3 * t.jitter_ns));
+    print_row(titles[i], t.time,
+              fmt::format(" {:9} {:7} {:10} {:10.1f}", t.sent, t.lost, t.reordered, 1e-3 * t.jitter_ns));
   }
   if (r.trips[0].time.count() > 0 && r.trips[1].time.count() > 0)
-    fmt::print("the bus takes {:.2f} times as long as bare DDS (medians)\n",
-               static_cast<double>(r.trips[0].time.percentile(0.5)) / static_cast<double>(r.trips[1].time.percentile(0.5)));
+    fmt::print(
+        "the bus takes {:.2f} times as long as bare DDS (medians)\n",
+        static_cast<double>(r.trips[0].time.percentile(0.5)) / static_cast<double>(r.trips[1].time.percentile(0.5)));
   if (!r.observed) return;
   fmt::print("\none way [us]\n");
   print_row("tool to force", r.hops.force());
   print_row("tool to surface", r.hops.surface());
   print_row("tool to picture", r.hops.picture());
-  if (r.hops.uncertainty_ns() > 0) fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
+  if (r.hops.uncertainty_ns() > 0)
+    fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
 }
 
 void run(Options& o) {
@@ -249,13 +261,19 @@ void run(Options& o) {
 
 void add_latency_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("latency", "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");
+  CLI::App* command = app.add_subcommand(
+      "latency",
+      "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");
   command->add_option("scene", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
   command->add_flag("--attach", o->attach, "Measure the hops of a simulation that runs already");
   command->add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
-  command->add_option("--rate", o->rate, "Messages a second over each way [Hz]")->check(CLI::Range(1.0, 5000.0))->capture_default_str();
+  command->add_option("--rate", o->rate, "Messages a second over each way [Hz]")
+      ->check(CLI::Range(1.0, 5000.0))
+      ->capture_default_str();
   command->add_option("--seconds", o->seconds, "How long")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--udp-port", o->port, "Port of the bare UDP messages")->check(CLI::Range(1024, 65535))->capture_default_str();
+  command->add_option("--udp-port", o->port, "Port of the bare UDP messages")
+      ->check(CLI::Range(1024, 65535))
+      ->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
   command->add_option("-o,--output", o->out, "Folder for latency.json and its plot");
   add_network_options(*command, o->network, "latency");

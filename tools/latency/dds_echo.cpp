@@ -34,7 +34,8 @@ class BusEcho : public Echo {
 
 class DdsEcho : public Echo {
  public:
-  DdsEcho(const BusSettings& settings, const char* out, const char* in, std::size_t size) : dds_(settings, out, in), bytes_(size) {}
+  DdsEcho(const BusSettings& settings, const char* out, const char* in, std::size_t size)
+      : dds_(settings, out, in), bytes_(size) {}
   void send(std::uint64_t seq) override { dds_.send(seq, bytes_); }
   std::uint64_t receive(std::chrono::nanoseconds timeout) override { return dds_.receive(timeout); }
 

@@ -22,7 +22,9 @@ void HopTimes::clear_times() {
   picture_.clear();
 }
 
-void HopTimes::add(const ForceState& m) { force_.record(m.publish_ns - m.sense_ns); }
+void HopTimes::add(const ForceState& m) {
+  force_.record(m.publish_ns - m.sense_ns);
+}
 
 void HopTimes::add(const SurfaceState& m) {
   const std::pair newest(m.run, m.step);

@@ -22,7 +22,9 @@ void RoundTrips::send() {
   echo_->send(seq);
 }
 
-std::uint64_t RoundTrips::back() const { return back_.load(); }
+std::uint64_t RoundTrips::back() const {
+  return back_.load();
+}
 
 void RoundTrips::begin() {
   first_.store(next_.load());
@@ -51,7 +53,8 @@ void RoundTrips::receive(const std::stop_token& stop) {
     report_.time.record(now - sent);
     report_.reordered += seq < highest_;
     highest_ = std::max(highest_, seq);
-    if (last_ns_ > 0) report_.jitter_ns += (std::abs(now - sent - last_ns_) - report_.jitter_ns) / static_cast<double>(++changes_);
+    if (last_ns_ > 0)
+      report_.jitter_ns += (std::abs(now - sent - last_ns_) - report_.jitter_ns) / static_cast<double>(++changes_);
     last_ns_ = now - sent;
     back_.fetch_add(1);
   }
@@ -59,7 +62,8 @@ void RoundTrips::receive(const std::stop_token& stop) {
 
 RoundTripReport RoundTrips::finish() {
   const std::uint64_t sent = next_.load() - first_.load();
-  for (const std::int64_t limit = now_ns() + ns_per_s; back_.load() < sent && now_ns() < limit;) sleep_until_ns(now_ns() + 5'000'000);
+  for (const std::int64_t limit = now_ns() + ns_per_s; back_.load() < sent && now_ns() < limit;)
+    sleep_until_ns(now_ns() + 5'000'000);
   thread_.request_stop();
   thread_.join();
   report_.sent = sent;

@@ -19,7 +19,8 @@ constexpr std::size_t kLength = 136;  // of a ToolState on the wire
 
 class UdpEcho : public Echo {
  public:
-  UdpEcho(const std::string& host, int port, Side side) : side_(side), socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  UdpEcho(const std::string& host, int port, Side side)
+      : side_(side), socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     if (socket_ < 0) throw std::runtime_error(fmt::format("UDP: {}", std::strerror(errno)));
     try {
       side == Side::asks ? ask(host, port) : listen(port);
@@ -34,7 +35,8 @@ class UdpEcho : public Echo {
     std::array<std::byte, kLength> bytes{};
     std::memcpy(bytes.data(), &seq, sizeof seq);
     if (partner_.sin_family == AF_INET)
-      (void)sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&partner_), sizeof partner_);
+      (void)sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&partner_),
+                   sizeof partner_);
   }
 
   std::uint64_t receive(std::chrono::nanoseconds timeout) override {
@@ -44,7 +46,8 @@ class UdpEcho : public Echo {
     std::array<std::byte, 2 * kLength> bytes;
     sockaddr_in from{};
     socklen_t size = sizeof from;
-    const ssize_t got = recvfrom(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &size);
+    const ssize_t got =
+        recvfrom(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &size);
     if (got != static_cast<ssize_t>(kLength)) return 0;  // a stranger's
     if (side_ == Side::answers) partner_ = from;
     std::uint64_t seq = 0;

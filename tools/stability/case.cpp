@@ -41,7 +41,8 @@ std::string read_until(int pipe, double seconds, bool& late) {
   std::string text;
   char buffer[4096];
   while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
     pollfd wait{.fd = pipe, .events = POLLIN, .revents = 0};
     late = left <= 0 || poll(&wait, 1, static_cast<int>(left)) == 0;
     if (late) return text;
@@ -98,8 +99,8 @@ Row run_guarded(const Point& point) {
 
 std::vector<Point> all_points(const Extent& extent) {
   std::vector<Point> all;
-  for (const auto subject : {loop_points, material_points, geometry_points, hold_points, press_points, curve_points, dynamic_points, cut_points,
-                             hybrid_points, shell_points, catheter_points}) {
+  for (const auto subject : {loop_points, material_points, geometry_points, hold_points, press_points, curve_points,
+                             dynamic_points, cut_points, hybrid_points, shell_points, catheter_points}) {
     const std::vector<Point> points = subject(extent);
     all.insert(all.end(), points.begin(), points.end());
   }

@@ -46,10 +46,12 @@ struct Extent {
 };
 
 /// The larger of two; not a number as soon as one of them is none.
-inline double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
+inline double larger(double a, double b) {
+  return a >= b || std::isnan(a) ? a : b;
+}
 
-/// Runs a point in a child process, so that a crash or hang becomes the outcome `failed`. The calling process must have no
-/// threads at work.
+/// Runs a point in a child process, so that a crash or hang becomes the outcome `failed`. The calling process must have
+/// no threads at work.
 Row run_guarded(const Point& point);
 
 /// The registry: every subject's points.

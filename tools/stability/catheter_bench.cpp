@@ -14,7 +14,9 @@ void CatheterWatch::look(const CatheterBody& body) {
 }
 
 Result CatheterWatch::result(double energy_growth) const {
-  Result r{.max_force = force_, .energy_growth = energy_growth, .note = fmt::format("energy is the catheter's own; reach {:.3g} m", reach_)};
+  Result r{.max_force = force_,
+           .energy_growth = energy_growth,
+           .note = fmt::format("energy is the catheter's own; reach {:.3g} m", reach_)};
   if (!std::isfinite(force_) || !(reach_ <= 10)) r.outcome = Outcome::failed;
   return r;
 }

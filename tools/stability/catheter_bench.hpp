@@ -9,7 +9,8 @@ namespace palpate::stability {
 class CatheterWatch {
  public:
   void look(const CatheterBody& body);
-  /// Failed if a place or a force was not a number or the catheter went more than 10 m away; max_force is that of a tool [N].
+  /// Failed if a place or a force was not a number or the catheter went more than 10 m away; max_force is that of a
+  /// tool [N].
   Result result(double energy_growth) const;
 
  private:

@@ -65,8 +65,10 @@ Result many_grasps(int grasps, bool in_duct) {
   long touches = 0;
   for (int g = 0; g < grasps; ++g) {
     const int tool = g % 2;
-    const Vector3d hand = 2e-3 * Vector3d(any(random), any(random), 2 * any(random));  // a few millimetres, mostly along it
-    jaws[tool].translation() = body.positions()[10 + random() % 18] + 1e-3 * Vector3d(any(random), any(random), any(random));
+    const Vector3d hand =
+        2e-3 * Vector3d(any(random), any(random), 2 * any(random));  // a few millimetres, mostly along it
+    jaws[tool].translation() =
+        body.positions()[10 + random() % 18] + 1e-3 * Vector3d(any(random), any(random), any(random));
     body.grasp(tool, jaws[tool], body.nearest(jaws[tool].translation()), 0.004 * (g % 3), 1e-4);
     for (int i = 0; i < 3; ++i) {
       jaws[tool].translation() += 0.1 * hand;
@@ -80,7 +82,8 @@ Result many_grasps(int grasps, bool in_duct) {
   }
   Result r = watch.result(0);
   if (!duct) return r;
-  r.note += fmt::format("; {} touches of the wall, {:.3g} mm led in at most, {:.3g} mJ in the wall at most", touches, 1e3 * deepest, 1e3 * wall_energy);
+  r.note += fmt::format("; {} touches of the wall, {:.3g} mm led in at most, {:.3g} mJ in the wall at most", touches,
+                        1e3 * deepest, 1e3 * wall_energy);
   if (!(wall_energy < 1)) r.outcome = Outcome::failed;
   return r;
 }
@@ -91,10 +94,13 @@ std::vector<Point> catheter_points(const Extent& extent) {
   std::vector<Point> points;
   const int ticks = extent.quick ? 400 : 4000;
   for (const char* integrator : {"implicit", "semi_implicit"}) {
-    for (double e : extent.quick ? std::vector{1e3, 1e12} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12})
-      points.push_back({fmt::format("catheter {}", integrator), "E [Pa]", fmt::format("{:g}", e), [=] { return swing(settings(e, integrator), ticks); }});
+    for (double e :
+         extent.quick ? std::vector{1e3, 1e12} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12})
+      points.push_back({fmt::format("catheter {}", integrator), "E [Pa]", fmt::format("{:g}", e),
+                        [=] { return swing(settings(e, integrator), ticks); }});
     for (double d : extent.quick ? std::vector{1e5} : std::vector{0.0, 1.0, 1e3, 1e5})
-      points.push_back({fmt::format("catheter {}", integrator), "damping [1/s]", fmt::format("{:g}", d), [=] { return swing(settings(1e6, integrator, d), ticks); }});
+      points.push_back({fmt::format("catheter {}", integrator), "damping [1/s]", fmt::format("{:g}", d),
+                        [=] { return swing(settings(1e6, integrator, d), ticks); }});
     for (double h : extent.quick ? std::vector{1e-2} : std::vector{1e-7, 1e-5, 1e-3, 1e-2, 1e-1})
       points.push_back({fmt::format("catheter {}", integrator), "tick [s]", fmt::format("{:g}", h), [=] {
                           CatheterSettings s = settings(1e6, integrator);
@@ -104,7 +110,8 @@ std::vector<Point> catheter_points(const Extent& extent) {
   }
   const int grasps = extent.quick ? 1000 : 100000;
   for (const bool in_duct : {false, true})
-    points.push_back({in_duct ? "grasps in a duct" : "grasps", "number", std::to_string(grasps), [=] { return many_grasps(grasps, in_duct); }, 600});
+    points.push_back({in_duct ? "grasps in a duct" : "grasps", "number", std::to_string(grasps),
+                      [=] { return many_grasps(grasps, in_duct); }, 600});
   return points;
 }
 

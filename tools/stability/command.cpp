@@ -24,7 +24,8 @@ void run(const Options& o) {
   if (!o.scene.empty()) scene = load_scene(o.scene);
   const stability::Extent extent{.quick = o.quick};
   const auto points = scene ? stability::scene_points(*scene, extent) : stability::all_points(extent);
-  const int failed = stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.only);
+  const int failed =
+      stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.only);
   const std::string missing = run_script("stability_page.py", o.folder);
   if (!missing.empty()) fmt::print(stderr, "stability: {}\n", missing);
   if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
@@ -34,7 +35,8 @@ void run(const Options& o) {
 
 void add_stability_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
+  CLI::App* command =
+      app.add_subcommand("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
   command->add_option("scene", options->scene, "scene file; without one, the general cases");
   command->add_option("-o,--output", options->folder, "folder for stability.csv, plots and page")->required();
   command->add_flag("--quick", options->quick, "the subset that takes a minute");

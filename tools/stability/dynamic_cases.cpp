@@ -32,14 +32,18 @@ Result pluck(const Scene& scene, double step, int count) {
   const auto model = make_dynamic_model(elastic_mesh(archive), scene.bodies[0]);
   double strongest = 0, first = 0, last = 0;
   for (int n = 0; n < model->nodes(); ++n)
-    if (model->mass(n) > 0) model->set_motion(n, Eigen::Vector3d::Zero(), Eigen::Vector3d(1e-3 * std::sin(1.7 * n), 1e-3 * std::cos(2.3 * n), 1e-3));
+    if (model->mass(n) > 0)
+      model->set_motion(n, Eigen::Vector3d::Zero(),
+                        Eigen::Vector3d(1e-3 * std::sin(1.7 * n), 1e-3 * std::cos(2.3 * n), 1e-3));
   first = model->energy();
   for (int i = 0; i < count; ++i) {
     model->step(step);
     last = larger(last, model->energy());
   }
   for (int n = 0; n < model->nodes(); ++n) strongest = larger(strongest, model->elastic_force(n).norm());
-  Result r{.max_force = strongest, .energy_growth = last - first, .note = fmt::format("bound {:.3g} s; energy is the tissue's own, {:.3g} J at first", bound, first)};
+  Result r{.max_force = strongest,
+           .energy_growth = last - first,
+           .note = fmt::format("bound {:.3g} s; energy is the tissue's own, {:.3g} J at first", bound, first)};
   if (!(last <= 20 * first)) r.outcome = Outcome::failed;
   return r;
 }
@@ -60,7 +64,10 @@ std::vector<Point> dynamic_points(const Extent& extent) {
         const std::string name = fmt::format("step {} {}{}", model, integrator, corotational ? " corotational" : "");
         for (double s : extent.quick ? std::vector{0.9, 1.5} : std::vector{0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 3.0, 10.0})
           points.push_back({name, "step / bound [1]", fmt::format("{:g}", s), [scene, s, extent, corotational] {
-                              return pluck(scene, s * bound_of(scene, precompute(scene.bodies[0], organ_mesh())), extent.quick ? 500 : corotational ? 2000 : 20000);
+                              return pluck(scene, s * bound_of(scene, precompute(scene.bodies[0], organ_mesh())),
+                                           extent.quick   ? 500
+                                           : corotational ? 2000
+                                                          : 20000);
                             }});
         if (!extent.quick) points.push_back({name, "step [s]", "1e-7", [scene] { return pluck(scene, 1e-7, 2000); }});
       }
@@ -74,14 +81,17 @@ std::vector<Point> dynamic_points(const Extent& extent) {
                         }});
   for (double e : extent.quick ? std::vector{1.0} : std::vector{1.0, 1e3, 1e6, 1e8})
     for (const char* precision : precisions)
-      points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e), [=] {
+      points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e),
+                        [=] {
                           Scene scene = organ_scene("tensor_mass");
                           scene.bodies[0].material.young = e;
                           scene.bodies[0].dynamic.precision = precision;
                           return press_organ(scene, organ_mesh(), 0.004, 100);
-                        }, 120});
+                        },
+                        120});
   for (double d : extent.quick ? std::vector{1e-12, 0.019} : std::vector{1e-12, 1e-6, 1e-3, 0.01, 0.019, 0.03})
-    points.push_back({"press moving", "depth [m] of 0.02", fmt::format("{:g}", d), [=] { return press_organ(organ_scene("tensor_mass"), organ_mesh(), d, 300); }});
+    points.push_back({"press moving", "depth [m] of 0.02", fmt::format("{:g}", d),
+                      [=] { return press_organ(organ_scene("tensor_mass"), organ_mesh(), d, 300); }});
   return points;
 }
 
@@ -89,46 +99,52 @@ std::vector<Point> cut_points(const Extent& extent) {
   std::vector<Point> points;
   for (const char* model : {"tensor_mass", "spring_mass"}) {
     if (extent.quick && std::string(model) != "tensor_mass") continue;
-    points.push_back({fmt::format("cut down {}", model), "tetrahedra left", "1 and 0", [=] {
-                        Scene scene = organ_scene(model);
-                        const TetMesh mesh = organ_mesh(2);
-                        const Archive archive = precompute(scene.bodies[0], mesh);
-                        const auto tissue = make_dynamic_model(elastic_mesh(archive), scene.bodies[0]);
-                        const double step = 0.5 * largest_step(integrator_of(scene.bodies[0]), tissue->frequency_bound(), 60);
-                        const int count = elastic_mesh(archive).tetrahedra.size();
-                        Result r{.note = {}};
-                        for (int t = count - 1; t >= 0; --t) {
-                          tissue->remove(std::array{t});
-                          for (int i = 0; i < 20; ++i) tissue->step(step);
-                          for (int n = 0; n < tissue->nodes(); ++n) {
-                            if (tissue->mass(n) > 0) tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
-                            r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
-                            if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
-                          }
-                          if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
-                        }
-                        r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
-                        return r;
-                      }});
-    points.push_back({fmt::format("cut away {}", model), "by", "cautery through the whole block", [=] {
-                        Scene scene = organ_scene(model);
-                        scene.tools[0].cautery = Cautery{.radius = 0.008};
-                        OrganBench bench(scene, {precompute(scene.bodies[0], organ_mesh())});
-                        for (int i = 0; i < 1500; ++i)
-                          bench.tick({0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500}, 1);
-                        Result r = bench.result();
-                        r.note += fmt::format("; {} of {} tetrahedra gone", bench.organ().removed().size(), bench.organ().mesh().tetrahedra.size());
-                        return r;
-                      }});
+    points.push_back(
+        {fmt::format("cut down {}", model), "tetrahedra left", "1 and 0", [=] {
+           Scene scene = organ_scene(model);
+           const TetMesh mesh = organ_mesh(2);
+           const Archive archive = precompute(scene.bodies[0], mesh);
+           const auto tissue = make_dynamic_model(elastic_mesh(archive), scene.bodies[0]);
+           const double step = 0.5 * largest_step(integrator_of(scene.bodies[0]), tissue->frequency_bound(), 60);
+           const int count = elastic_mesh(archive).tetrahedra.size();
+           Result r{.note = {}};
+           for (int t = count - 1; t >= 0; --t) {
+             tissue->remove(std::array{t});
+             for (int i = 0; i < 20; ++i) tissue->step(step);
+             for (int n = 0; n < tissue->nodes(); ++n) {
+               if (tissue->mass(n) > 0)
+                 tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
+               r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
+               if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
+             }
+             if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
+           }
+           r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
+           return r;
+         }});
+    points.push_back(
+        {fmt::format("cut away {}", model), "by", "cautery through the whole block", [=] {
+           Scene scene = organ_scene(model);
+           scene.tools[0].cautery = Cautery{.radius = 0.008};
+           OrganBench bench(scene, {precompute(scene.bodies[0], organ_mesh())});
+           for (int i = 0; i < 1500; ++i)
+             bench.tick({0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500}, 1);
+           Result r = bench.result();
+           r.note += fmt::format("; {} of {} tetrahedra gone", bench.organ().removed().size(),
+                                 bench.organ().mesh().tetrahedra.size());
+           return r;
+         }});
   }
   for (double threshold : extent.quick ? std::vector{0.05} : std::vector{1e-6, 1e-3, 0.05, 0.5})
     points.push_back({"tearing", "volume change [1]", fmt::format("{:g}", threshold), [=] {
                         Scene scene = organ_scene("tensor_mass");
                         scene.bodies[0].tearing = Tearing{.criterion = "volume", .threshold = threshold};
                         OrganBench bench(scene, {precompute(scene.bodies[0], organ_mesh())});
-                        for (int i = 0; i < 400; ++i) bench.tick({0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0)});
+                        for (int i = 0; i < 400; ++i)
+                          bench.tick({0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0)});
                         Result r = bench.result();
-                        r.note += fmt::format("; a cascade of {} of {} tetrahedra", bench.organ().removed().size(), bench.organ().mesh().tetrahedra.size());
+                        r.note += fmt::format("; a cascade of {} of {} tetrahedra", bench.organ().removed().size(),
+                                              bench.organ().mesh().tetrahedra.size());
                         return r;
                       }});
   return points;
@@ -138,20 +154,24 @@ std::vector<Point> curve_points(const Extent& extent) {
   std::vector<Point> points;
   for (int degree : extent.quick ? std::vector{10} : std::vector{4, 6, 8, 10})
     for (double beyond : extent.quick ? std::vector{1e6} : std::vector{1.0, 1.5, 10.0, 1e6})
-      points.push_back({fmt::format("curve degree {}", degree), "press / end of the data [1]", fmt::format("{:g}", beyond), [=] {
-                          std::vector<double> s, f;
-                          for (int i = 1; i <= 40; ++i) {
-                            s.push_back(0.01 * i / 40);
-                            f.push_back(0.3 * (std::exp(3.0 * i / 40) - 1) * (1 + 1e-3 * std::sin(7 * i)));
-                          }
-                          const FittedCurve curve(s, f, degree);
-                          const double fall = curve.first_fall();
-                          if (fall >= 0) throw std::runtime_error(fmt::format("the force falls from {:.3g} m on", fall));
-                          const double x = 0.01 * beyond, y = curve.value(x);
-                          Result r{.max_force = y, .note = fmt::format("slope {:.3g} N/m, at the end {:.3g}", curve.slope(x), curve.slope(0.01))};
-                          if (!(curve.slope(x) > 0) || !(std::abs(y - curve.value(0.01) - curve.slope(0.01) * (x - 0.01)) <= 1e-9 * std::abs(y))) r.outcome = Outcome::failed;
-                          return r;
-                        }});
+      points.push_back(
+          {fmt::format("curve degree {}", degree), "press / end of the data [1]", fmt::format("{:g}", beyond), [=] {
+             std::vector<double> s, f;
+             for (int i = 1; i <= 40; ++i) {
+               s.push_back(0.01 * i / 40);
+               f.push_back(0.3 * (std::exp(3.0 * i / 40) - 1) * (1 + 1e-3 * std::sin(7 * i)));
+             }
+             const FittedCurve curve(s, f, degree);
+             const double fall = curve.first_fall();
+             if (fall >= 0) throw std::runtime_error(fmt::format("the force falls from {:.3g} m on", fall));
+             const double x = 0.01 * beyond, y = curve.value(x);
+             Result r{.max_force = y,
+                      .note = fmt::format("slope {:.3g} N/m, at the end {:.3g}", curve.slope(x), curve.slope(0.01))};
+             if (!(curve.slope(x) > 0) ||
+                 !(std::abs(y - curve.value(0.01) - curve.slope(0.01) * (x - 0.01)) <= 1e-9 * std::abs(y)))
+               r.outcome = Outcome::failed;
+             return r;
+           }});
   points.push_back({"curve", "data", "a force that falls", [] {
                       std::vector<double> s, f;
                       for (int i = 1; i <= 20; ++i) {
@@ -159,7 +179,8 @@ std::vector<Point> curve_points(const Extent& extent) {
                         f.push_back(std::sin(0.2 * i));
                       }
                       const FittedCurve curve(s, f, 6);
-                      if (curve.first_fall() >= 0) throw std::runtime_error(fmt::format("the force falls from {:.3g} m on", curve.first_fall()));
+                      if (curve.first_fall() >= 0)
+                        throw std::runtime_error(fmt::format("the force falls from {:.3g} m on", curve.first_fall()));
                       return Result{.outcome = Outcome::failed, .note = "a falling force was taken"};
                     }});
   return points;

@@ -30,8 +30,10 @@ Result hold_nodes(const Archive& archive, const std::string& how, int count, dou
   const SurfaceMap& surface = archive.surface;
   const std::vector<int> free = free_nodes(surface);
   if (count > most) throw std::runtime_error(fmt::format("a haptic step holds at most {} contacts of a body", most));
-  if (how == "spread" && count > static_cast<int>(free.size())) throw std::runtime_error(fmt::format("the body has {} free touchable nodes", free.size()));
-  const Vector3d middle = std::accumulate(surface.position.begin(), surface.position.end(), Vector3d(0, 0, 0)) / surface.size();
+  if (how == "spread" && count > static_cast<int>(free.size()))
+    throw std::runtime_error(fmt::format("the body has {} free touchable nodes", free.size()));
+  const Vector3d middle =
+      std::accumulate(surface.position.begin(), surface.position.end(), Vector3d(0, 0, 0)) / surface.size();
   const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
   HeldPoints held(compliance, count);
   std::vector<Vector3d> target;
@@ -42,16 +44,20 @@ Result hold_nodes(const Archive& archive, const std::string& how, int count, dou
     anchor.nodes = {node, (node + 1) % surface.touchable, node};
     anchor.weights = Vector3d(1 - shift, shift, 0);
     held.add(anchor);
-    target.push_back(press * (middle - surface.position[node]).normalized() * (how == "contradictory" && i % 2 ? -1 : 1));
+    target.push_back(press * (middle - surface.position[node]).normalized() *
+                     (how == "contradictory" && i % 2 ? -1 : 1));
   }
   std::vector<double> forces(3 * target.size(), 0.0), moved(forces.size());
-  const int raised = held.solve(std::vector(count, Hold::all), std::vector<Vector3d>(count, Vector3d::UnitZ()), target, forces.data());
+  const int raised =
+      held.solve(std::vector(count, Hold::all), std::vector<Vector3d>(count, Vector3d::UnitZ()), target, forces.data());
   held.displacements(forces.data(), moved.data());
   double miss = 0;
   Result r{.outcome = raised > 0 ? Outcome::regularised : Outcome::stable, .note = {}};
   for (const double f : forces) r.max_force = larger(r.max_force, std::abs(f));
-  for (int i = 0; i < count; ++i) miss = larger(miss, (Eigen::Map<const Vector3d>(moved.data() + 3 * i) - target[i]).norm());
-  r.note = fmt::format("{} pivots raised, a point misses its place by {:.2g} of the press at most; force is a point's", raised, miss / press);
+  for (int i = 0; i < count; ++i)
+    miss = larger(miss, (Eigen::Map<const Vector3d>(moved.data() + 3 * i) - target[i]).norm());
+  r.note = fmt::format("{} pivots raised, a point misses its place by {:.2g} of the press at most; force is a point's",
+                       raised, miss / press);
   return r;
 }
 

@@ -35,28 +35,35 @@ void soften(Scene& scene, double young, double density) {
 std::vector<Point> hybrid_points(const Extent& extent) {
   std::vector<Point> points;
   const auto add = [&](const char* parameter, const std::string& value, auto&& change) {
-    points.push_back({"hybrid", parameter, value, [=] {
+    points.push_back({"hybrid", parameter, value,
+                      [=] {
                         const TetMesh mesh = organ_mesh();
                         Scene scene = hybrid_scene(mesh, 0.5);
                         change(scene);
                         return press_organ(scene, mesh, 0.004, 300);
-                      }, 120});
+                      },
+                      120});
   };
   for (double c : extent.quick ? std::vector{1e-4} : std::vector{1e-6, 1e-4, 1e-2, 1e2, 1e4})
     add("E dynamic / E quasi-static [1]", fmt::format("{:g}", c), [c](Scene& s) { soften(s, c, 1); });
   for (double c : extent.quick ? std::vector{1e3} : std::vector{1e-4, 1e-2, 1e2, 1e3})
     add("density dynamic / quasi-static [1]", fmt::format("{:g}", c), [c](Scene& s) { soften(s, 1, c); });
-  for (double a : extent.quick ? std::vector{0.0} : std::vector{0.0, 1.0, 1e4}) add("damping [1/s]", fmt::format("{:g}", a), [a](Scene& s) { s.bodies[0].dynamic.damping = a; });
+  for (double a : extent.quick ? std::vector{0.0} : std::vector{0.0, 1.0, 1e4})
+    add("damping [1/s]", fmt::format("{:g}", a), [a](Scene& s) { s.bodies[0].dynamic.damping = a; });
   for (double s : extent.quick ? std::vector{10.0} : std::vector{2.0, 10.0})
-    add("step / what the bound gives about [1]", fmt::format("{:g}", s), [s](Scene& scene) { scene.bodies[0].dynamic.step = s * 5e-4; });
+    add("step / what the bound gives about [1]", fmt::format("{:g}", s),
+        [s](Scene& scene) { scene.bodies[0].dynamic.step = s * 5e-4; });
   for (double t : extent.quick ? std::vector{0.02} : std::vector{1e-6, 0.02, 0.2})
-    add("tears from a volume change of [1]", fmt::format("{:g}", t), [t](Scene& scene) { scene.bodies[0].tearing = Tearing{.criterion = "volume", .threshold = t}; });
+    add("tears from a volume change of [1]", fmt::format("{:g}", t),
+        [t](Scene& scene) { scene.bodies[0].tearing = Tearing{.criterion = "volume", .threshold = t}; });
   for (double share : extent.quick ? std::vector{0.7} : std::vector{-0.1, 0.2, 0.5, 0.7, 0.95})
     points.push_back({"hybrid share", "height of the border [1]", fmt::format("{:g}", share), [share] {
                         const TetMesh mesh = organ_mesh();
                         const Scene scene = hybrid_scene(mesh, share);
                         Result r = press_organ(scene, mesh, 0.004, 300);
-                        r.note += fmt::format("; {} of {} tetrahedra are dynamic", scene.bodies[0].hybrid->regions[0].indices.size(), mesh.tetrahedra.size());
+                        r.note +=
+                            fmt::format("; {} of {} tetrahedra are dynamic",
+                                        scene.bodies[0].hybrid->regions[0].indices.size(), mesh.tetrahedra.size());
                         return r;
                       }});
   points.push_back({"hybrid share", "dynamic part", "one tetrahedron at a corner", [] {

@@ -1,11 +1,12 @@
 // The closed loop: a hand on a device against a wall and tissue.
 //
-// Hand: M = 0.554 kg, B = 6.45 N s/m, K = 135 N/m, measured on a HapticMaster (van Beek et al., "Haptic perception of force
-// magnitude and its relation to postural arm dynamics in 3D", Scientific Reports 5:18004, 2015, fig. 3). Device: its mass is in
-// the hand's; its own damping is taken as nothing. Passivity of a sampled wall: b > K T/2 + B (J. E. Colgate and G. Schenkel,
-// "Passivity of a class of sampled-data systems", J. Robotic Systems 14(1), 1997); with a delay t_d: K < (b + B)/(T/2 + t_d)
-// for small B (T. Hulin, A. Albu-Schaeffer and G. Hirzinger, "Passivity and stability boundaries for haptic systems with time
-// delay", IEEE Trans. Control Systems Technology 22(4), 2014). Here the hand's own damping stands for b and B is 0.
+// Hand: M = 0.554 kg, B = 6.45 N s/m, K = 135 N/m, measured on a HapticMaster (van Beek et al., "Haptic perception of
+// force magnitude and its relation to postural arm dynamics in 3D", Scientific Reports 5:18004, 2015, fig. 3). Device:
+// its mass is in the hand's; its own damping is taken as nothing. Passivity of a sampled wall: b > K T/2 + B (J. E.
+// Colgate and G. Schenkel, "Passivity of a class of sampled-data systems", J. Robotic Systems 14(1), 1997); with a
+// delay t_d: K < (b + B)/(T/2 + t_d) for small B (T. Hulin, A. Albu-Schaeffer and G. Hirzinger, "Passivity and
+// stability boundaries for haptic systems with time delay", IEEE Trans. Control Systems Technology 22(4), 2014). Here
+// the hand's own damping stands for b and B is 0.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -37,13 +38,13 @@ struct Hand {
 };
 
 struct Link {
-  double rate = 1000;      ///< [Hz]
-  int delay = 0;           ///< [ticks] of the wall's answer
-  double jitter = 0;       ///< [ticks] more, at random
-  double loss = 0;         ///< share of answers that are lost
-  double quantum = 0;      ///< [m] of the sensed place
-  double slew = 1e5;       ///< [N/s]
-  bool local = false;      ///< the answer carries the stiffness, as a local contact model does
+  double rate = 1000;  ///< [Hz]
+  int delay = 0;       ///< [ticks] of the wall's answer
+  double jitter = 0;   ///< [ticks] more, at random
+  double loss = 0;     ///< share of answers that are lost
+  double quantum = 0;  ///< [m] of the sensed place
+  double slew = 1e5;   ///< [N/s]
+  bool local = false;  ///< the answer carries the stiffness, as a local contact model does
   bool controller = true;
 };
 
@@ -53,7 +54,9 @@ struct LoopEnd {
   double last = 0;               ///< [m] where it is at the end
 };
 
-double quantised(double x, double quantum) { return quantum > 0 ? quantum * std::round(x / quantum) : x; }
+double quantised(double x, double quantum) {
+  return quantum > 0 ? quantum * std::round(x / quantum) : x;
+}
 
 /// How far the tip still goes to and fro once it should have settled.
 class Swing {
@@ -93,8 +96,8 @@ Scene wall_scene(const Link& link) {
   return scene;
 }
 
-/// A wall z = 0 of `stiffness` [N/m] that is worked out elsewhere: its force comes late, through the haptic step's own local
-/// contact model. Three seconds; the hand wants to be 10 mm inside.
+/// A wall z = 0 of `stiffness` [N/m] that is worked out elsewhere: its force comes late, through the haptic step's own
+/// local contact model. Three seconds; the hand wants to be 10 mm inside.
 LoopEnd touch_wall(double stiffness, const Link& link) {
   const Scene scene = wall_scene(link);
   const Tool& tool = scene.tools[0];
@@ -118,8 +121,10 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
     m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     const double k = link.local ? stiffness : 0;
-    if (depth > 0) m.contacts.push_back({0, 0, {0, 0, -depth}, {0, 0, -1}, {0, 0, -stiffness * depth}, {k, 0, 0, 0, k, 0, 0, 0, k}});
-    if (any(random) >= link.loss) late.emplace_back(i + link.delay + static_cast<std::uint64_t>(link.jitter * any(random)), m);
+    if (depth > 0)
+      m.contacts.push_back({0, 0, {0, 0, -depth}, {0, 0, -1}, {0, 0, -stiffness * depth}, {k, 0, 0, 0, k, 0, 0, 0, k}});
+    if (any(random) >= link.loss)
+      late.emplace_back(i + link.delay + static_cast<std::uint64_t>(link.jitter * any(random)), m);
     for (auto& [due, model] : late)
       if (due <= i && model.seq > newest) {
         newest = model.seq;
@@ -133,14 +138,17 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
   return {watch.result(), swing.late(), swing.early(), swing.last()};
 }
 
-/// At rest or on its way there, and held by the wall: not more than 3 mm deeper than the springs of hand and wall have it.
+/// At rest or on its way there, and held by the wall: not more than 3 mm deeper than the springs of hand and wall have
+/// it.
 bool settles(double stiffness, const Link& link) {
   const LoopEnd end = touch_wall(stiffness, link);
   const double rest = push * Hand{}.stiffness / (Hand{}.stiffness + stiffness);
   return (end.swing < 1e-4 + 3 * link.quantum || end.swing < 0.9 * end.before) && -end.last < rest + 0.003;
 }
 
-double bound_of(const Link& link) { return Hand{}.damping / (0.5 / link.rate + (link.delay + link.jitter) / link.rate); }
+double bound_of(const Link& link) {
+  return Hand{}.damping / (0.5 / link.rate + (link.delay + link.jitter) / link.rate);
+}
 
 /// The largest stiffness at which the hand comes to rest, by bisection of its logarithm.
 Result largest_stiffness(const Link& link) {
@@ -153,9 +161,9 @@ Result largest_stiffness(const Link& link) {
   const double bound = bound_of(link);
   const LoopEnd beyond = touch_wall(std::min(3 * low, 1e6), link);
   Result r = beyond.result;
-  r.note = fmt::format("K_max={:.4g} N/m{}, bound={:.4g} N/m; at {} it swings by {:.3g} mm, {:.3g} mm inside{}{}", low, low < 1e6 ? "" : " at least", bound,
-                       3 * low < 1e6 ? "three times K_max" : "1e6 N/m", 1e3 * beyond.swing, -1e3 * beyond.last,
-                       r.note.empty() ? "" : ", ", r.note);
+  r.note = fmt::format("K_max={:.4g} N/m{}, bound={:.4g} N/m; at {} it swings by {:.3g} mm, {:.3g} mm inside{}{}", low,
+                       low < 1e6 ? "" : " at least", bound, 3 * low < 1e6 ? "three times K_max" : "1e6 N/m",
+                       1e3 * beyond.swing, -1e3 * beyond.last, r.note.empty() ? "" : ", ", r.note);
   return r;
 }
 
@@ -178,7 +186,14 @@ LoopEnd touch_tissue(int delay, bool controller) {
   for (std::uint64_t i = 0; i < 3000; ++i) {
     hand.move(-0.006, i > 0 ? haptic.force(0).z() : 0, 1e-3);
     const ToolDofs d = dofs_of();
-    world.take({.run = 1, .step = i, .sense_ns = static_cast<std::int64_t>(i), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = d.roll, .grip = d.grip});
+    world.take({.run = 1,
+                .step = i,
+                .sense_ns = static_cast<std::int64_t>(i),
+                .yaw = d.yaw,
+                .pitch = d.pitch,
+                .depth = d.depth,
+                .roll = d.roll,
+                .grip = d.grip});
     world.tick();
     models.refresh();
     wait_for_workers();
@@ -221,7 +236,8 @@ LoopEnd touch_block(double young, double rate, bool controller) {
 }
 
 Result told(LoopEnd end) {
-  end.result.note = fmt::format("swings by {:.3g} mm, {:.3g} mm inside{}{}", 1e3 * end.swing, -1e3 * end.last, end.result.note.empty() ? "" : ", ", end.result.note);
+  end.result.note = fmt::format("swings by {:.3g} mm, {:.3g} mm inside{}{}", 1e3 * end.swing, -1e3 * end.last,
+                                end.result.note.empty() ? "" : ", ", end.result.note);
   return end.result;
 }
 
@@ -233,22 +249,34 @@ std::vector<Point> loop_points(const Extent& extent) {
     const char* with = controller ? "controller" : "observer only";
     const auto wall = [&](const char* parameter, const std::string& value, Link link) {
       link.controller = controller;
-      points.push_back({fmt::format("loop {}", with), parameter, value, [link] { return largest_stiffness(link); }, 300});
+      points.push_back(
+          {fmt::format("loop {}", with), parameter, value, [link] { return largest_stiffness(link); }, 300});
     };
-    for (int d : extent.quick ? std::vector{0, 20} : std::vector{0, 1, 2, 5, 10, 20, 50, 100}) wall("delay [ms]", std::to_string(d), {.delay = d});
-    for (int d : extent.quick ? std::vector{20} : std::vector{5, 20, 50, 100}) wall("delay [ms], with local stiffness", std::to_string(d), {.delay = d, .local = true});
-    for (double r : extent.quick ? std::vector<double>{} : std::vector{100.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0}) wall("rate [Hz]", fmt::format("{:g}", r), {.rate = r});
-    for (double q : extent.quick ? std::vector{1e-4} : std::vector{1e-6, 1e-5, 1e-4, 1e-3}) wall("quantisation [m]", fmt::format("{:g}", q), {.quantum = q});
-    for (double j : extent.quick ? std::vector<double>{} : std::vector{5.0, 20.0}) wall("jitter [ms] after 10 ms", fmt::format("{:g}", j), {.delay = 10, .jitter = j});
-    for (double l : extent.quick ? std::vector<double>{} : std::vector{0.05, 0.3}) wall("loss [1] after 10 ms", fmt::format("{:g}", l), {.delay = 10, .loss = l});
+    for (int d : extent.quick ? std::vector{0, 20} : std::vector{0, 1, 2, 5, 10, 20, 50, 100})
+      wall("delay [ms]", std::to_string(d), {.delay = d});
+    for (int d : extent.quick ? std::vector{20} : std::vector{5, 20, 50, 100})
+      wall("delay [ms], with local stiffness", std::to_string(d), {.delay = d, .local = true});
+    for (double r : extent.quick ? std::vector<double>{} : std::vector{100.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0})
+      wall("rate [Hz]", fmt::format("{:g}", r), {.rate = r});
+    for (double q : extent.quick ? std::vector{1e-4} : std::vector{1e-6, 1e-5, 1e-4, 1e-3})
+      wall("quantisation [m]", fmt::format("{:g}", q), {.quantum = q});
+    for (double j : extent.quick ? std::vector<double>{} : std::vector{5.0, 20.0})
+      wall("jitter [ms] after 10 ms", fmt::format("{:g}", j), {.delay = 10, .jitter = j});
+    for (double l : extent.quick ? std::vector<double>{} : std::vector{0.05, 0.3})
+      wall("loss [1] after 10 ms", fmt::format("{:g}", l), {.delay = 10, .loss = l});
     for (int d : extent.quick ? std::vector{50} : std::vector{0, 5, 20, 50, 100}) {
-      points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms]", std::to_string(d), [=] { return told(touch_wall(2000, {.delay = d, .controller = controller})); }});
+      points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms]", std::to_string(d),
+                        [=] { return told(touch_wall(2000, {.delay = d, .controller = controller})); }});
       if (!extent.quick || d > 0)
-        points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms], slew limit 5000 N/s", std::to_string(d), [=] { return told(touch_wall(2000, {.delay = d, .slew = 5000, .controller = controller})); }});
-      points.push_back({fmt::format("moving tissue, {}", with), "delay [ms]", std::to_string(d), [=] { return told(touch_tissue(d, controller)); }, 120});
+        points.push_back(
+            {fmt::format("wall of 2000 N/m, {}", with), "delay [ms], slew limit 5000 N/s", std::to_string(d),
+             [=] { return told(touch_wall(2000, {.delay = d, .slew = 5000, .controller = controller})); }});
+      points.push_back({fmt::format("moving tissue, {}", with), "delay [ms]", std::to_string(d),
+                        [=] { return told(touch_tissue(d, controller)); }, 120});
     }
     for (double e : extent.quick ? std::vector{5e3, 1e9} : std::vector{1.0, 5e3, 1e5, 1e6, 1e7, 1e9})
-      points.push_back({fmt::format("still tissue, {}", with), "E [Pa]", fmt::format("{:g}", e), [=] { return told(touch_block(e, 1000, controller)); }});
+      points.push_back({fmt::format("still tissue, {}", with), "E [Pa]", fmt::format("{:g}", e),
+                        [=] { return told(touch_block(e, 1000, controller)); }});
   }
   return points;
 }

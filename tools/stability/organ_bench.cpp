@@ -16,7 +16,14 @@ OrganBench::OrganBench(Scene scene, std::vector<Archive> archives)
 void OrganBench::tick(const Vector3d& p, double pedal, double grip) {
   const Tool& tool = scene_.tools[0];
   const ToolDofs d = dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), p, 0);
-  ToolState s{.run = 7, .step = ++step_, .sense_ns = static_cast<std::int64_t>(step_), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = 0, .grip = grip};
+  ToolState s{.run = 7,
+              .step = ++step_,
+              .sense_ns = static_cast<std::int64_t>(step_),
+              .yaw = d.yaw,
+              .pitch = d.pitch,
+              .depth = d.depth,
+              .roll = 0,
+              .grip = grip};
   s.pedal = pedal;
   world_.take(s);
   world_.tick();
@@ -31,7 +38,9 @@ void OrganBench::tick(const Vector3d& p, double pedal, double grip) {
 }
 
 Result OrganBench::result() const {
-  Result r{.max_force = largest_, .energy_growth = larger(late_energy_ - first_energy_, 0), .note = "energy is the tissue's own"};
+  Result r{.max_force = largest_,
+           .energy_growth = larger(late_energy_ - first_energy_, 0),
+           .note = "energy is the tissue's own"};
   if (!(reach_ <= 1e3)) r = {.outcome = Outcome::failed, .note = "the tissue's shape is not a number or runs away"};
   return r;
 }
@@ -54,7 +63,9 @@ Scene organ_scene(const std::string& model) {
   return scene;
 }
 
-TetMesh organ_mesh(int cells) { return make_block({-0.02, -0.02, 0}, {0.02, 0.02, 0.02}, {cells, cells, std::max(1, cells / 2)}); }
+TetMesh organ_mesh(int cells) {
+  return make_block({-0.02, -0.02, 0}, {0.02, 0.02, 0.02}, {cells, cells, std::max(1, cells / 2)});
+}
 
 Result press_organ(const Scene& scene, const TetMesh& mesh, double depth, int ticks) {
   OrganBench bench(scene, {precompute(scene.bodies[0], mesh)});

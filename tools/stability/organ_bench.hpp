@@ -18,8 +18,8 @@ class OrganBench {
   const Scene& scene() const { return scene_; }
   double dt() const { return world_.dt(); }
 
-  /// Stable while every position is finite; max_force the largest contact force on the tissue [N]; energy_growth how far the
-  /// tissue's own energy has risen above the largest of its first `settled` ticks.
+  /// Stable while every position is finite; max_force the largest contact force on the tissue [N]; energy_growth how
+  /// far the tissue's own energy has risen above the largest of its first `settled` ticks.
   Result result() const;
 
  private:

@@ -42,7 +42,8 @@ Result Watch::result() const {
     r.outcome = Outcome::failed;
     r.note += fmt::format("{}torque up to {:.3g} N m", r.note.empty() ? "" : ", ", torque_);
   }
-  if (!finite_ || !std::isfinite(torque_)) r = {.outcome = Outcome::failed, .note = "a force is not a number; " + r.note};
+  if (!finite_ || !std::isfinite(torque_))
+    r = {.outcome = Outcome::failed, .note = "a force is not a number; " + r.note};
   return r;
 }
 
@@ -64,7 +65,8 @@ Scene block_scene(double scale) {
 }
 
 TetMesh block_mesh(double scale, int cells) {
-  return make_block(scale * Eigen::Vector3d(-0.05, -0.05, -0.05), scale * Eigen::Vector3d(0.05, 0.05, 0), {cells, cells, cells / 2});
+  return make_block(scale * Eigen::Vector3d(-0.05, -0.05, -0.05), scale * Eigen::Vector3d(0.05, 0.05, 0),
+                    {cells, cells, cells / 2});
 }
 
 ToolDofs tip_at(const Tool& tool, const Eigen::Vector3d& p, double roll) {

@@ -11,7 +11,8 @@ namespace palpate::stability {
 /// Follows a haptic step and says how it went.
 class Watch {
  public:
-  /// [N m] to a hand, beyond which it counts as unbounded: contacts that pull against one another add up to little force.
+  /// [N m] to a hand, beyond which it counts as unbounded: contacts that pull against one another add up to little
+  /// force.
   static constexpr double most_torque = 100;
 
   /// Looks at the step that has just been made.

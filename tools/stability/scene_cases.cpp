@@ -21,7 +21,7 @@ struct Bend {
   double speed = 1;   ///< times as fast
   double deeper = 0;  ///< [m] further along the shaft, once the motion has begun
   bool controller = true;
-  int delay = 1;      ///< [ticks] of the moving tissue's answers
+  int delay = 1;  ///< [ticks] of the moving tissue's answers
 };
 
 /// Haptic step and moving tissue side by side, as the nodes run them, without a clock.
@@ -35,7 +35,8 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
   }
   std::vector<std::unique_ptr<Device>> devices;
   for (int t = 0; t < haptic.tools(); ++t) {
-    if (scene.tools[t].device != "scripted") throw std::runtime_error(fmt::format("tool '{}' is not scripted", scene.tools[t].name));
+    if (scene.tools[t].device != "scripted")
+      throw std::runtime_error(fmt::format("tool '{}' is not scripted", scene.tools[t].name));
     devices.push_back(make_device(scene, t));
   }
   std::vector<ToolDofs> dofs(devices.size());
@@ -61,7 +62,15 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
     if (!world) continue;
     for (std::size_t t = 0; t < dofs.size(); ++t) {
       const ToolDofs& d = dofs[t];
-      ToolState s{.tool = static_cast<std::uint32_t>(t), .run = 1, .step = i, .sense_ns = static_cast<std::int64_t>(i), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth, .roll = d.roll, .grip = d.grip};
+      ToolState s{.tool = static_cast<std::uint32_t>(t),
+                  .run = 1,
+                  .step = i,
+                  .sense_ns = static_cast<std::int64_t>(i),
+                  .yaw = d.yaw,
+                  .pitch = d.pitch,
+                  .depth = d.depth,
+                  .roll = d.roll,
+                  .grip = d.grip};
       s.pedal = d.pedal;
       s.opening = haptic.opening(static_cast<int>(t));
       world->take(s);
@@ -118,10 +127,13 @@ void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (scene.bodies[b].model != "quasi_static") continue;
     for (const int count : extent.quick ? std::vector{1, 64, 512} : std::vector{1, 8, 32, 64, 96, 256, 512})
-      points.push_back({"held nodes", fmt::format("number, of body '{}'", scene.bodies[b].name), std::to_string(count), [=] {
+      points.push_back({"held nodes", fmt::format("number, of body '{}'", scene.bodies[b].name), std::to_string(count),
+                        [=] {
                           const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
-                          return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface), TouchBody::max_contacts);
-                        }, 600});
+                          return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface),
+                                            TouchBody::max_contacts);
+                        },
+                        600});
   }
 }
 
@@ -147,8 +159,10 @@ Result play_at_step(Scene scene, double share) {
 
 std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
   std::vector<Point> points;
-  const auto add = [&](const std::string& parameter, const std::string& value, const Bend& bend, const std::function<void(Scene&)>& change = {}) {
-    points.push_back({"scene", parameter, value, [=] {
+  const auto add = [&](const std::string& parameter, const std::string& value, const Bend& bend,
+                       const std::function<void(Scene&)>& change = {}) {
+    points.push_back({"scene", parameter, value,
+                      [=] {
                         Scene changed = scene;
                         changed.passivity.controller = bend.controller;
                         std::optional<OwnCache> cache;
@@ -158,21 +172,27 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
                         }
                         const std::vector<Archive> archives = load_or_precompute(changed, ArchivePart::surface);
                         return play(changed, archives, bend);
-                      }, 600});
+                      },
+                      600});
   };
   add("as it is", "controller", {});
   add("as it is", "observer only", {.controller = false});
-  for (double v : extent.quick ? std::vector{10.0} : std::vector{0.3, 3.0, 10.0, 100.0}) add("speed of the motion [1]", fmt::format("{:g}", v), {.speed = v});
-  for (double d : extent.quick ? std::vector{0.02} : std::vector{1e-12, 0.005, 0.02, 0.1}) add("deeper by [m]", fmt::format("{:g}", d), {.deeper = d});
+  for (double v : extent.quick ? std::vector{10.0} : std::vector{0.3, 3.0, 10.0, 100.0})
+    add("speed of the motion [1]", fmt::format("{:g}", v), {.speed = v});
+  for (double d : extent.quick ? std::vector{0.02} : std::vector{1e-12, 0.005, 0.02, 0.1})
+    add("deeper by [m]", fmt::format("{:g}", d), {.deeper = d});
   for (double h : extent.quick ? std::vector<double>{} : std::vector{250.0, 4000.0})
     add("haptic rate [Hz]", fmt::format("{:g}", h), {}, [h](Scene& s) { s.rates.haptic_hz = h; });
   for (double f : extent.quick ? std::vector{1e3} : std::vector{1e-3, 1e3, 1e6})
-    add("young, times [1]", fmt::format("{:g}", f), {}, [f](Scene& s) { change_materials(s, [f](Material& m) { m.young *= f; }); });
+    add("young, times [1]", fmt::format("{:g}", f), {},
+        [f](Scene& s) { change_materials(s, [f](Material& m) { m.young *= f; }); });
   for (double nu : extent.quick ? std::vector{0.49999} : std::vector{0.0, 0.499, 0.49999})
-    add("poisson [1]", fmt::format("{:g}", nu), {}, [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
+    add("poisson [1]", fmt::format("{:g}", nu), {},
+        [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
   if (std::ranges::any_of(scene.bodies, is_dynamic))
     for (double share : extent.quick ? std::vector{1.5} : std::vector{0.1, 0.5, 0.999, 1.001, 1.5, 10.0})
-      points.push_back({"scene", "step of moving tissue / bound [1]", fmt::format("{:g}", share), [=] { return play_at_step(scene, share); }, 600});
+      points.push_back({"scene", "step of moving tissue / bound [1]", fmt::format("{:g}", share),
+                        [=] { return play_at_step(scene, share); }, 600});
   add_held_nodes(scene, extent, points);
   return points;
 }

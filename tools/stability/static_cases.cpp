@@ -21,7 +21,8 @@ Result press_block(const std::function<void(Scene&)>& change, const TetMesh& mes
   return press(scene, mesh, down_and_up(radius + 0.001, 0.004 - radius, 100), 300);
 }
 
-/// Moves the nodes of a block's inner layer so that the tetrahedra there become flat: angle [degrees] between their faces.
+/// Moves the nodes of a block's inner layer so that the tetrahedra there become flat: angle [degrees] between their
+/// faces.
 TetMesh slivers(double degrees) {
   const double h = 0.1 / 6, thin = 0.5 * h * std::tan(degrees * M_PI / 180);
   const std::vector<double> across = graded_axis(-0.05, 0.05, 6, 1);
@@ -41,25 +42,31 @@ TetMesh needles(double ratio) {
 std::vector<Point> material_points(const Extent& extent) {
   std::vector<Point> points;
   for (double e : extent.quick ? std::vector{1.0, 1e12} : std::vector{1.0, 1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
-    points.push_back({"young", "E [Pa]", fmt::format("{:g}", e), [e] { return press_block([e](Scene& s) { s.bodies[0].material.young = e; }, block_mesh()); }});
+    points.push_back({"young", "E [Pa]", fmt::format("{:g}", e),
+                      [e] { return press_block([e](Scene& s) { s.bodies[0].material.young = e; }, block_mesh()); }});
   for (double c : extent.quick ? std::vector{1e8, 1e-8} : std::vector{1e2, 1e4, 1e6, 1e8, 1e-4, 1e-8})
     points.push_back({"contrast", "E upper / E lower [1]", fmt::format("{:g}", c), [c] {
                         return press_block(
                             [c](Scene& s) {
                               Material upper = s.bodies[0].material;
                               upper.young *= c;
-                              s.bodies[0].materials.push_back({{.indices = {}, .box = Box{{-1, -1, -0.026}, {1, 1, 1}}, .group = {}}, upper});
+                              s.bodies[0].materials.push_back(
+                                  {{.indices = {}, .box = Box{{-1, -1, -0.026}, {1, 1, 1}}, .group = {}}, upper});
                             },
                             block_mesh());
                       }});
-  for (double nu : extent.quick ? std::vector{0.4999999} : std::vector{-0.9, 0.0, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.499999, 0.4999999, 0.5})
-    points.push_back({"poisson", "nu [1]", fmt::format("{:.7g}", nu), [nu] {
-                        if (!(nu < 0.5)) {  // as a scene would say it
-                          const std::string text = fmt::format("[[body]]\nname = \"a\"\nmesh = \"a.msh\"\nmodel = \"quasi_static\"\nyoung = 1000\npoisson = {}\n", nu);
-                          parse_scene(text, "a.toml");
-                        }
-                        return press_block([nu](Scene& s) { s.bodies[0].material.poisson = nu; }, block_mesh());
-                      }});
+  for (double nu : extent.quick ? std::vector{0.4999999}
+                                : std::vector{-0.9, 0.0, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.499999, 0.4999999, 0.5})
+    points.push_back(
+        {"poisson", "nu [1]", fmt::format("{:.7g}", nu), [nu] {
+           if (!(nu < 0.5)) {  // as a scene would say it
+             const std::string text = fmt::format(
+                 "[[body]]\nname = \"a\"\nmesh = \"a.msh\"\nmodel = \"quasi_static\"\nyoung = 1000\npoisson = {}\n",
+                 nu);
+             parse_scene(text, "a.toml");
+           }
+           return press_block([nu](Scene& s) { s.bodies[0].material.poisson = nu; }, block_mesh());
+         }});
   return points;
 }
 
@@ -68,14 +75,17 @@ std::vector<Point> geometry_points(const Extent& extent) {
   for (double a : extent.quick ? std::vector{0.01} : std::vector{10.0, 1.0, 0.1, 0.01})
     points.push_back({"sliver", "least dihedral angle [deg]", fmt::format("{:g}", a), [a] {
                         Result r = press_block([](Scene&) {}, slivers(a));
-                        r.note += fmt::format("{}layer {:.2g} mm thin", r.note.empty() ? "" : "; ", 1e3 * 0.5 * 0.1 / 6 * std::tan(a * M_PI / 180));
+                        r.note += fmt::format("{}layer {:.2g} mm thin", r.note.empty() ? "" : "; ",
+                                              1e3 * 0.5 * 0.1 / 6 * std::tan(a * M_PI / 180));
                         return r;
                       }});
   for (double n : extent.quick ? std::vector{1e6} : std::vector{1e2, 1e4, 1e6})
-    points.push_back({"needle", "length / width [1]; also size ratio", fmt::format("{:g}", n), [n] { return press_block([](Scene&) {}, needles(n)); }});
+    points.push_back({"needle", "length / width [1]; also size ratio", fmt::format("{:g}", n),
+                      [n] { return press_block([](Scene&) {}, needles(n)); }});
   for (double s : extent.quick ? std::vector{1e-3, 1e6} : std::vector{1e-6, 1e-3, 1.0, 1e3, 1e6})
     points.push_back({"units", "size of the block / 0.1 m [1]", fmt::format("{:g}", s), [s] {
-                        return press(block_scene(s), block_mesh(s), down_and_up(s * (radius + 0.001), s * (0.004 - radius), 100), 300);
+                        return press(block_scene(s), block_mesh(s),
+                                     down_and_up(s * (radius + 0.001), s * (0.004 - radius), 100), 300);
                       }});
   return points;
 }
@@ -97,8 +107,9 @@ std::vector<Point> hold_points(const Extent& extent) {
 std::vector<Point> press_points(const Extent& extent) {
   std::vector<Point> points;
   for (double d : extent.quick ? std::vector{1e-12, 0.07} : std::vector{1e-12, 1e-9, 1e-6, 1e-3, 1e-2, 4e-2, 7e-2})
-    points.push_back({"press", "depth [m] of 0.05", fmt::format("{:g}", d),
-                      [d] { return press(block_scene(), block_mesh(), down_and_up(radius + 0.001, d - radius, 200), 600); }});
+    points.push_back({"press", "depth [m] of 0.05", fmt::format("{:g}", d), [d] {
+                        return press(block_scene(), block_mesh(), down_and_up(radius + 0.001, d - radius, 200), 600);
+                      }});
   for (double v : extent.quick ? std::vector{0.0, 1e3} : std::vector{0.0, 1e-6, 0.1, 1.0, 10.0, 100.0, 1e3})
     points.push_back({"speed", "tool speed [m/s]", fmt::format("{:g}", v), [v] {
                         // To and fro over 0.2 m, through the block and out of its other side.
@@ -108,11 +119,15 @@ std::vector<Point> press_points(const Extent& extent) {
                         };
                         return press(block_scene(), block_mesh(), path, 500);
                       }});
-  for (const auto& [name, jump] : {std::pair{"once around the world", 4e7}, {"out of range", 1e300}, {"not a number", double(NAN)}})
-    points.push_back({"tool_pose", "tip jumps to", name, [jump = jump] {
-                        const auto path = [jump](int i) { return i < 50 ? Vector3d(0, 0, 0.02 - 4e-4 * i) : i < 60 ? Vector3d(0, 0, jump) : Vector3d(0, 0, 0.03); };
-                        return press(block_scene(), block_mesh(), path, 100);
-                      }});
+  for (const auto& [name, jump] :
+       {std::pair{"once around the world", 4e7}, {"out of range", 1e300}, {"not a number", double(NAN)}})
+    points.push_back(
+        {"tool_pose", "tip jumps to", name, [jump = jump] {
+           const auto path = [jump](int i) {
+             return i < 50 ? Vector3d(0, 0, 0.02 - 4e-4 * i) : i < 60 ? Vector3d(0, 0, jump) : Vector3d(0, 0, 0.03);
+           };
+           return press(block_scene(), block_mesh(), path, 100);
+         }});
   return points;
 }
 

@@ -26,8 +26,8 @@ std::string digest_of(const Scene& scene) {
 }  // namespace
 
 std::string subject_of(const Scene* scene, bool quick) {
-  return fmt::format("{}{} by program {} {}", scene ? "scene " + digest_of(*scene) : "the general cases", quick ? ", quick," : "", PALPATE_VERSION,
-                     digest_of("/proc/self/exe"));
+  return fmt::format("{}{} by program {} {}", scene ? "scene " + digest_of(*scene) : "the general cases",
+                     quick ? ", quick," : "", PALPATE_VERSION, digest_of("/proc/self/exe"));
 }
 
 }  // namespace palpate::stability

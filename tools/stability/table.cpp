@@ -24,7 +24,8 @@ std::string quoted(const std::string& text) {
 }
 
 std::string line_of(const Row& r) {
-  return fmt::format("{},{},{},{},{:.6g},{:.6g},{}\n", quoted(r.name), quoted(r.parameter), quoted(r.value), r.outcome, r.max_force, r.energy_growth, quoted(r.note));
+  return fmt::format("{},{},{},{},{:.6g},{:.6g},{}\n", quoted(r.name), quoted(r.parameter), quoted(r.value), r.outcome,
+                     r.max_force, r.energy_growth, quoted(r.note));
 }
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -79,7 +80,8 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
-int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject, const std::string& only) {
+int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject,
+              const std::string& only) {
   if (std::ranges::none_of(points, [&](const Point& p) { return p.name.find(only) != std::string::npos; }))
     throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", only));
   const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
@@ -90,7 +92,8 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
   set_linear_algebra_threads(1);  // as the nodes have it; threads that spin would only slow the others down
   std::vector<std::optional<Row>> rows;
   for (const Point& p : points) {
-    const auto kept = std::ranges::find_if(before, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
+    const auto kept = std::ranges::find_if(
+        before, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
     rows.push_back(kept == before.end() ? std::nullopt : std::optional(*kept));
   }
   int failed = 0;
@@ -101,8 +104,8 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     failed += rows[i]->outcome == "failed";
     write_rows(rows, csv);
-    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", i + 1, points.size(), rows[i]->name, rows[i]->parameter, rows[i]->value, rows[i]->outcome,
-               seconds, rows[i]->note);
+    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", i + 1, points.size(), rows[i]->name, rows[i]->parameter,
+               rows[i]->value, rows[i]->outcome, seconds, rows[i]->note);
   }
   return failed;
 }

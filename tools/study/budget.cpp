@@ -16,8 +16,7 @@ struct Offer {
 };
 
 bool counts(const std::string& reference) {
-  return reference == "fine_linear" || reference.starts_with("all_modes") ||
-         reference.starts_with("finest_");
+  return reference == "fine_linear" || reference.starts_with("all_modes") || reference.starts_with("finest_");
 }
 
 /// A point's worst error over the references that count; none without all figures.

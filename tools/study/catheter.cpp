@@ -16,9 +16,9 @@ namespace {
 
 constexpr double pulled = 0.1;  // of its length, the tip aside
 constexpr double ramp_seconds = 0.1, course_seconds = 0.3, rest_seconds = 3, rest_damping = 40;
-constexpr double clamp = 0.02;  // of its length, held at the tail by three points
-constexpr double stiff = 1e-6;  // [m/N] of the grasps
-constexpr int places = 60;      // along its length, where shapes are compared
+constexpr double clamp = 0.02;                          // of its length, held at the tail by three points
+constexpr double stiff = 1e-6;                          // [m/N] of the grasps
+constexpr int places = 60;                              // along its length, where shapes are compared
 constexpr const char* insertion_suffix = " insertion";  // of the method in course.csv
 
 /// What the tip's pull did.
@@ -117,8 +117,7 @@ class CatheterMethod : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto add = [&](const std::string& knob, const std::string& value,
-                         std::function<void(Scene&)> change) {
+    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
       all.push_back({name_, knob, value, change, true});
     };
     add("scene", "as it is", [](Scene&) {});
@@ -133,8 +132,8 @@ class CatheterMethod : public Method {
     for (const int ticks : {2, 4}) {
       if (quick_ && ticks != 2) continue;
       const double hz = ticks * scene_.rates.haptic_hz;
-      all.push_back({name_, "step", fmt::format("{:.3g} ms", 1e3 / hz),
-                     [hz](Scene& s) { s.rates.haptic_hz = hz; }, false});
+      all.push_back(
+          {name_, "step", fmt::format("{:.3g} ms", 1e3 / hz), [hz](Scene& s) { s.rates.haptic_hz = hz; }, false});
     }
     if (insertion_) all.push_back({name_, "insertion reference", "coarser", {}, false});
     return all;
@@ -166,8 +165,7 @@ class CatheterMethod : public Method {
     still.reference = "finest_chain";
     result.rows.push_back(still);
     row.reference = "finest_chain_in_time";
-    add_course(row, Rig(scene, body_, tick, shape(scene).damping).course(interval()), course_, interval(),
-               result);
+    add_course(row, Rig(scene, body_, tick, shape(scene).damping).course(interval()), course_, interval(), result);
     if (insertion_) add_insertion(row, scene, tick, result);
     return result;
   }

@@ -80,8 +80,7 @@ void add_study_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("SCENE", arguments->scenes, "scene files (TOML)");
   command
-      ->add_option("-o,--out", arguments->out,
-                   "folder for figures and page; with several scenes one folder each in it")
+      ->add_option("-o,--out", arguments->out, "folder for figures and page; with several scenes one folder each in it")
       ->required();
   command->add_option("--budget", arguments->budget,
                       "names the most accurate configuration whose step takes no longer, such as 1ms, and "

@@ -138,10 +138,9 @@ Result rest_after_cut(const SolidCase& solid, const Body& body, Row row) {
   Row ignorant{row.scene, solid.name("quasi_static"), row.knob, "tensors that do not know of it"};
   ignorant.reference = "cut_mesh";
   add(ignorant, stale);
-  result.notes.push_back(
-      {row.scene, row.method, row.knob, row.value,
-       fmt::format("{} of {} tetrahedra removed; time is that of one step of the integrator", slot.size(),
-                   solid.mesh().tetrahedra.size())});
+  result.notes.push_back({row.scene, row.method, row.knob, row.value,
+                          fmt::format("{} of {} tetrahedra removed; time is that of one step of the integrator",
+                                      slot.size(), solid.mesh().tetrahedra.size())});
   return result;
 }
 

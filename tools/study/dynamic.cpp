@@ -25,8 +25,7 @@ constexpr double course_seconds = 0.25, ramp_seconds = 0.1;
 struct Ready {
   Archive archive;
   double offline = 0;
-  std::vector<int>
-      node;  // of the archive per surface node of the case; the case's nodes come first in any mesh
+  std::vector<int> node;  // of the archive per surface node of the case; the case's nodes come first in any mesh
 };
 
 class Dynamic : public Method {
@@ -75,9 +74,8 @@ class Dynamic : public Method {
         add("dynamic share",
             fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.size()) /
                                         static_cast<double>(solid_->mesh().tetrahedra.size())),
-            layers > 0 && !solid_->has_two_meshes(), [part](Body& body) {
-              body.hybrid->regions = {Selector{.indices = part, .box = {}, .group = {}}};
-            });
+            layers > 0 && !solid_->has_two_meshes(),
+            [part](Body& body) { body.hybrid->regions = {Selector{.indices = part, .box = {}, .group = {}}}; });
       }
     if (model_ != "hybrid" && own_) {
       if (!solid_->quick()) all.push_back({name_, "resolution", "edges x 0.6", {}, false});
@@ -105,9 +103,7 @@ class Dynamic : public Method {
     if (model_ != "hybrid") body.hybrid.reset();
   }
 
-  Ready prepare(const Scene& scene) const {
-    return prepare(scene.bodies[body()], solid_->mesh());
-  }
+  Ready prepare(const Scene& scene) const { return prepare(scene.bodies[body()], solid_->mesh()); }
 
   Ready prepare(Body body, const TetMesh& mesh) const {
     body.dynamic.gravity.setZero();
@@ -135,11 +131,10 @@ class Dynamic : public Method {
       scene.bodies[body()].dynamic.step = 0;
       const Ready ready = prepare(scene);
       const Scene alone = solid_->press_scene(scene, 0);
-      bound_ =
-          OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
-              .organ()
-              .largest_step() /
-          0.9;
+      bound_ = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
+                   .organ()
+                   .largest_step() /
+               0.9;
     }
     return *bound_;
   }
@@ -172,8 +167,8 @@ class Dynamic : public Method {
         answers.back().push_back(std::move(answer));
       }
       const double middle = press.depth();
-      const auto times = time_steps(
-          50, samples, [&](int i) { press.tick(middle + 1e-3 * presses.radius * std::sin(0.05 * i)); });
+      const auto times =
+          time_steps(50, samples, [&](int i) { press.tick(middle + 1e-3 * presses.radius * std::sin(0.05 * i)); });
       seconds.insert(seconds.end(), times.begin(), times.end());
     }
     if (!stable) throw std::runtime_error("the press does not stay finite");
@@ -198,8 +193,7 @@ class Dynamic : public Method {
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p],
-                        presses.radius);
+      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p], presses.radius);
       same_mesh_.emplace_back();
       for (const double depth : presses.depths) same_mesh_.back().push_back(press.to(depth));
     }
@@ -212,8 +206,7 @@ class Dynamic : public Method {
     const Scene alone = solid_->press_scene(scene, 0);
     OrganPress press(alone, ready.archive, presses.patches[0], presses.radius, tick());
     std::array<int, 3> nodes;
-    for (int v = 0; v < 3; ++v)
-      nodes[v] = ready.node[solid_->surface().triangles[presses.patches[0].triangle][v]];
+    for (int v = 0; v < 3; ++v) nodes[v] = ready.node[solid_->surface().triangles[presses.patches[0].triangle][v]];
     std::vector<std::array<double, 2>> path;
     for (double t = tick(); t < course_seconds; t += tick()) {
       const double force = press.tick(course_depth(t, ramp_seconds, presses.radius));
@@ -226,19 +219,17 @@ class Dynamic : public Method {
   void add_course(Scene scene, const Ready& ready, Row row, Result& result) {
     const auto ours = course(scene, ready);
     Body& of = scene.bodies[body()];
-    const std::string key =
-        fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), of.dynamic.corotational, of.model,
-                    ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
+    const std::string key = fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), of.dynamic.corotational,
+                                        of.model, ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
     if (!small_step_.contains(key)) {
       of.dynamic.integrator = "rk4";
       of.dynamic.precision = "double";
       of.dynamic.step = 0;
       const Scene alone = solid_->press_scene(scene, 0);
-      of.dynamic.step =
-          OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
-              .organ()
-              .largest_step() /
-          16;
+      of.dynamic.step = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
+                            .organ()
+                            .largest_step() /
+                        16;
       small_step_[key] = course(scene, ready);
     }
     row.reference = "small_step";

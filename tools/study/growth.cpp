@@ -100,8 +100,7 @@ void over_contacts(Growth& growth) {
 
 void over_edges(Growth& growth) {
   for (const int cells : growth.quick() ? std::vector{4, 6, 8} : std::vector{4, 6, 8, 12, 16, 22}) {
-    const TetMesh mesh =
-        make_block_of_five({0, 0, 0}, Eigen::Vector3d::Constant(0.01 * cells), {cells, cells, cells});
+    const TetMesh mesh = make_block_of_five({0, 0, 0}, Eigen::Vector3d::Constant(0.01 * cells), {cells, cells, cells});
     ElasticMesh elastic{mesh.nodes, mesh.tetrahedra, {}, {{5000, 0.4, 1000}}, {}};
     for (const auto& x : mesh.nodes) elastic.fixed.push_back({x.z() == 0, x.z() == 0, x.z() == 0});
     const ElementTensors tensors(elastic);

@@ -13,7 +13,7 @@ namespace palpate::study {
 struct Point {
   std::string method, knob, value;
   std::function<void(Scene&)> apply;  ///< makes the scene run so; empty: no scene can say it
-  bool serves = true;  ///< can do all that the scene asks of the body, so that a budget may choose it
+  bool serves = true;                 ///< can do all that the scene asks of the body, so that a budget may choose it
 };
 
 /// One way to move a body, with its knobs and its references.

@@ -65,10 +65,8 @@ class Modal : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto add = [&](const std::string& knob, const std::string& value,
-                         std::function<void(Shell&)> change) {
-      all.push_back(
-          {name_, knob, value, [b = body_, change](Scene& scene) { change(*scene.bodies[b].shell); }, true});
+    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Shell&)> change) {
+      all.push_back({name_, knob, value, [b = body_, change](Scene& scene) { change(*scene.bodies[b].shell); }, true});
     };
     add("scene", "as it is", [](Shell&) {});
     const std::vector<int> counts = quick_ ? std::vector{5, 20, 50} : std::vector{5, 10, 20, 50, 100, 200};
@@ -128,8 +126,7 @@ class Modal : public Method {
     return scene;
   }
 
-  Pressed press(const Scene& scene, const Archive& archive, std::vector<double>* seconds,
-                double* bytes) const {
+  Pressed press(const Scene& scene, const Archive& archive, std::vector<double>* seconds, double* bytes) const {
     Pressed pressed;
     const Presses& presses = errors_.presses();
     for (const Patch& patch : presses.patches) {
@@ -164,8 +161,7 @@ class Modal : public Method {
   }
 
   /// At the nodes of the mesh that the scene has, in the order of its archive.
-  std::vector<Eigen::Vector3d> renumbered(const std::vector<Eigen::Vector3d>& u,
-                                          const Archive& archive) const {
+  std::vector<Eigen::Vector3d> renumbered(const std::vector<Eigen::Vector3d>& u, const Archive& archive) const {
     std::vector<Eigen::Vector3d> of_mesh(archive.mesh_nodes, Eigen::Vector3d::Zero()), ours;
     for (std::size_t n = 0; n < u.size(); ++n) of_mesh[archive.surface.node_number[n]] = u[n];
     for (const int n : as_is_.surface.node_number) ours.push_back(of_mesh[n]);

@@ -7,8 +7,7 @@
 
 namespace palpate::study {
 
-OrganPress::OrganPress(const Scene& scene, const Archive& archive, const Patch& patch, double radius,
-                       double tick)
+OrganPress::OrganPress(const Scene& scene, const Archive& archive, const Patch& patch, double radius, double tick)
     : archive_(archive),
       patch_(patch),
       radius_(radius),
@@ -55,8 +54,8 @@ double OrganPress::settle(double seconds) {
     for (std::size_t n = 0; n < now.size(); ++n)
       change += (now[n] - shape[n]).squaredNorm(), size += now[n].squaredNorm();
     shape = now;
-    const bool settled = change < 1e-8 * size && most - least < 1e-3 * std::abs(mean) &&
-                         std::abs(mean - before) < 1e-4 * std::abs(mean);
+    const bool settled =
+        change < 1e-8 * size && most - least < 1e-3 * std::abs(mean) && std::abs(mean - before) < 1e-4 * std::abs(mean);
     before = mean;
     if (settled) break;
   }
@@ -65,8 +64,7 @@ double OrganPress::settle(double seconds) {
 
 Eigen::Vector3d OrganPress::node_displacement(int node) const {
   const HybridTouch* still = organ_.still_part();
-  return still && still->part().owns(node) ? still->part().displacement(node)
-                                           : organ_.model().displacement(node);
+  return still && still->part().owns(node) ? still->part().displacement(node) : organ_.model().displacement(node);
 }
 
 std::vector<Eigen::Vector3d> OrganPress::displacement() const {

@@ -17,7 +17,7 @@ class OrganPress {
   /// passed. Returns the force.
   double settle(double seconds);
   std::vector<Eigen::Vector3d> displacement() const;  ///< [m] per node of the archive's surface map
-  double at(const std::array<int, 3>& nodes) const;  ///< [m] mean displacement of three nodes along the press
+  double at(const std::array<int, 3>& nodes) const;   ///< [m] mean displacement of three nodes along the press
   const DynamicOrgan& organ() const { return organ_; }
   double depth() const { return depth_; }
   std::size_t bytes() const { return bytes_; }

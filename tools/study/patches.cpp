@@ -39,8 +39,7 @@ std::vector<double> smoothness(const SurfaceMap& s, double reach) {
   }
   for (std::size_t i = 0; i < smooth.size(); ++i)
     for (std::size_t j = 0; j < smooth.size(); ++j) {
-      const bool neighbours =
-          std::ranges::find_first_of(s.triangles[i], s.triangles[j]) != s.triangles[i].end();
+      const bool neighbours = std::ranges::find_first_of(s.triangles[i], s.triangles[j]) != s.triangles[i].end();
       if (neighbours || (middle[i] - middle[j]).norm() < reach)
         smooth[i] = std::min(smooth[i], normal[i].dot(normal[j]));
     }
@@ -62,8 +61,7 @@ double study_radius(const Scene& scene, const SurfaceMap& surface, std::string& 
 std::vector<double> node_areas(const SurfaceMap& s) {
   std::vector<double> area(s.size(), 0.0);
   for (const auto& t : s.triangles) {
-    const double of =
-        (s.position[t[1]] - s.position[t[0]]).cross(s.position[t[2]] - s.position[t[0]]).norm() / 2;
+    const double of = (s.position[t[1]] - s.position[t[0]]).cross(s.position[t[2]] - s.position[t[0]]).norm() / 2;
     for (const int n : t) area[n] += of / 3;
   }
   return area;
@@ -92,8 +90,8 @@ Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick
       if (free.size() < 3 * wanted && !(least < 0 && clear == 0)) continue;
       std::vector<Eigen::Vector3d> taken = fixed;
       while (presses.patches.size() < std::min(wanted, free.size())) {
-        const auto next = std::ranges::max_element(
-            free, {}, [&](const Patch& p) { return std::min(1e3, nearest(taken, p.point)); });
+        const auto next =
+            std::ranges::max_element(free, {}, [&](const Patch& p) { return std::min(1e3, nearest(taken, p.point)); });
         presses.patches.push_back(*next);
         if (presses.patches.size() == 1) taken.clear();
         taken.push_back(next->point);

@@ -31,8 +31,8 @@ double PressErrors::of_field(const std::vector<Eigen::Vector3d>& u,
   return std::sqrt(difference / size);
 }
 
-void PressErrors::add(const Row& cost, const PressAnswers& ours, const PressAnswers& reference,
-                      const std::string& name, Result& result) const {
+void PressErrors::add(const Row& cost, const PressAnswers& ours, const PressAnswers& reference, const std::string& name,
+                      Result& result) const {
   double field = 0, force = 0;
   int count = 0;
   for (std::size_t p = 0; p < ours.size(); ++p)
@@ -40,8 +40,7 @@ void PressErrors::add(const Row& cost, const PressAnswers& ours, const PressAnsw
       const PressAnswer &mine = ours[p][d], &theirs = reference[p][d];
       require_number(mine.force, "the force of a press");
       if (theirs.force == 0) continue;  // so shallow that the reference itself has no contact yet
-      const double of_u = of_field(mine.displacement, theirs.displacement),
-                   of_f = mine.force / theirs.force - 1;
+      const double of_u = of_field(mine.displacement, theirs.displacement), of_f = mine.force / theirs.force - 1;
       require_number(of_u, "the displacement of a press");
       require_number(of_f, "the force of a press");
       field += of_u * of_u;

@@ -15,8 +15,7 @@ using PressAnswers = std::vector<std::vector<PressAnswer>>;  ///< patch by patch
 /// Compares presses of one body by one set of patches.
 class PressErrors {
  public:
-  PressErrors(std::vector<double> area, Presses presses)
-      : area_(std::move(area)), presses_(std::move(presses)) {}
+  PressErrors(std::vector<double> area, Presses presses) : area_(std::move(area)), presses_(std::move(presses)) {}
 
   const Presses& presses() const { return presses_; }
   /// [1] relative difference of two fields in the area's mean square.

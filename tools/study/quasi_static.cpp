@@ -49,8 +49,7 @@ class QuasiStatic : public Method {
     std::vector<Point> all;
     const bool serves = !is_dynamic(solid_->body());
     const int b = solid_->index();
-    const auto add = [&](const std::string& knob, const std::string& value,
-                         std::function<void(Scene&)> change) {
+    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
       all.push_back({name_, knob, value,
                      [=](Scene& scene) {
                        make_quasi_static_body(scene.bodies[b]);
@@ -75,8 +74,7 @@ class QuasiStatic : public Method {
       if (solid_->quick() && value != "refine 1") continue;
       add("offline", value, [b, offline](Scene& scene) { scene.bodies[b].offline = offline; });
     }
-    if (solid_->body().nonlinear)
-      add("correction", "off", [b](Scene& scene) { scene.bodies[b].nonlinear.reset(); });
+    if (solid_->body().nonlinear) add("correction", "off", [b](Scene& scene) { scene.bodies[b].nonlinear.reset(); });
     return all;
   }
 
@@ -100,8 +98,7 @@ class QuasiStatic : public Method {
     const auto& presses = solid_->presses();
     const int samples = (solid_->quick() ? 600 : 2400) / static_cast<int>(presses.patches.size());
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p],
-                        presses.radius);
+      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p], presses.radius);
       answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth);
@@ -116,8 +113,7 @@ class QuasiStatic : public Method {
     const StepTime time = summarise(std::move(seconds));
     row.step_us_median = 1e6 * time.median;
     row.step_us_p99 = 1e6 * time.p99;
-    if (point.value == "double")
-      row.memory_bytes += 4.0 * archive.surface.size() * 3 * archive.surface.touchable * 3;
+    if (point.value == "double") row.memory_bytes += 4.0 * archive.surface.size() * 3 * archive.surface.touchable * 3;
     solid_->add_errors(row, answers, result);
     return result;
   }
@@ -142,8 +138,7 @@ class QuasiStatic : public Method {
   }
 
   /// Fewer touchable nodes come in another order.
-  std::vector<Eigen::Vector3d> renumbered(const std::vector<Eigen::Vector3d>& u,
-                                          const Archive& archive) const {
+  std::vector<Eigen::Vector3d> renumbered(const std::vector<Eigen::Vector3d>& u, const Archive& archive) const {
     std::vector<Eigen::Vector3d> of_mesh(solid_->mesh().nodes.size(), Eigen::Vector3d::Zero());
     for (std::size_t n = 0; n < u.size(); ++n) of_mesh[archive.surface.node_number[n]] = u[n];
     return solid_->at_surface(of_mesh);
@@ -173,17 +168,14 @@ class QuasiStatic : public Method {
 
 class Linearity : public Method {
  public:
-  explicit Linearity(std::shared_ptr<SolidCase> solid)
-      : solid_(std::move(solid)), name_(solid_->name("reference")) {}
+  explicit Linearity(std::shared_ptr<SolidCase> solid) : solid_(std::move(solid)), name_(solid_->name("reference")) {}
   int body() const override { return solid_->index(); }
 
   std::vector<Point> points() const override {
     return {{name_, "law", "linear", {}, false}, {name_, "mesh", "coarser", {}, false}};
   }
 
-  Result evaluate(const Point& point) override {
-    return point.knob == "law" ? of_law(point) : of_mesh(point);
-  }
+  Result evaluate(const Point& point) override { return point.knob == "law" ? of_law(point) : of_mesh(point); }
 
  private:
   Row row(const Point& point) const {
@@ -203,8 +195,8 @@ class Linearity : public Method {
       nodes = std::max(nodes, both.nodes);
       iterations += both.iterations;
       if (!both.gave_up.empty())
-        result.notes.push_back({row(point).scene, point.method, point.knob, point.value,
-                                fmt::format("patch {}: {}", p, both.gave_up)});
+        result.notes.push_back(
+            {row(point).scene, point.method, point.knob, point.value, fmt::format("patch {}: {}", p, both.gave_up)});
     }
     solid_->errors().add(row(point), linear, neo, "neo_hookean", result);
     result.notes.push_back({row(point).scene, point.method, point.knob, point.value,

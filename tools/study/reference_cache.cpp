@@ -42,8 +42,7 @@ std::vector<double> ReferenceCache::get(const std::string& key,
   const auto beside = file.string() + "." + std::to_string(getpid());
   std::ofstream out(beside, std::ios::binary);
   out << sum_of(values);
-  out.write(reinterpret_cast<const char*>(values.data()),
-            static_cast<std::streamsize>(values.size() * sizeof(double)));
+  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(double)));
   out.close();
   if (out) std::filesystem::rename(beside, file);
   return values;

@@ -34,15 +34,15 @@ std::string cell(std::string text) {
 }
 
 std::string line(const Row& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob),
-                     cell(r.value), cell(r.step_us_median), cell(r.step_us_p99), cell(r.offline_s),
-                     cell(r.memory_bytes), cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference));
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob), cell(r.value),
+                     cell(r.step_us_median), cell(r.step_us_p99), cell(r.offline_s), cell(r.memory_bytes),
+                     cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference));
 }
 
 std::string line(const DepthRow& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob),
-                     cell(r.value), r.patch, cell(r.depth_m), cell(r.depth_per_radius), cell(r.force_N),
-                     cell(r.reference_force_N), cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference));
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob), cell(r.value),
+                     r.patch, cell(r.depth_m), cell(r.depth_per_radius), cell(r.force_N), cell(r.reference_force_N),
+                     cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference));
 }
 
 std::string line(const CourseRow& r) {
@@ -52,8 +52,7 @@ std::string line(const CourseRow& r) {
 }
 
 std::string line(const Note& n) {
-  return fmt::format("{},{},{},{},{}", cell(n.scene), cell(n.method), cell(n.knob), cell(n.value),
-                     cell(n.text));
+  return fmt::format("{},{},{},{},{}", cell(n.scene), cell(n.method), cell(n.knob), cell(n.value), cell(n.text));
 }
 
 std::vector<std::string> split(const std::string& text) {
@@ -113,8 +112,8 @@ Result read_fragment(const std::filesystem::path& file) {
       result.rows.push_back({c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]),
                              number(c[8]), number(c[9]), c[10]});
     else if (kind == "depth" && c.size() == 12)
-      result.depths.push_back({c[0], c[1], c[2], c[3], std::stoi(c[4]), number(c[5]), number(c[6]),
-                               number(c[7]), number(c[8]), number(c[9]), number(c[10]), c[11]});
+      result.depths.push_back({c[0], c[1], c[2], c[3], std::stoi(c[4]), number(c[5]), number(c[6]), number(c[7]),
+                               number(c[8]), number(c[9]), number(c[10]), c[11]});
     else if (kind == "course" && c.size() == 9)
       result.courses.push_back(
           {c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]), number(c[8])});

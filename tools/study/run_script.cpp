@@ -27,7 +27,8 @@ std::string quoted(const std::filesystem::path& path) {
 std::string run_script(const std::string& name, const std::filesystem::path& folder) {
   const auto script = find_script(name);
   if (script.empty())
-    return fmt::format("no page was made: {} is neither installed nor in the source tree; the figures are in the CSV files", name);
+    return fmt::format(
+        "no page was made: {} is neither installed nor in the source tree; the figures are in the CSV files", name);
   // The system's interpreter first: it is the one that has the packages of scripts/install.sh.
   const std::string python = std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   if (std::system(fmt::format("{} {} {}", python, quoted(script), quoted(folder)).c_str()) == 0) return {};

@@ -93,8 +93,7 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strid
     const double faster = std::pow(stride, strides);
     const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
     const double inner = std::min(outer, fineness.ball * presses().radius);
-    const auto size =
-        size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
+    const auto size = size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
     try {
       return refine_graded(problem_, size, fineness.most_nodes);
     } catch (const std::runtime_error&) {
@@ -103,8 +102,8 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strid
   }
 }
 
-// Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press, the
-// mesh.
+// Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,
+// the mesh.
 std::string SolidCase::key(int patch, const Fineness& fineness) const {
   constexpr int definitions = 2;  // changes with every change of how references are solved
   Body plain = body();
@@ -114,10 +113,10 @@ std::string SolidCase::key(int patch, const Fineness& fineness) const {
   plain.nonlinear.reset();
   plain.offline.reset();
   const Patch& at = presses().patches[patch];
-  std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge, fineness.ball,
-                                 fineness.growth);
-  for (const double number : {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2],
-                              presses().radius})
+  std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
+                                 fineness.ball, fineness.growth);
+  for (const double number :
+       {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2], presses().radius})
     text += fmt::format(" {}", number);
   for (const double depth : presses().depths) text += fmt::format(" {}", depth);
   return text;
@@ -138,7 +137,8 @@ std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, i
 }
 
 std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness, int strides) const {
-  const auto numbers = cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness, strides); });
+  const auto numbers =
+      cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness, strides); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
 }
@@ -186,8 +186,8 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
   }
   const auto found = nonlinearity_.find(patch);
   if (found != nonlinearity_.end()) return found->second;
-  const auto numbers = cache_.get("neo-Hookean " + key(patch, quick_ ? quick_neo : neo_mesh),
-                                  [&] { return solve_nonlinear(patch); });
+  const auto numbers =
+      cache_.get("neo-Hookean " + key(patch, quick_ ? quick_neo : neo_mesh), [&] { return solve_nonlinear(patch); });
   Nonlinearity& both = nonlinearity_[patch];
   const double* at = numbers.data();
   both.nodes = static_cast<int>(*at++);
@@ -198,21 +198,20 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
     const auto count = static_cast<std::size_t>(*at++);
     *answers = read_answers(at, count);
     if (count < presses().depths.size())
-      both.gave_up = fmt::format("Newton's method does not converge under the ball at a depth beyond {:.3g} m", reached);
+      both.gave_up =
+          fmt::format("Newton's method does not converge under the ball at a depth beyond {:.3g} m", reached);
   }
   return both;
 }
 
-/// Nodes, Newton iterations of the large strains and the deepest node in the ball; then of both laws the last depth reached,
-/// how many presses that are, and these.
+/// Nodes, Newton iterations of the large strains and the deepest node in the ball; then of both laws the last depth
+/// reached, how many presses that are, and these.
 std::vector<double> SolidCase::solve_nonlinear(int patch) const {
   const auto begin = std::chrono::steady_clock::now();
   const Patch& at = presses().patches[patch];
   int strides = 0;
   const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh, strides);
-  const auto ball = [&](double depth) {
-    return Sphere{centre_at(at, presses().radius, depth), presses().radius};
-  };
+  const auto ball = [&](double depth) { return Sphere{centre_at(at, presses().radius, depth), presses().radius}; };
   std::vector<double> numbers{static_cast<double>(problem.mesh.nodes.size()), 0, 0};
   for (const Law law : {Law::neo_hookean, Law::linear}) {
     NewtonSolid solid(problem, law);
@@ -238,8 +237,8 @@ std::vector<double> SolidCase::solve_nonlinear(int patch) const {
   return numbers;
 }
 
-// The coarser mesh of the neo-Hookean solution has an error of its own, which the linear one on the same mesh shares: what
-// the law changes is added to the fine linear solution.
+// The coarser mesh of the neo-Hookean solution has an error of its own, which the linear one on the same mesh shares:
+// what the law changes is added to the fine linear solution.
 PressAnswers SolidCase::neo_hookean() {
   PressAnswers answers;
   for (int p = 0; p < static_cast<int>(presses().patches.size()); ++p) {

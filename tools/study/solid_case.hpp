@@ -6,8 +6,8 @@
 #include "common/fem/direct.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
-#include "tools/study/reference_cache.hpp"
 #include "tools/study/reference/linear_contact.hpp"
+#include "tools/study/reference_cache.hpp"
 
 namespace palpate::study {
 
@@ -18,7 +18,9 @@ class SolidCase {
   using Say = std::function<void(const std::string&)>;
 
   /// `whole`: the body on one mesh, by which it stands in scene() too.
-  SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache = {}, Say say = [](const std::string&) {});
+  SolidCase(
+      const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache = {},
+      Say say = [](const std::string&) {});
 
   const Scene& scene() const { return scene_; }
   int index() const { return body_; }
@@ -30,8 +32,7 @@ class SolidCase {
   const SurfaceMap& surface() const { return surface_; }
   const PressErrors& errors() const { return errors_; }
   const Presses& presses() const { return errors_.presses(); }
-  std::string name(
-      const std::string& model) const;  ///< of a method: the model, with the body where there are several
+  std::string name(const std::string& model) const;  ///< of a method: the model, with the body where there are several
 
   /// A scene of this body alone, as `from` has it, under a frictionless ball that comes to a patch along its
   /// press.

@@ -23,7 +23,8 @@ std::string first_line(const std::filesystem::path& file) {
 Store::Store(const std::filesystem::path& folder, const std::string& key) : folder_(folder / "points") {
   if (first_line(folder_ / "key") == key) return;
   if (std::filesystem::exists(folder_) && !std::filesystem::exists(folder_ / "key"))
-    throw std::runtime_error(fmt::format("{}: not made by a study, so it stays; name another folder", folder_.string()));
+    throw std::runtime_error(
+        fmt::format("{}: not made by a study, so it stays; name another folder", folder_.string()));
   new_ = true;
   std::filesystem::remove_all(folder_);
   std::filesystem::create_directories(folder_);

@@ -10,8 +10,8 @@ namespace palpate::study {
 /// The finished points of a study in a folder, one file each, under a key that says what they hold for.
 class Store {
  public:
-  /// Points under another key are dropped. Throws std::runtime_error if the place is taken by something else, or cannot be
-  /// written.
+  /// Points under another key are dropped. Throws std::runtime_error if the place is taken by something else, or cannot
+  /// be written.
   Store(const std::filesystem::path& folder, const std::string& key);
 
   bool is_new() const { return new_; }  ///< no point had been kept under this key

@@ -27,7 +27,8 @@ class JoinedAtNodes : public Method {
   int body() const override { return body_; }
   std::vector<Point> points() const override { return {{name_, "connection", "at some nodes", {}, false}}; }
   Result evaluate(const Point&) override {
-    throw std::runtime_error("the two meshes meet at some nodes only, and there is no converged solution to compare with: not assessed");
+    throw std::runtime_error(
+        "the two meshes meet at some nodes only, and there is no converged solution to compare with: not assessed");
   }
 
  private:
@@ -51,7 +52,8 @@ void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods
     methods.push_back(std::make_unique<JoinedAtNodes>(b, scene.bodies.size() == 1 ? "hybrid" : body.name + ":hybrid"));
     return;
   }
-  auto solid = std::make_shared<SolidCase>(scene, b, *std::move(whole), quick, ReferenceCache(options.references), options.say);
+  auto solid =
+      std::make_shared<SolidCase>(scene, b, *std::move(whole), quick, ReferenceCache(options.references), options.say);
   methods.push_back(make_quasi_static(solid));
   methods.push_back(make_linearity(solid));
   std::vector<std::string> models{"tensor_mass", "spring_mass"};
@@ -76,8 +78,8 @@ Result evaluate(const Scene& scene, Method& method, const Point& point) {
   }
 }
 
-void spend(const Scene& scene, const Methods& methods, const Result& result,
-           const std::filesystem::path& folder, const StudyOptions& options) {
+void spend(const Scene& scene, const Methods& methods, const Result& result, const std::filesystem::path& folder,
+           const StudyOptions& options) {
   const auto choice = choose(methods, static_cast<int>(scene.bodies.size()), result, *options.budget);
   std::string text = fmt::format("No configuration fits a step within {} here.", options.budget_text);
   if (choice) {
@@ -89,8 +91,7 @@ void spend(const Scene& scene, const Methods& methods, const Result& result,
     for (const Point& p : choice->points)
       settings += fmt::format("{}{}, {} = {}", settings.empty() ? "" : "; ", p.method, p.knob, p.value);
     text = fmt::format("Within {}: {}; 99th percentile {:.3g} us, largest error {:.2g} %; written as {}.",
-                       options.budget_text, settings, 1e6 * choice->p99, 100 * choice->error,
-                       file.filename().string());
+                       options.budget_text, settings, 1e6 * choice->p99, 100 * choice->error, file.filename().string());
   }
   std::ofstream(folder / "budget.txt") << text << '\n';
   options.say(text);
@@ -126,9 +127,8 @@ Result run_study(const Scene& scene, const std::filesystem::path& folder, const 
     if (!found) store.keep(point, one);
     append(result, one);
     write_result(result, folder);
-    options.say(fmt::format("{} {}/{}: {}, {} = {}: {}", scene.file.stem().string(), i + 1, all.size(),
-                            point.method, point.knob, point.value,
-                            found ? "kept" : fmt::format("{:.1f} s", seconds_since(begin))));
+    options.say(fmt::format("{} {}/{}: {}, {} = {}: {}", scene.file.stem().string(), i + 1, all.size(), point.method,
+                            point.knob, point.value, found ? "kept" : fmt::format("{:.1f} s", seconds_since(begin))));
   }
   std::filesystem::remove(folder / "budget.txt");
   if (options.budget) spend(scene, methods, result, folder, options);

@@ -10,9 +10,9 @@ namespace palpate::study {
 
 struct StudyOptions {
   bool quick = false;
-  std::filesystem::path references{};                                      ///< where they are kept; empty: in the study's folder
-  std::optional<double> budget;                                             ///< [s]
-  std::string budget_text;                                                  ///< as it was asked for
+  std::filesystem::path references{};  ///< where they are kept; empty: in the study's folder
+  std::optional<double> budget;        ///< [s]
+  std::string budget_text;             ///< as it was asked for
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< progress, a line at a time
 };
 

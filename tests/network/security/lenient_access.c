@@ -13,15 +13,19 @@ static void* from_real_plugin(const char* name) {
   return library ? dlsym(library, name) : NULL;
 }
 
-static DDS_Security_boolean may_write(dds_security_access_control* self, const DDS_Security_PermissionsHandle permissions, const DDS_Security_DomainId domain,
-                                      const char* topic, const DDS_Security_Qos* qos, const DDS_Security_PartitionQosPolicy* partition,
+static DDS_Security_boolean may_write(dds_security_access_control* self,
+                                      const DDS_Security_PermissionsHandle permissions,
+                                      const DDS_Security_DomainId domain, const char* topic,
+                                      const DDS_Security_Qos* qos, const DDS_Security_PartitionQosPolicy* partition,
                                       const DDS_Security_DataTags* tags, DDS_Security_SecurityException* exception) {
   (void)self, (void)permissions, (void)domain, (void)topic, (void)qos, (void)partition, (void)tags, (void)exception;
   return true;
 }
 
-static DDS_Security_boolean may_create(dds_security_access_control* self, const DDS_Security_PermissionsHandle permissions, const DDS_Security_DomainId domain,
-                                       const char* topic, const DDS_Security_Qos* qos, DDS_Security_SecurityException* exception) {
+static DDS_Security_boolean may_create(dds_security_access_control* self,
+                                       const DDS_Security_PermissionsHandle permissions,
+                                       const DDS_Security_DomainId domain, const char* topic,
+                                       const DDS_Security_Qos* qos, DDS_Security_SecurityException* exception) {
   (void)self, (void)permissions, (void)domain, (void)topic, (void)qos, (void)exception;
   return true;
 }

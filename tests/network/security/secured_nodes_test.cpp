@@ -37,13 +37,15 @@ class NodesWithKeys : public ::testing::Test {
   }
   void TearDown() override {
     if (!HasFailure() || !nodes_) return;
-    for (const char* name : {"haptic_node", "deform_node", "render_node"}) fmt::print("{}:\n{}\n", name, nodes_->said(name));
+    for (const char* name : {"haptic_node", "deform_node", "render_node"})
+      fmt::print("{}:\n{}\n", name, nodes_->said(name));
   }
 
   bool joined(std::chrono::milliseconds limit) {
     const std::uint64_t before = observer_->tool.step;
     return observer_->listen(limit, [&] {
-      return observer_->tool.run != 0 && observer_->surface.run == observer_->tool.run && observer_->surface.step > before && observer_->surface.step > 600;
+      return observer_->tool.run != 0 && observer_->surface.run == observer_->tool.run &&
+             observer_->surface.step > before && observer_->surface.step > 600;
     });
   }
   struct Result {
@@ -55,9 +57,10 @@ class NodesWithKeys : public ::testing::Test {
   Result on_b(const std::string& arguments, int limit_s = 30) const {
     const Inside here(hosts_->b());
     Result result;
-    result.status = run_command(fmt::format("timeout {} {} {} --domain {} --interface {} --peer {}", limit_s, program("palpate"), arguments, Nodes::domain,
-                                            TwoHosts::device, TwoHosts::address_a),
-                                &result.said);
+    result.status =
+        run_command(fmt::format("timeout {} {} {} --domain {} --interface {} --peer {}", limit_s, program("palpate"),
+                                arguments, Nodes::domain, TwoHosts::device, TwoHosts::address_a),
+                    &result.said);
     return result;
   }
   std::future<Result> meanwhile_on_b(const std::string& arguments) const {
@@ -97,7 +100,8 @@ TEST_F(SecuredNodes, AllJoinTheSurfaceFollowsTheToolAndAKilledNodeComesBack) {
     const auto shown = ages(observer_->surfaces, begin);
     EXPECT_GT(shown.size(), 30u);
     EXPECT_LT(at_share(shown, 0.5), 0.1);
-    EXPECT_TRUE(observer_->listen(5s, [&] { return first_since(observer_->pictures, begin) != 0; })) << "the picture follows";
+    EXPECT_TRUE(observer_->listen(5s, [&] { return first_since(observer_->pictures, begin) != 0; }))
+        << "the picture follows";
     kill(deform.pid(), SIGKILL);
     ASSERT_TRUE(deform.wait(2s));
   }
@@ -115,13 +119,15 @@ TEST_F(SecuredNodes, RecordTopAndReplayTakePartWithTheirOwnKeysOnly) {
   auto recorder = meanwhile_on_b("record --seconds 2.5 -o " + file("far.lcmlog") + with_keys("recorder"));
   auto stranger = meanwhile_on_b("record --seconds 2.5 -o " + file("stranger.lcmlog"));
   auto observer = meanwhile_on_b("top --once --interval 2.5" + with_keys("observer"));
-  const Result wrong = on_b("record -o " + file("wrong.lcmlog") + with_keys("observer")), recorded = recorder.get(), strange = stranger.get(), seen = observer.get();
+  const Result wrong = on_b("record -o " + file("wrong.lcmlog") + with_keys("observer")), recorded = recorder.get(),
+               strange = stranger.get(), seen = observer.get();
   EXPECT_EQ(recorded.status, 0);
   EXPECT_TRUE(std::regex_search(recorded.said, std::regex("palpate/force_state +[0-9]{3}"))) << recorded.said;
   EXPECT_EQ(seen.status, 0);
   EXPECT_TRUE(seen.says("haptic")) << seen.said;
   EXPECT_EQ(strange.status, 0);
-  EXPECT_FALSE(strange.says("palpate/force_state") || strange.says("palpate/tool_state")) << "nothing but its own comes without keys: " << strange.said;
+  EXPECT_FALSE(strange.says("palpate/force_state") || strange.says("palpate/tool_state"))
+      << "nothing but its own comes without keys: " << strange.said;
   EXPECT_EQ(wrong.status, 1);
   EXPECT_TRUE(wrong.says("holds keys of the role 'observer', and this program's is 'recorder'")) << wrong.said;
 
@@ -137,9 +143,10 @@ TEST_F(SecuredNodes, RecordTopAndReplayTakePartWithTheirOwnKeysOnly) {
 TEST_F(SecuredNodes, LatencyIsMeasuredWithKeysAndNotWithout) {
   const auto answer = [&](const std::string& keys) {
     const Inside here(hosts_->a());
-    return ChildProcess("palpate", {"/bin/sh", "-c",
-                                    fmt::format("exec {} latency --answer --json --domain {} --interface {} --peer {} {}", program("palpate"), Nodes::domain,
-                                                TwoHosts::device, TwoHosts::address_b, keys)});
+    return ChildProcess("palpate",
+                        {"/bin/sh", "-c",
+                         fmt::format("exec {} latency --answer --json --domain {} --interface {} --peer {} {}",
+                                     program("palpate"), Nodes::domain, TwoHosts::device, TwoHosts::address_b, keys)});
   };
   ChildProcess other = answer(with_keys("latency"));
   const Result secured = on_b("latency --seconds 1 --rate 200" + with_keys("latency"));
@@ -157,8 +164,9 @@ TEST_P(SecuredScenes, RunWithKeys) {
   keys::make_folder(folder / "keys", this_month());
   const auto& [scene, topics] = GetParam();
   std::string said;
-  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --seconds 1.7 --domain {} --keys {} --record {}", program("palpate"), PALPATE_SOURCE, scene, own_domain(),
-                                    (folder / "keys").string(), (folder / "all.lcmlog").string()),
+  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --seconds 1.7 --domain {} --keys {} --record {}",
+                                    program("palpate"), PALPATE_SOURCE, scene, own_domain(), (folder / "keys").string(),
+                                    (folder / "all.lcmlog").string()),
                         &said),
             0)
       << said;
@@ -171,9 +179,12 @@ TEST_P(SecuredScenes, RunWithKeys) {
 
 INSTANTIATE_TEST_SUITE_P(
     Example, SecuredScenes,
-    ::testing::Values(std::pair("plate_cut", std::set<std::string>{"tool_state", "force_state", "surface_state", "topology_change", "held_topology",
-                                                                   "local_contact_model", "deform_step", "deform_keyframe", "picture_state", "clock_answer"}),
-                      std::pair("catheter_insertion", std::set<std::string>{"tool_state", "modal_state", "catheter_state", "task_record", "haptic_keyframe", "scene"})),
+    ::testing::Values(
+        std::pair("plate_cut", std::set<std::string>{"tool_state", "force_state", "surface_state", "topology_change",
+                                                     "held_topology", "local_contact_model", "deform_step",
+                                                     "deform_keyframe", "picture_state", "clock_answer"}),
+        std::pair("catheter_insertion", std::set<std::string>{"tool_state", "modal_state", "catheter_state",
+                                                              "task_record", "haptic_keyframe", "scene"})),
     [](const auto& info) { return info.param.first; });
 
 /// Libraries that a process has loaded, by name.
@@ -181,13 +192,16 @@ std::set<std::string> libraries_of(pid_t pid) {
   std::ifstream maps(fmt::format("/proc/{}/maps", pid));
   std::set<std::string> names;
   for (std::string line; std::getline(maps, line);)
-    if (const std::size_t at = line.rfind('/'); at != line.npos && line.find(".so", at) != line.npos) names.insert(line.substr(at + 1));
+    if (const std::size_t at = line.rfind('/'); at != line.npos && line.find(".so", at) != line.npos)
+      names.insert(line.substr(at + 1));
   return names;
 }
 
 std::set<std::string> libraries_with(const std::string& scene, const std::string& keys) {
   const auto ready = [](ChildProcess& n) { return !n.take_lines().empty(); };
-  ChildProcess node("deform_node", {"/bin/sh", "-c", fmt::format("exec {} {} --supervised --domain {} {}", program("deform_node"), scene, own_domain(), keys)});
+  ChildProcess node("deform_node", {"/bin/sh", "-c",
+                                    fmt::format("exec {} {} --supervised --domain {} {}", program("deform_node"), scene,
+                                                own_domain(), keys)});
   for (int i = 0; i < 1000 && !ready(node); ++i) std::this_thread::sleep_for(10ms);
   return libraries_of(node.pid());
 }
@@ -197,7 +211,8 @@ TEST(SecurityOff, NothingOfItIsLoaded) {
   precompute(scene);
   keys::make_folder(scene.folder() / "keys", this_month());
   const std::set<std::string> plugins{"libdds_security_ac.so", "libdds_security_auth.so", "libdds_security_crypto.so"};
-  const auto off = libraries_with(scene.scene(), ""), on = libraries_with(scene.scene(), "--keys " + (scene.folder() / "keys").string());
+  const auto off = libraries_with(scene.scene(), ""),
+             on = libraries_with(scene.scene(), "--keys " + (scene.folder() / "keys").string());
   EXPECT_TRUE(std::ranges::any_of(off, [](const std::string& name) { return name.starts_with("libddsc.so"); }));
   std::set<std::string> more;
   std::ranges::set_difference(on, off, std::inserter(more, more.end()));
@@ -213,7 +228,11 @@ TEST(SecurityOff, MissingKeysAreSaidInWords) {
   EXPECT_NE(said.find("/keys is not there, so that no node starts; `palpate keys` makes it"), said.npos) << said;
   precompute(scene);
   EXPECT_EQ(run_command(program("deform_node") + " " + scene.scene(), &said), 1);
-  EXPECT_EQ(said, fmt::format("deform_node: network: there is no folder of keys {}/keys: `palpate keys` makes one, see docs/security.md\n", scene.folder().string()));
+  EXPECT_EQ(
+      said,
+      fmt::format(
+          "deform_node: network: there is no folder of keys {}/keys: `palpate keys` makes one, see docs/security.md\n",
+          scene.folder().string()));
 }
 
 TEST(KeysCommand, MakesAddsAndNeverWritesOver) {
@@ -227,7 +246,8 @@ TEST(KeysCommand, MakesAddsAndNeverWritesOver) {
   EXPECT_NE(said.find("is there already; nothing was written"), said.npos) << said;
   EXPECT_EQ(run_command(program("palpate") + " keys --add render --name wall " + keys, &said), 0);
   EXPECT_TRUE(fs::exists(keys + "/wall/key.pem"));
-  EXPECT_EQ(run_command(program("palpate") + " keys --add surgeon " + keys, &said), 105) << "the roles are listed: " << said;
+  EXPECT_EQ(run_command(program("palpate") + " keys --add surgeon " + keys, &said), 105)
+      << "the roles are listed: " << said;
   EXPECT_NE(run_command(program("palpate") + " keys --days 0 " + keys, &said), 0);
 }
 

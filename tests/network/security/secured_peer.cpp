@@ -1,5 +1,6 @@
 // secured_peer DOMAIN INTERFACE PEER KEYS ROLE WRITES READS TOOL SECONDS
-// Joins with the keys of a role, or without where KEYS is -, writes each of the topics in WRITES (a list with commas, or
+// Joins with the keys of a role, or without where KEYS is -, writes each of the topics in WRITES (a list with commas,
+// or
 // -) as the tool TOOL at 200 Hz, and reads those in READS. At the end it prints "wrote N to M readers" and, for each
 // other tool that was heard, "tool T: N samples", or the sentence by which it was refused. It does not count itself.
 #include <fmt/format.h>
@@ -50,19 +51,27 @@ void for_each_named(const std::string& list, F&& f) {
   std::istringstream names(list == "-" ? "" : list);
   for (std::string name; std::getline(names, name, ',');)
     topics::for_each([&](const auto& topic) {
-      if constexpr (requires(typename std::decay_t<decltype(topic)>::Message m) { m.tool; m.seq; })
+      if constexpr (requires(typename std::decay_t<decltype(topic)>::Message m) {
+                      m.tool;
+                      m.seq;
+                    })
         if ("palpate/" + name == topic.name) f(topic);
     });
 }
 
 void run(char** a) {
   const std::string keys = a[4];
-  const auto bus = make_dds_bus({.domain = std::stoi(a[1]), .interface = std::string(a[2]) == "-" ? "" : a[2],
-                                 .peers = std::string(a[3]) == "-" ? std::vector<std::string>{} : std::vector<std::string>{a[3]},
-                                 .keys = keys == "-" ? "" : keys, .role = a[5]});
+  const auto bus =
+      make_dds_bus({.domain = std::stoi(a[1]),
+                    .interface = std::string(a[2]) == "-" ? "" : a[2],
+                    .peers = std::string(a[3]) == "-" ? std::vector<std::string>{} : std::vector<std::string>{a[3]},
+                    .keys = keys == "-" ? "" : keys,
+                    .role = a[5]});
   Peer peer;
   peer.tool = static_cast<std::uint32_t>(std::stoul(a[8]));
-  for_each_named(a[6], [&](const auto& topic) { peer.writes(*bus, topic, std::string(a[7]).find(topic.name + 8) != std::string::npos); });
+  for_each_named(a[6], [&](const auto& topic) {
+    peer.writes(*bus, topic, std::string(a[7]).find(topic.name + 8) != std::string::npos);
+  });
   for_each_named(a[7], [&](const auto& topic) { peer.reads(*bus, topic); });
   fmt::print("ready\n");
   std::fflush(stdout);

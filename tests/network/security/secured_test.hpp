@@ -21,9 +21,9 @@ inline keys::Period this_month() {
 /// What a secured_peer did.
 struct Outcome {
   std::uint64_t wrote = 0;
-  int readers = 0;                              ///< that matched at the same time, at most
-  std::map<unsigned, std::uint64_t> heard;      ///< samples by tool
-  std::string refusal;                          ///< the sentence by which it was refused, if it was
+  int readers = 0;                          ///< that matched at the same time, at most
+  std::map<unsigned, std::uint64_t> heard;  ///< samples by tool
+  std::string refusal;                      ///< the sentence by which it was refused, if it was
   std::uint64_t of(unsigned tool) const { return heard.contains(tool) ? heard.at(tool) : 0; }
 };
 
@@ -40,8 +40,9 @@ class Peer {
  public:
   Peer(const PeerTask& task, int domain, const std::string& device, const std::string& other, double seconds)
       : process_("secured_peer", {"/bin/sh", "-c",
-                                  fmt::format("{} exec {} {} {} {} {} {} {} {} {} {}", task.environment, program("secured_peer"), domain, device, other,
-                                              task.keys.string(), task.role, task.writes, task.reads, task.tool, seconds)}) {}
+                                  fmt::format("{} exec {} {} {} {} {} {} {} {} {} {}", task.environment,
+                                              program("secured_peer"), domain, device, other, task.keys.string(),
+                                              task.role, task.writes, task.reads, task.tool, seconds)}) {}
 
   /// Waits for its end.
   Outcome outcome() {

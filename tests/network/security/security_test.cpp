@@ -89,8 +89,11 @@ TEST_F(Secured, WhoHasAForeignCertificateNeitherReadsNorWrites) {
 }
 
 TEST_F(Secured, TheWrongRoleIsRefusedByItsOwnMiddleware) {
-  for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", intruder}, PeerTask{keys_, "render", "tool_state", "-", intruder}})
-    EXPECT_EQ(on_b(task).outcome().refusal, fmt::format("network: creating the writer of palpate/{} is not permitted to the role of these keys", task.writes));
+  for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", intruder},
+                               PeerTask{keys_, "render", "tool_state", "-", intruder}})
+    EXPECT_EQ(on_b(task).outcome().refusal,
+              fmt::format("network: creating the writer of palpate/{} is not permitted to the role of these keys",
+                          task.writes));
   EXPECT_EQ(on_b({keys_, "render", "-", "device_state", intruder}).outcome().refusal,
             "network: creating topic palpate/device_state is not permitted to the role of these keys");
 }
@@ -149,7 +152,8 @@ TEST_F(Secured, NobodyOnTheWireCanReadIt) {
     const Seen open = listen_on(hosts_->b(), 2, writer, reader);
     EXPECT_GT(open.readable, static_cast<int>(many)) << "without keys it can be read";
   }
-  Peer writer = on_a({keys_, "haptic", "tool_state", "-", tool}), reader = on_b({keys_, "render", "-", "tool_state", 0});
+  Peer writer = on_a({keys_, "haptic", "tool_state", "-", tool}),
+       reader = on_b({keys_, "render", "-", "tool_state", 0});
   const Seen secured = listen_on(hosts_->b(), seconds, writer, reader);
   EXPECT_GT(secured.frames, static_cast<int>(many));
   EXPECT_EQ(secured.readable, 0);
@@ -159,7 +163,8 @@ TEST_F(Secured, KeysThatEndCutOffWhoeverHasThem) {
   const std::time_t now = std::time(nullptr);
   keys::add_keys(keys_, "render", "brief", {now - 60, now + 4});
   Peer haptic = on_a({keys_, "haptic", "tool_state", "-", tool}, 7);
-  Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}, 7), brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0}, 7);
+  Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}, 7),
+       brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0}, 7);
   const std::uint64_t all = lasting.outcome().of(tool), until_the_end = brief.outcome().of(tool);
   EXPECT_EQ(haptic.outcome().refusal, "");
   EXPECT_GT(until_the_end, many);

@@ -29,8 +29,7 @@ class Splitter {
         material_(problem.materials.of_element) {
     around_.resize(nodes_.size());
     for (int t = 0; t < static_cast<int>(tets_.size()); ++t) link(t);
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
-      fixed_.push_back(fixed_axes(problem.dofs, static_cast<int>(n)));
+    for (std::size_t n = 0; n < nodes_.size(); ++n) fixed_.push_back(fixed_axes(problem.dofs, static_cast<int>(n)));
     for (const auto& face : extract_surface(problem.mesh).triangles) add_face(face);
     for (int t = 0; t < static_cast<int>(tets_.size()); ++t) note_edges(t);
   }
@@ -40,8 +39,7 @@ class Splitter {
       const auto [ratio, edge] = longest_.top();
       longest_.pop();
       if (static_cast<int>(nodes_.size()) >= most_nodes)
-        throw std::runtime_error(
-            fmt::format("the reference's mesh would have more than {} nodes", most_nodes));
+        throw std::runtime_error(fmt::format("the reference's mesh would have more than {} nodes", most_nodes));
       split(edge);
     }
   }
@@ -66,9 +64,7 @@ class Splitter {
   struct Long {
     double ratio;
     Edge edge;
-    bool operator<(const Long& other) const {
-      return std::tie(ratio, edge) < std::tie(other.ratio, other.edge);
-    }
+    bool operator<(const Long& other) const { return std::tie(ratio, edge) < std::tie(other.ratio, other.edge); }
   };
 
   static int fixed_axes(const DofMap& dofs, int node) {

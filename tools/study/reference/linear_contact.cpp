@@ -22,9 +22,7 @@ Factorisation factorised(const StaticProblem& problem) {
 }  // namespace
 
 LinearContact::LinearContact(StaticProblem problem, const Eigen::Vector3d& centre, double reach)
-    : problem_(std::move(problem)),
-      factor_(factorised(problem_)),
-      surface_(extract_surface(problem_.mesh).nodes) {
+    : problem_(std::move(problem)), factor_(factorised(problem_)), surface_(extract_surface(problem_.mesh).nodes) {
   for (const int n : surface_)
     if ((problem_.mesh.nodes[n] - centre).norm() < reach) node_.push_back(n);
   const auto size = static_cast<Eigen::Index>(3 * node_.size());
@@ -37,27 +35,23 @@ LinearContact::LinearContact(StaticProblem problem, const Eigen::Vector3d& centr
   }
   for (std::size_t begin = 0; begin < free.size(); begin += right_hand_sides) {
     const std::size_t count = std::min(right_hand_sides, free.size() - begin);
-    Eigen::MatrixXd unit =
-        Eigen::MatrixXd::Zero(problem_.dofs.size(), static_cast<Eigen::Index>(count));
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(problem_.dofs.size(), static_cast<Eigen::Index>(count));
     for (std::size_t c = 0; c < count; ++c) unit(row[free[begin + c]], static_cast<Eigen::Index>(c)) = 1;
     const Eigen::MatrixXd answer = factor_.solve(unit);
     for (std::size_t c = 0; c < count; ++c)
-      for (const Eigen::Index i : free)
-        compliance_(i, free[begin + c]) = answer(row[i], static_cast<Eigen::Index>(c));
+      for (const Eigen::Index i : free) compliance_(i, free[begin + c]) = answer(row[i], static_cast<Eigen::Index>(c));
   }
 }
 
 // Normal forces that keep the active nodes on the planes that stand for the ball; nodes that would be pulled
 // are let go and nodes beyond their plane taken in, until none is left.
-Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball,
-                                                   const std::vector<Eigen::Vector3d>& normal,
+Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball, const std::vector<Eigen::Vector3d>& normal,
                                                    std::vector<char>& active) const {
   const std::size_t n = node_.size();
   Eigen::MatrixXd along(n, n);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i <= j; ++i)
-      along(i, j) = along(j, i) =
-          normal[i].dot(Eigen::Vector3d(compliance_.block<3, 3>(3 * i, 3 * j) * normal[j]));
+      along(i, j) = along(j, i) = normal[i].dot(Eigen::Vector3d(compliance_.block<3, 3>(3 * i, 3 * j) * normal[j]));
   Eigen::VectorXd wanted(n);
   for (std::size_t i = 0; i < n; ++i)
     wanted[i] = ball.radius + normal[i].dot(ball.centre - problem_.mesh.nodes[node_[i]]);
@@ -78,8 +72,7 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball,
     bool changed = false;
     // Later rounds change one node at a time, which cannot cycle.
     for (std::size_t i = 0; i < n && !(changed && round > most_rounds / 4); ++i) {
-      const bool leaves = active[i] && force[i] < -1e-12 * most,
-                 comes = !active[i] && open[i] < -1e-9 * ball.radius;
+      const bool leaves = active[i] && force[i] < -1e-12 * most, comes = !active[i] && open[i] < -1e-9 * ball.radius;
       if (!leaves && !comes) continue;
       active[i] = comes;
       changed = true;
@@ -98,8 +91,7 @@ PressState LinearContact::press(const Sphere& ball) const {
     if (round == most_rounds) throw std::runtime_error("the reference's contact normals do not settle");
     double turned = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const Eigen::Vector3d now =
-          (problem_.mesh.nodes[node_[i]] + u.segment<3>(3 * i) - ball.centre).normalized();
+      const Eigen::Vector3d now = (problem_.mesh.nodes[node_[i]] + u.segment<3>(3 * i) - ball.centre).normalized();
       turned = std::max(turned, round == 0 ? 1.0 : active[i] * (now - normal[i]).norm());
       normal[i] = now;
     }
@@ -120,9 +112,8 @@ PressState LinearContact::press(const Sphere& ball) const {
   for (int dof = 0; dof < problem_.dofs.size(); ++dof)
     state.displacement[problem_.dofs.dof(dof) / 3][problem_.dofs.dof(dof) % 3] = answer(dof, 0);
   for (const int s : surface_)
-    state.penetration =
-        std::max(state.penetration,
-                 ball.radius - (problem_.mesh.nodes[s] + state.displacement[s] - ball.centre).norm());
+    state.penetration = std::max(state.penetration,
+                                 ball.radius - (problem_.mesh.nodes[s] + state.displacement[s] - ball.centre).norm());
   if (state.penetration > 1e-3 * ball.radius)
     throw std::runtime_error("the ball comes to nodes beyond the reach of the reference's contact");
   return state;

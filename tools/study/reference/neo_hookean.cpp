@@ -30,8 +30,7 @@ double element_energy(Law law, const TetGradients& tet, const Lame& lame, const 
   const double j = f.determinant();
   if (j <= 0) return std::numeric_limits<double>::infinity();
   const double log_j = std::log(j);
-  return tet.volume *
-         (lame.mu / 2 * (f.squaredNorm() - 3) - lame.mu * log_j + lame.lambda / 2 * log_j * log_j);
+  return tet.volume * (lame.mu / 2 * (f.squaredNorm() - 3) - lame.mu * log_j + lame.lambda / 2 * log_j * log_j);
 }
 
 // First Piola stress P = mu (F - F^-T) + lambda ln J F^-T; with h_a = F^-T g_a,

@@ -17,8 +17,7 @@ struct ElementResponse {
 };
 
 /// Displacements of the corners in the rows of `u` [m]. An element turned inside out has infinite energy.
-double element_energy(Law law, const TetGradients& tet, const Lame& lame,
-                      const Eigen::Matrix<double, 4, 3>& u);
+double element_energy(Law law, const TetGradients& tet, const Lame& lame, const Eigen::Matrix<double, 4, 3>& u);
 ElementResponse element_response(Law law, const TetGradients& tet, const Lame& lame,
                                  const Eigen::Matrix<double, 4, 3>& u);
 

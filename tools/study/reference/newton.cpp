@@ -146,8 +146,7 @@ Eigen::VectorXd NewtonSolid::direction(int& shifted) {
     } catch (const std::runtime_error&) {
       const double next = shift == 0 ? 1e-4 * mean : 4 * shift;
       for (Eigen::Index i = 0; i < tangent_.rows(); ++i)
-        tangent_.valuePtr()[tangent_.outerIndexPtr()[i]] +=
-            next - shift;  // the first of a column is its diagonal
+        tangent_.valuePtr()[tangent_.outerIndexPtr()[i]] += next - shift;  // the first of a column is its diagonal
       shift = next;
       ++shifted;
     }
@@ -211,8 +210,7 @@ PressState NewtonSolid::press(const Sphere& from, const Sphere& to) {
     }
     u_ = reached;
     stride /= 2;
-    if (++halvings > most_halvings)
-      throw std::runtime_error("Newton's method does not converge under the ball");
+    if (++halvings > most_halvings) throw std::runtime_error("Newton's method does not converge under the ball");
   }
   return state(to);
 }
