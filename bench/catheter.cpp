@@ -1,6 +1,6 @@
 // Time of one tick of the catheter over particles, modes of the wall and inserted length.
 #include "bench/report.hpp"
-#include "common/catheter/catheter_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 #include "tests/catheter/tube_wall.hpp"
 
 namespace palpate {

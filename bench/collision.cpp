@@ -9,8 +9,8 @@
 #include <random>
 
 #include "bench/report.hpp"
-#include "common/contact/buckets.hpp"
-#include "common/contact/triangle.hpp"
+#include "common/geometry/buckets.hpp"
+#include "common/geometry/triangle.hpp"
 #include "common/kernels/kernels.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"

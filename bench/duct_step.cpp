@@ -4,9 +4,9 @@
 
 #include "bench/report.hpp"
 #include "common/mesh/shell_file.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "common/tool/trajectory.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 
 namespace palpate {
 namespace {

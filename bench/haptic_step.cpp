@@ -3,7 +3,7 @@
 
 #include "bench/report.hpp"
 #include "common/realtime/spsc_ring.hpp"
-#include "common/tensors/ensure_archive.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "common/tool/trajectory.hpp"
 #include "haptic_node/step_record.hpp"
 

@@ -12,7 +12,7 @@
 #include "bench/shell_bodies.hpp"
 #include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
-#include "common/models/modal_newmark.hpp"
+#include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/condensation.hpp"
 #include "common/shell/full_newmark.hpp"
 #include "common/shell/modes.hpp"

@@ -7,8 +7,8 @@
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/fem/direct.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/tensors/compliance.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/archive/compliance.hpp"
+#include "common/models/solid/precompute.hpp"
 
 /// The questions of RR3510's table 1, put to any model: fields and stiffnesses of one solid under one load.
 namespace palpate::bench {

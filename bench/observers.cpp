@@ -19,7 +19,7 @@
 
 #include "bench/report.hpp"
 #include "bench/udp_cost.hpp"
-#include "common/tensors/ensure_archive.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "tests/network/two_hosts.hpp"
 #include "tools/child_process.hpp"
 

@@ -2,9 +2,9 @@
 // its own mesh and from quadratic locking-free elements, turn and turn about in one run; and what precompute takes.
 #include "bench/report.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "common/tool/trajectory.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <cmath>

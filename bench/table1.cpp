@@ -8,8 +8,8 @@
 #include "common/contact/held_points.hpp"
 #include "common/fem/direct.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/deformer.hpp"
-#include "common/tensors/ensure_archive.hpp"
+#include "common/sim/deformer.hpp"
+#include "common/scene/ensure_archive.hpp"
 
 namespace palpate {
 namespace {

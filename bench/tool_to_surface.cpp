@@ -4,7 +4,7 @@
 #include "bench/report.hpp"
 #include "common/bus/dds_bus.hpp"
 #include "common/realtime/clock.hpp"
-#include "common/tensors/ensure_archive.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "tools/child_process.hpp"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
-#include "common/models/contact_feed.hpp"
+#include "common/node/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "deform_node/surface_publisher.hpp"
 

@@ -43,7 +43,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
   presence_.set_clock(&clock_);
   keyframe_.dt = world.dt();
   keyframe_.code_path = std::move(code_path);
-  for (const Body& body : scene.bodies) moves_.push_back(is_dynamic(body)), names_.push_back(body.name);
+  for (const Body& body : scene.bodies) moves_.push_back(as<MovingSpec>(body) != nullptr), names_.push_back(name_of(body));
 }
 
 void DynamicLoop::take_tools() {

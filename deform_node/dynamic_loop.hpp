@@ -7,12 +7,12 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
-#include "common/models/contact_feed.hpp"
+#include "common/node/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
-#include "deform_node/dynamic_world.hpp"
+#include "common/sim/dynamic_world.hpp"
 #include "deform_node/earlier_cuts.hpp"
-#include "deform_node/local_model.hpp"
+#include "common/sim/local_models.hpp"
 #include "deform_node/surface_publisher.hpp"
 
 namespace palpate {

@@ -53,7 +53,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   catch_shutdown_signals();
   for (int i = 0; i < world.organs(); ++i)
     spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each",
-                 loaded.scene.bodies[world.bodies()[i]].name, world.organ(i).topology().alive_count(),
+                 name_of(loaded.scene.bodies[world.bodies()[i]]), world.organ(i).topology().alive_count(),
                  world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
   DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
   if (whole) loop.forget_earlier_cuts();
@@ -86,7 +86,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
 void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::surface);
   Deformer deformer(loaded.scene, loaded.archives);
-  const bool moves = std::ranges::any_of(loaded.scene.bodies, is_dynamic);
+  const bool moves = std::ranges::any_of(loaded.scene.bodies, [](const Body& body) { return as<MovingSpec>(body) != nullptr; });
   if (!moves) loaded.archives.clear();
   const nlohmann::json summary = moves ? advance(o, loaded, deformer) : superpose(o, loaded, deformer);
   if (o.supervised) fmt::print("{}\n", summary.dump());

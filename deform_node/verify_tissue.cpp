@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "common/bus/log_reader.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "deform_node/dynamic_world.hpp"
+#include "common/scene/find_archive.hpp"
+#include "common/sim/dynamic_world.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {

@@ -15,8 +15,8 @@ namespace {
 
 class ScriptedDevice : public Device {
  public:
-  explicit ScriptedDevice(const Tool& tool) : trajectory_(load_trajectory(tool.trajectory)) {
-    check_grip(trajectory_, tool);
+  ScriptedDevice(const std::filesystem::path& file, const Tool& tool) : trajectory_(load_trajectory(file)) {
+    check_grip(trajectory_, file, tool);
   }
   DeviceSample read(double seconds) override { return {trajectory_.at(seconds), 0}; }
   bool finished(double seconds) const override { return seconds > trajectory_.duration(); }
@@ -28,13 +28,13 @@ class ScriptedDevice : public Device {
 /// Plays the tool states of a log, one per step as they were consumed.
 class LogDevice : public Device {
  public:
-  LogDevice(const Tool& tool, std::uint32_t index, double rate_hz) : rate_hz_(rate_hz) {
-    LogReader log(tool.trajectory);
+  LogDevice(const std::filesystem::path& file, const DevicePlace& place) : rate_hz_(place.haptic_hz) {
+    LogReader log(file);
     std::uint64_t first = 0;
     LogEvent event;
     ToolState state;
     while (log.next(event)) {
-      if (!event.read(topics::tool_state, state) || state.tool != index) continue;
+      if (!event.read(topics::tool_state, state) || state.tool != place.index) continue;
       if (samples_.empty()) first = state.step;
       if (state.step < first) continue;
       const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal};
@@ -45,7 +45,7 @@ class LogDevice : public Device {
     }
     if (samples_.empty())
       throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})",
-                                           tool.trajectory.string(), tool.name, index));
+                                           file.string(), place.tool.name, place.index));
   }
   DeviceSample read(double seconds) override { return samples_[std::min(at(seconds), samples_.size() - 1)]; }
   bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }
@@ -74,11 +74,21 @@ class BusDevice : public Device {
 
 }  // namespace
 
-std::unique_ptr<Device> make_device(const Scene& scene, int tool) {
-  const Tool& t = scene.tools[tool];
-  if (t.device == "scripted") return std::make_unique<ScriptedDevice>(t);
-  if (t.device == "log") return std::make_unique<LogDevice>(t, static_cast<std::uint32_t>(tool), scene.rates.haptic_hz);
+std::unique_ptr<Device> make_device(const ScriptedDeviceSpec& spec, const DevicePlace& place) {
+  return std::make_unique<ScriptedDevice>(spec.trajectory, place.tool);
+}
+
+std::unique_ptr<Device> make_device(const LogDeviceSpec& spec, const DevicePlace& place) {
+  return std::make_unique<LogDevice>(spec.trajectory, place);
+}
+
+std::unique_ptr<Device> make_device(const BusDeviceSpec&, const DevicePlace&) {
   return std::make_unique<BusDevice>();
+}
+
+std::unique_ptr<Device> make_device(const Scene& scene, int tool) {
+  const DevicePlace place{scene.tools[tool], static_cast<std::uint32_t>(tool), scene.rates.haptic_hz};
+  return std::visit([&](const auto& spec) { return make_device(spec, place); }, place.tool.device);
 }
 
 struct BusDevices::Target {

@@ -20,8 +20,14 @@ class Device {
   virtual bool ready() const { return true; }
 };
 
-/// The device that the scene names for this tool: a scripted trajectory, the tool states of a log, or the bus.
-/// Throws std::runtime_error for a missing or malformed file.
+/// The tool that a device moves.
+struct DevicePlace {
+  const Tool& tool;
+  std::uint32_t index;  ///< position in the scene's tool list
+  double haptic_hz;
+};
+
+/// The device that the scene names for this tool. Throws std::runtime_error for a missing or malformed file.
 std::unique_ptr<Device> make_device(const Scene& scene, int tool);
 
 /// Moves samples of drivers elsewhere from the bus to their tools; runs on a thread of its own, not in the step.

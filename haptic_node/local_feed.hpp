@@ -5,7 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/realtime/latest.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 
 namespace palpate {
 

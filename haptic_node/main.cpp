@@ -62,7 +62,7 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
   nlohmann::json tasks = nlohmann::json::array();
   for (std::size_t i = 0; i < haptic.catheters().size(); ++i) {
     const Task& task = haptic.tasks()[i];
-    const std::string& body = scene.bodies[haptic.catheters()[i].body].name;
+    const std::string& body = name_of(scene.bodies[haptic.catheters()[i].body]);
     tasks.push_back({{"body", body},
                      {"inserted_m", task.inserted},
                      {"deepest_m", task.deepest},
@@ -146,8 +146,8 @@ void run(const NodeOptions& o) {
   }
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
   for (const ReducedBody& b : haptic.catheters())
-    spdlog::info("body '{}': {} particles, {}", scene.bodies[b.body].name, b.size,
-                 scene.bodies[b.body].catheter->integrator == "implicit"
+    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[b.body]), b.size,
+                 as<CatheterSpec>(scene.bodies[b.body])->catheter.integrator == "implicit"
                      ? std::string("implicit, one step a tick")
                      : fmt::format("semi-implicit, {} substeps a tick", haptic.catheter(b.body).substeps()));
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());

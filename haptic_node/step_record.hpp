@@ -5,7 +5,7 @@
 
 #include "common/bus/messages.hpp"
 #include "common/tool/kinematics.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 
 namespace palpate {
 

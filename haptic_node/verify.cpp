@@ -12,8 +12,8 @@
 #include "common/kernels/code_path.hpp"
 #include "common/kernels/kernels.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/scene/find_archive.hpp"
+#include "common/sim/haptic_step.hpp"
 #include "haptic_node/publisher.hpp"
 #include "haptic_node/recorded_models.hpp"
 #include "idl/topics.hpp"
@@ -218,7 +218,7 @@ VerifyReport verify_log(const std::filesystem::path& file) {
 
   std::vector<Archive> archives;
   for (const Body& body : scene.bodies)
-    archives.push_back(is_dynamic(body) ? Archive{} : find_archive(scene, body, ArchivePart::touchable));
+    archives.push_back(as<MovingSpec>(body) ? Archive{} : find_archive(scene, body, ArchivePart::touchable));
   RunVerifier verifier(scene, archives, report);
   for (const auto& [id, run] : runs) {
     if (run.keyframes.empty() || !report.mismatch.empty()) continue;

@@ -69,7 +69,9 @@ void summarise(const RenderReport& r, const Film* film, bool supervised) {
 void run(const NodeOptions& o) {
   if (options.threads > 0) ::setenv("LP_NUM_THREADS", fmt::format("{}", options.threads).c_str(), 1);
   LoadedScene loaded = load_for_node(o, options.deform ? ArchivePart::surface : ArchivePart::header);
-  if (options.deform && std::ranges::any_of(loaded.scene.bodies, is_dynamic))
+  const bool moves =
+      std::ranges::any_of(loaded.scene.bodies, [](const Body& b) { return as<MovingSpec>(b) != nullptr; });
+  if (options.deform && moves)
     throw std::runtime_error(o.scene + ": moving tissue belongs to a deform node; leave --deform out");
   Stage stage = make_stage(loaded);
   const Render picture = loaded.scene.render.value_or(Render{});
@@ -81,7 +83,7 @@ void run(const NodeOptions& o) {
   Presence presence(*bus, "render", 0, loaded.scene_hash, loaded.archive_hash);
   const std::unique_ptr<SurfaceSource> source = make_source(*bus, presence, loaded);
   std::optional<TopologyFeed> topology;
-  if (std::ranges::any_of(loaded.scene.bodies, is_dynamic)) topology.emplace(*bus, presence, loaded.archives);
+  if (moves) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   catch_shutdown_signals();
   RenderLoop loop(loaded.scene, std::move(stage), *source, *bus, presence, renderer);

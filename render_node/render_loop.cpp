@@ -49,7 +49,7 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
       latest_force_(scene.tools.size()) {
   presence_.set_clock(&clock_);
   picture_.node = presence.node();
-  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return body.catheter.has_value(); }))
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return as<CatheterSpec>(body) != nullptr; }))
     tasks_ = bus.reader(topics::task_record);
 }
 
@@ -67,8 +67,8 @@ void RenderLoop::take() {
     report_.refused += !good;
   }
   while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
-    const bool good =
-        task->body < scene_.bodies.size() && scene_.bodies[task->body].catheter && presence_.accepts(task->run);
+    const bool good = task->body < scene_.bodies.size() && as<CatheterSpec>(scene_.bodies[task->body]) &&
+                      presence_.accepts(task->run);
     if (good) latest_task_[task->body] = *task;
     report_.refused += !good;
   }

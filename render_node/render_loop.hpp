@@ -8,7 +8,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
-#include "common/models/topology_feed.hpp"
+#include "common/node/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"

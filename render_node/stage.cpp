@@ -48,15 +48,14 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   if (!scene.render) render_.camera = fit_camera(surfaces);
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const SurfaceMap& map = surfaces[b];
-    const Body& from = scene.bodies.at(b);
+    const auto* shell = as<ShellSpec>(scene.bodies.at(b));
+    const auto* wire = as<CatheterSpec>(scene.bodies.at(b));
     Soft body;
     body.coarse = map.position.size();
-    body.most_triangles = from.shell      ? most_triangles_of_wall
-                          : from.catheter ? most_triangles_of_catheter
-                                          : most_triangles_of_organ;
-    body.finish = from.shell ? Finish::duct : from.catheter ? Finish::plastic : Finish::tissue;
+    body.most_triangles = shell ? most_triangles_of_wall : wire ? most_triangles_of_catheter : most_triangles_of_organ;
+    body.finish = shell ? Finish::duct : wire ? Finish::plastic : Finish::tissue;
     const bool given = render_.tissue_colour != Render{}.tissue_colour;
-    body.colour = from.catheter ? plastic_colour : from.shell && !given ? duct_colour : render_.tissue_colour;
+    body.colour = wire ? plastic_colour : shell && !given ? duct_colour : render_.tissue_colour;
     body.rest = to_float(map.position);
     refine(body, map.triangles);
     body.position = body.rest;
@@ -64,8 +63,8 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
     body.normal.resize(body.refinement.vertices());
     body.refinement.apply(body.position, body.normal);
-    if (from.shell) add_wall(body, map, from.shell->thickness);
-    if (from.catheter) body.texture = from_tip(map, *from.catheter);
+    if (shell) add_wall(body, map, shell->shell.thickness);
+    if (wire) body.texture = from_tip(map, wire->catheter);
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
@@ -73,12 +72,12 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   add_backdrop(sorted.lining, Finish::lining, lining_colour);
   for (const Tool& tool : scene.tools) {
     Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
-    instrument.view.tip_radius = tool.radius;
     instrument.view.shaft_radius = tool.shaft_radius;
     instrument.view.shaft_length = tool.shaft_length;
-    if (tool.kind == "forceps" && tool.jaws) {
-      instrument.view.jaw_length = tool.jaws->length;
-      instrument.view.jaw_radius = tool.jaws->radius;
+    if (const ProbeSpec* probe = tool.probe()) instrument.view.tip_radius = probe->radius;
+    if (const ForcepsSpec* forceps = tool.forceps()) {
+      instrument.view.jaw_length = forceps->jaws.length;
+      instrument.view.jaw_radius = forceps->jaws.radius;
     }
     tools_.push_back(instrument);
   }

@@ -5,7 +5,7 @@
 
 #include "common/bus/messages.hpp"
 #include "common/mesh/tet_mesh.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 #include "common/tool/kinematics.hpp"
 #include "render_node/draw_list.hpp"
 #include "render_node/refine.hpp"

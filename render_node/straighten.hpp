@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate {
 

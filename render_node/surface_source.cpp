@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "common/models/contact_feed.hpp"
+#include "common/node/contact_feed.hpp"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
-#include "common/models/deformer.hpp"
+#include "common/sim/deformer.hpp"
 
 namespace palpate {
 

@@ -12,9 +12,9 @@
 #include "common/fem/selection.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/nonlinear.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/scene/find_archive.hpp"
 #include "tools/check_duct.hpp"
 #include "tools/check_dynamic.hpp"
 #include "tools/check_offline.hpp"
@@ -26,8 +26,13 @@
 namespace palpate {
 namespace {
 
-void print_fixation(const Body& body, const TetMesh& mesh) {
-  for (const FixedRegion& fixed : body.fixed) {
+template <class Part>
+bool is_a(const Body& body) {
+  return as<Part>(body) != nullptr;
+}
+
+void print_fixation(const SolidSpec& body, const TetMesh& mesh) {
+  for (const BoundaryCondition& fixed : body.fixed) {
     std::string axes;
     for (int axis = 0; axis < 3; ++axis)
       if (fixed.axes[axis]) axes += "xyz"[axis];
@@ -36,7 +41,7 @@ void print_fixation(const Body& body, const TetMesh& mesh) {
   }
 }
 
-void print_material(const Body& body) {
+void print_material(const SolidSpec& body) {
   fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young, body.material.poisson,
              body.material.density);
   for (const MaterialRegion& region : body.materials)
@@ -44,7 +49,7 @@ void print_material(const Body& body) {
                region.material.young, region.material.poisson, region.material.density);
 }
 
-void print_nonlinear(const Body& body) {
+void print_nonlinear(const QuasiStaticSpec& body) {
   if (!body.nonlinear) return;
   const Nonlinear& nonlinear = *body.nonlinear;
   Archive slopes;
@@ -64,7 +69,7 @@ void print_nonlinear(const Body& body) {
 }
 
 void print_archive(const Scene& scene, const Body& body) {
-  const auto file = archive_path(scene, body);
+  const auto file = archive_path(body);
   if (!std::filesystem::exists(file)) {
     fmt::print("  archive: not computed yet, `palpate precompute` does it\n");
     return;
@@ -81,38 +86,43 @@ void print_memory(const std::vector<MemoryPart>& parts) {
   for (const MemoryPart& part : parts) fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
 }
 
+SurfaceMap check_solid_body(const Scene& scene, const Body& body, const SolidSpec& solid) {
+  const bool moves = is_a<MovingSpec>(body);
+  const TetMesh mesh = load_tet_mesh(solid.mesh, solid.scale);
+  const DofMap dofs = apply_fixation(mesh, solid.fixed, fmt::format("body '{}'", solid.name));
+  const MaterialField materials = material_field(solid, mesh);
+  const SurfaceMap surface = make_surface_map(solid, mesh, dofs);
+  Archive moving;
+  if (moves) moving = dynamic_archive(scene, body, mesh);
+  fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", solid.name, mesh.nodes.size(),
+             mesh.tetrahedra.size(), dofs.size(), kind_of(body));
+  fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
+             surface.triangles.size(), mean_edge(surface), surface.touchable);
+  print_fixation(solid, mesh);
+  print_material(solid);
+  if (const auto* still = as<QuasiStaticSpec>(body)) {
+    print_offline(*still, mesh);
+    print_nonlinear(*still);
+  }
+  if (moves) print_dynamic(body, mesh, moving);
+
+  print_archive(scene, body);
+  print_memory(moves ? dynamic_memory(scene, body, moving)
+                     : body_memory(scene, body, surface, materials.of_element.size()));
+  return surface;
+}
+
 /// Loads and validates a body's mesh and everything that refers to it. A catheter has no surface before it
 /// moves.
 SurfaceMap check_body(const Scene& scene, const Body& body) {
-  if (body.catheter) {
-    check_catheter(scene, body);
+  if (const auto* solid = as<SolidSpec>(body)) return check_solid_body(scene, body, *solid);
+  if (const auto* wire = as<CatheterSpec>(body)) {
+    check_catheter(scene, *wire);
     return {};
   }
-  if (body.shell) {
-    const SurfaceMap surface = check_shell_body(scene, body);
-    print_archive(scene, body);
-    print_memory(shell_memory(scene, body, surface));
-    return surface;
-  }
-  const TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
-  const DofMap dofs = apply_fixation(mesh, body.fixed, fmt::format("body '{}'", body.name));
-  const MaterialField materials = material_field(body, mesh);
-  const SurfaceMap surface = make_surface_map(body, mesh, dofs);
-  Archive moving;
-  if (is_dynamic(body)) moving = dynamic_archive(scene, body, mesh);
-  fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", body.name, mesh.nodes.size(),
-             mesh.tetrahedra.size(), dofs.size(), body.model);
-  fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
-             surface.triangles.size(), mean_edge(surface), surface.touchable);
-  print_fixation(body, mesh);
-  print_material(body);
-  print_offline(body, mesh);
-  print_nonlinear(body);
-  if (is_dynamic(body)) print_dynamic(body, mesh, moving);
-
+  const SurfaceMap surface = check_shell_body(scene, body);
   print_archive(scene, body);
-  print_memory(is_dynamic(body) ? dynamic_memory(scene, body, moving)
-                                : body_memory(scene, body, surface, materials.of_element.size()));
+  print_memory(shell_memory(scene, body, surface));
   return surface;
 }
 
@@ -148,30 +158,33 @@ void print_sections(const Scene& scene) {
 void print_left_out(const Scene& scene) {
   fmt::print("left out:\n");
   for (const Body& body : scene.bodies) {
-    if (body.materials.empty() && !body.catheter)
-      fmt::print("  body '{}': one material, nothing per element\n", body.name);
-    if (body.model == "quasi_static" && !body.nonlinear)
-      fmt::print("  body '{}': no quasi non-linear correction\n", body.name);
-    if (is_dynamic(body) && !body.tearing) fmt::print("  body '{}': does not tear by itself\n", body.name);
-    if (is_dynamic(body)) fmt::print("  body '{}': no archive in the haptic node\n", body.name);
+    const std::string& name = name_of(body);
+    const auto* solid = as<SolidSpec>(body);
+    if (is_a<ShellSpec>(body) || (solid && solid->materials.empty()))
+      fmt::print("  body '{}': one material, nothing per element\n", name);
+    const auto* still = as<QuasiStaticSpec>(body);
+    if (still && !still->nonlinear) fmt::print("  body '{}': no quasi non-linear correction\n", name);
+    const auto* moving = as<MovingSpec>(body);
+    if (moving && !moving->tearing) fmt::print("  body '{}': does not tear by itself\n", name);
+    if (moving) fmt::print("  body '{}': no archive in the haptic node\n", name);
   }
-  if (std::ranges::none_of(scene.bodies, is_dynamic))
+  if (std::ranges::none_of(scene.bodies, is_a<MovingSpec>))
     fmt::print("  no dynamic body: no masses, no cutting, no topology topic\n");
-  if (std::ranges::none_of(scene.bodies, [](const Body& b) { return b.shell.has_value(); }))
-    fmt::print("  no shell: no modes\n");
-  if (std::ranges::none_of(scene.bodies, [](const Body& b) { return b.catheter.has_value(); }))
+  if (std::ranges::none_of(scene.bodies, is_a<ShellSpec>)) fmt::print("  no shell: no modes\n");
+  if (std::ranges::none_of(scene.bodies, is_a<CatheterSpec>))
     fmt::print("  no catheter: no particles and no task record\n");
-  const auto works = [](const Tool& tool) { return tool.cautery || tool.jaws; };
+  const auto works = [](const Tool& tool) { return tool.forceps() || tool.probe()->cautery || tool.probe()->jaws; };
   if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
-  const bool driven = std::ranges::any_of(scene.tools, [](const Tool& t) { return t.device == "bus"; });
-  if (!driven) fmt::print("  no tool on the bus: no device topic and no thread for it\n");
+  const auto driven = [](const Tool& tool) { return std::holds_alternative<BusDeviceSpec>(tool.device); };
+  if (std::ranges::none_of(scene.tools, driven))
+    fmt::print("  no tool on the bus: no device topic and no thread for it\n");
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
   if (!scene.network.security)
     fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
   if (!scene.render) fmt::print("  no [render]: default picture\n");
   if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
-  if (std::ranges::none_of(scene.bodies, is_dynamic))
+  if (std::ranges::none_of(scene.bodies, is_a<MovingSpec>))
     fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
 }
 
@@ -182,12 +195,12 @@ void print_warnings(const Scene& scene, const std::vector<SurfaceMap>& surfaces)
   };
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.catheter)
-      add(catheter_warnings(scene, body));
+    if (const auto* wire = as<CatheterSpec>(body))
+      add(catheter_warnings(scene, *wire));
     else
       add(body_warnings(scene, body, surfaces[b]));
     add(locking_warnings(body));
-    if (body.shell) add(shell_warnings(body, surfaces[b]));
+    if (const auto* shell = as<ShellSpec>(body)) add(shell_warnings(*shell, surfaces[b]));
   }
   add(cutting_warnings(scene));
   for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);

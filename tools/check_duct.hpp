@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/archive.hpp"
 #include "tools/footprint.hpp"
 
 namespace palpate {
@@ -17,11 +17,11 @@ std::vector<MemoryPart> shell_memory(const Scene& scene, const Body& body, const
 
 /// Validates a catheter and prints its springs and how they are integrated. Throws std::runtime_error if it
 /// is too stiff for the integrator that the scene chooses, or sticks in the wall of its duct at rest.
-void check_catheter(const Scene& scene, const Body& body);
+void check_catheter(const Scene& scene, const CatheterSpec& body);
 
 /// What is legal but likely not meant: a wall thicker than its mesh is fine, a catheter with gaps between its
 /// particles, or one so stiff that it asks for many substeps.
-std::vector<std::string> shell_warnings(const Body& body, const SurfaceMap& surface);
-std::vector<std::string> catheter_warnings(const Scene& scene, const Body& body);
+std::vector<std::string> shell_warnings(const ShellSpec& body, const SurfaceMap& surface);
+std::vector<std::string> catheter_warnings(const Scene& scene, const CatheterSpec& body);
 
 }  // namespace palpate

@@ -15,8 +15,9 @@
 #include "common/dynamics/make_model.hpp"
 #include "common/mesh/cut_mesh.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "common/tensors/precompute_dynamic.hpp"
+#include "common/models/hybrid/precompute.hpp"
+#include "common/models/moving/precompute.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
@@ -36,6 +37,11 @@ std::size_t moving_nodes(const Archive& archive) {
   return nodes.size();
 }
 
+std::unique_ptr<DynamicModel> make_model(const Body& body, const ElasticMesh& mesh) {
+  const Dynamic& motion = as<MovingSpec>(body)->dynamic;
+  return as<SpringMassSpec>(body) ? make_spring_model(mesh, motion) : make_element_model(mesh, motion);
+}
+
 /// The moving tissue as the deformation node runs it, with the quasi-static part of a hybrid body.
 struct Tissue {
   std::unique_ptr<DynamicModel> model;
@@ -43,9 +49,9 @@ struct Tissue {
 };
 
 Tissue make_tissue(const Body& body, const Archive& archive, double friction) {
-  Tissue tissue{make_dynamic_model(elastic_mesh(archive), body), nullptr};
+  Tissue tissue{make_model(body, elastic_mesh(archive)), nullptr};
   if (!archive.hybrid) return tissue;
-  tissue.rest = std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == "single");
+  tissue.rest = std::make_unique<HybridPart>(archive, friction, as<MovingSpec>(body)->dynamic.precision == "single");
   tissue.rest->couple(*tissue.model);
   return tissue;
 }
@@ -53,12 +59,12 @@ Tissue make_tissue(const Body& body, const Archive& archive, double friction) {
 void print_step(const Body& body, const Archive& archive) {
   const Tissue tissue = make_tissue(body, archive, 0);
   const double bound = tissue.model->frequency_bound();
-  const double largest = largest_step(integrator_of(body), bound, body.dynamic.damping);
-  if (body.dynamic.step > largest)
+  const Dynamic& motion = as<MovingSpec>(body)->dynamic;
+  const double largest = largest_step(integrator_of(motion), bound, motion.damping);
+  if (motion.step > largest)
     throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
-                                         body.name, body.dynamic.step, largest));
-  const std::string taken =
-      body.dynamic.step > 0 ? fmt::format("{} s is taken", body.dynamic.step) : "one below is taken";
+                                         name_of(body), motion.step, largest));
+  const std::string taken = motion.step > 0 ? fmt::format("{} s is taken", motion.step) : "one below is taken";
   fmt::print("  step: stable up to {:.4g} s, for frequencies up to {:.4g} rad/s; {}\n", largest, bound, taken);
 }
 
@@ -89,33 +95,36 @@ bool ever_closes(const Trajectory& trajectory, double closed_below) {
 }  // namespace
 
 Archive dynamic_archive(const Scene& scene, const Body& body, const TetMesh& mesh) {
-  if (std::filesystem::exists(archive_path(scene, body))) {
+  if (std::filesystem::exists(archive_path(body))) {
     try {
       return find_archive(scene, body, ArchivePart::surface);
     } catch (const std::exception&) {
       // Refused, which the caller says: computed below.
     }
   }
-  if (!body.hybrid || body.hybrid->mesh.empty()) return precompute_dynamic(body, mesh, nullptr);
-  const TetMesh coarse = load_tet_mesh(body.hybrid->mesh, body.hybrid->scale);
-  return precompute_dynamic(body, mesh, &coarse);
+  const auto* hybrid = as<HybridSpec>(body);
+  if (!hybrid) return precompute_moving(*as<MovingSpec>(body), kind_of(body), mesh);
+  if (hybrid->hybrid.mesh.empty()) return precompute(*hybrid, mesh);
+  const TetMesh coarse = load_tet_mesh(hybrid->hybrid.mesh, hybrid->hybrid.scale);
+  return precompute(*hybrid, mesh, &coarse);
 }
 
 void print_dynamic(const Body& body, const TetMesh& mesh, const Archive& archive) {
   const std::size_t moving = archive.tetrahedra.size();
   fmt::print("  moving: {} nodes, {} tetrahedra, {} edges", moving_nodes(archive), moving, edge_count(archive));
   if (archive.hybrid) {
-    const bool own_mesh = !body.hybrid->mesh.empty();
+    const bool own_mesh = !as<HybridSpec>(body)->hybrid.mesh.empty();
     const double whole = static_cast<double>(mesh.tetrahedra.size() + (own_mesh ? moving : 0));
     fmt::print(", {:.1f} % of the tetrahedra; joined to the quasi-static part at {} nodes",
                100 * static_cast<double>(moving) / whole, archive.hybrid->connection.size());
     if (own_mesh) fmt::print(", gap at rest {:.3g} m", archive.hybrid->largest_gap);
   }
-  const Dynamic& d = body.dynamic;
+  const MovingSpec& spec = *as<MovingSpec>(body);
+  const Dynamic& d = spec.dynamic;
   fmt::print("\n  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}\n", d.integrator, d.precision,
              d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(), d.corotational ? ", corotational" : "");
   print_step(body, archive);
-  if (body.tearing) fmt::print("  tearing: {} above {}\n", body.tearing->criterion, body.tearing->threshold);
+  if (spec.tearing) fmt::print("  tearing: {} above {}\n", spec.tearing->criterion, spec.tearing->threshold);
 }
 
 std::vector<MemoryPart> dynamic_memory(const Scene& scene, const Body& body, const Archive& archive) {
@@ -142,11 +151,12 @@ std::vector<MemoryPart> dynamic_memory(const Scene& scene, const Body& body, con
   };
   const ElasticMesh mesh = elastic_mesh(archive);
   measured();
-  const auto model = make_dynamic_model(mesh, body);
+  const auto model = make_model(body, mesh);
   add("deform_node", "masses, tensors and motion", measured());
   std::unique_ptr<HybridPart> rest;
   if (archive.hybrid) {
-    rest = std::make_unique<HybridPart>(archive, scene.contact.friction, body.dynamic.precision == "single");
+    rest = std::make_unique<HybridPart>(archive, scene.contact.friction,
+                                        as<MovingSpec>(body)->dynamic.precision == "single");
     add("deform_node", "quasi-static part", measured());
   }
   const CutMesh topology(mesh.tetrahedra, mesh.nodes());
@@ -162,18 +172,21 @@ std::vector<MemoryPart> dynamic_memory(const Scene& scene, const Body& body, con
 
 std::vector<std::string> cutting_warnings(const Scene& scene) {
   std::vector<std::string> warnings;
-  const bool cuttable = std::ranges::any_of(scene.bodies, is_dynamic);
+  const bool cuttable = std::ranges::any_of(scene.bodies, [](const Body& b) { return as<MovingSpec>(b) != nullptr; });
   for (const Tool& tool : scene.tools) {
-    if (tool.cautery && !cuttable)
+    const ProbeSpec* probe = tool.probe();
+    if (!probe) continue;
+    if (probe->cautery && !cuttable)
       warnings.push_back(fmt::format("tool '{}' has a cautery, and no body is dynamic: it cuts nothing", tool.name));
-    if (tool.device != "scripted") continue;
-    const Trajectory trajectory = load_trajectory(tool.trajectory);
-    if (tool.cautery && pedal_time(trajectory) == 0)
+    const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
+    if (!script) continue;
+    const Trajectory trajectory = load_trajectory(script->trajectory);
+    if (probe->cautery && pedal_time(trajectory) == 0)
       warnings.push_back(
           fmt::format("tool '{}' has a cautery, and the pedal of its trajectory is never down", tool.name));
-    if (tool.kind == "probe" && tool.jaws && !ever_closes(trajectory, tool.jaws->closed_below))
+    if (probe->jaws && !ever_closes(trajectory, probe->jaws->closed_below))
       warnings.push_back(fmt::format("tool '{}' has jaws, and the grip of its trajectory never falls below {} rad",
-                                     tool.name, tool.jaws->closed_below));
+                                     tool.name, probe->jaws->closed_below));
   }
   return warnings;
 }

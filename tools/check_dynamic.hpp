@@ -3,7 +3,7 @@
 
 #include "common/mesh/tet_mesh.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 #include "tools/footprint.hpp"
 
 namespace palpate {

@@ -13,7 +13,7 @@ namespace {
 /// Where the compliance of a disc whose radius is four elements comes out a tenth too small (docs/offline.md).
 constexpr double kLocking = 0.48;
 
-double largest_poisson(const Body& body) {
+double largest_poisson(const SolidSpec& body) {
   double largest = body.material.poisson;
   for (const auto& region : body.materials) largest = std::max(largest, region.material.poisson);
   return largest;
@@ -25,7 +25,7 @@ bool has_linear_displacement(const std::optional<Offline>& offline) {
 
 }  // namespace
 
-void print_offline(const Body& body, const TetMesh& mesh) try {
+void print_offline(const QuasiStaticSpec& body, const TetMesh& mesh) try {
   if (!is_finer(body.offline)) return;
   const auto space = make_fine_space(mesh, *body.offline);
   fmt::print("  offline: tensors from {} {} tetrahedra with {} nodes, {}\n", space.elements.size(),
@@ -36,17 +36,19 @@ void print_offline(const Body& body, const TetMesh& mesh) try {
 }
 
 std::vector<std::string> locking_warnings(const Body& body) {
-  const double poisson = largest_poisson(body);
-  if (body.shell || body.catheter || poisson < kLocking) return {};
+  const auto* solid = as<SolidSpec>(body);
+  if (!solid) return {};
+  const double poisson = largest_poisson(*solid);
+  if (poisson < kLocking) return {};
   const auto start = fmt::format(
       "body '{}': linear elements lock at poisson = {} and are too stiff, by a tenth at {} and "
       "several times at 0.4999: ",
-      body.name, poisson, kLocking);
-  if (body.model == "quasi_static") {
-    if (!has_linear_displacement(body.offline)) return {};
+      solid->name, poisson, kLocking);
+  if (const auto* still = as<QuasiStaticSpec>(body)) {
+    if (!has_linear_displacement(still->offline)) return {};
     return {start + "give it a [body.offline] with element = \"p2\" and formulation = \"locking_free\""};
   }
-  if (body.model == "spring_mass") return {};
+  if (as<SpringMassSpec>(body)) return {};
   return {start +
           fmt::format("take {} for tissue that moves, which true incompressibility stiffens by 4 % only", kLocking)};
 }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "common/contact/buckets.hpp"
+#include "common/archive/compliance.hpp"
 #include "common/contact/tool_contacts.hpp"
-#include "common/tensors/compliance.hpp"
+#include "common/geometry/buckets.hpp"
 
 namespace palpate {
 
@@ -46,7 +46,9 @@ std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const 
   }
   add("render_node --deform", "compliance, single precision",
       Compliance<float>::bytes_of(surface.size(), surface.touchable));
-  const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
+  const auto* still = as<QuasiStaticSpec>(body);
+  const int fields =
+      still && still->nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   add("render_node --deform", "visible surface",
       nodes * (fields * sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector3d)) + triangles * 3 * sizeof(int));
   return parts;
@@ -56,12 +58,12 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
   std::vector<std::string> warnings;
   const double h = mean_edge(surface);
   for (const Tool& tool : scene.tools) {
-    const bool forceps = tool.kind == "forceps";
-    const double radius = forceps ? tool.jaws->radius : tool.radius;
+    const ForcepsSpec* forceps = tool.forceps();
+    const double radius = forceps ? forceps->jaws.radius : tool.probe()->radius;
     const auto warn = [&](const char* than, const char* so) {
       warnings.push_back(
           fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
-                      forceps ? "jaws with a radius" : "a radius", radius, than, h, body.name, so));
+                      forceps ? "jaws with a radius" : "a radius", radius, than, h, name_of(body), so));
     };
     if (radius < h)
       warn("", "the force is the mesh's, not the tissue's");
@@ -72,7 +74,7 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double across = (high - low).norm();
   if (across > 3 || across < 1e-3)
-    warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body.name, across));
+    warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", name_of(body), across));
   return warnings;
 }
 

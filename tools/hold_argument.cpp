@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "common/contact/triangle.hpp"
+#include "common/geometry/triangle.hpp"
 
 namespace palpate {
 namespace {

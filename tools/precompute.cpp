@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/ensure_archive.hpp"
 #include "tools/commands.hpp"
 
 namespace palpate {
@@ -44,14 +44,14 @@ void describe_modes(const Archive& archive) {
 void precompute_body(const Scene& scene, const Body& body) {
   const auto state = ensure_archive(scene, body, show_stage);
   if (state.file.empty()) {
-    fmt::print("body '{}': a catheter needs no archive\n", body.name);
+    fmt::print("body '{}': a catheter needs no archive\n", name_of(body));
     return;
   }
   if (!state.refused.empty()) fmt::print(stderr, "rebuilt, because {}\n", state.refused);
   if (state.up_to_date)
-    fmt::print("body '{}': up to date: {}\n", body.name, state.file.string());
+    fmt::print("body '{}': up to date: {}\n", name_of(body), state.file.string());
   else
-    fmt::print("body '{}': computed and written in {:.3f} s: {}\n", body.name, state.seconds, state.file.string());
+    fmt::print("body '{}': computed and written in {:.3f} s: {}\n", name_of(body), state.seconds, state.file.string());
   const auto archive = read_archive(state.file, ArchivePart::header, {});
   describe(archive, state);
   describe_moving_part(archive);

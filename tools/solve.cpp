@@ -4,13 +4,13 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "common/archive/static_solve.hpp"
 #include "common/fem/fine_problem.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/ensure_archive.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "common/tensors/static_solve.hpp"
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
 #include "tools/solution_file.hpp"
@@ -26,9 +26,9 @@ struct SolveArguments {
 const Body& choose_body(const Scene& scene, const std::string& name) {
   if (name.empty() && scene.bodies.size() == 1) return scene.bodies[0];
   for (const auto& body : scene.bodies)
-    if (body.name == name) return body;
+    if (name_of(body) == name) return body;
   std::string names;
-  for (const auto& body : scene.bodies) names += (names.empty() ? "" : ", ") + body.name;
+  for (const auto& body : scene.bodies) names += (names.empty() ? "" : ", ") + name_of(body);
   throw std::runtime_error(name.empty() ? "the scene has several bodies: choose one with --body: " + names
                                         : fmt::format("the scene has no body '{}': it has {}", name, names));
 }
@@ -47,7 +47,8 @@ std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh
 }
 
 SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments) {
-  const auto problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
+  const SolidSpec& solid = *as<SolidSpec>(body);
+  const auto problem = make_static_problem(solid, load_tet_mesh(solid.mesh, solid.scale));
   const auto& mesh = problem.mesh;
   SolutionTable table;
   table.node.resize(mesh.nodes.size());
@@ -57,8 +58,10 @@ SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments)
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  const auto solution = is_finer(body.offline) ? solve_direct(make_fine_problem(body, mesh, *body.offline), constraints)
-                                               : solve_direct(problem, constraints);
+  const auto* still = as<QuasiStaticSpec>(body);
+  const auto solution = still && is_finer(still->offline)
+                            ? solve_direct(make_fine_problem(*still, mesh, *still->offline), constraints)
+                            : solve_direct(problem, constraints);
   table.displacement = solution.displacement;
   table.force = solution.force;
   return table;
@@ -106,11 +109,12 @@ void summarise(const SolutionTable& table, const SolveArguments& arguments) {
 
 /// A shell's rotations are condensed into its archive, and only there.
 void check_model(const Body& body, const std::string& method) {
-  if (body.catheter)
-    throw std::runtime_error(fmt::format("body '{}' is a catheter, which has no static state to solve for", body.name));
-  if (body.shell && method == "direct")
+  if (as<CatheterSpec>(body))
     throw std::runtime_error(
-        fmt::format("body '{}' is a shell, and the direct method is for tetrahedra: take --method tensors", body.name));
+        fmt::format("body '{}' is a catheter, which has no static state to solve for", name_of(body)));
+  if (as<ShellSpec>(body) && method == "direct")
+    throw std::runtime_error(fmt::format(
+        "body '{}' is a shell, and the direct method is for tetrahedra: take --method tensors", name_of(body)));
 }
 
 void solve(const SolveArguments& arguments) {

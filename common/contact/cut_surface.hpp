@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/buckets.hpp"
-#include "common/contact/triangle.hpp"
+#include "common/geometry/buckets.hpp"
+#include "common/geometry/triangle.hpp"
 #include "common/mesh/cut_mesh.hpp"
 
 namespace palpate {

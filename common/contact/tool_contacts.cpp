@@ -16,9 +16,9 @@ constexpr double margin_share =
 
 }  // namespace
 
-std::size_t parts_of(const Scene& scene) {
+std::size_t parts_of(std::span<const Tool> tools) {
   std::size_t parts = 0;
-  for (const Tool& t : scene.tools) parts += tool_parts(t).size();
+  for (const Tool& t : tools) parts += tool_parts(t).size();
   return parts;
 }
 

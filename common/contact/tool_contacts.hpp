@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/contact/contact_law.hpp"
-#include "common/contact/segment.hpp"
+#include "common/geometry/segment.hpp"
 #include "common/contact/touch_surface.hpp"
-#include "common/scene/scene.hpp"
+#include "common/tool/spec.hpp"
 #include "common/tool/jaws.hpp"
 #include "common/tool/moving_tool.hpp"
 
@@ -140,7 +140,7 @@ class ToolContacts {
 };
 
 /// Parts of all tools of a scene.
-std::size_t parts_of(const Scene& scene);
+std::size_t parts_of(std::span<const Tool> tools);
 
 /// [m] mean edge of a surface at rest.
 double mean_edge(const SurfaceMap& map);

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate {
 

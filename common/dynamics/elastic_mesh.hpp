@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/scene/scene.hpp"
+#include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 

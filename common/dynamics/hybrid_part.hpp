@@ -5,8 +5,8 @@
 
 #include "common/contact/contact_law.hpp"
 #include "common/dynamics/dynamic_model.hpp"
-#include "common/tensors/archive.hpp"
-#include "common/tensors/compliance.hpp"
+#include "common/archive/archive.hpp"
+#include "common/archive/compliance.hpp"
 
 namespace palpate {
 

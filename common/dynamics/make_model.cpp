@@ -8,27 +8,31 @@ namespace palpate {
 namespace {
 
 template <class Model>
-std::unique_ptr<DynamicModel> make(const ElasticMesh& mesh, const Body& body) {
-  auto model = std::make_unique<Model>(mesh, integrator_of(body), body.dynamic.damping);
-  model->set_gravity(body.dynamic.gravity);
+std::unique_ptr<DynamicModel> make(const ElasticMesh& mesh, const Dynamic& motion) {
+  auto model = std::make_unique<Model>(mesh, integrator_of(motion), motion.damping);
+  model->set_gravity(motion.gravity);
   return model;
 }
 
 template <class Scalar>
-std::unique_ptr<DynamicModel> choose(const ElasticMesh& mesh, const Body& body) {
-  if (body.model == "spring_mass") return make<SpringMass<Scalar>>(mesh, body);
-  if (body.dynamic.corotational) return make<Corotational<Scalar>>(mesh, body);
-  return make<TensorMass<Scalar>>(mesh, body);
+std::unique_ptr<DynamicModel> make_elements(const ElasticMesh& mesh, const Dynamic& motion) {
+  if (motion.corotational) return make<Corotational<Scalar>>(mesh, motion);
+  return make<TensorMass<Scalar>>(mesh, motion);
 }
 
 }  // namespace
 
-Integrator integrator_of(const Body& body) {
-  return body.dynamic.integrator == "semi_implicit" ? Integrator::semi_implicit : Integrator::rk4;
+Integrator integrator_of(const Dynamic& motion) {
+  return motion.integrator == "semi_implicit" ? Integrator::semi_implicit : Integrator::rk4;
 }
 
-std::unique_ptr<DynamicModel> make_dynamic_model(const ElasticMesh& mesh, const Body& body) {
-  return body.dynamic.precision == "double" ? choose<double>(mesh, body) : choose<float>(mesh, body);
+std::unique_ptr<DynamicModel> make_element_model(const ElasticMesh& mesh, const Dynamic& motion) {
+  return motion.precision == "double" ? make_elements<double>(mesh, motion) : make_elements<float>(mesh, motion);
+}
+
+std::unique_ptr<DynamicModel> make_spring_model(const ElasticMesh& mesh, const Dynamic& motion) {
+  if (motion.precision == "double") return make<SpringMass<double>>(mesh, motion);
+  return make<SpringMass<float>>(mesh, motion);
 }
 
 }  // namespace palpate

@@ -3,14 +3,19 @@
 
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/dynamics/spec.hpp"
 
 namespace palpate {
 
-/// The integrator that a scene names for a body.
-Integrator integrator_of(const Body& body);
+Integrator integrator_of(const Dynamic& motion);
 
-/// The moving tissue that a body asks for: tensors, springs or turning elements, in the precision that it names. For
-/// a hybrid body `mesh` is its tensor-mass part.
-std::unique_ptr<DynamicModel> make_dynamic_model(const ElasticMesh& mesh, const Body& body);
+/// Moving tissue of elements: tensors, or elements that turn, in the precision that is asked for.
+std::unique_ptr<DynamicModel> make_element_model(const ElasticMesh& mesh, const Dynamic& motion);
+
+/// Moving tissue of springs along the edges.
+std::unique_ptr<DynamicModel> make_spring_model(const ElasticMesh& mesh, const Dynamic& motion);
+
+/// One of these.
+using MakeDynamicModel = std::unique_ptr<DynamicModel> (*)(const ElasticMesh& mesh, const Dynamic& motion);
 
 }  // namespace palpate

@@ -36,7 +36,7 @@ std::vector<Eigen::Matrix3d> assemble_blocks(const TetMesh& mesh, const Material
 
 }  // namespace
 
-MaterialField material_field(const Body& body, const TetMesh& mesh) {
+MaterialField material_field(const SolidSpec& body, const TetMesh& mesh) {
   MaterialField field{{body.material}, {}};
   if (body.materials.empty()) return field;
   field.of_element.assign(mesh.tetrahedra.size(), 0);

@@ -22,7 +22,7 @@ struct MaterialField {
 
 /// The body's material and its regions; where regions overlap the later one holds. Throws std::runtime_error
 /// if a region selects no element.
-MaterialField material_field(const Body& body, const TetMesh& mesh);
+MaterialField material_field(const SolidSpec& body, const TetMesh& mesh);
 
 /// Which nodes share a tetrahedron: for each node its neighbours with a greater or equal number, ascending,
 /// itself first. Unused nodes have an empty list.

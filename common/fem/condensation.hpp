@@ -4,11 +4,9 @@
 #include <vector>
 
 #include "common/fem/assembly.hpp"
+#include "common/fem/progress.hpp"
 
 namespace palpate {
-
-/// Told each finished stage and the seconds it took.
-using Progress = std::function<void(std::string_view stage, double seconds)>;
 
 /// The part of K^-1 that the visible surface sees.
 struct SurfaceCompliance {

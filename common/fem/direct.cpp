@@ -74,7 +74,7 @@ void impose_conditions(const Reduced& reduced, const Factorisation& factor, std:
 
 }  // namespace
 
-StaticProblem make_static_problem(const Body& body, TetMesh mesh) {
+StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh) {
   auto materials = material_field(body, mesh);
   auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
   return {std::move(mesh), std::move(materials), std::move(dofs)};

@@ -17,7 +17,7 @@ struct StaticProblem {
 };
 
 /// Applies a scene's body to its mesh. Throws std::runtime_error as apply_fixation and material_field do.
-StaticProblem make_static_problem(const Body& body, TetMesh mesh);
+StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh);
 
 struct StaticSolution {
   std::vector<Eigen::Vector3d> displacement;  ///< [m] per mesh node

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "common/scene/scene.hpp"
+#include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 

@@ -71,7 +71,7 @@ FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, Mater
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body, error.what()));
 }
 
-FineProblem make_fine_problem(const Body& body, const TetMesh& mesh, const Offline& offline) {
+FineProblem make_fine_problem(const SolidSpec& body, const TetMesh& mesh, const Offline& offline) {
   auto materials = material_field(body, mesh);
   auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
   return make_fine_problem(mesh, offline, std::move(materials), std::move(dofs), body.name);

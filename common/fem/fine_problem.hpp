@@ -26,7 +26,7 @@ struct FineProblem {
 };
 
 /// Throws std::runtime_error as make_fine_space(), apply_fixation() and material_field() do.
-FineProblem make_fine_problem(const Body& body, const TetMesh& mesh, const Offline& offline);
+FineProblem make_fine_problem(const SolidSpec& body, const TetMesh& mesh, const Offline& offline);
 /// The same with materials and fixation of the run-time mesh given.
 FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, MaterialField materials, DofMap dofs,
                               const std::string& body);

@@ -3,8 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "common/fem/offline_spec.hpp"
 #include "common/mesh/tet_mesh.hpp"
-#include "common/scene/scene.hpp"
+#include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 

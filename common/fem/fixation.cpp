@@ -54,7 +54,7 @@ int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
   return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
 }
 
-DofMap apply_fixation(const TetMesh& mesh, const std::vector<FixedRegion>& regions, const std::string& where) {
+DofMap apply_fixation(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions, const std::string& where) {
   if (regions.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   DofMap dofs(mesh);
   for (std::size_t i = 0; i < regions.size(); ++i) {

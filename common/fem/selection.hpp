@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/mesh/tet_mesh.hpp"
-#include "common/scene/scene.hpp"
+#include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 

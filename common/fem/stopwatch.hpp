@@ -1,7 +1,7 @@
 #pragma once
 #include <chrono>
 
-#include "common/fem/condensation.hpp"
+#include "common/fem/progress.hpp"
 
 namespace palpate {
 

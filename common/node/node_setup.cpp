@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <random>
 
-#include "common/tensors/find_archive.hpp"
+#include "common/scene/find_archive.hpp"
 
 namespace palpate {
 
@@ -36,7 +36,7 @@ LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchiveP
   LoadedScene loaded{.scene = load_scene(options.scene)};
   loaded.scene_hash = scene_hash(loaded.scene);
   for (const Body& body : loaded.scene.bodies) {
-    loaded.archives.push_back(find_archive(loaded.scene, body, is_dynamic(body) ? of_dynamic : part));
+    loaded.archives.push_back(find_archive(loaded.scene, body, as<MovingSpec>(body) ? of_dynamic : part));
     loaded.archive_hash += loaded.archives.back().content_hash;
   }
   return loaded;

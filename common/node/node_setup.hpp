@@ -5,7 +5,7 @@
 
 #include "common/bus/dds_bus.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 /// What every node does before its loop: arguments, scene, archives, logging.
 namespace palpate {

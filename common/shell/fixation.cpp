@@ -46,7 +46,7 @@ int remaining_rigid_motions(const ShellMesh& mesh, const ShellDofs& dofs) {
   return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
 }
 
-void fix_region(const FixedRegion& region, const std::vector<int>& nodes, ShellDofs& dofs) {
+void fix_region(const ShellBoundaryCondition& region, const std::vector<int>& nodes, ShellDofs& dofs) {
   for (int node : nodes)
     for (int axis = 0; axis < 3; ++axis) {
       if (region.axes[axis]) dofs.fix(node, axis);
@@ -60,7 +60,7 @@ std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, c
   return select_nodes(mesh.nodes, mesh.groups, used_shell_nodes(mesh), selector, where);
 }
 
-ShellDofs shell_fixation(const ShellMesh& mesh, const Body& body, const std::string& where) {
+ShellDofs shell_fixation(const ShellMesh& mesh, const ShellSpec& body, const std::string& where) {
   if (body.fixed.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   ShellDofs dofs(used_shell_nodes(mesh));
   for (std::size_t i = 0; i < body.fixed.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/mesh/shell_mesh.hpp"
-#include "common/scene/scene.hpp"
+#include "common/shell/spec.hpp"
 #include "common/shell/shell_dofs.hpp"
 
 namespace palpate {
@@ -16,15 +16,11 @@ std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, c
 /// Applies the fixations of a shell: translations along the axes named, and all three rotations where the
 /// region holds them. `where` starts the error sentences. Throws std::runtime_error if a region selects
 /// nothing, or if the fixed dofs leave one of the six rigid-body motions.
-ShellDofs shell_fixation(const ShellMesh& mesh, const Body& body, const std::string& where);
+ShellDofs shell_fixation(const ShellMesh& mesh, const ShellSpec& body, const std::string& where);
 
 /// What a modal_shell body must fulfil on its mesh: a wall not thicker than the radius (of a tube its
 /// lumen_radius(), else half the mesh's largest extent), and not more modes than free translations. `where`
 /// starts the error sentences. Throws std::runtime_error.
-void check_shell(const Body& body, const ShellMesh& mesh, const ShellDofs& dofs, const std::string& where);
-
-/// What the catheters that the scene leads into this body ask of it: a tube with two mouths that is wider
-/// than they are. Throws std::runtime_error("FILE: reason"), FILE being the body's mesh.
-void check_duct(const Scene& scene, const Body& shell, const ShellMesh& mesh);
+void check_shell(const ShellSpec& body, const ShellMesh& mesh, const ShellDofs& dofs, const std::string& where);
 
 }  // namespace palpate

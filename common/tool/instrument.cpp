@@ -15,14 +15,19 @@ std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double
 }
 
 std::optional<ForcepsShape> forceps_shape(const Tool& tool) {
-  if (tool.kind != "forceps" || !tool.jaws) return std::nullopt;
-  return ForcepsShape{tool.shaft_radius, tool.shaft_length, tool.jaws->length, tool.jaws->radius};
+  const ForcepsSpec* forceps = tool.forceps();
+  if (!forceps) return std::nullopt;
+  return ForcepsShape{tool.shaft_radius, tool.shaft_length, forceps->jaws.length, forceps->jaws.radius};
+}
+
+std::optional<ProbeJaws> closing_jaws(const Tool& tool) {
+  if (const ProbeSpec* probe = tool.probe()) return probe->jaws;
+  return ProbeJaws{.length = tool.forceps()->jaws.length};
 }
 
 std::vector<ToolPart> tool_parts(const Tool& tool, double opening) {
-  const auto shape = forceps_shape(tool);
-  if (!shape) return sample_tool(tool.radius, tool.shaft_radius, tool.shaft_length);
-  const auto parts = forceps_parts(*shape, opening);
+  if (const ProbeSpec* probe = tool.probe()) return sample_tool(probe->radius, tool.shaft_radius, tool.shaft_length);
+  const auto parts = forceps_parts(*forceps_shape(tool), opening);
   return {parts.begin(), parts.end()};
 }
 

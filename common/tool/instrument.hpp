@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/scene/scene.hpp"
 #include "common/tool/forceps.hpp"
+#include "common/tool/spec.hpp"
 #include "common/tool/tool_part.hpp"
 
 namespace palpate {
@@ -15,6 +15,10 @@ std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double
 
 /// The shape of a tool of kind forceps; none for other kinds.
 std::optional<ForcepsShape> forceps_shape(const Tool& tool);
+
+/// Jaws that hold moving tissue once they are closed: a probe's own, and those of a forceps as a probe's. None for a tool
+/// without jaws.
+std::optional<ProbeJaws> closing_jaws(const Tool& tool);
 
 /// The parts of a tool of any kind for collision. `opening` [rad] between the jaws of a forceps; a probe has none.
 std::vector<ToolPart> tool_parts(const Tool& tool, double opening = 0);

@@ -6,8 +6,8 @@
 #include <functional>
 #include <stdexcept>
 
-#include "common/scene/csv.hpp"
-#include "common/scene/scene.hpp"
+#include "common/describe/csv.hpp"
+#include "common/tool/spec.hpp"
 
 namespace palpate {
 
@@ -74,14 +74,15 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
   return {std::move(time), dofs};
 }
 
-void check_grip(const Trajectory& trajectory, const Tool& tool) {
-  if (tool.kind != "forceps") return;
+void check_grip(const Trajectory& trajectory, const std::filesystem::path& file, const Tool& tool) {
+  const ForcepsSpec* forceps = tool.forceps();
+  if (!forceps) return;
   for (double time : trajectory.times()) {  // between the rows nothing overshoots
     const double grip = trajectory.at(time).grip;
-    if (grip >= 0 && grip <= tool.jaws->most_open) continue;
+    if (grip >= 0 && grip <= forceps->jaws.most_open) continue;
     throw std::runtime_error(
         fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
-                    tool.trajectory.string(), grip, time, tool.name, tool.jaws->most_open));
+                    file.string(), grip, time, tool.name, forceps->jaws.most_open));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "common/catheter/band_matrix.hpp"
+#include "common/models/catheter/band_matrix.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/catheter/chain.hpp"
+#include "common/models/catheter/chain.hpp"
 
 #include <gtest/gtest.h>
 

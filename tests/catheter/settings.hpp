@@ -1,5 +1,5 @@
 #pragma once
-#include "common/catheter/catheter_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 
 namespace palpate {
 

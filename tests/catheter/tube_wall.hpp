@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "common/catheter/catheter_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 
 namespace palpate {
 

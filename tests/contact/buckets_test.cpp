@@ -1,4 +1,4 @@
-#include "common/contact/buckets.hpp"
+#include "common/geometry/buckets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/contact/triangle.hpp"
+#include "common/geometry/triangle.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/surface.hpp"
 

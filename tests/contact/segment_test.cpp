@@ -1,4 +1,4 @@
-#include "common/contact/segment.hpp"
+#include "common/geometry/segment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/contact/buckets.hpp"
+#include "common/geometry/buckets.hpp"
 #include "tests/contact/moving_surface.hpp"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "common/contact/triangle.hpp"
+#include "common/geometry/triangle.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::Bench;
+using testing::block_of;
 using testing::block_scene;
 
 constexpr double top = 0.03, radius = 0.006;
@@ -28,7 +29,7 @@ TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
 
 TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   Scene scene = block_scene();
-  scene.bodies[0].dynamic.precision = "double";
+  block_of(scene).dynamic.precision = "double";
   scene.contact.friction = 10;
   Bench bench(scene);
   for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, top + radius + 0.001, top + radius - 0.004));
@@ -46,7 +47,7 @@ TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
       held.push_back(hold(archive.surface.node_number[node], axis, bench.organ().model().displacement(node)[axis]));
     sum += c.force;
   }
-  const StaticSolution exact = solve_direct(make_static_problem(scene.bodies[0], mesh), held);
+  const StaticSolution exact = solve_direct(make_static_problem(block_of(scene), mesh), held);
   Vector3d wanted = Vector3d::Zero();
   for (const TissueContact& c : contacts)
     if (c.force.dot(c.normal) > 0) wanted += exact.force[archive.surface.node_number[c.anchor.nodes[0]]];
@@ -79,7 +80,7 @@ TEST(DynamicOrgan, ATipNeverTunnelsAtAnySpeed) {
 
 TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
   Scene scene = block_scene();
-  scene.tools[0].cautery = Cautery{0.0065};
+  scene.tools[0].probe()->cautery = Cautery{0.0065};
   Bench bench(scene);
   for (int i = 0; i < 100; ++i) bench.tick(from_above(i, 50, top + 0.01, top + radius - 0.002));
   EXPECT_TRUE(bench.organ().removed().empty());
@@ -94,7 +95,7 @@ TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
 
 TEST(DynamicOrgan, ACutThroughEverythingLeavesARunningSystem) {
   Scene scene = block_scene();
-  scene.tools[0].cautery = Cautery{0.2};
+  scene.tools[0].probe()->cautery = Cautery{0.2};
   Bench bench(scene);
   for (int i = 0; i < 2500; ++i) bench.tick(0.02, 0, 1);
   EXPECT_EQ(bench.organ().topology().alive_count(), 0);
@@ -104,12 +105,12 @@ TEST(DynamicOrgan, ACutThroughEverythingLeavesARunningSystem) {
 
 TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
   Scene scene = block_scene();
-  scene.bodies[0].dynamic.gravity = {0, 0, 9.81};  // upwards: off the base
-  scene.bodies[0].dynamic.damping = 5;
-  scene.bodies[0].fixed[0].where = {
+  block_of(scene).dynamic.gravity = {0, 0, 9.81};  // upwards: off the base
+  block_of(scene).dynamic.damping = 5;
+  block_of(scene).fixed[0].where = {
       .indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
-  scene.tools[0].cautery = Cautery{0.0062};
-  scene.tools[0].radius = 0.003;
+  scene.tools[0].probe()->cautery = Cautery{0.0062};
+  scene.tools[0].probe()->radius = 0.003;
   scene.tools[0].pivot = {-0.2, 0, 0.02};
   scene.tools[0].axis = Vector3d::UnitX();
   scene.tools[0].up = Vector3d::UnitZ();
@@ -133,7 +134,7 @@ TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
 
 TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
   Scene scene = block_scene();
-  scene.tools[0].jaws = Jaws{0.012, 0.012, 0.1};
+  scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
   Bench bench(scene);
   const double low = top + radius - 0.001;
   for (int i = 0; i < 50; ++i) bench.tick(from_above(i, 40, top + 0.012, low), 0, 0, 0.6);
@@ -150,8 +151,8 @@ TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
 
 TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
   Scene scene = block_scene();
-  scene.tools[0].cautery = Cautery{0.0065};
-  scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
+  scene.tools[0].probe()->cautery = Cautery{0.0065};
+  block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto z = [](int i) { return top + radius + 0.002 - 1.5e-5 * i; };
   for (int i = 0; i < 300; ++i) first.tick(z(i), 1e-5 * i, i > 200);
@@ -167,11 +168,10 @@ TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
 }
 
 TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
-  Scene scene = block_scene("hybrid");
-  scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
-  scene.bodies[0].hybrid = Hybrid{};
-  scene.bodies[0].hybrid->regions.push_back(
-      {.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}, .group = ""});
+  HybridSpec split;
+  split.hybrid.regions.push_back({{.box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}}});
+  Scene scene = block_scene(split);
+  block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto move = [](Bench& bench, int i) {
     bench.tick(top + radius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i);
@@ -213,8 +213,8 @@ TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
 
 TEST(DynamicOrgan, TearsBeyondItsThreshold) {
   Scene scene = block_scene();
-  scene.tools[0].jaws = Jaws{0.012, 0.012, 0.1};
-  scene.bodies[0].tearing = Tearing{"largest_elongation", 0.5};
+  scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
+  block_of(scene).tearing = Tearing{"largest_elongation", 0.5};
   Bench bench(scene);
   const double low = top + radius - 0.001;
   for (int i = 0; i < 40; ++i) bench.tick(low, 0, 0, 0.6);
@@ -240,16 +240,16 @@ Vector3d settled_press(const Scene& scene, double x, const TetMesh& mesh = testi
 
 TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
   Scene whole = block_scene();
-  whole.bodies[0].dynamic.precision = "double";
+  block_of(whole).dynamic.precision = "double";
   whole.contact.friction = 0;
   for (const double x : {-0.01, 0.002, 0.015}) {
     const Vector3d wanted = settled_press(whole, x);
     EXPECT_LT(wanted.z(), -0.03);
+    HybridSpec split;
+    static_cast<MovingSpec&>(split) = block_of(whole);
+    split.hybrid.regions.push_back({{.box = Box{Vector3d(-1, -1, -1), Vector3d(0.0026, 1, 1)}}});
     Scene hybrid = whole;
-    hybrid.bodies[0].model = "hybrid";
-    hybrid.bodies[0].hybrid = Hybrid{};
-    hybrid.bodies[0].hybrid->regions.push_back(
-        {.indices = {}, .box = Box{Vector3d(-1, -1, -1), Vector3d(0.0026, 1, 1)}, .group = ""});
+    hybrid.bodies[0] = split;
     const Vector3d felt = settled_press(hybrid, x);
     EXPECT_LT((felt - wanted).norm(), 0.05 * wanted.norm())
         << "at x = " << x << ": " << felt.transpose() << " against " << wanted.transpose();
@@ -257,15 +257,16 @@ TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
 }
 
 TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
-  Scene scene = block_scene("hybrid");
+  HybridSpec joined;
+  joined.hybrid.mesh = "coarse.msh";
+  Scene scene = block_scene(joined);
   scene.contact.friction = 0;
-  scene.bodies[0].hybrid = Hybrid{.regions = {}, .mesh = "coarse.msh"};
-  scene.bodies[0].fixed[0].where = {.indices = {},
+  block_of(scene).fixed[0].where = {.indices = {},
                                     .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)},
                                     .group = ""};  // not the coarse mesh's bottom
   const TetMesh fine = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.015}, {12, 12, 3});
   const TetMesh coarse = make_block({-0.03, -0.03, 0.015}, {0.03, 0.03, 0.03}, {6, 6, 2});
-  Bench bench(scene, fine, coarse);
+  Bench bench(scene, fine, &coarse);
   EXPECT_EQ(bench.organ().still_part()->part().connection().size(), 49u);
   for (int i = 0; i < 2000; ++i) bench.tick(from_above(i, 600, top + radius + 0.001, top + radius - 0.003));
   ASSERT_TRUE(bench.finite());
@@ -282,7 +283,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
 
 TEST(DynamicOrgan, AnUnstableStepIsRefusedWithTheBound) {
   Scene scene = block_scene();
-  scene.bodies[0].dynamic.step = 0.1;
+  block_of(scene).dynamic.step = 0.1;
   try {
     Bench bench(scene);
     FAIL();
@@ -292,11 +293,10 @@ TEST(DynamicOrgan, AnUnstableStepIsRefusedWithTheBound) {
 }
 
 TEST(DynamicOrgan, RandomManipulationStaysFinite) {
-  for (const char* model : {"tensor_mass", "spring_mass"}) {
-    Scene scene = block_scene(model);
-    scene.tools[0].cautery = Cautery{0.0065};
-    scene.tools[0].jaws = Jaws{};
-    scene.bodies[0].dynamic.gravity = {0, 0, -9.81};
+  for (Scene scene : {block_scene(), block_scene(SpringMassSpec{})}) {
+    scene.tools[0].probe()->cautery = Cautery{0.0065};
+    scene.tools[0].probe()->jaws = ProbeJaws{};
+    block_of(scene).dynamic.gravity = {0, 0, -9.81};
     Bench bench(scene);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -306,7 +306,7 @@ TEST(DynamicOrgan, RandomManipulationStaysFinite) {
       z += 1e-3 * (unit(random) - 0.5 - 4 * (z - top));
       x += 1e-3 * (unit(random) - 0.5 - 4 * x);
       bench.tick(z, x, pedal, grip);
-      ASSERT_TRUE(bench.finite()) << model << " at tick " << i;
+      ASSERT_TRUE(bench.finite()) << kind_of(scene.bodies[0]) << " at tick " << i;
     }
   }
 }

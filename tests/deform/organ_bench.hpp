@@ -1,17 +1,17 @@
 #pragma once
 #include "common/mesh/generators.hpp"
-#include "common/tensors/precompute.hpp"
-#include "common/tensors/precompute_dynamic.hpp"
-#include "deform_node/dynamic_world.hpp"
+#include "common/models/hybrid/precompute.hpp"
+#include "common/models/moving/precompute.hpp"
+#include "common/sim/dynamic_world.hpp"
 
 /// A soft block on a fixed base with a tool above it, for the tests of the deformation node.
 namespace palpate::testing {
 
-inline Scene block_scene(const std::string& model = "tensor_mass") {
+/// `body`: of the kind that is wanted.
+template <class Spec = TensorMassSpec>
+Scene block_scene(Spec body = {}) {
   Scene scene;
-  Body body;
   body.name = "block";
-  body.model = model;
   body.material = {5000, 0.3, 1000};
   body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
   body.dynamic.damping = 60;
@@ -21,10 +21,22 @@ inline Scene block_scene(const std::string& model = "tensor_mass") {
   tool.pivot = {0, 0, 0.3};
   tool.axis = -Eigen::Vector3d::UnitZ();
   tool.up = Eigen::Vector3d::UnitY();
-  tool.radius = 0.006;
+  tool.probe()->radius = 0.006;
   tool.shaft_length = 0.01;
   scene.tools.push_back(tool);
   return scene;
+}
+
+/// The block of a scene.
+inline MovingSpec& block_of(Scene& scene) {
+  return *as<MovingSpec>(scene.bodies[0]);
+}
+
+/// The block's archive. `coarse`: the mesh of a hybrid's tensor-mass part that has one of its own.
+inline Archive precompute_block(const Scene& scene, const TetMesh& mesh, const TetMesh* coarse) {
+  const Body& body = scene.bodies[0];
+  if (const auto* hybrid = as<HybridSpec>(body)) return precompute(*hybrid, mesh, coarse);
+  return precompute_moving(*as<MovingSpec>(body), kind_of(body), mesh);
 }
 
 /// 60 x 60 x 30 mm, cells of 5 mm; its top at z = 30 mm.
@@ -35,11 +47,8 @@ inline TetMesh block_mesh() {
 /// Moves the tools of a world by hand.
 class Bench {
  public:
-  explicit Bench(Scene scene, const TetMesh& mesh = block_mesh())
-      : Bench(std::move(scene), [&](const Body& body) { return precompute(body, mesh); }) {}
-  /// A hybrid whose tensor-mass part has a mesh of its own.
-  Bench(Scene scene, const TetMesh& mesh, const TetMesh& coarse)
-      : Bench(std::move(scene), [&](const Body& body) { return precompute_dynamic(body, mesh, &coarse); }) {}
+  explicit Bench(Scene scene, const TetMesh& mesh = block_mesh(), const TetMesh* coarse = nullptr)
+      : scene_(std::move(scene)), archives_{precompute_block(scene_, mesh, coarse)}, world_(scene_, archives_) {}
 
   /// Another one of the same scene and the same tensors, at rest.
   explicit Bench(const Bench& other) : scene_(other.scene_), archives_(other.archives_), world_(scene_, archives_) {}
@@ -79,10 +88,6 @@ class Bench {
   }
 
  private:
-  template <class Make>
-  Bench(Scene scene, Make&& make)
-      : scene_(std::move(scene)), archives_{make(scene_.bodies[0])}, world_(scene_, archives_) {}
-
   Scene scene_;
   std::vector<Archive> archives_;
   DynamicWorld world_;

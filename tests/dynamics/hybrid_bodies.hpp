@@ -6,7 +6,7 @@
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/fem/direct.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 namespace palpate::testing {

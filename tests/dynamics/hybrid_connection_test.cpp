@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "common/tensors/join_meshes.hpp"
-#include "common/tensors/precompute_dynamic.hpp"
+#include "common/models/hybrid/join_meshes.hpp"
+#include "common/models/moving/precompute.hpp"
 #include "tests/dynamics/hybrid_bodies.hpp"
 
 /// Partial connections, and what cannot be connected.

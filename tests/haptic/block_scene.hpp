@@ -1,8 +1,8 @@
 #pragma once
 #include "common/mesh/generators.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/precompute.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 
 namespace palpate::testing {
 
@@ -14,7 +14,7 @@ struct BlockScene {
 
   explicit BlockScene(int tools = 1, int cells = 8) {
     const TetMesh mesh = make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
-    Body body;
+    QuasiStaticSpec body;
     body.name = "block";
     body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
     body.fixed.push_back({.where = {.box = Box{{-1, -1, -0.0501}, {1, 1, -0.0499}}}});
@@ -23,7 +23,7 @@ struct BlockScene {
       Tool tool;
       tool.name = "probe" + std::to_string(t);
       tool.pivot = {0.02 * t, 0, 0.2};
-      tool.radius = 0.008;
+      tool.probe()->radius = 0.008;
       tool.max_force = 100;
       tool.max_force_rate = 1e6;
       scene.tools.push_back(tool);
@@ -36,14 +36,13 @@ struct BlockScene {
 /// A haptic step takes it with one empty archive.
 inline Scene moving_block_scene(double radius) {
   Scene scene;
-  Body body;
+  TensorMassSpec body;
   body.name = "block";
-  body.model = "tensor_mass";
   scene.bodies.push_back(body);
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.2};
-  tool.radius = radius;
+  tool.probe()->radius = radius;
   tool.max_force = 100;
   tool.max_force_rate = 1e6;
   scene.tools.push_back(tool);

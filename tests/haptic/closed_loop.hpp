@@ -3,10 +3,10 @@
 #include <deque>
 #include <numbers>
 
-#include "common/contact/triangle.hpp"
+#include "common/archive/compliance.hpp"
 #include "common/dynamics/stability.hpp"
 #include "common/dynamics/tensor_mass.hpp"
-#include "common/tensors/compliance.hpp"
+#include "common/geometry/triangle.hpp"
 #include "tests/haptic/block_scene.hpp"
 
 /// A hand that presses a device's tool on a block of moving tissue, and the ways to close that loop.
@@ -19,7 +19,7 @@ class TouchedBlock {
   /// `cells` along the block's sides of 0.1 m; half of that along its height of 0.05 m.
   TouchedBlock(double young, double damping, int cells = 6) {
     const TetMesh mesh = make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
-    Body body;
+    QuasiStaticSpec body;
     body.name = "block";
     body.material = {.young = young, .poisson = 0.4, .density = 1000};
     body.fixed.push_back({.where = {.box = Box{{-1, -1, -0.0501}, {1, 1, -0.0499}}}});

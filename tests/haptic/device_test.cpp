@@ -17,12 +17,11 @@ class DeviceTest : public ::testing::Test {
  protected:
   DeviceTest() : file_(std::filesystem::temp_directory_path() / ("palpate-device-" + std::to_string(getpid()))) {}
   ~DeviceTest() override { std::filesystem::remove(file_); }
-  Scene scene_with(const std::string& device) {
+  Scene scene_with(const DeviceSpec& device) {
     Scene scene;
     Tool tool;
     tool.name = "probe";
     tool.device = device;
-    tool.trajectory = file_;
     scene.tools.push_back(tool);
     return scene;
   }
@@ -40,7 +39,7 @@ TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
       log.write(topics::tool_state.name, 2, ToolState{.tool = 1, .run = 7, .seq = step, .step = step, .depth = 9});
     }
   }
-  const auto device = make_device(scene_with("log"), 0);
+  const auto device = make_device(scene_with(LogDeviceSpec{file_}), 0);
   EXPECT_DOUBLE_EQ(device->read(0).dofs.depth, 0.040);
   EXPECT_DOUBLE_EQ(device->read(0.004).dofs.depth, 0.044);
   EXPECT_DOUBLE_EQ(device->read(0.005).dofs.depth, 0.044);
@@ -57,7 +56,7 @@ TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
     log.write(topics::tool_state.name, 2, ToolState{.tool = 3, .run = 7, .seq = 1, .step = 0});
   }
   try {
-    make_device(scene_with("log"), 0);
+    make_device(scene_with(LogDeviceSpec{file_}), 0);
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("no motion of tool 'probe'"), std::string::npos) << error.what();
@@ -65,7 +64,7 @@ TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
 }
 
 TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
-  Scene scene = scene_with("bus");
+  Scene scene = scene_with(BusDeviceSpec{});
   scene.tools.push_back(scene.tools[0]);
   std::vector<std::unique_ptr<Device>> devices;
   for (int t = 0; t < 2; ++t) devices.push_back(make_device(scene, t));

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "common/models/modal_shape.hpp"
+#include "common/models/modal_shell/modal_shape.hpp"
 #include "tests/haptic/duct_scene.hpp"
 #include "tests/tool/count_allocations.hpp"
 
@@ -86,9 +86,9 @@ struct Theatre {
 
   explicit Theatre(int modes = 30, double catheter_young = 30e6) : duct(modes) {
     duct.add_catheter();
-    duct.scene.bodies[1].material.young = catheter_young;
+    as<CatheterSpec>(duct.scene.bodies[1])->material.young = catheter_young;
     duct.add_forceps().pivot = {0, 0.15, -0.03};
-    Jaws& long_jaws = *duct.add_forceps().jaws;
+    ForcepsJaws& long_jaws = duct.add_forceps().forceps()->jaws;
     long_jaws.length = 0.02;
     long_jaws.most_open = 1.6;
     haptic = std::make_unique<HapticStep>(duct.scene, duct.archives);
@@ -164,7 +164,7 @@ TEST(DuctManipulation, OpenedJawsLetGo) {
 
 TEST(DuctManipulation, PulledHarderThanTheJawsCanHoldItSlipsAndCountsAsADrop) {
   Theatre t;
-  t.duct.scene.tools[0].jaws->friction = 0.05;
+  t.duct.scene.tools[0].forceps()->jaws.friction = 0.05;
   t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);
   t.haptic->start(t.dofs);
   t.feed();
@@ -299,8 +299,10 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   const bool whole = std::getenv("PALPATE_LONG_TESTS") != nullptr;
   const int steps = whole ? 3'600'000 : 30'000;
   Theatre t(20);
-  for (Tool& tool : t.duct.scene.tools) tool.jaws->grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
-  t.duct.scene.bodies[1].catheter->damping = 100;  // skin and blood hold it: a flick does not send it across the room
+  for (Tool& tool : t.duct.scene.tools)
+    tool.forceps()->jaws.grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
+  // Skin and blood hold it: a flick does not send it across the room.
+  as<CatheterSpec>(t.duct.scene.bodies[1])->catheter.damping = 100;
   t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);
   t.haptic->start(t.dofs);
   t.feed();

@@ -1,8 +1,8 @@
 #pragma once
 #include "common/mesh/shell_generators.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/precompute_shell.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 #include "tests/haptic/block_scene.hpp"
 
 namespace palpate::testing {
@@ -16,14 +16,13 @@ struct DuctScene {
 
   explicit DuctScene(int modes = 30) {
     const ShellMesh mesh = make_tube(radius, length, 16, 16);
-    Body duct;
+    ModalShellSpec duct;
     duct.name = "duct";
-    duct.model = "modal_shell";
     duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
-    duct.shell = Shell{.thickness = thickness, .modes = modes};
-    duct.fixed.push_back({.where = {.box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}}});
+    duct.shell = {.thickness = thickness, .modes = modes};
+    duct.fixed.push_back({{.where = {.box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}}}});
     scene.bodies.push_back(duct);
-    archives.push_back(precompute_shell(duct, mesh));
+    archives.push_back(precompute(duct, mesh));
   }
 
   Tool& add_probe() {
@@ -32,7 +31,7 @@ struct DuctScene {
     tool.pivot = {0, 0.15, length / 2};
     tool.axis = -Eigen::Vector3d::UnitY();
     tool.up = Eigen::Vector3d::UnitZ();
-    tool.radius = 0.003;
+    tool.probe()->radius = 0.003;
     tool.shaft_length = 0.02;
     tool.max_force = 100;
     tool.max_force_rate = 1e7;
@@ -42,19 +41,17 @@ struct DuctScene {
 
   Tool& add_forceps() {
     Tool& tool = add_probe();
-    tool.kind = "forceps";
+    tool.end = ForcepsSpec{};
     tool.shaft_length = 0.2;
-    tool.jaws = Jaws{};
     return tool;
   }
 
   /// A catheter along the duct's axis that ends `ahead` [m] before the open mouth at z = 0.
   void add_catheter(double ahead = 0.004, int particles = 31) {
-    Body body;
+    CatheterSpec body;
     body.name = "catheter";
-    body.model = "catheter";
     body.material = {.young = 30e6, .poisson = 0.45, .density = 1100};
-    body.catheter = Catheter{
+    body.catheter = {
         .inside = "duct", .tail = {0, 0, -0.06 - ahead}, .tip = {0, 0, -ahead}, .particles = particles, .sleeve = 0.02};
     scene.bodies.push_back(body);
     archives.push_back({});

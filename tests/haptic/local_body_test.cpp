@@ -1,4 +1,4 @@
-#include "haptic_node/local_body.hpp"
+#include "common/models/moving/local_body.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "common/bus/memory_bus.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/haptic_step.hpp"
 #include "haptic_node/local_feed.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
 

@@ -1,11 +1,11 @@
-#include "haptic_node/modal_body.hpp"
+#include "common/models/modal_shell/modal_body.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "haptic_node/quasi_static_body.hpp"
+#include "common/models/quasi_static/quasi_static_body.hpp"
 #include "tests/haptic/duct_scene.hpp"
 
 namespace palpate {
@@ -24,7 +24,7 @@ struct Pressed {
 
   explicit Pressed(int modes, bool residual = true) : duct(modes) {
     duct.add_probe();
-    duct.scene.bodies[0].shell->residual = residual;
+    as<ShellSpec>(duct.scene.bodies[0])->shell.residual = residual;
     haptic = std::make_unique<HapticStep>(duct.scene, duct.archives);
     haptic->start(std::array{at(0.002)});
   }
@@ -53,9 +53,10 @@ TEST(ModalBody, AtRestUnderATipItPushesAsAQuasiStaticBodyDoes) {
   // The same compliance without inertia. Its tools touch the middle surface: they are thicker by half the wall.
   DuctScene still(30);
   Tool& tool = still.add_probe();
-  tool.radius += DuctScene::thickness / 2;
-  still.scene.bodies[0].shell.reset();
-  still.scene.bodies[0].model = "quasi_static";
+  tool.probe()->radius += DuctScene::thickness / 2;
+  QuasiStaticSpec body;
+  static_cast<MeshedSpec&>(body) = *as<MeshedSpec>(still.scene.bodies[0]);
+  still.scene.bodies[0] = body;
   HapticStep quasi_static(still.scene, still.archives);
   quasi_static.start(std::array{modal.at(0.002)});
   for (int i = 0; i <= 300; ++i) quasi_static.step(std::array{modal.at(0.002 - 1e-5 * i)});

@@ -1,4 +1,4 @@
-#include "haptic_node/passivity.hpp"
+#include "common/tool/passivity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "haptic_node/haptic_step.hpp"
-#include "haptic_node/safety.hpp"
+#include "common/sim/haptic_step.hpp"
+#include "common/tool/safety.hpp"
 #include "tests/haptic/closed_loop.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
 #include "tests/tool/count_allocations.hpp"

@@ -1,4 +1,4 @@
-#include "haptic_node/safety.hpp"
+#include "common/tool/safety.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate::testing {
 

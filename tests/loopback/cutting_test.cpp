@@ -5,9 +5,9 @@
 
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/log_reader.hpp"
-#include "common/models/topology_feed.hpp"
+#include "common/node/topology_feed.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/find_archive.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

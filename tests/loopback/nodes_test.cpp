@@ -7,8 +7,8 @@
 #include "common/bus/dds_bus.hpp"
 #include "common/fem/direct.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/find_archive.hpp"
 #include "common/tool/kinematics.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
@@ -107,8 +107,8 @@ LoopbackScene* NodesTest::scene_ = nullptr;
 TEST_F(NodesTest, TheSurfaceThatARenderNodeReceivesIsTheDirectSolversForTheSameContact) {
   const Scene scene = load_scene(scene_->scene());
   const Archive archive = find_archive(scene, scene.bodies[0], ArchivePart::surface);
-  const StaticProblem problem =
-      make_static_problem(scene.bodies[0], load_tet_mesh(scene.bodies[0].mesh, scene.bodies[0].scale));
+  const SolidSpec& block = *as<SolidSpec>(scene.bodies[0]);
+  const StaticProblem problem = make_static_problem(block, load_tet_mesh(block.mesh, block.scale));
   Ear ear;
   Heard heard;
   ChildProcess deform("deform_node", node("deform_node", *scene_));

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "common/contact/triangle.hpp"
+#include "common/geometry/triangle.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_quality.hpp"
 #include "common/tool/forceps.hpp"

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "common/describe/csv.hpp"
 #include "common/fem/direct.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/generators.hpp"
-#include "common/models/nonlinear.hpp"
-#include "common/scene/csv.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
 
 /// TVCG99 sec. 6-1: a cylinder of a brain specimen's size under a press of its top, measured at its top
 /// (force) and on the circle at mid-height (radial displacement).
@@ -66,7 +66,7 @@ class BrainCylinder : public testing::TestWithParam<const char*> {
   double outward(const std::vector<double>& field, int n) const { return std::hypot(field[3 * n], field[3 * n + 1]); }
 
   TetMesh mesh = make_cylinder(kRadius, kHeight, 10, 6);
-  Body body;
+  QuasiStaticSpec body;
 };
 
 /// The curve's measured value at a displacement, between its points by straight lines.

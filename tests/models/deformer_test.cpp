@@ -1,9 +1,9 @@
-#include "common/models/deformer.hpp"
+#include "common/sim/deformer.hpp"
 
 #include <gtest/gtest.h>
 
 #include "common/bus/memory_bus.hpp"
-#include "common/models/contact_feed.hpp"
+#include "common/node/contact_feed.hpp"
 #include "tests/models/duct_scene.hpp"
 
 namespace palpate {

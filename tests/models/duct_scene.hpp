@@ -1,10 +1,10 @@
 #pragma once
 #include <random>
 
+#include "common/archive/archive.hpp"
 #include "common/mesh/shell_generators.hpp"
 #include "common/mesh/tube.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/archive.hpp"
 
 /// A scene of an organ, a duct and a catheter with invented numbers: bodies 0, 1 and 2.
 namespace palpate::testing {
@@ -40,12 +40,12 @@ struct DuctScene {
 
   DuctScene() {
     scene.title = "a duct";
-    scene.bodies.resize(3);
-    scene.bodies[duct_body].model = "modal_shell";
-    scene.bodies[duct_body].shell = Shell{.thickness = 0.001, .modes = modes};
-    scene.bodies[catheter_body].model = "catheter";
-    scene.bodies[catheter_body].catheter = Catheter{
+    ModalShellSpec duct;
+    duct.shell = {.thickness = 0.001, .modes = modes};
+    CatheterSpec catheter;
+    catheter.catheter = {
         .inside = "duct", .tail = {0, 0, -0.05}, .tip = {0, 0, 0.045}, .radius = 0.00125, .particles = particles};
+    scene.bodies = {QuasiStaticSpec{}, duct, catheter};
     make_organ();
     make_duct();
     make_catheter();
@@ -53,7 +53,7 @@ struct DuctScene {
 
   /// Rest positions of the particles, moved by `along` [m] and bent: the particle i stands `bend` i^2 to the side.
   CatheterState catheter_state(double along = 0, double bend = 0) const {
-    const Catheter& c = *scene.bodies[catheter_body].catheter;
+    const Catheter& c = as<CatheterSpec>(scene.bodies[catheter_body])->catheter;
     CatheterState state{.body = catheter_body, .run = 5, .seq = 1, .step = 7, .sense_ns = 1000};
     for (int i = 0; i < particles; ++i) {
       Eigen::Vector3d p = c.tail + (c.tip - c.tail) * i / (particles - 1);

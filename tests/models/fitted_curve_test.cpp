@@ -1,4 +1,4 @@
-#include "common/models/fitted_curve.hpp"
+#include "common/models/quasi_static/fitted_curve.hpp"
 
 #include <gtest/gtest.h>
 

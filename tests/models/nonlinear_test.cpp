@@ -1,4 +1,4 @@
-#include "common/models/nonlinear.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ class QuasiNonlinearLaw : public testing::Test {
   }
 
   std::filesystem::path folder_;
-  Body body;
+  QuasiStaticSpec body;
 };
 
 TEST_F(QuasiNonlinearLaw, TurnsTheClosedLinearCurvesIntoTheMeasuredOnes) {

@@ -1,4 +1,4 @@
-#include "common/models/topology_memory.hpp"
+#include "common/node/topology_memory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "common/models/topology_feed.hpp"
+#include "common/node/topology_feed.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/find_archive.hpp"
 #include "tests/network/network_test.hpp"
 
 namespace palpate::testing {

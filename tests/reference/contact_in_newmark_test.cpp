@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/models/modal_newmark.hpp"
+#include "common/models/modal_shell/modal_newmark.hpp"
 
 namespace palpate {
 namespace {

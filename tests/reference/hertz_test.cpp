@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "common/mesh/generators.hpp"
-#include "common/tensors/precompute.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/sim/haptic_step.hpp"
 
 /// A frictionless tip of radius R pressed into the middle of a block, nu = 0.3, by the haptic step, against
 /// Hertz. The tip's axis stands at several places between the nodes: how many nodes carry the contact depends

@@ -22,8 +22,7 @@ struct DuctStage {
     s.scene.tools.resize(1);
     Tool& tool = s.scene.tools[0];
     tool.name = "forceps";
-    tool.kind = "forceps";
-    tool.jaws = Jaws{};
+    tool.end = ForcepsSpec{};
     tool.pivot = {0.1, -0.02, 0.01};
     tool.axis = {-1, 0, 0};
     tool.up = {0, 0, 1};
@@ -167,7 +166,7 @@ TEST(DuctStage, AForcepsOpensAsFarAsItsJawsReallyAre) {
   const Frame frame = stage.frame();
   ASSERT_EQ(frame.instruments.size(), 1u);
   EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_opening, 0.5);
-  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_length, Jaws{}.length);
+  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_length, ForcepsJaws{}.length);
   Frame without = frame;
   without.instruments.clear();
   EXPECT_GT(difference(picture(frame), picture(without), 8), 0.01);

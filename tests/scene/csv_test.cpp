@@ -1,4 +1,4 @@
-#include "common/scene/csv.hpp"
+#include "common/describe/csv.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/schema.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate {
 namespace {
@@ -25,8 +25,8 @@ std::map<std::string, std::vector<std::string>> documented_keys() {
 
 TEST(SceneReference, ListsTheKeysThatTheParserKnows) {
   std::map<std::string, std::vector<std::string>> known;
-  for (const TableSchema& table : scene_schema())
-    known[std::string(table.name)].assign(table.keys.begin(), table.keys.end());
+  for (const DescribedTable& table : scene_keys().tables())
+    for (const DescribedKey& key : table.keys) known[table.path.name()].push_back(key.name);
   EXPECT_EQ(documented_keys(), known);
 }
 

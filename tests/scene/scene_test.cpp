@@ -7,6 +7,12 @@
 namespace palpate {
 namespace {
 
+TensorMassSpec tensor_mass_like(const MovingSpec& body) {
+  TensorMassSpec spec;
+  static_cast<MovingSpec&>(spec) = body;
+  return spec;
+}
+
 class SceneFile : public testing::Test {
  protected:
   Scene parse(const std::string& text) const { return parse_scene(text, folder / "scene.toml"); }
@@ -18,7 +24,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(scene.file, folder / "scene.toml");
   EXPECT_EQ(scene.title, "All \"keys\" at once");
   ASSERT_EQ(scene.bodies.size(), 8u);
-  const Body& body = scene.bodies[0];
+  const auto& body = std::get<QuasiStaticSpec>(scene.bodies[0]);
   EXPECT_EQ(body.name, "liver");
   EXPECT_EQ(body.mesh, folder / "liver.msh");
   EXPECT_EQ(body.scale, 0.001);
@@ -41,16 +47,16 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(body.nonlinear->degree, 5);
   EXPECT_EQ(body.nonlinear->specimen_scale, 0.1);
   EXPECT_EQ(body.touchable->indices, (std::vector<int>{10, 11}));
-  EXPECT_EQ(scene.bodies[1].touchable->box->max, Eigen::Vector3d(1, 1, 0));
-  EXPECT_EQ(scene.bodies[2].touchable->group, "top");
+  EXPECT_EQ(as<MeshedSpec>(scene.bodies[1])->touchable->box->max, Eigen::Vector3d(1, 1, 0));
+  EXPECT_EQ(as<MeshedSpec>(scene.bodies[2])->touchable->group, "top");
   ASSERT_EQ(scene.tools.size(), 4u);
   const Tool& tool = scene.tools[0];
   EXPECT_NEAR((tool.axis - Eigen::Vector3d(1, 2, -3) / std::sqrt(14.0)).norm(), 0, 1e-15);
-  EXPECT_EQ(tool.radius, 0.006);
-  EXPECT_EQ(tool.trajectory, folder / "move.csv");
+  EXPECT_EQ(std::get<ProbeSpec>(tool.end).radius, 0.006);
+  EXPECT_EQ(std::get<ScriptedDeviceSpec>(tool.device).trajectory, folder / "move.csv");
   EXPECT_EQ(tool.max_force_rate, 4000);
-  EXPECT_EQ(scene.tools[1].device, "bus");
-  EXPECT_EQ(scene.tools[2].trajectory, folder / "session.lcmlog");
+  EXPECT_TRUE(std::holds_alternative<BusDeviceSpec>(scene.tools[1].device));
+  EXPECT_EQ(std::get<LogDeviceSpec>(scene.tools[2].device).trajectory, folder / "session.lcmlog");
   EXPECT_EQ(scene.contact.rule, "alpha");
   EXPECT_EQ(scene.contact.bucket_size, 0.01);
   EXPECT_EQ(scene.network.domain, 7);
@@ -66,10 +72,11 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
 
 TEST_F(SceneFile, KeysOfMovingTissueArriveWhereTheyBelong) {
   const Scene scene = parse(kFullScene);
-  const Body &segment = scene.bodies[3], &duct = scene.bodies[4], &web = scene.bodies[5];
-  EXPECT_FALSE(is_dynamic(scene.bodies[0]));
-  EXPECT_TRUE(is_dynamic(segment) && is_dynamic(web));
-  EXPECT_EQ(segment.model, "hybrid");
+  const auto &segment = std::get<HybridSpec>(scene.bodies[3]), &duct = std::get<HybridSpec>(scene.bodies[4]);
+  const auto& web = std::get<SpringMassSpec>(scene.bodies[5]);
+  EXPECT_FALSE(as<MovingSpec>(scene.bodies[0]));
+  EXPECT_TRUE(as<MovingSpec>(scene.bodies[3]) && as<MovingSpec>(scene.bodies[5]));
+  EXPECT_EQ(kind_of(scene.bodies[3]), "hybrid");
   EXPECT_EQ(segment.dynamic.integrator, "semi_implicit");
   EXPECT_EQ(segment.dynamic.precision, "double");
   EXPECT_EQ(segment.dynamic.step, 0.0005);
@@ -78,78 +85,81 @@ TEST_F(SceneFile, KeysOfMovingTissueArriveWhereTheyBelong) {
   EXPECT_TRUE(segment.dynamic.corotational);
   EXPECT_EQ(segment.tearing->criterion, "mean_elongation");
   EXPECT_EQ(segment.tearing->threshold, 0.7);
-  ASSERT_EQ(segment.hybrid->regions.size(), 3u);
-  EXPECT_EQ(segment.hybrid->regions[0].indices, (std::vector<int>{4, 2}));
-  EXPECT_EQ(segment.hybrid->regions[1].box->max, Eigen::Vector3d(0.01, 0.02, 0.03));
-  EXPECT_EQ(segment.hybrid->regions[2].group, "5");
-  EXPECT_TRUE(segment.hybrid->mesh.empty());
-  EXPECT_EQ(duct.hybrid->mesh, folder / "coarse.msh");
-  EXPECT_EQ(duct.hybrid->scale, 0.01);
-  EXPECT_TRUE(duct.hybrid->regions.empty());
+  ASSERT_EQ(segment.hybrid.regions.size(), 3u);
+  EXPECT_EQ(segment.hybrid.regions[0].indices, (std::vector<int>{4, 2}));
+  EXPECT_EQ(segment.hybrid.regions[1].box->max, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(segment.hybrid.regions[2].group, "5");
+  EXPECT_TRUE(segment.hybrid.mesh.empty());
+  EXPECT_EQ(duct.hybrid.mesh, folder / "coarse.msh");
+  EXPECT_EQ(duct.hybrid.scale, 0.01);
+  EXPECT_TRUE(duct.hybrid.regions.empty());
   EXPECT_EQ(web.dynamic.gravity, Eigen::Vector3d(0, 0, -1.5));
   EXPECT_EQ(web.dynamic.integrator, Dynamic{}.integrator);
-  EXPECT_EQ(scene.tools[0].cautery->radius, 0.002);
-  EXPECT_EQ(scene.tools[0].jaws->length, 0.02);
-  EXPECT_EQ(scene.tools[0].jaws->width, 0.005);
-  EXPECT_EQ(scene.tools[0].jaws->closed_below, 0.2);
-  EXPECT_FALSE(scene.tools[1].cautery || scene.tools[1].jaws);
+  const auto &probe = std::get<ProbeSpec>(scene.tools[0].end), &hook = std::get<ProbeSpec>(scene.tools[1].end);
+  EXPECT_EQ(probe.cautery->radius, 0.002);
+  EXPECT_EQ(probe.jaws->length, 0.02);
+  EXPECT_EQ(probe.jaws->width, 0.005);
+  EXPECT_EQ(probe.jaws->closed_below, 0.2);
+  EXPECT_FALSE(hook.cautery || hook.jaws);
 }
 
 TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
   const Scene scene = parse(kFullScene);
-  const Body &duct = scene.bodies[6], &wire = scene.bodies[7];
-  EXPECT_FALSE(is_dynamic(duct) || is_dynamic(wire));
+  const auto& duct = std::get<ModalShellSpec>(scene.bodies[6]);
+  const auto& wire = std::get<CatheterSpec>(scene.bodies[7]);
+  EXPECT_FALSE(as<MovingSpec>(scene.bodies[6]) || as<MovingSpec>(scene.bodies[7]));
   EXPECT_EQ(duct.mesh, folder / "tube.stl");
   EXPECT_EQ(duct.fixed[0].axes, (std::array<bool, 3>{true, true, false}));
   EXPECT_FALSE(duct.fixed[0].rotations);
   EXPECT_EQ(duct.touchable->indices, (std::vector<int>{1, 2}));
-  EXPECT_EQ(duct.shell->thickness, 0.001);
-  EXPECT_EQ(duct.shell->bending, "polynomial");
-  EXPECT_EQ(duct.shell->modes, 40);
-  EXPECT_EQ(duct.shell->damping, 3);
-  EXPECT_FALSE(duct.shell->residual);
-  EXPECT_FALSE(duct.catheter || wire.shell);
-  EXPECT_TRUE(wire.mesh.empty() && wire.fixed.empty());
+  EXPECT_EQ(duct.shell.thickness, 0.001);
+  EXPECT_EQ(duct.shell.bending, "polynomial");
+  EXPECT_EQ(duct.shell.modes, 40);
+  EXPECT_EQ(duct.shell.damping, 3);
+  EXPECT_FALSE(duct.shell.residual);
+  EXPECT_FALSE(as<CatheterSpec>(scene.bodies[6]) || as<ShellSpec>(scene.bodies[7]));
+  EXPECT_FALSE(as<MeshedSpec>(scene.bodies[7])) << "it has no mesh and is fixed nowhere";
   EXPECT_EQ(wire.material.young, 3e7);
   EXPECT_EQ(wire.material.poisson, 0.45);
-  EXPECT_EQ(wire.catheter->inside, "cystic_duct");
-  EXPECT_EQ(wire.catheter->tail, Eigen::Vector3d(-0.14, 0, 0.01));
-  EXPECT_EQ(wire.catheter->tip, Eigen::Vector3d(-0.02, 0, 0.01));
-  EXPECT_EQ(wire.catheter->radius, 0.0013);
-  EXPECT_EQ(wire.catheter->particles, 61);
-  EXPECT_EQ(wire.catheter->sleeve, 0.03);
-  EXPECT_EQ(wire.catheter->damping, 4);
-  EXPECT_EQ(wire.catheter->gravity, Eigen::Vector3d(0, 0, -9.5));
-  EXPECT_EQ(wire.catheter->integrator, "semi_implicit");
+  EXPECT_EQ(wire.catheter.inside, "cystic_duct");
+  EXPECT_EQ(wire.catheter.tail, Eigen::Vector3d(-0.14, 0, 0.01));
+  EXPECT_EQ(wire.catheter.tip, Eigen::Vector3d(-0.02, 0, 0.01));
+  EXPECT_EQ(wire.catheter.radius, 0.0013);
+  EXPECT_EQ(wire.catheter.particles, 61);
+  EXPECT_EQ(wire.catheter.sleeve, 0.03);
+  EXPECT_EQ(wire.catheter.damping, 4);
+  EXPECT_EQ(wire.catheter.gravity, Eigen::Vector3d(0, 0, -9.5));
+  EXPECT_EQ(wire.catheter.integrator, "semi_implicit");
   const Tool& tool = scene.tools[3];
-  EXPECT_EQ(tool.kind, "forceps");
+  ASSERT_TRUE(tool.forceps());
   EXPECT_EQ(tool.compliance, 0.0002);
-  EXPECT_EQ(tool.jaws->length, 0.015);
-  EXPECT_EQ(tool.jaws->radius, 0.0012);
-  EXPECT_EQ(tool.jaws->most_open, 0.9);
-  EXPECT_EQ(tool.jaws->grip_stiffness, 0.4);
-  EXPECT_EQ(tool.jaws->friction, 0.6);
-  EXPECT_EQ(scene.tools[0].kind, "probe");
+  EXPECT_EQ(tool.forceps()->jaws.length, 0.015);
+  EXPECT_EQ(tool.forceps()->jaws.radius, 0.0012);
+  EXPECT_EQ(tool.forceps()->jaws.most_open, 0.9);
+  EXPECT_EQ(tool.forceps()->jaws.grip_stiffness, 0.4);
+  EXPECT_EQ(tool.forceps()->jaws.friction, 0.6);
+  EXPECT_TRUE(scene.tools[0].probe());
 }
 
 TEST_F(SceneFile, AShellHasOneLawOfDampingAndIsClampedWhereItIsFixed) {
   const std::string shell =
       "[[body]]\nname = \"a\"\nmesh = \"tube.stl\"\nmodel = \"modal_shell\"\nyoung = 1\npoisson = 0\n"
       "fixed = [{ group = \"a\" }]\n";
-  const Body plain = parse(shell + "shell = { thickness = 0.002 }\n").bodies[0];
-  EXPECT_TRUE(plain.fixed[0].rotations && plain.shell->residual);
-  EXPECT_EQ(plain.shell->damping_ratio, 0.2);
-  EXPECT_EQ(plain.shell->damping, 0);
-  EXPECT_EQ(plain.shell->modes, 50);
+  const auto wall = [](const Scene& scene) { return std::get<ModalShellSpec>(scene.bodies[0]); };
+  const ModalShellSpec plain = wall(parse(shell + "shell = { thickness = 0.002 }\n"));
+  EXPECT_TRUE(plain.fixed[0].rotations && plain.shell.residual);
+  EXPECT_EQ(plain.shell.damping_ratio, 0.2);
+  EXPECT_EQ(plain.shell.damping, 0);
+  EXPECT_EQ(plain.shell.modes, 50);
   const Scene undamped = parse(shell + "shell = { thickness = 0.002, damping_ratio = 0 }\n");
-  EXPECT_EQ(undamped.bodies[0].shell->damping_ratio, 0);
-  EXPECT_EQ(parse(to_toml(undamped)).bodies[0].shell->damping_ratio, 0);
+  EXPECT_EQ(wall(undamped).shell.damping_ratio, 0);
+  EXPECT_EQ(wall(parse(to_toml(undamped))).shell.damping_ratio, 0);
 }
 
 TEST_F(SceneFile, ACauteryCutsWithTheTipUnlessItsRadiusIsGiven) {
   const std::string tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\nradius = 0.003\n";
-  EXPECT_EQ(parse(kLeastScene + tool + "cautery = {}\n").tools[0].cautery->radius, 0.003);
-  EXPECT_EQ(parse(kLeastScene + tool + "cautery = { radius = 0.001 }\n").tools[0].cautery->radius, 0.001);
+  EXPECT_EQ(parse(kLeastScene + tool + "cautery = {}\n").tools[0].probe()->cautery->radius, 0.003);
+  EXPECT_EQ(parse(kLeastScene + tool + "cautery = { radius = 0.001 }\n").tools[0].probe()->cautery->radius, 0.001);
 }
 
 TEST_F(SceneFile, AbsentSectionsStayEmpty) {
@@ -157,10 +167,11 @@ TEST_F(SceneFile, AbsentSectionsStayEmpty) {
   EXPECT_TRUE(scene.title.empty());
   EXPECT_TRUE(scene.tools.empty());
   EXPECT_FALSE(scene.record || scene.render);
-  EXPECT_FALSE(scene.bodies[0].nonlinear || scene.bodies[0].touchable);
-  EXPECT_FALSE(scene.bodies[0].tearing || scene.bodies[0].hybrid || is_dynamic(scene.bodies[0]));
-  EXPECT_TRUE(scene.bodies[0].materials.empty());
-  EXPECT_EQ(scene.contact.friction, Contact{}.friction);
+  const auto& body = std::get<QuasiStaticSpec>(scene.bodies[0]);
+  EXPECT_FALSE(body.nonlinear || body.touchable);
+  EXPECT_FALSE(as<MovingSpec>(scene.bodies[0])) << "it has no tearing and no hybrid part";
+  EXPECT_TRUE(body.materials.empty());
+  EXPECT_EQ(scene.contact.friction, ContactSpec{}.friction);
 }
 
 TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
@@ -174,11 +185,11 @@ TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
 TEST_F(SceneFile, DoublesRoundTripBitForBit) {
   Scene scene = parse(kLeastScene);
   for (double young : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 6000.0, 1e22, 123456789.123456789, 1e16}) {
-    scene.bodies[0].material.young = young;
-    EXPECT_EQ(parse(to_toml(scene)).bodies[0].material.young, young);
+    as<MeshedSpec>(scene.bodies[0])->material.young = young;
+    EXPECT_EQ(as<MeshedSpec>(parse(to_toml(scene)).bodies[0])->material.young, young);
   }
   scene.tools.emplace_back().name = "t";
-  scene.tools[0].device = "bus";
+  scene.tools[0].device = BusDeviceSpec{};
   scene.tools[0].pivot = {-0.0, 1.0 / 7, -1e-300};
   const Eigen::Vector3d back = parse(to_toml(scene)).tools[0].pivot;
   EXPECT_TRUE(std::signbit(back.x()));
@@ -205,41 +216,42 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
     change(other);
     return scene_hash(other) != hash;
   };
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].material.young *= 1 + 1e-15; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].fixed[0].axes[1] = true; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].nonlinear->degree = 6; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[0].nonlinear.reset(); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].radius = 0.007; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->material.young *= 1 + 1e-15; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->fixed[0].axes[1] = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->degree = 6; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->radius = 0.007; }));
   EXPECT_TRUE(changed([](Scene& s) { s.contact.friction = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.step = 0; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.gravity.x() = 1; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.precision = "single"; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.integrator = "rk4"; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.corotational = false; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].dynamic.damping = 13; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].tearing->threshold = 0.8; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[3].hybrid->regions.pop_back(); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[4].hybrid->scale = 1; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[5].model = "tensor_mass"; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].cautery->radius = 0.003; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].jaws.reset(); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->modes = 50; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->damping = 2; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].shell->residual = true; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[6].fixed[0].rotations = true; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[7].catheter->particles = 60; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.bodies[7].catheter->inside.clear(); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].kind = "probe"; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.step = 0; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.gravity.x() = 1; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.precision = "single"; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.integrator = "rk4"; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.corotational = false; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.damping = 13; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->tearing->threshold = 0.8; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<HybridSpec>(s.bodies[3])->hybrid.regions.pop_back(); }));
+  EXPECT_TRUE(changed([](Scene& s) { as<HybridSpec>(s.bodies[4])->hybrid.scale = 1; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.bodies[5] = tensor_mass_like(*as<MovingSpec>(s.bodies[5])); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->cautery->radius = 0.003; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->jaws.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.modes = 50; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.damping = 2; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.residual = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->fixed[0].rotations = true; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<CatheterSpec>(s.bodies[7])->catheter.particles = 60; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<CatheterSpec>(s.bodies[7])->catheter.inside.clear(); }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].end = ProbeSpec{}; }));
   EXPECT_TRUE(changed([](Scene& s) { s.tools[3].compliance = 1e-4; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].jaws->friction = 0.8; }));
-  EXPECT_FALSE(changed([](Scene& s) { s.bodies[4].hybrid->mesh = "/elsewhere/coarse.msh"; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].forceps()->jaws.friction = 0.8; }));
+  EXPECT_FALSE(changed([](Scene& s) { as<HybridSpec>(s.bodies[4])->hybrid.mesh = "/elsewhere/coarse.msh"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.security = std::nullopt; }));
   EXPECT_FALSE(changed([](Scene& s) { s.record.reset(); }));
   EXPECT_FALSE(changed([](Scene& s) { s.render.reset(); }));
-  EXPECT_FALSE(changed([](Scene& s) { s.tools[0].device = "log"; }));
+  EXPECT_FALSE(changed(
+      [](Scene& s) { s.tools[0].device = LogDeviceSpec{std::get<ScriptedDeviceSpec>(s.tools[0].device).trajectory}; }));
 }
 
 TEST_F(SceneFile, HashSeesTheCurvesContentsAndNotTheirPlace) {

@@ -1,5 +1,3 @@
-#include "common/scene/schema.hpp"
-
 #include <gtest/gtest.h>
 
 #include "tests/scene/full_scene.hpp"
@@ -12,11 +10,13 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
   const SceneFolder folder;
   const std::string body = kLeastScene, tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
   int tried = 0;
-  for (const TableSchema& table : scene_schema()) {
-    for (std::string_view key : table.keys) {
-      const std::string line = std::string(key) + " = 1979-05-27\n";
+  for (const DescribedTable& described : scene_keys().tables()) {
+    const std::string table = described.path.name();
+    for (const DescribedKey& row : described.keys) {
+      const std::string& key = row.name;
+      const std::string line = key + " = 1979-05-27\n";
       std::string text = kFullScene;
-      if (table.name == "scene") {
+      if (table == "scene") {
         text = line;
         if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" ||
             key == "record" || key == "render")
@@ -24,7 +24,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         if (key == "title") text += body;
       } else {
         // Put the key into the first table of that name, in the place of the line that has it or of nothing.
-        const std::string header = std::string(table.name) + "\n";
+        const std::string header = table + "\n";
         auto place = text.find(header);
         ASSERT_NE(place, text.npos) << header;
         const std::string plain = "[[body]]\nname = \"a\"\nmesh = \"liver.msh\"\nyoung = 1\npoisson = 0\n";
@@ -40,7 +40,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           text = held + "model = \"modal_shell\"\n" + line;
         } else if (key == "catheter") {
           text = "[[body]]\nname = \"a\"\nmodel = \"catheter\"\nyoung = 1\n" + line;
-        } else if (table.name == "[tool.jaws]" && key != "length" && key != "width" && key != "closed_below") {
+        } else if (table == "[tool.jaws]" && key != "length" && key != "width" && key != "closed_below") {
           text = body + tool + "kind = \"forceps\"\n[tool.jaws]\n" + line;
         } else if (key == "damping_ratio") {
           text = shell + "fixed = [{ group = \"a\" }]\n[body.shell]\nthickness = 1\n" + line;
@@ -59,15 +59,15 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           auto end = text.find("\n[", place);
           if (end == text.npos) end = text.size();
           std::string section = "\n" + text.substr(place, end - place);
-          const auto old = section.find("\n" + std::string(key) + " = ");
+          const auto old = section.find("\n" + key + " = ");
           const bool selector = key == "nodes" || key == "box" || key == "group" || key == "elements";
           if (old != section.npos) section.erase(old + 1, section.find('\n', old + 1) - old);
-          if (selector) section = "\n" + std::string(table.name == "[[body.material]]" ? "young = 1\n" : "");
+          if (selector) section = "\n" + std::string(table == "[[body.material]]" ? "young = 1\n" : "");
           text.replace(place, end - place, section.substr(1) + line);
         }
       }
       const std::string said = refusal(text, folder / "scene.toml");
-      EXPECT_NE(said.find(": " + std::string(key) + " must "), said.npos) << table.name << " " << key << ": " << said;
+      EXPECT_NE(said.find(": " + key + " must "), said.npos) << table << " " << key << ": " << said;
       ++tried;
     }
   }

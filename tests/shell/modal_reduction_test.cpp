@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/models/modal_newmark.hpp"
+#include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/full_newmark.hpp"
 #include "common/shell/modes.hpp"
 #include "tests/shell/modal_shells.hpp"

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "common/models/modal_newmark.hpp"
+#include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/condensation.hpp"
 #include "common/shell/full_newmark.hpp"
 #include "tests/shell/modal_shells.hpp"

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "common/tensors/hdf5_file.hpp"
+#include "common/archive/hdf5_file.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {

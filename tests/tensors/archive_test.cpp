@@ -1,4 +1,4 @@
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 #include <gtest/gtest.h>
 

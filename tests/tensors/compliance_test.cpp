@@ -1,8 +1,8 @@
-#include "common/tensors/compliance.hpp"
+#include "common/archive/compliance.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "common/tensors/content_hash.hpp"
+#include "common/models/content_hash.hpp"
 
 #include <gtest/gtest.h>
 

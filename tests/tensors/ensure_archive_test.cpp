@@ -1,12 +1,12 @@
-#include "common/tensors/ensure_archive.hpp"
+#include "common/scene/ensure_archive.hpp"
 
 #include <gtest/gtest.h>
 
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "common/tensors/precompute.hpp"
-#include "common/tensors/static_solve.hpp"
+#include "common/scene/find_archive.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/archive/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 

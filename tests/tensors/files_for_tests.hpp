@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate::testing {
 

@@ -8,11 +8,11 @@
 #include "common/mesh/shell_generators.hpp"
 #include "common/shell/assembly.hpp"
 #include "common/shell/fixation.hpp"
-#include "common/tensors/compliance.hpp"
-#include "common/tensors/content_hash.hpp"
-#include "common/tensors/ensure_archive.hpp"
-#include "common/tensors/find_archive.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/archive/compliance.hpp"
+#include "common/models/content_hash.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "common/scene/find_archive.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {

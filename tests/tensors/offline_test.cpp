@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "common/fem/fine_problem.hpp"
-#include "common/tensors/precompute.hpp"
-#include "common/tensors/static_solve.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/archive/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/spread_holds.hpp"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/fem/constraint.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate::testing {
 

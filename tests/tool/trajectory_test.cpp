@@ -130,15 +130,14 @@ TEST(Trajectory, RefusesRowsThatAreNotOne) {
 TEST_F(TrajectoryFile, AForcepsGripsWithinTheRangeOfItsJaws) {
   Tool tool;
   tool.name = "hand";
-  tool.kind = "forceps";
-  tool.jaws = Jaws{.most_open = 0.8};
-  tool.trajectory = file(kHeader + "0,0,0,0.1,0,0\n1,0,0,0.1,0,0.8\n2,0,0,0.1,0,0.1\n");
-  EXPECT_NO_THROW(check_grip(load_trajectory(tool.trajectory), tool));
+  tool.end = ForcepsSpec{{.most_open = 0.8}};
+  const std::filesystem::path good = file(kHeader + "0,0,0,0.1,0,0\n1,0,0,0.1,0,0.8\n2,0,0,0.1,0,0.1\n");
+  EXPECT_NO_THROW(check_grip(load_trajectory(good), good, tool));
   const auto refusal_of = [&](const std::string& text) -> std::string {
     try {
-      check_grip(load_trajectory(file(text)), tool);
+      check_grip(load_trajectory(file(text)), good, tool);
     } catch (const std::runtime_error& error) {
-      return std::string(error.what()).substr(tool.trajectory.string().size());
+      return std::string(error.what()).substr(good.string().size());
     }
     return "accepted";
   };
@@ -146,7 +145,7 @@ TEST_F(TrajectoryFile, AForcepsGripsWithinTheRangeOfItsJaws) {
             ": the grip of 0.81 rad at 1.5 s is out of range: the jaws of 'hand' open from 0 to 0.8 rad");
   EXPECT_EQ(refusal_of(kHeader + "0,0,0,0.1,0,-0.01\n"),
             ": the grip of -0.01 rad at 0 s is out of range: the jaws of 'hand' open from 0 to 0.8 rad");
-  tool.kind = "probe";  // its jaws have no such range
+  tool.end = ProbeSpec{.jaws = ProbeJaws{}};  // its jaws have no such range
   EXPECT_EQ(refusal_of(kHeader + "0,0,0,0.1,0,1.5\n"), "accepted");
 }
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/find_archive.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {
@@ -88,7 +88,7 @@ height = 0.013
 TEST_F(ToolsBadFile, ADamagedArchiveIsRefusedAndRebuilt) {
   precompute();
   const Scene scene = load_scene(scene_.scene());
-  const fs::path archive = archive_path(scene, scene.bodies[0]);
+  const fs::path archive = archive_path(scene.bodies[0]);
   const std::string good = text_of(archive), name = archive.filename();
   std::string spoiled = good;
   for (std::size_t i = 0; i < 64; ++i) spoiled[good.size() / 2 + i] ^= 0x55;

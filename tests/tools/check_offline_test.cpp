@@ -5,27 +5,27 @@
 namespace palpate {
 namespace {
 
-Body body_of(const char* model, double poisson) {
-  Body body;
+template <class Spec>
+Spec body_of(double poisson) {
+  Spec body;
   body.name = "organ";
-  body.model = model;
   body.material = {1e4, poisson, 1000};
   return body;
 }
 
 TEST(LockingWarning, NamesTheCureWhereLinearElementsAreTooStiff) {
-  EXPECT_TRUE(locking_warnings(body_of("quasi_static", 0.47)).empty());
-  const auto still = locking_warnings(body_of("quasi_static", 0.49));
+  EXPECT_TRUE(locking_warnings(body_of<QuasiStaticSpec>(0.47)).empty());
+  const auto still = locking_warnings(body_of<QuasiStaticSpec>(0.49));
   ASSERT_EQ(still.size(), 1u);
   EXPECT_NE(still[0].find("locking_free"), std::string::npos);
-  const auto moving = locking_warnings(body_of("tensor_mass", 0.49));
+  const auto moving = locking_warnings(body_of<TensorMassSpec>(0.49));
   ASSERT_EQ(moving.size(), 1u);
   EXPECT_EQ(moving[0].find("locking_free"), std::string::npos);
-  EXPECT_TRUE(locking_warnings(body_of("spring_mass", 0.49)).empty()) << "springs have a Poisson's ratio of their own";
+  EXPECT_TRUE(locking_warnings(body_of<SpringMassSpec>(0.49)).empty()) << "springs have a Poisson's ratio of their own";
 }
 
 TEST(LockingWarning, IsSilentOnceTheSceneTakesTheCureAndHearsMaterialRegions) {
-  auto body = body_of("quasi_static", 0.3);
+  auto body = body_of<QuasiStaticSpec>(0.3);
   body.materials.push_back({{}, {1e4, 0.4999, 1000}});
   EXPECT_EQ(locking_warnings(body).size(), 1u);
   body.offline = Offline{1, "p1", "displacement"};

@@ -2,11 +2,11 @@
 
 #include <thread>
 
+#include "common/archive/compliance.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "common/tensors/compliance.hpp"
-#include "common/tensors/find_archive.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 

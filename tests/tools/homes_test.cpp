@@ -41,7 +41,7 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"((.*/)?cholmod.*\.h)", {"common/fem"}},
       {R"((.*/)?(cblas|lapacke?|openblas.*)\.h)", {"common/fem"}},
       {R"(Spectra/.*)", {"common/shell"}},
-      {R"((.*/)?(hdf5|H5.*)\.h)", {"common/tensors"}},
+      {R"((.*/)?(hdf5|H5.*)\.h)", {"common/archive"}},
       {R"((.*/)?toml(\+\+)?/.*|toml\.hpp)", {"common/scene"}},
       {R"(dds/.*)", {"common/bus", "idl"}},
       {R"(lcm/.*)", {"common/bus"}},

@@ -98,10 +98,11 @@ struct Needs {
 
   explicit Needs(const Scene& scene) {
     const auto any = [&](auto&& has) { return std::ranges::any_of(scene.bodies, has); };
-    const bool moving = any(is_dynamic),
-               on_bus = std::ranges::any_of(scene.tools, [](const Tool&t) { return t.device == "bus"; });
-    const bool shell = any([](const Body&b) { return b.shell.has_value(); }),
-               catheter = any([](const Body&b) { return b.catheter.has_value(); });
+    const bool moving = any([](const Body& b) { return as<MovingSpec>(b) != nullptr; });
+    const bool shell = any([](const Body& b) { return as<ShellSpec>(b) != nullptr; });
+    const bool catheter = any([](const Body& b) { return as<CatheterSpec>(b) != nullptr; });
+    const auto by_bus = [](const Tool& t) { return std::holds_alternative<BusDeviceSpec>(t.device); };
+    const bool on_bus = std::ranges::any_of(scene.tools, by_bus);
     const auto add = [](Names& to, Names names) { to.merge(names); };
     if (scene.render) add(programs, {"render_node"}), add(topics, {"picture_state"});
     if (moving) add(programs, {"deform_node"});

@@ -36,7 +36,7 @@ struct PokePlan {
   double withdrawn = 0.025;
 };
 
-/// Trajectory files, as text. `catheter`: as it lies at rest; `thickness` [m]: of the duct's wall.
+/// Trajectory files of a forceps, as text. `catheter`: as it lies at rest; `thickness` [m]: of the duct's wall.
 std::string feeding_motion(const Tool& tool, const Catheter& catheter, const FeedPlan& plan = {});
 std::string steadying_motion(const Tool& tool, const DuctShape& duct, double thickness, const SteadyPlan& plan = {});
 std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickness, const PokePlan& plan = {});

@@ -79,10 +79,12 @@ void save(const ShellMesh& mesh, const std::filesystem::path& file) {
 void save_motions(const std::filesystem::path& file) {
   const Scene scene = load_scene(file);
   for (const Tool& tool : scene.tools) {
-    std::ofstream out(tool.trajectory, std::ios::binary);
+    const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
+    if (!script) throw std::runtime_error("the tool '" + tool.name + "' is not scripted and names no trajectory");
+    std::ofstream out(script->trajectory, std::ios::binary);
     out << duct_motion(scene, tool);
-    if (!out.flush()) throw std::runtime_error(tool.trajectory.string() + ": the file cannot be written");
-    std::printf("%s\n", tool.trajectory.c_str());
+    if (!out.flush()) throw std::runtime_error(script->trajectory.string() + ": the file cannot be written");
+    std::printf("%s\n", script->trajectory.c_str());
   }
 }
 

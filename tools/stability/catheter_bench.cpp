@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/mesh/shell_generators.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tools/stability/press_bench.hpp"
 
 namespace palpate::stability {
@@ -21,16 +21,16 @@ Result CatheterWatch::result(double energy_growth) const {
   return r;
 }
 
-Duct::Duct() : scene_(block_scene()) {
+Duct::Duct() {
   constexpr double radius = 0.0045, length = 0.04;
-  Body& duct = scene_.bodies[0];
-  duct = Body{};
+  const Scene scene = block_scene();
+  ModalShellSpec duct;
   duct.name = "duct";
-  duct.model = "modal_shell";
   duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
-  duct.shell = Shell{.thickness = 0.001, .modes = 20};
-  duct.fixed.push_back({.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}});
-  body_ = std::make_unique<ModalBody>(precompute_shell(duct, make_tube(radius, length, 16, 16)), scene_, 0);
+  duct.shell = {.thickness = 0.001, .modes = 20};
+  duct.fixed.push_back({{.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}}});
+  body_ = std::make_unique<ModalBody>(precompute(duct, make_tube(radius, length, 16, 16)), duct,
+                                      StepSettings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz});
 }
 
 void Duct::tick(CatheterBody& catheter, std::span<const Eigen::Isometry3d> jaws) {

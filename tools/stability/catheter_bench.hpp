@@ -1,6 +1,6 @@
 #pragma once
-#include "common/catheter/catheter_body.hpp"
-#include "haptic_node/modal_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
+#include "common/models/modal_shell/modal_body.hpp"
 #include "tools/stability/case.hpp"
 
 namespace palpate::stability {
@@ -27,7 +27,6 @@ class Duct {
   void tick(CatheterBody& catheter, std::span<const Eigen::Isometry3d> jaws);
 
  private:
-  Scene scene_;
   std::unique_ptr<ModalBody> body_;
 };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/dynamics/make_model.hpp"
-#include "common/models/fitted_curve.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/quasi_static/fitted_curve.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/stability/organ_bench.hpp"
 
 namespace palpate::stability {

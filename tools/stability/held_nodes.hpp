@@ -1,5 +1,5 @@
 #pragma once
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 #include "tools/stability/case.hpp"
 
 namespace palpate::stability {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/stability/organ_bench.hpp"
 
 namespace palpate::stability {

@@ -13,7 +13,7 @@
 #include <deque>
 #include <random>
 
-#include "deform_node/local_model.hpp"
+#include "common/sim/local_models.hpp"
 #include "tools/stability/organ_bench.hpp"
 #include "tools/stability/press_bench.hpp"
 #include "tools/stability/wait_for_workers.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/mesh/generators.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 
 namespace palpate::stability {
 

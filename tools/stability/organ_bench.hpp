@@ -1,8 +1,9 @@
 #pragma once
 #include "common/mesh/tet_mesh.hpp"
-#include "common/tensors/archive.hpp"
-#include "deform_node/dynamic_world.hpp"
+#include "common/archive/archive.hpp"
+#include "common/sim/dynamic_world.hpp"
 #include "tools/stability/case.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::stability {
 
@@ -30,8 +31,11 @@ class OrganBench {
   double largest_ = 0, first_energy_ = 0, late_energy_ = 0, reach_ = 0;
 };
 
-/// A small block of moving tissue, base fixed, under a probe; 5 kPa.
-Scene organ_scene(const std::string& model);
+/// A small block of moving tissue, base fixed, under a probe; 5 kPa. `body`: of the kind that is wanted.
+template <class Spec = TensorMassSpec>
+Scene organ_scene(Spec body = {}) {
+}
+
 TetMesh organ_mesh(int cells = 4);
 
 /// Pressed to `depth` [m] and left, `ticks` in all.

@@ -2,8 +2,8 @@
 #include <limits>
 
 #include "common/mesh/generators.hpp"
-#include "common/tensors/precompute.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/sim/haptic_step.hpp"
 #include "tools/stability/case.hpp"
 
 namespace palpate::stability {

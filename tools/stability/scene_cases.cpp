@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "common/dynamics/make_model.hpp"
-#include "common/tensors/ensure_archive.hpp"
-#include "deform_node/local_model.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "common/sim/local_models.hpp"
 #include "haptic_node/device.hpp"
 #include "tools/stability/held_nodes.hpp"
 #include "tools/stability/press_bench.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/mesh/shell_generators.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tools/stability/press_bench.hpp"
 
 namespace palpate::stability {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/tensors/content_hash.hpp"
+#include "common/models/content_hash.hpp"
 
 namespace palpate::stability {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/dynamics/make_model.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
 

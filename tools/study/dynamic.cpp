@@ -10,7 +10,7 @@
 
 #include "common/dynamics/make_model.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/study/cut_rest.hpp"
 #include "tools/study/haptic_press.hpp"
 #include "tools/study/organ_press.hpp"

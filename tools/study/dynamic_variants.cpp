@@ -1,4 +1,4 @@
-#include "common/tensors/hybrid_split.hpp"
+#include "common/models/hybrid/hybrid_split.hpp"
 #include "tools/study/dynamic.hpp"
 #include "tools/study/reference/graded.hpp"
 

@@ -6,13 +6,13 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "common/catheter/catheter_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 #include "common/dynamics/element_tensors.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/shell_generators.hpp"
-#include "common/tensors/precompute.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/models/solid/precompute.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tools/study/haptic_press.hpp"
 
 namespace palpate::study {

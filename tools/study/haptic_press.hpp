@@ -1,6 +1,6 @@
 #pragma once
-#include "common/models/deformer.hpp"
-#include "haptic_node/haptic_step.hpp"
+#include "common/sim/deformer.hpp"
+#include "common/sim/haptic_step.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/patches.hpp"
 #include "tools/study/solid_case.hpp"

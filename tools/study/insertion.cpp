@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "common/mesh/shell_file.hpp"
-#include "common/tensors/precompute_shell.hpp"
-#include "haptic_node/modal_body.hpp"
+#include "common/models/modal_shell/precompute.hpp"
+#include "common/models/modal_shell/modal_body.hpp"
 #include "tools/study/measure.hpp"
 
 namespace palpate::study {

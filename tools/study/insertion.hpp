@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "common/catheter/catheter_body.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/models/catheter/catheter_body.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate::study {
 

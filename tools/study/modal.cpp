@@ -9,7 +9,7 @@
 #include <set>
 
 #include "common/mesh/shell_file.hpp"
-#include "common/tensors/precompute_shell.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tools/study/haptic_press.hpp"
 
 namespace palpate::study {

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "common/mesh/mesh_file.hpp"
-#include "common/tensors/join_meshes.hpp"
-#include "common/tensors/precompute_dynamic.hpp"
+#include "common/models/hybrid/join_meshes.hpp"
+#include "common/models/moving/precompute.hpp"
 
 namespace palpate::study {
 

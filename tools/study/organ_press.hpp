@@ -1,5 +1,5 @@
 #pragma once
-#include "deform_node/dynamic_organ.hpp"
+#include "common/models/moving/dynamic_organ.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/solid_case.hpp"
 

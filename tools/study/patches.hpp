@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/scene/scene.hpp"
-#include "common/tensors/archive.hpp"
+#include "common/archive/archive.hpp"
 
 namespace palpate::study {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/study/haptic_press.hpp"
 
 namespace palpate::study {

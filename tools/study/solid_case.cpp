@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/tensors/content_hash.hpp"
-#include "common/tensors/precompute.hpp"
+#include "common/models/content_hash.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
 #include "tools/study/reference/newton.hpp"

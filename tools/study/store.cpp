@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "common/tensors/content_hash.hpp"
+#include "common/models/content_hash.hpp"
 
 namespace palpate::study {
 namespace {

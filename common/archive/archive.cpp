@@ -1,0 +1,160 @@
+#include "common/archive/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "common/archive/archive_dynamic.hpp"
+#include "common/archive/archive_modal.hpp"
+#include "common/archive/atomic_file.hpp"
+#include "common/archive/hdf5_file.hpp"
+#include "common/archive/rows.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr const char* kFormat = "palpate compliance archive";
+constexpr std::size_t kMetadataBytes = 64 * 1024;
+
+std::size_t payload_bytes(const Archive& archive) {
+  const auto& surface = archive.surface;
+  const std::size_t doubles = archive.touchable_compliance.size() + archive.other_compliance.size() +
+                              3 * surface.position.size() + 3 * archive.young.size();
+  const std::size_t integers = 4 * surface.position.size() + 3 * surface.triangles.size() +
+                               2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
+                               archive.material_of_element.size();
+  return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive) +
+         modal_payload_bytes(archive);
+}
+
+void write_header(Hdf5Writer& file, const Archive& archive) {
+  file.attribute("format", kFormat);
+  file.attribute("format_version", std::int64_t{kArchiveFormat});
+  file.attribute("software", archive.software);
+  file.attribute("body", archive.body);
+  file.attribute("model", archive.model);
+  file.attribute("content_hash", archive.content_hash);
+  file.attribute("mesh_nodes", std::int64_t{archive.mesh_nodes});
+  file.attribute("touchable_nodes", std::int64_t{archive.surface.touchable});
+  file.attribute("specimen_force_slope", archive.specimen_force_slope);
+  file.attribute("specimen_radial_slope", archive.specimen_radial_slope);
+}
+
+void write_surface(Hdf5Writer& file, const SurfaceMap& surface) {
+  file.dataset({"surface/position", "m",
+                "rest position of each node, touchable ones first, then the rest of the surface, then inner ones"},
+               flatten(surface.position, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }), 3);
+  file.dataset({"surface/node_number", "1", "0-based node number in the mesh file of each node"},
+               std::vector<std::int32_t>(surface.node_number.begin(), surface.node_number.end()));
+  file.dataset({"surface/fixed", "1", "1 where x, y, z of a node is fixed"},
+               flatten(surface.fixed, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
+  file.dataset({"surface/triangles", "1", "surface nodes of each triangle, outward by the right-hand rule"},
+               flatten(surface.triangles, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
+}
+
+void write_material(Hdf5Writer& file, const Archive& archive) {
+  file.dataset({"material/young", "Pa", "Young's modulus of the body, then of its material regions"}, archive.young);
+  file.dataset({"material/poisson", "1", "Poisson's ratio of the body, then of its material regions"}, archive.poisson);
+  file.dataset({"material/density", "kg/m^3", "density of the body, then of its material regions"}, archive.density);
+  file.dataset({"material/of_element", "1",
+                "row of material/young for each tetrahedron (of dynamic/tetrahedra if there); absent: 0 for all"},
+               std::vector<std::int32_t>(archive.material_of_element.begin(), archive.material_of_element.end()));
+}
+
+void write_compliance(Hdf5Writer& file, const Archive& archive) {
+  file.dataset({"touchable/dofs", "1", "surface node and axis of each row of the touchable compliance"},
+               flatten(archive.touchable_dofs), 2);
+  file.dataset({"other/dofs", "1", "surface node and axis of each row of the other compliance"},
+               flatten(archive.other_dofs), 2);
+  file.dataset({"touchable/compliance", "m/N",
+                "displacement of touchable dof i per force on touchable dof j; lower triangle packed by rows, "
+                "entry (i,j), j <= i, at i(i+1)/2 + j"},
+               archive.touchable_compliance);
+  file.dataset({"other/compliance", "m/N", "displacement of other dof i (row) per force on touchable dof j (column)"},
+               archive.other_compliance, std::max<std::size_t>(archive.touchable_dofs.size(), 1));
+}
+
+SurfaceMap read_surface(const Hdf5Reader& file) {
+  SurfaceMap surface;
+  surface.position = rows_of<Eigen::Vector3d>(3, file.doubles("surface/position"));
+  const auto numbers = file.integers("surface/node_number");
+  surface.node_number.assign(numbers.begin(), numbers.end());
+  surface.fixed = rows_of<std::array<bool, 3>>(3, file.integers("surface/fixed"));
+  surface.triangles = rows_of<std::array<int, 3>>(3, file.integers("surface/triangles"));
+  surface.touchable = static_cast<int>(file.integer("touchable_nodes"));
+  return surface;
+}
+
+void check_identity(const Hdf5Reader& file, const std::string& expected_hash) {
+  if (!file.has_attribute("format") || file.text("format") != kFormat) file.fail("not a palpate archive");
+  const auto version = file.integer("format_version");
+  if (version != kArchiveFormat)
+    file.fail(fmt::format("format version {}, this program reads {}", version, kArchiveFormat));
+  if (!expected_hash.empty() && file.text("content_hash") != expected_hash)
+    file.fail("made for another mesh, material or fixation");
+}
+
+void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart part) {
+  const auto& surface = archive.surface;
+  const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
+  bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
+                    surface.touchable <= surface.size() && !archive.young.empty() &&
+                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
+                    modal_part_fits(archive, part);
+  if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
+  if (part == ArchivePart::surface)
+    consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;
+  if (!consistent) file.fail("damaged: its datasets do not fit together");
+}
+
+}  // namespace
+
+std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
+                                   const std::string& content_hash) {
+  const char* cache = std::getenv("PALPATE_CACHE");
+  const auto folder =
+      cache && *cache ? std::filesystem::path(cache) : std::filesystem::absolute(mesh_file).parent_path() / ".palpate";
+  return folder / (body + "-" + content_hash + ".h5");
+}
+
+void write_archive(const Archive& archive, const std::filesystem::path& file) {
+  AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes);
+  Hdf5Writer writer(atomic.path());
+  write_header(writer, archive);
+  write_surface(writer, archive.surface);
+  write_material(writer, archive);
+  write_compliance(writer, archive);
+  write_dynamic_part(writer, archive);
+  write_modal_part(writer, archive);
+  writer.close();
+  atomic.commit();
+}
+
+Archive read_archive(const std::filesystem::path& file, ArchivePart part, const std::string& expected_hash) {
+  const Hdf5Reader reader(file);
+  check_identity(reader, expected_hash);
+  Archive archive;
+  archive.body = reader.text("body");
+  archive.model = reader.text("model");
+  archive.content_hash = reader.text("content_hash");
+  archive.software = reader.text("software");
+  archive.mesh_nodes = static_cast<int>(reader.integer("mesh_nodes"));
+  archive.specimen_force_slope = reader.number("specimen_force_slope");
+  archive.specimen_radial_slope = reader.number("specimen_radial_slope");
+  archive.young = reader.doubles("material/young");
+  archive.poisson = reader.doubles("material/poisson");
+  archive.density = reader.doubles("material/density");
+  const auto material = reader.integers("material/of_element");
+  archive.material_of_element.assign(material.begin(), material.end());
+  archive.surface = read_surface(reader);
+  archive.touchable_dofs = read_dofs(reader, "touchable/dofs");
+  archive.other_dofs = read_dofs(reader, "other/dofs");
+  if (part != ArchivePart::header) archive.touchable_compliance = reader.doubles("touchable/compliance");
+  if (part == ArchivePart::surface) archive.other_compliance = reader.doubles("other/compliance");
+  read_dynamic_part(reader, part, archive);
+  read_modal_part(reader, part, archive);
+  check_sizes(reader, archive, part);
+  return archive;
+}
+
+}  // namespace palpate

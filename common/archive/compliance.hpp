@@ -1,0 +1,51 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "common/archive/archive.hpp"
+
+namespace palpate {
+
+/// Dense compliance for the run time, column-major and 64-byte aligned: column 3k+b holds the displacement of
+/// every row node, three entries a node, per unit force [N] at touchable node k along axis b. Rows and
+/// columns of fixed axes are zero, so that node i is always rows 3i..3i+2. The leading dimension is a
+/// multiple of 16.
+template <class Scalar>
+class Compliance {
+ public:
+  /// `rows`: touchable nodes only (haptic node) or the whole visible surface (deformation node).
+  enum class Rows { touchable, surface };
+  Compliance(const Archive& archive, Rows rows);
+
+  int row_nodes() const { return row_nodes_; }
+  int column_nodes() const { return column_nodes_; }
+  std::ptrdiff_t stride() const { return stride_; }
+  const Scalar* column(int node, int axis) const { return data_.get() + stride_ * (3 * node + axis); }
+
+  void clear();  ///< every entry becomes zero
+  /// Adds sum_m weight_m phi_m phi_m^T, phi_m being column m of `shape`: column-major, 3 entries a surface node of the
+  /// archive, whose fixed axes hold zeros.
+  void add_modes(std::span<const double> shape, std::span<const double> weight);
+
+  std::size_t bytes() const { return sizeof(Scalar) * stride_ * 3 * column_nodes_; }
+
+  /// What a compliance of that size will take.
+  static std::ptrdiff_t stride_of(int row_nodes) { return (3 * row_nodes + 15) / 16 * 16; }
+  static std::size_t bytes_of(int row_nodes, int column_nodes) {
+    return sizeof(Scalar) * stride_of(row_nodes) * 3 * column_nodes;
+  }
+
+ private:
+  struct Free {
+    void operator()(Scalar* p) const;
+  };
+  int row_nodes_ = 0, column_nodes_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  std::unique_ptr<Scalar[], Free> data_;
+};
+
+extern template class Compliance<double>;
+extern template class Compliance<float>;
+
+}  // namespace palpate

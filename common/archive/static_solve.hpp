@@ -1,0 +1,33 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/fem/constraint.hpp"
+#include "common/archive/archive.hpp"
+
+namespace palpate {
+
+/// A static state of the visible surface.
+struct SurfaceSolution {
+  std::vector<Eigen::Vector3d> displacement;  ///< [m] per surface node
+  std::vector<Eigen::Vector3d> force;         ///< [N] per surface node, on the tissue, by the holds; reactions of
+                                              ///< fixed axes are not in an archive and stay zero
+};
+
+/// Exact response to bilateral conditions J u = d through the compliance, in double precision:
+///   lambda = (J C J^T)^-1 d,  f = J^T lambda,  u = C f  (`f = C_cc^-1 u*` where single axes are held).
+/// Conditions name mesh nodes. Throws std::runtime_error if a node is not a touchable surface node, a held
+/// axis is fixed, or conditions repeat or contradict one another.
+SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constraint>& constraints);
+
+/// How TVCG99 combines the tensors of several held nodes.
+enum class Superposition {
+  plain,     ///< each node's own displacement, summed: overshoots where nodes are near (fig. 10, left)
+  corrected  ///< with u~ = M^-1 u* of eq. 8 (fig. 10, right): exact
+};
+
+/// The paper's own way: u_n = sum T^u_nk u~_k (eq. 9), f_k = T^f_k u~_k (eq. 10 prints u*; its text says u~).
+/// Takes conditions of one term each; the axes of one node form its block of the tensors.
+SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds, Superposition how);
+
+}  // namespace palpate

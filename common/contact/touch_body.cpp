@@ -1,0 +1,76 @@
+#include "common/contact/touch_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+double bucket_size(const SurfaceMap& map, const ContactSpec& contact) {
+  return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
+}
+
+ContactLaw::Rule rule_of(const ContactSpec& contact) {
+  return contact.rule == "alpha" ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
+}
+
+}  // namespace
+
+TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const StepSettings& settings,
+                     ToolContacts::Options options)
+    : map_(map),
+      compliance_(std::move(compliance)),
+      unloaded_(map_.position),
+      law_(compliance_, unloaded_, rule_of(settings.contact), settings.contact.friction, max_contacts),
+      contacts_(map_, bucket_size(map_, settings.contact), law_, parts_of(settings.tools), std::move(options)) {}
+
+LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
+  contacts_.aim(tools);
+  const LawOutcome outcome = law_.solve();
+  contacts_.settle(tools);
+  return outcome;
+}
+
+bool TouchBody::grasp(int tool, const Eigen::Isometry3d& pose, const ForcepsShape& shape, double opening) {
+  const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(shape, opening, p); };
+  return contacts_.take_nodes(tool, pose, between, [](int) { return true; }) ||
+         contacts_.grasp_nearest(tool, pose, shape.jaw_length);
+}
+
+double TouchBody::grasp_load(int tool) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const TouchContact& c : law_.contacts())
+    if (c.tool == tool && c.grasped) sum += c.force;
+  return sum.norm();
+}
+
+Eigen::Vector3d TouchBody::press_of(int tool) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const TouchContact& c : law_.contacts())
+    if (c.tool == tool && c.touch != Touch::open && !c.grasped) sum += c.force.dot(c.normal) * c.normal;
+  const double size = sum.norm();
+  return size > 0 ? Eigen::Vector3d(sum / size) : Eigen::Vector3d::Zero();
+}
+
+void TouchBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    loads[t] = {.press = press_of(t)};
+    for (const TouchContact& c : law_.contacts()) {
+      if (c.tool != t || c.touch == Touch::open) continue;
+      loads[t].force -= c.force;
+      loads[t].torque -= (c.at - tools[t].now.translation()).cross(c.force);
+    }
+  }
+}
+
+double TouchBody::penetration(const Segment& axis, double radius) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int t = 0; t < surface().triangle_count(); ++t)
+    nearest = std::min(nearest, closest_points(axis, surface().corners(t)).squared_distance);
+  nearest = std::sqrt(nearest);
+  const bool inside = surface().encloses(axis.start) || surface().encloses(axis.end);
+  return inside ? radius + nearest : std::max(0.0, radius - nearest);
+}
+
+}  // namespace palpate

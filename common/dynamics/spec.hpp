@@ -1,0 +1,64 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "common/fem/solid_spec.hpp"
+
+namespace palpate {
+
+/// Motion of tissue that is cut or torn (RR3510 sec. 4).
+struct Dynamic {
+  std::string integrator = "rk4";                     ///< rk4 | semi_implicit
+  std::string precision = "single";                   ///< single | double
+  double step = 0;                                    ///< [s] 0: chosen from the frequency bound
+  double damping = 5;                                 ///< [1/s] proportional to mass: gamma_i = damping * m_i
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  bool corotational = false;                          ///< elements turn with the tissue
+};
+
+inline void describe(Description& d, Dynamic& m) {
+  d.choice({"integrator", "",
+            "`\"rk4\"`: Runge and Kutta's of the fourth order; `\"semi_implicit\"`: Euler's, where the new velocity "
+            "moves the position"},
+           m.integrator, {"rk4", "semi_implicit"});
+  d.choice({"precision", "", "of forces, displacements and velocities"}, m.precision, {"single", "double"});
+  d.number({"step", "s", "0: the largest that is stable, with a margin. One that is given is refused above the bound"},
+           m.step, at_least(0));
+  d.number({"damping", "1/s", "proportional to mass: a node of mass m is braked by damping · m · velocity"}, m.damping,
+           at_least(0));
+  d.vector({"gravity", "m/s²", "on both parts of a hybrid", Need::optional, Use::inertia}, m.gravity);
+  d.flag({"corotational", "",
+          "elements turn with the tissue, so that large rotations make no false force; not for "
+          "springs, which turn by themselves"},
+         m.corotational);
+}
+
+/// When dynamic tissue tears by itself (RR3510 sec. 4.4).
+struct Tearing {
+  std::string criterion = "volume";  ///< volume | mean_elongation | largest_elongation
+  double threshold = 0;              ///< [1] > 0, relative change
+};
+
+inline void describe(Description& d, Tearing& t) {
+  d.choice({"criterion", "",
+            "relative change of a tetrahedron's volume, or of its six edges' length, their mean or the largest"},
+           t.criterion, {"volume", "mean_elongation", "largest_elongation"});
+  d.number(
+      {"threshold", "1", "a tetrahedron above it is removed, the worst first; 0.5 is a change by half", Need::required},
+      t.threshold, above(0));
+}
+
+/// A body that moves with inertia, and can be cut and torn.
+struct MovingSpec : SolidSpec {
+  Dynamic dynamic;  ///< defaults where the section is absent
+  std::optional<Tearing> tearing;
+};
+
+inline void describe(Description& d, MovingSpec& b) {
+  describe(d, static_cast<SolidSpec&>(b));
+  d.table({"dynamic", "", "how it moves", Need::optional, Use::agreed, "defaults"}, b.dynamic);
+  d.table({"tearing", "", "when it tears by itself", Need::optional, Use::agreed, "does not tear"}, b.tearing);
+}
+
+}  // namespace palpate

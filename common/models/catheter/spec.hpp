@@ -1,0 +1,64 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+
+#include "common/fem/solid_spec.hpp"
+#include "common/models/kind.hpp"
+
+namespace palpate {
+
+/// A flexible catheter of particles (BHS01 sec. V-C-2), straight at rest.
+struct Catheter {
+  std::string inside;                              ///< name of the shell that it is led into; empty: none
+  Eigen::Vector3d tail = Eigen::Vector3d::Zero();  ///< [m] first particle at rest
+  Eigen::Vector3d tip = Eigen::Vector3d::UnitX();  ///< [m] last particle at rest
+  double radius = 0.00125;                         ///< [m]
+  int particles = 60;
+  double sleeve = 0;                                  ///< [m] of a straight fixed sleeve, from `tail` towards `tip`
+  double damping = 5;                                 ///< [1/s] force -damping m v on a particle
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  std::string integrator = "implicit";                ///< implicit | semi_implicit (BHS01 eq. 28, in substeps)
+};
+
+inline void describe(Description& d, Catheter& c) {
+  d.text({"inside", "",
+          "the duct: a body of the model `\"modal_shell\"`, a tube with two open ends that is wider than the catheter"},
+         c.inside);
+  d.vector({"tail", "m", "first particle at rest", Need::required, Use::stored}, c.tail);
+  d.vector({"tip", "m", "last particle at rest: what goes in first", Need::required, Use::stored}, c.tip);
+  const double length = (c.tip - c.tail).stableNorm();
+  d.require(length > 0, "tip", "the catheter's tail and tip must not coincide");
+  d.number({"radius", "m", "of the tube", Need::optional, Use::stored}, c.radius, above(0));
+  d.integer({"particles", "", "evenly along it", Need::optional, Use::stored}, c.particles, 4, 10000);
+  d.number({"sleeve", "m", "of a straight fixed sleeve from `tail` towards `tip`, in which it slides"}, c.sleeve,
+           at_least(0));
+  d.require(c.sleeve < length, "sleeve",
+            fmt::format("sleeve must be shorter than the catheter, which is {} m long, and is {}", length, c.sleeve));
+  d.number({"damping", "1/s", "proportional to mass"}, c.damping, at_least(0));
+  d.vector({"gravity", "m/s²", "acceleration of free fall"}, c.gravity);
+  d.choice({"integrator", "",
+            "`\"implicit\"`: stable at any stiffness; `\"semi_implicit\"`: the paper's, in as many substeps as the "
+            "stiffness asks for"},
+           c.integrator, {"implicit", "semi_implicit"});
+}
+
+/// A thin flexible tube of particles. Stretching and bending follow from Young's modulus and the radius.
+struct CatheterSpec : NamedSpec {
+  static constexpr std::string_view kind = "catheter";
+  Material material{0, 0.45, 1000};
+  Catheter catheter;
+};
+
+inline void describe(Description& d, CatheterSpec& b) {
+  describe(d, static_cast<NamedSpec&>(b));
+  d.number({"young", "Pa", "Young's modulus", Need::required}, b.material.young, above(0));
+  d.number({"poisson", "1", "Poisson's ratio"}, b.material.poisson, poisson_range);
+  d.number({"density", "kg/m³", "mass per volume"}, b.material.density, above(0));
+  d.table({"catheter", "", "where it lies and what it is made of", Need::required, Use::stored}, b.catheter);
+}
+
+/// The tube about its particles at rest: a surface, and nothing else.
+std::optional<Archive> made_archive(const CatheterSpec& body);
+
+}  // namespace palpate

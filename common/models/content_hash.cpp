@@ -1,0 +1,48 @@
+#include "common/models/content_hash.hpp"
+
+#include <fmt/format.h>
+
+#include "common/archive/archive.hpp"
+#include "common/describe/digest.hpp"
+#include "common/describe/toml_writer.hpp"
+
+namespace palpate {
+namespace {
+
+/// What is stored, and files by what is in them. Positions along the axes and zeros without sign.
+class StoredText : public TomlWriter {
+ public:
+  explicit StoredText(bool inertia) : inertia_(inertia) {}
+
+  void number(const Key& key, double& value, const Range& range) override {
+    double unsigned_zero = value + 0.0;
+    TomlWriter::number(key, unsigned_zero, range);
+  }
+  void vector(const Key& key, Eigen::Vector3d& value) override {
+    Eigen::Vector3d unsigned_zeros = value + Eigen::Vector3d::Zero();
+    TomlWriter::vector(key, unsigned_zeros);
+  }
+  void file(const Key& key, std::filesystem::path& value) override {
+    if (!value.empty() && takes(key)) line(key, file_digest(value));
+  }
+
+ protected:
+  bool takes(const Key& key) const override {
+    return key.use == Use::stored || (key.use == Use::inertia && inertia_);
+  }
+  bool takes_empty_tables() const override { return false; }
+
+ private:
+  bool inertia_;
+};
+
+}  // namespace
+
+std::string content_hash(const Body& body) {
+  Body copy = body;
+  StoredText text(!as<QuasiStaticSpec>(body));
+  describe(text, copy);
+  return digest(fmt::format("format {}\n{}", kArchiveFormat, text.text()));
+}
+
+}  // namespace palpate

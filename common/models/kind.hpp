@@ -1,0 +1,22 @@
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "common/fem/progress.hpp"
+
+namespace palpate {
+
+struct Archive;
+struct MeshedSpec;
+
+/// What programs ask of every kind of tissue are functions of its spec, declared beside it and defined in the kind's
+/// folder; a function of a base serves the kinds that derive from it. Programs call them by std::visit on a Body.
+
+/// archive_job(spec, progress): loads the body's meshes, of which the job computes the archive. Throws
+/// std::runtime_error on a bad mesh, the job on a bad body or too little memory.
+using ArchiveJob = std::function<Archive()>;
+
+/// made_archive(spec): the archive of a body without a mesh, for which there is no file; empty for all others.
+std::optional<Archive> made_archive(const MeshedSpec& body);
+
+}  // namespace palpate

@@ -1,0 +1,21 @@
+#pragma once
+#include "common/fem/condensation.hpp"
+#include "common/mesh/shell_mesh.hpp"
+#include "common/models/modal_shell/spec.hpp"
+#include "common/shell/shell_dofs.hpp"
+#include "common/archive/archive.hpp"
+
+namespace palpate {
+
+/// Geometry and numbering of a shell's nodes, all of which are visible: touchable ones first. Throws
+/// std::runtime_error if no node is touchable.
+SurfaceMap make_surface_map(const ShellSpec& body, const ShellMesh& mesh, const ShellDofs& dofs);
+
+/// The archive of a modal_shell body: its lowest modes, and the static compliance among its translations,
+/// rotations condensed (BHS01 eq. 16, 19), so that C - Phi Omega^-2 Phi^T is the flexibility of the modes
+/// left out. The content hash is left empty: see ensure_archive(). Throws std::runtime_error on an unfixed
+/// body, empty selections, a wall too thick, more modes than free displacements, triangles that the bending
+/// element cannot have, or too little memory.
+Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Progress& progress = {});
+
+}  // namespace palpate

@@ -1,0 +1,20 @@
+#pragma once
+#include <string_view>
+
+#include "common/shell/spec.hpp"
+#include "common/models/kind.hpp"
+
+namespace palpate {
+
+/// A thin wall of shell elements, such as a duct, that moves by its lowest modes of vibration (BHS01 sec. V-C-1).
+struct ModalShellSpec : ShellSpec {
+  static constexpr std::string_view kind = "modal_shell";
+};
+
+inline void describe(Description& d, ModalShellSpec& b) {
+  describe(d, static_cast<ShellSpec&>(b));
+}
+
+ArchiveJob archive_job(const ModalShellSpec& body, const Progress& progress);
+
+}  // namespace palpate

@@ -1,0 +1,295 @@
+#include "common/models/moving/dynamic_organ.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "common/geometry/triangle.hpp"
+#include "common/dynamics/make_model.hpp"
+#include "common/mesh/normals.hpp"
+#include "common/tool/instrument.hpp"
+#include "common/tool/jaws.hpp"
+#include "common/describe/state_bytes.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double bound_share = 0.9;           // of the largest stable step that is used where the scene names none
+constexpr double lost_beyond = 3;             // diagonals from its place, beyond which a part that floats is taken away
+constexpr int most_cuts = 4, most_tears = 8;  // tetrahedra that one tick takes away, conformity's apart
+
+double bucket_size(const ContactSpec& contact, const ElasticMesh& mesh) {
+  if (contact.bucket_size > 0) return contact.bucket_size;
+  double edges = 0;
+  for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
+  return 2 * edges / static_cast<double>(mesh.tetrahedra.size());
+}
+
+}  // namespace
+
+DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings,
+                           MakeDynamicModel make)
+    : name_(body.name),
+      mesh_(elastic_mesh(archive)),
+      topology_(mesh_.tetrahedra, mesh_.nodes()),
+      shown_(archive.surface.triangles, topology_),
+      surface_(topology_, mesh_.rest, bucket_size(settings.contact, mesh_)),
+      model_(make(mesh_, body.dynamic)),
+      still_(archive.hybrid
+                 ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
+                 : nullptr),
+      contacts_(mesh_, topology_, shown_, surface_, *model_, settings.contact.friction),
+      jaws_closed_(settings.tools.size(), 0),
+      position_(mesh_.rest),
+      poses_(settings.tools.size(), Eigen::Isometry3d::Identity()),
+      poses_before_(poses_),
+      moving_(settings.tools.size()),
+      in_step_(settings.tools.size()) {
+  for (const Tool& tool : settings.tools) {
+    jaws_.push_back(closing_jaws(tool));
+    cautery_.push_back(tool.probe() ? tool.probe()->cautery : std::nullopt);
+  }
+  if (still_) topology_.join(shown_.joints());
+  const Dynamic& motion = body.dynamic;
+  const double bound = palpate::largest_step(integrator_of(motion), model_->frequency_bound(), motion.damping);
+  if (motion.step > bound)
+    throw std::runtime_error(
+        fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", name_, motion.step, bound));
+  largest_step_ = motion.step > 0 ? motion.step : bound_share * bound;
+  if (body.tearing)
+    tearing_.emplace(mesh_, tear_criterion(body.tearing->criterion), body.tearing->threshold, most_tears);
+  Eigen::Vector3d low = mesh_.rest[0], high = low;
+  for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  diagonal_ = (high - low).norm();
+  middle_ = 0.5 * (low + high);
+}
+
+DynamicOrgan::~DynamicOrgan() = default;
+
+int DynamicOrgan::steps_in(double dt) const {
+  return std::max(1, static_cast<int>(std::ceil(dt / largest_step_ - 1e-9)));
+}
+
+void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
+  changes_.clear();
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    moving_[t] = tools[t].moving;
+    if (!tools[t].present) {
+      moving_[t].parts = moving_[t].parts_before = {};
+      contacts_.drop_tool(static_cast<int>(t));
+      if (still_) still_->drop_tool(static_cast<int>(t));
+    }
+  }
+  work_jaws(tools);
+  contacts_.find(moving_);
+  if (still_) still_->find(moving_);
+  in_step_ = moving_;
+  const int steps = steps_in(dt);
+  for (std::size_t t = 0; t < moving_.size(); ++t) poses_[t] = moving_[t].before;
+  for (int s = 1; s <= steps; ++s) {
+    const double share = static_cast<double>(s) / steps;
+    poses_.swap(poses_before_);
+    for (std::size_t t = 0; t < moving_.size(); ++t) {
+      const Eigen::Isometry3d &a = moving_[t].before, &b = moving_[t].now;
+      poses_[t].translation() = (1 - share) * a.translation() + share * b.translation();
+      poses_[t].linear() =
+          Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    }
+    for (std::size_t t = 0; t < moving_.size(); ++t) in_step_[t].now = poses_[t];
+    if (still_) still_->hold(in_step_);
+    contacts_.step(moving_, poses_before_, poses_, dt / steps);
+    if (still_) still_->take();
+  }
+  contacts_.end_tick(moving_);
+  if (still_) still_->end_tick(moving_);
+  update_positions();
+  cut(tools);
+  tear();
+  drop_fallen();
+}
+
+bool DynamicOrgan::begin_without(std::span<const std::uint32_t> removed) {
+  if (!std::ranges::all_of(removed, [&](std::uint32_t t) { return t < static_cast<std::uint32_t>(topology_.size()); }))
+    return false;
+  topology_.erase(std::vector<int>(removed.begin(), removed.end()));
+  std::vector<char> listed(topology_.size(), 0);
+  for (const std::uint32_t t : removed)
+    if (!std::exchange(listed[t], 1)) removed_.push_back(static_cast<int>(t));
+  surface_.follow();
+  note_change(RemovalCause::gone_before, 0);
+  return true;
+}
+
+void DynamicOrgan::update_positions() {
+  for (int n = 0; n < mesh_.nodes(); ++n) position_[n] = mesh_.rest[n] + model_->displacement(n);
+  surface_.set_positions(position_);
+}
+
+// Jaws that close hold what is between them, until they open.
+void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    const auto& jaws = jaws_[t];
+    if (!jaws || !tools[t].present) continue;
+    const double grip = tools[t].dofs.grip;
+    if (!jaws_closed_[t] && grip < jaws->closed_below) {
+      jaws_closed_[t] = 1;
+      const bool moving = contacts_.grasp(t, tools[t].moving.before, jaws->length, jaws->width);
+      if (still_ && !moving) still_->grasp(t, tools[t].moving.before, jaws->length, jaws->width);
+    } else if (jaws_closed_[t] && grip > jaws->closed_below + jaw_slack) {
+      jaws_closed_[t] = 0;
+      contacts_.let_go(t);
+      if (still_) still_->let_go(t);
+    }
+  }
+}
+
+bool DynamicOrgan::holds(int tool) const {
+  return contacts_.grasping(tool) || (still_ && still_->grasping(tool));
+}
+
+// Cautery takes the tetrahedra whose visible facets the glowing sphere touches.
+void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
+  const std::size_t first = removed_.size();
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const auto& cautery = cautery_[t];
+    if (!cautery || !tools[t].present || tools[t].dofs.pedal < 0.5) continue;
+    for (int i = 0; i < most_cuts; ++i) {
+      const Eigen::Vector3d tip = moving_[t].now.translation();
+      double least = cautery->radius * cautery->radius;
+      int nearest = -1;
+      for (int facet : surface_.find(tip, tip, cautery->radius)) {
+        const double squared = closest_point(tip, surface_.corners(facet)).squared_distance;
+        if (squared >= least || is_joint(facet)) continue;
+        least = squared;
+        nearest = facet;
+      }
+      if (nearest < 0) break;
+      remove(nearest / 4);
+    }
+  }
+  note_change(RemovalCause::cut, first);
+}
+
+void DynamicOrgan::tear() {
+  if (!tearing_) return;
+  const std::size_t first = removed_.size();
+  for (int t : tearing_->find(position_))
+    if (topology_.alive(t)) remove(t);
+  note_change(RemovalCause::torn, first);
+}
+
+void DynamicOrgan::remove(int tetrahedron) {
+  topology_.remove(tetrahedron, removed_);
+  surface_.follow();
+}
+
+void DynamicOrgan::note_change(RemovalCause cause, std::size_t first) {
+  if (first == removed_.size()) return;
+  changes_.push_back({cause, {removed_.begin() + static_cast<std::ptrdiff_t>(first), removed_.end()}});
+  model_->remove(changes_.back().removed);
+  if (tearing_) tearing_->remove(changes_.back().removed);
+  contacts_.forget_removed();
+  follow_change();
+}
+
+// Which parts float now.
+void DynamicOrgan::follow_change() {
+  const int parts = topology_.parts(part_of_);
+  std::vector<char> held(parts, 0);
+  std::vector<int> first(parts, -1);
+  for (int t = 0; t < topology_.size(); ++t) {
+    const int part = part_of_[t];
+    if (part < 0) continue;
+    if (first[part] < 0) first[part] = t;
+    for (int node : topology_.tetrahedron(t))
+      held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
+    for (int f = 0; f < 4; ++f) held[part] |= is_joint(4 * t + f);
+  }
+  loose_.clear();
+  for (int part = 0; part < parts; ++part)
+    if (!held[part]) loose_.push_back(first[part]);
+}
+
+// A part that floats and has gone far away is not followed for ever.
+void DynamicOrgan::drop_fallen() {
+  if (loose_.empty()) return;
+  const std::size_t first = removed_.size();
+  for (int t : loose_) {
+    if (!topology_.alive(t)) continue;
+    const Eigen::Vector3d& at = position_[topology_.tetrahedron(t)[0]];
+    if ((at - middle_).squaredNorm() < lost_beyond * lost_beyond * diagonal_ * diagonal_) continue;
+    topology_.parts(part_of_);
+    const int part = part_of_[t];
+    std::vector<int> gone;
+    for (int other = 0; other < topology_.size(); ++other)
+      if (part_of_[other] == part) gone.push_back(other);
+    topology_.erase(gone);
+    surface_.follow();
+    removed_.insert(removed_.end(), gone.begin(), gone.end());
+  }
+  note_change(RemovalCause::fell_away, first);
+}
+
+void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal) {
+  position.resize(position_.size());
+  normal.resize(position_.size());
+  for (std::size_t n = 0; n < position_.size(); ++n) position[n] = position_[n].cast<float>();
+  if (still_) still_->shape(mesh_.rest, position);
+  vertex_normals(position, shown_.triangles(topology_), normal);
+}
+
+std::vector<std::uint8_t> DynamicOrgan::save() const {
+  std::vector<std::uint8_t> bytes;
+  state_bytes::put(bytes, std::span<const int>(removed_));
+  state_bytes::put(bytes, model_->state());
+  state_bytes::put(bytes, contacts_.list());
+  state_bytes::put(bytes, std::span<const char>(jaws_closed_));
+  state_bytes::put(bytes, std::span<const std::uint8_t>(still_ ? still_->save() : std::vector<std::uint8_t>{}));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.previous()));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.positions()));
+  return bytes;
+}
+
+void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
+  const auto removed = state_bytes::take<int>(state);
+  const auto motion = state_bytes::take<std::byte>(state);
+  const auto contacts = state_bytes::take<TissueContact>(state);
+  const auto jaws = state_bytes::take<char>(state);
+  const auto still = state_bytes::take<std::uint8_t>(state);
+  const auto previous = state_bytes::take<Eigen::Vector3d>(state), present = state_bytes::take<Eigen::Vector3d>(state);
+  const auto known = [&](const TissueContact& c) {
+    const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
+    const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < tools[c.tool].size();
+    return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
+  };
+  const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() &&
+                    jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
+                    previous.size() == position_.size() && present.size() == position_.size() &&
+                    std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+  if (!fits || !removed_.empty())
+    throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
+  removed_ = removed;
+  topology_.erase(removed_);
+  surface_.follow();
+  model_->remove(removed_);
+  if (tearing_) tearing_->remove(removed_);
+  model_->set_state(motion);
+  contacts_.set_list(contacts);
+  jaws_closed_ = jaws;
+  if (still_) still_->restore(still, tools);
+  surface_.set_positions(previous);
+  surface_.set_positions(present);
+  position_ = present;
+  follow_change();
+}
+
+std::uint64_t DynamicOrgan::hash() const {
+  const auto state = model_->state();
+  return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed_.data(), removed_.size() * sizeof(int));
+}
+
+}  // namespace palpate

@@ -1,0 +1,114 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/bus/messages.hpp"
+#include "common/contact/cut_surface.hpp"
+#include "common/dynamics/dynamic_model.hpp"
+#include "common/dynamics/elastic_mesh.hpp"
+#include "common/dynamics/tearing.hpp"
+#include "common/mesh/shown_surface.hpp"
+#include "common/contact/step_settings.hpp"
+#include "common/dynamics/make_model.hpp"
+#include "common/dynamics/spec.hpp"
+#include "common/archive/archive.hpp"
+#include "common/tool/kinematics.hpp"
+#include "common/models/moving/hybrid_touch.hpp"
+#include "common/models/moving/tissue_contact.hpp"
+
+namespace palpate {
+
+/// One tool as an organ meets it within a tick.
+struct ToolInTick {
+  MovingTool moving;
+  ToolDofs dofs;
+  bool present = false;  ///< its pose is known
+};
+
+/// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a time;
+/// the same inputs from the same state give the same bits.
+class DynamicOrgan {
+ public:
+  /// Throws std::runtime_error naming the body if the scene's step is not stable, with the bound.
+  DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings, MakeDynamicModel make);
+  ~DynamicOrgan();
+
+  /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
+  void tick(std::span<const ToolInTick> tools, double dt);
+
+  /// Before the first tick: these tetrahedra have gone before, and `changes` is what they are. False, and nothing has
+  /// happened, if one of them is not of this body.
+  bool begin_without(std::span<const std::uint32_t> removed);
+
+  /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
+  void forget_factors() {
+    if (still_) still_->forget_factor();
+  }
+
+  double largest_step() const { return largest_step_; }  ///< [s] that the bound allows, or the scene gives
+  int steps_in(double dt) const;                         ///< steps of the integrator in a tick of dt [s]
+  const CutMesh& topology() const { return topology_; }
+  const CutSurface& surface() const { return surface_; }
+  const DynamicModel& model() const { return *model_; }
+  const ElasticMesh& mesh() const { return mesh_; }
+  std::span<const TissueContact> contacts() const { return contacts_.list(); }
+  /// The quasi-static part of a hybrid organ; null for others.
+  const HybridTouch* still_part() const { return still_.get(); }
+  /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
+  bool is_joint(int facet) const { return shown_.is_joint(facet); }
+  bool holds(int tool) const;  ///< its jaws hold something of this organ
+
+  struct Change {
+    RemovalCause cause;
+    std::vector<int> removed;  ///< in order, with those that conformity asked for
+  };
+  /// What the last tick took away; empty most of the time.
+  std::span<const Change> changes() const { return changes_; }
+  const std::vector<int>& removed() const { return removed_; }  ///< all so far, in order
+
+  /// Position [m] and unit normal per node of the archive's surface map; nodes off the surface have no normal.
+  void shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal);
+
+  /// State as bytes, for keyframes; and its hash (XXH3, 64 bits).
+  std::vector<std::uint8_t> save() const;
+  /// `tools`: as they were. Throws std::runtime_error on a state of another body.
+  void restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools);
+  std::uint64_t hash() const;
+
+ private:
+  void work_jaws(std::span<const ToolInTick> tools);
+  void update_positions();
+  void cut(std::span<const ToolInTick> tools);
+  void tear();
+  void drop_fallen();
+  void remove(int tetrahedron);
+  void note_change(RemovalCause cause, std::size_t first);
+  void follow_change();
+
+  std::string name_;
+  std::vector<std::optional<ProbeJaws>> jaws_;   ///< per tool
+  std::vector<std::optional<Cautery>> cautery_;  ///< per tool
+  ElasticMesh mesh_;
+  CutMesh topology_;
+  ShownSurface shown_;
+  CutSurface surface_;
+  std::unique_ptr<DynamicModel> model_;
+  std::unique_ptr<HybridTouch> still_;
+  TissueContacts contacts_;
+  std::optional<TearSearch> tearing_;
+  double largest_step_;
+  double diagonal_;                                      ///< [m] of the body at rest
+  Eigen::Vector3d middle_;                               ///< [m] of the body at rest
+  std::vector<char> jaws_closed_;                        ///< per tool
+  std::vector<Eigen::Vector3d> position_;                ///< [m] per node
+  std::vector<Eigen::Isometry3d> poses_, poses_before_;  ///< at the end and beginning of a step, per tool
+  std::vector<MovingTool> moving_, in_step_;             ///< in_step_: now is the pose at a step's end
+  std::vector<int> removed_, part_of_, loose_;           ///< loose_: one tetrahedron of each part that floats
+  std::vector<Change> changes_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,87 @@
+#include "common/models/moving/hybrid_touch.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "common/describe/state_bytes.hpp"
+
+namespace palpate {
+namespace {
+
+SurfaceMap quasi_static_surface(const Archive& archive) {
+  if (!archive.hybrid) throw std::runtime_error("the archive holds no hybrid body");
+  SurfaceMap map = archive.surface;
+  map.triangles.resize(archive.hybrid->quasi_static_triangles);
+  return map;
+}
+
+double bucket_size(const ContactSpec& contact, const SurfaceMap& map) {
+  return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
+}
+
+}  // namespace
+
+HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model)
+    : model_(model),
+      map_(quasi_static_surface(archive)),
+      part_(archive, settings.contact.friction, single),
+      contacts_(map_, bucket_size(settings.contact, map_), part_.law(), parts_of(settings.tools)),
+      moved_(map_.size(), Eigen::Vector3f::Zero()) {
+  part_.couple(model);
+  displacement_.reserve(3 * map_.size());
+  take();
+}
+
+bool HybridTouch::grasping(int tool) const {
+  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.tool == tool; });
+}
+
+void HybridTouch::drop_tool(int tool) {
+  for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
+    if (contacts()[i].tool == tool) part_.law().remove(i);
+}
+
+void HybridTouch::find(std::span<const MovingTool> tools) {
+  const std::span<const int> marked = contacts_.mark(tools);
+  part_.update(marked);
+  displacement_.clear();
+  for (int node : marked) {
+    const Eigen::Vector3d u = part_.positions()[node] - map_.position[node];
+    displacement_.insert(displacement_.end(), u.data(), u.data() + 3);
+  }
+  contacts_.move_marked(displacement_);
+  contacts_.collide(tools);
+}
+
+void HybridTouch::hold(std::span<const MovingTool> tools) {
+  contacts_.aim(tools);
+  part_.hold();
+  for (std::size_t k = 0; k < part_.connection().size(); ++k)
+    model_.set_load(part_.connection()[k], part_.load(static_cast<int>(k)));
+}
+
+void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::Vector3f> position) {
+  part_.superpose(moved_);
+  for (int n = 0; n < map_.size(); ++n)
+    if (part_.owns(n)) position[n] = rest[n].cast<float>() + moved_[n];
+}
+
+std::vector<std::uint8_t> HybridTouch::save() const {
+  std::vector<std::uint8_t> bytes(contacts_.state_size());
+  contacts_.save(bytes.data());
+  std::vector<Eigen::Vector3d> forces;
+  for (std::size_t c = 0; c < contacts().size(); ++c) forces.push_back(force(static_cast<int>(c)));
+  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(forces));
+  return bytes;
+}
+
+void HybridTouch::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
+  if (state.size() < contacts_.state_size()) throw std::runtime_error("the recorded state is of another hybrid body");
+  contacts_.restore(state.data(), tools);
+  state = state.subspan(contacts_.state_size());
+  const auto forces = state_bytes::take<Eigen::Vector3d>(state);
+  if (forces.size() != contacts().size()) throw std::runtime_error("the recorded state is of another hybrid body");
+  part_.adopt(model_, forces);
+}
+
+}  // namespace palpate

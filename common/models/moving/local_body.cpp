@@ -1,0 +1,173 @@
+#include "common/models/moving/local_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "common/geometry/segment.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+constexpr double own_reach = 1.25;  // of a part's radius: a contact this near to its axis is its own
+
+Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
+  return Eigen::Map<const Vector3d>(a.data());
+}
+
+// What a contact can bear: it never pulls, and friction is a share of its pressure.
+Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {
+  const double pressure = force.dot(normal);
+  if (pressure <= 0) return Vector3d::Zero();
+  const Vector3d tangential = force - pressure * normal;
+  const double size = tangential.norm(), most = friction * pressure;
+  return size > most ? Vector3d(pressure * normal + most / size * tangential) : force;
+}
+
+}  // namespace
+
+LocalBody::LocalBody(const Trocar& trocar, double friction, double dt) : trocar_(trocar), friction_(friction), dt_(dt) {
+  position_.fill(Vector3d::Zero());
+  for (auto& box : box_) box.fill(Vector3d::Zero());
+}
+
+void LocalBody::consume(const LocalModel& model) {
+  state_.model = model;
+  model_pose_ = tip_pose(trocar_, model.pose());
+}
+
+ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
+  const LocalModel& m = state_.model;
+  ToolLoad load;
+  stale_ = false;
+  const double age = step > m.tool_step ? static_cast<double>(step - m.tool_step) * dt_ : 0.0;
+  age_weight(age);
+  if (m.seq == 0) return load;
+  const int held = hold(tool, load);
+  extrapolate(std::min(age, extrapolated));
+  for (int p = 0; p < tool.size(); ++p) {
+    Touched touched;
+    const double radius = tool.radius(p);
+    const Segment axis = tool.axis(p);
+    if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
+  }
+  stale_ = state_.weight < 1 && !load.force.isZero(0);
+  load.force *= state_.weight;
+  load.torque *= state_.weight;
+  return load;
+}
+
+void LocalBody::age_weight(double age) {
+  const bool fresh = state_.model.seq != 0 && age <= oldest;
+  const double change = dt_ / fade_seconds;
+  state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
+}
+
+void LocalBody::add(const Vector3d& at, const Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const {
+  load.force -= on_tissue;
+  load.torque -= (at - tool.now.translation()).cross(on_tissue);
+}
+
+// Fills held_ with the places that the tool held in the model; returns their number.
+int LocalBody::hold(const MovingTool& tool, ToolLoad& load) {
+  const LocalModel& m = state_.model;
+  const Eigen::Isometry3d motion = tool.now * model_pose_.inverse();
+  int held = 0;
+  for (int i = 0; i < m.contacts; ++i) {
+    const LocalModel::Contact& c = m.contact[i];
+    const auto normal = vector(c.normal), before = vector(c.position), force = vector(c.force);
+    if (!c.grasped && force.dot(normal) <= 0) continue;  // near, but it did not press
+    const Vector3d at = motion * before;
+    Vector3d now = force + Stiffness(c.stiffness.data()) * (at - before);
+    if (!c.grasped) now = within_cone(now, normal, friction_);
+    held_[held++] = {at, c.grasped != 0};
+    add(at, now, tool, load);
+  }
+  return held;
+}
+
+void LocalBody::extrapolate(double seconds) {
+  const LocalModel& m = state_.model;
+  for (int n = 0; n < m.nodes; ++n) position_[n] = vector(m.node[n].position) + seconds * vector(m.node[n].velocity);
+  for (int t = 0; t < m.triangles; ++t) {
+    const auto& [a, b, c] = m.triangle[t];
+    box_[t] = {position_[a].cwiseMin(position_[b]).cwiseMin(position_[c]),
+               position_[a].cwiseMax(position_[b]).cwiseMax(position_[c])};
+  }
+}
+
+// How deep a part has come into the near surface, judged where its axis and the surface are nearest; on which side of
+// the surface the axis lies, by the triangle that faces it most among those that share that point.
+bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) const {
+  const LocalModel& m = state_.model;
+  double nearest = radius * radius, facing = 0;
+  int found = -1;
+  ClosestOfTriangle at;
+  const Vector3d low = axis.start.cwiseMin(axis.end), high = axis.start.cwiseMax(axis.end);
+  for (int t = 0; t < m.triangles; ++t) {
+    if (((low - box_[t][1]).cwiseMax(box_[t][0] - high)).maxCoeff() > radius) continue;
+    const auto& [a, b, c] = m.triangle[t];
+    const Triangle corners{position_[a], position_[b], position_[c]};
+    const ClosestOfTriangle point = closest_points(axis, corners);
+    const double tie = 1e-9 * radius * radius;
+    if (point.squared_distance > nearest + tie) continue;
+    const Vector3d cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const double size = cross.norm();
+    if (!(size > 0)) continue;
+    const double above = (axis.at(point.share) - corners[0]).dot(cross) / size;
+    const bool nearer = found < 0 || point.squared_distance < nearest - tie;
+    if (!nearer && std::abs(above) <= std::abs(facing)) continue;
+    nearest = std::min(nearest, point.squared_distance);
+    facing = above;
+    found = t;
+    at = point;
+  }
+  if (found < 0) return false;
+  const auto& nodes = m.triangle[found];
+  touched.at.setZero();
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  for (int v = 0; v < 3; ++v) {
+    touched.at += at.weights[v] * position_[nodes[v]];
+    stiffness += at.weights[v] * Stiffness(m.node[nodes[v]].stiffness.data());
+  }
+  const double distance = std::sqrt(at.squared_distance), side = facing >= 0 ? 1 : -1;
+  const Vector3d corner = position_[nodes[0]];
+  const Vector3d outward = (position_[nodes[1]] - corner).cross(position_[nodes[2]] - corner).normalized();
+  const Vector3d into =
+      distance > 1e-6 * radius ? Vector3d(side * (touched.at - axis.at(at.share)) / distance) : Vector3d(-outward);
+  const double along = into.dot(stiffness * into), depth = radius - side * distance;
+  touched.force = depth * along * into;
+  return depth > 0 && along > 0;
+}
+
+// A part that held tissue in the model, or the tip with tissue between its jaws, is felt by that alone, not twice.
+bool LocalBody::holds(const Segment& axis, double radius, int part, int held) const {
+  const double reach = own_reach * radius;
+  return std::any_of(held_.begin(), held_.begin() + held, [&](const Held& h) {
+    return (h.grasped && part == 0) || (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
+  });
+}
+
+void LocalBody::save(unsigned char* to) const {
+  std::memcpy(to, &state_, sizeof state_);
+}
+
+void LocalBody::restore(const unsigned char* from) {
+  State state;
+  std::memcpy(&state, from, sizeof state);
+  const LocalModel& m = state.model;
+  const auto within = [](int count, int most) { return count >= 0 && count <= most; };
+  bool good = within(m.contacts, LocalModel::max_contacts) && within(m.nodes, LocalModel::max_nodes) &&
+              within(m.triangles, LocalModel::max_triangles);
+  for (int t = 0; good && t < m.triangles; ++t)
+    for (const std::uint32_t n : m.triangle[t]) good = good && n < static_cast<std::uint32_t>(m.nodes);
+  if (!good) throw std::runtime_error("the recorded state holds a local contact model that cannot be");
+  state_ = state;
+  model_pose_ = tip_pose(trocar_, m.pose());
+}
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+#pragma once
+#include <array>
+
+#include "common/models/moving/local_model.hpp"
+#include "common/contact/touch_body.hpp"
+
+namespace palpate {
+
+/// Moving tissue as one tool feels it: the force of all dynamic bodies, from the newest local contact model that the
+/// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
+/// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface.
+/// Age counts in haptic steps, so that a replay gives the same bits. Never allocates.
+class LocalBody {
+ public:
+  static constexpr double oldest = 0.15;         ///< [s] age of a model at which its force begins to fade
+  static constexpr double fade_seconds = 0.005;  ///< [s] from full force to none, and back
+  static constexpr double extrapolated = 0.02;   ///< [s] at most for which nodes move on with their velocity
+
+  /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
+  LocalBody(const Trocar& trocar, double friction, double dt);
+
+  /// From the next step on this model is used.
+  void consume(const LocalModel& model);
+  const LocalModel& model() const { return state_.model; }
+
+  /// Force and torque on the tool in haptic step `step`. Its parts are those of `tool`, a probe's tip first.
+  ToolLoad load(const MovingTool& tool, std::uint64_t step);
+  /// True if the last load was less than it should be, because the model is too old or has only just come back.
+  bool stale() const { return stale_; }
+
+  std::size_t state_size() const { return sizeof(State); }
+  void save(unsigned char* to) const;
+  /// Throws std::runtime_error on counts or indices that no model has.
+  void restore(const unsigned char* from);
+
+ private:
+  struct State {
+    LocalModel model;
+    double weight = 0;  ///< share of the force that is rendered
+  };
+  struct Held {
+    Eigen::Vector3d at;  ///< [m] where the tool holds tissue now
+    bool grasped;
+  };
+  struct Touched {
+    Eigen::Vector3d at, force;  ///< [m], [N] on the tissue
+  };
+
+  void age_weight(double age);
+  void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
+  int hold(const MovingTool& tool, ToolLoad& load);
+  void extrapolate(double seconds);
+  bool touch(const Segment& axis, double radius, Touched& touched) const;
+  bool holds(const Segment& axis, double radius, int part, int held) const;
+
+  Trocar trocar_;
+  double friction_, dt_;
+  State state_;
+  Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
+  bool stale_ = false;
+  std::array<Held, LocalModel::max_contacts> held_{};
+  std::array<Eigen::Vector3d, LocalModel::max_nodes> position_;
+  std::array<std::array<Eigen::Vector3d, 2>, LocalModel::max_triangles> box_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,29 @@
+#include "common/models/moving/local_model.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+
+bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dynamic, LocalModel& to) {
+  const auto known = [&](const auto& part) { return part.body < dynamic.size() && dynamic[part.body]; };
+  if (!valid(from) || !std::ranges::all_of(from.contacts, known) || !std::ranges::all_of(from.nodes, known))
+    return false;
+  to.run = from.run;
+  to.seq = from.seq;
+  to.tool_step = from.tool_step;
+  to.dofs = {from.yaw, from.pitch, from.depth, from.roll, from.grip};
+  to.contacts = static_cast<std::int32_t>(from.contacts.size());
+  to.nodes = static_cast<std::int32_t>(from.nodes.size());
+  to.triangles = static_cast<std::int32_t>(from.triangles.size());
+  for (int i = 0; i < to.contacts; ++i) {
+    const LocalContact& c = from.contacts[i];
+    to.contact[i] = {c.position, c.normal, c.force, c.stiffness, c.grasped};
+  }
+  for (int i = 0; i < to.nodes; ++i)
+    to.node[i] = {from.nodes[i].position, from.nodes[i].velocity, from.nodes[i].stiffness};
+  for (int i = 0; i < to.triangles; ++i)
+    to.triangle[i] = {from.triangles[i].a, from.triangles[i].b, from.triangles[i].c};
+  return true;
+}
+
+}  // namespace palpate

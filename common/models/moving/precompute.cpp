@@ -1,0 +1,67 @@
+#include "common/models/moving/precompute.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <numeric>
+#include <stdexcept>
+
+#include "common/fem/stopwatch.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/models/solid/precompute.hpp"
+
+namespace palpate {
+namespace {
+
+std::vector<int> index_of_nodes(const SurfaceMap& surface, std::size_t nodes) {
+  std::vector<int> index(nodes, -1);
+  for (int i = 0; i < surface.size(); ++i) index[surface.node_number[i]] = i;
+  return index;
+}
+
+}  // namespace
+
+MaterialField materials_of(const MaterialField& whole, const std::vector<int>& elements) {
+  MaterialField part{whole.materials, {}};
+  if (whole.of_element.empty()) return part;
+  for (int e : elements) part.of_element.push_back(whole.of_element[e]);
+  return part;
+}
+
+std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,
+                                 const MaterialField& materials, const std::vector<int>& elements, Archive& archive) {
+  std::vector<int> nodes;
+  for (int e : elements) nodes.insert(nodes.end(), mesh.tetrahedra[e].begin(), mesh.tetrahedra[e].end());
+  archive.surface = make_surface_map(body, mesh, dofs, nodes);
+  auto index = index_of_nodes(archive.surface, mesh.nodes.size());
+  for (int e : elements) {
+    const auto& t = mesh.tetrahedra[e];
+    archive.tetrahedra.push_back({index[t[0]], index[t[1]], index[t[2]], index[t[3]]});
+  }
+  archive.material_of_element = materials_of(materials, elements).of_element;
+  for (const auto& material : materials.materials) archive.density.push_back(material.density);
+  return index;
+}
+
+Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,
+                          const Progress& progress) try {
+  Stopwatch watch(progress);
+  const auto dofs = apply_fixation(mesh, body.fixed, fmt::format("body '{}'", body.name));
+  const auto materials = material_field(body, mesh);
+  auto archive = start_archive(body, kind, mesh, materials);
+  std::vector<int> all(mesh.tetrahedra.size());
+  std::iota(all.begin(), all.end(), 0);
+  add_moving_part(body, mesh, dofs, materials, all, archive);
+  watch.lap("surface");
+  return archive;
+} catch (const std::bad_alloc&) {
+  throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
+}
+
+ArchiveJob moving_archive_job(const MovingSpec& body, std::string_view kind, const Progress& progress) {
+  return [&body, kind, &progress, mesh = load_tet_mesh(body.mesh, body.scale)] {
+    return precompute_moving(body, kind, mesh, progress);
+  };
+}
+
+}  // namespace palpate

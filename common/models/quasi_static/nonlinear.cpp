@@ -1,0 +1,96 @@
+#include "common/models/quasi_static/nonlinear.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "common/describe/csv.hpp"
+
+namespace palpate {
+
+namespace {
+
+/// Fits the measured values over the linear answer `slope` x to the same displacements x.
+FittedCurve read_curve(const std::filesystem::path& file, std::string_view column, double slope, int degree) {
+  const CsvTable table = read_csv(file, {"displacement_m", column});
+  std::vector<double> linear, measured;
+  double before = -1, greatest = 0;
+  for (const CsvRow& row : table.rows) greatest = std::max(greatest, std::abs(row.values[1]));
+  for (const CsvRow& row : table.rows) {
+    const double x = row.values[0], y = row.values[1];
+    if (x < 0) table.fail(row.line, fmt::format("the displacement {} is negative; loading counts from 0", x));
+    if (x <= before) table.fail(row.line, fmt::format("the displacement {} does not come after {}", x, before));
+    before = x;
+    if (x == 0 && std::abs(y) > 1e-3 * greatest)
+      table.fail(row.line, fmt::format("the curve must pass through zero, and is {} without displacement", y));
+    if (x == 0) continue;
+    linear.push_back(slope * x);
+    measured.push_back(y);
+  }
+  if (static_cast<int>(linear.size()) < degree)
+    table.fail(
+        table.rows.back().line,
+        fmt::format("a fit of degree {} needs as many points beyond zero, and there are {}", degree, linear.size()));
+  return {linear, measured, degree};
+}
+
+FittedCurve read_force_curve(const Nonlinear& nonlinear, double slope) {
+  FittedCurve curve = read_curve(nonlinear.force_curve, "force_N", slope, nonlinear.degree);
+  const double fall = curve.first_fall();
+  if (fall >= 0)
+    throw std::runtime_error(
+        fmt::format("{}: the force of the fit of degree {} would fall while the tool advances, at a "
+                    "displacement of {:.6g} m",
+                    nonlinear.force_curve.string(), nonlinear.degree, fall / slope));
+  return curve;
+}
+
+FittedCurve read_radial_curve(const Nonlinear& nonlinear, double slope) {
+  if (!(slope > 0))
+    throw std::runtime_error(fmt::format(
+        "{}: the radial curve needs a linear model that widens under a press: poisson must be greater than 0",
+        nonlinear.radial_curve.string()));
+  return read_curve(nonlinear.radial_curve, "radial_m", slope, nonlinear.degree);
+}
+
+}  // namespace
+
+LinearSlopes sliding_slopes(const Material& material, double radius, double height) {
+  const double section = std::numbers::pi * radius * radius;
+  return {section * material.young / height, material.poisson * radius / height};
+}
+
+QuasiNonlinear::QuasiNonlinear(const Nonlinear& nonlinear, const LinearSlopes& linear)
+    : force_(read_force_curve(nonlinear, linear.force)), radial_(read_radial_curve(nonlinear, linear.radial)) {}
+
+QuasiNonlinear make_quasi_nonlinear(const QuasiStaticSpec& body, const Archive& archive) {
+  const Nonlinear& nonlinear = *body.nonlinear;
+  if (nonlinear.specimen_mesh.empty())
+    return {nonlinear, sliding_slopes(body.material, nonlinear.specimen_radius, nonlinear.specimen_height)};
+  if (!(archive.specimen_force_slope > 0))
+    throw std::runtime_error(fmt::format("the archive of body '{}' holds no press of its specimen", body.name));
+  return {nonlinear, {archive.specimen_force_slope, archive.specimen_radial_slope}};
+}
+
+template <class Scalar>
+void correct_radial(const QuasiNonlinear& law, std::span<const Scalar> linear, const Eigen::Vector3d& press,
+                    std::span<const int> held, std::span<Scalar> corrected) {
+  using Vector = Eigen::Matrix<Scalar, 3, 1>;
+  for (std::size_t i = 0; i + 2 < linear.size(); i += 3) {
+    const Vector u = Eigen::Map<const Vector>(linear.data() + i);
+    const bool is_held = std::ranges::binary_search(held, static_cast<int>(i / 3));
+    Eigen::Map<Vector> out(corrected.data() + i);
+    out = is_held ? u : Vector(law.correct(u.template cast<double>(), press).template cast<Scalar>());
+  }
+}
+
+template void correct_radial(const QuasiNonlinear&, std::span<const float>, const Eigen::Vector3d&,
+                             std::span<const int>, std::span<float>);
+template void correct_radial(const QuasiNonlinear&, std::span<const double>, const Eigen::Vector3d&,
+                             std::span<const int>, std::span<double>);
+
+}  // namespace palpate

@@ -1,0 +1,65 @@
+#include "common/models/quasi_static/precompute.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <stdexcept>
+
+#include "common/fem/fine_problem.hpp"
+#include "common/fem/specimen.hpp"
+#include "common/fem/stopwatch.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/models/solid/precompute.hpp"
+
+namespace palpate {
+
+Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMesh* specimen, const Progress& progress,
+                   Route route, PrecomputeCost* cost) try {
+  Stopwatch watch(progress);
+  const auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
+  const auto materials = material_field(body, mesh);
+  auto archive = start_archive(body, QuasiStaticSpec::kind, mesh, materials);
+  archive.surface = make_surface_map(body, mesh, dofs);
+  const auto& surface = archive.surface;
+  archive.touchable_dofs = free_dofs(surface, 0, surface.touchable);
+  archive.other_dofs = free_dofs(surface, surface.touchable, surface.size());
+  watch.lap("surface");
+
+  const auto split = surface.node_number.begin() + surface.touchable;
+  const std::vector<int> touchable(surface.node_number.begin(), split), other(split, surface.node_number.end());
+  auto compliance = is_finer(body.offline)
+                        ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name),
+                                             touchable, other, progress)
+                        : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
+  archive.touchable_compliance = std::move(compliance.touchable);
+  archive.other_compliance = std::move(compliance.other);
+  if (cost) *cost = {compliance.flops, compliance.condensed};
+  if (specimen) {
+    Stopwatch specimen_watch(progress);
+    const auto slopes = press_specimen(*specimen, body.material);
+    archive.specimen_force_slope = slopes.force;
+    archive.specimen_radial_slope = slopes.radial;
+    specimen_watch.lap("specimen");
+  }
+  return archive;
+} catch (const std::bad_alloc&) {
+  throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
+}
+
+namespace {
+
+std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body) {
+  if (!body.nonlinear || body.nonlinear->specimen_mesh.empty()) return {};
+  return load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
+}
+
+}  // namespace
+
+ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress) {
+  return [&, mesh = load_tet_mesh(body.mesh, body.scale)] {
+    const auto specimen = load_specimen(body);
+    return precompute(body, mesh, specimen ? &*specimen : nullptr, progress);
+  };
+}
+
+}  // namespace palpate

@@ -1,0 +1,84 @@
+#include "common/models/quasi_static/quasi_static_body.hpp"
+
+#include <algorithm>
+
+#include "common/kernels/kernels.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int whole_columns_from = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
+
+}  // namespace
+
+QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings)
+    : TouchBody(archive.surface, Compliance<double>(archive, Compliance<double>::Rows::touchable), settings) {
+  if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
+  columns_.reserve(27 * max_contacts);
+  coefficients_.reserve(27 * max_contacts);
+  displacement_.reserve(3 * map().size());
+  of_tool_.reserve(3 * map().size());
+  whole_.assign(compliance().stride(), 0.0);
+}
+
+void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
+  const std::span<const int> marked = contacts().mark(tools);
+  displacement_.assign(3 * marked.size(), 0.0);
+  if (!nonlinear_) {
+    superpose(-1, displacement_);
+  } else {
+    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+      superpose(t, of_tool_);
+      const Eigen::Vector3d press = press_of(t);
+      for (std::size_t i = 0; i < marked.size(); ++i) {
+        const Eigen::Vector3d u = Eigen::Map<const Eigen::Vector3d>(of_tool_.data() + 3 * i);
+        Eigen::Map<Eigen::Vector3d>(displacement_.data() + 3 * i) += nonlinear_->correct(u, press);
+      }
+    }
+    // What is held stays where it is held.
+    superpose(-1, of_tool_);
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      for (const TouchContact& c : law().contacts())
+        if (c.touch != Touch::open && (c.anchor.nodes[0] == marked[i] ||
+                                       (c.face && (c.anchor.nodes[1] == marked[i] || c.anchor.nodes[2] == marked[i]))))
+          std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
+  }
+  contacts().move_marked(displacement_);
+}
+
+// u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.
+void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
+  columns_.clear();
+  coefficients_.clear();
+  law().for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
+    if (node >= compliance().column_nodes() || (tool >= 0 && law().contacts()[contact].tool != tool)) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      columns_.push_back(compliance().column(node, axis));
+      coefficients_.push_back(f[axis]);
+    }
+  });
+  const std::span<const int> marked = surface().marked();
+  const int count = static_cast<int>(columns_.size());
+  displacement.resize(3 * marked.size());
+  // Reading whole columns beats picking from them once a good part of the nodes is asked for.
+  if (marked.size() * whole_columns_from < static_cast<std::size_t>(map().touchable)) {
+    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(),
+                                      static_cast<int>(marked.size()), displacement.data());
+    return;
+  }
+  kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map().touchable, whole_.data());
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
+}
+
+void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {
+  TouchBody::load(tools, loads);
+  if (!nonlinear_) return;
+  for (ToolLoad& load : loads) {
+    const double scale = nonlinear_->force_scale(-load.force.dot(load.press));
+    load.force *= scale;
+    load.torque *= scale;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,25 @@
+#pragma once
+#include <optional>
+
+#include "common/models/quasi_static/nonlinear.hpp"
+#include "common/contact/touch_body.hpp"
+
+namespace palpate {
+
+/// A body without inertia: its shape follows from the contact forces by superposition of its tensors (TVCG99 sec. 4).
+class QuasiStaticBody : public TouchBody {
+ public:
+  QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings);
+
+  void update_surface(std::span<const MovingTool> tools) override;
+  void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;
+
+ private:
+  void superpose(int tool, std::vector<double>& displacement);
+
+  std::optional<QuasiNonlinear> nonlinear_;
+  std::vector<const double*> columns_;
+  std::vector<double> coefficients_, displacement_, of_tool_, whole_;
+};
+
+}  // namespace palpate

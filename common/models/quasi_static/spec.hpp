@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/fem/offline_spec.hpp"
+#include "common/fem/solid_spec.hpp"
+#include "common/models/kind.hpp"
+
+namespace palpate {
+
+/// Quasi non-linear correction (TVCG99 sec. 3-4, 4-3).
+struct Nonlinear {
+  std::filesystem::path force_curve;    ///< CSV `displacement_m,force_N`
+  std::filesystem::path radial_curve;   ///< CSV `displacement_m,radial_m`
+  double specimen_radius = 0;           ///< [m]
+  double specimen_height = 0;           ///< [m]
+  int degree = 6;                       ///< 4..10
+  std::filesystem::path specimen_mesh;  ///< empty: ends slide, closed-form linear curves; else stuck ends
+  double specimen_scale = 1;            ///< [m per unit of specimen_mesh]
+};
+
+inline void describe(Description& d, Nonlinear& n) {
+  d.file({"force_curve", "", "axial force: CSV with the header `displacement_m,force_N`", Need::required},
+         n.force_curve);
+  d.file({"radial_curve", "", "radial displacement: CSV with the header `displacement_m,radial_m`", Need::required},
+         n.radial_curve);
+  d.number({"radius", "m", "radius of the specimen", Need::required}, n.specimen_radius, above(0));
+  d.number({"height", "m", "height of the specimen", Need::required}, n.specimen_height, above(0));
+  d.integer({"degree", "", "degree of the two fitted polynomials"}, n.degree, 4, 10);
+  d.file(
+      {"specimen_mesh", "",
+       "mesh of the specimen, its axis along z: the linear curves come from pressing it with stuck ends. Absent, the "
+       "ends slide and the closed forms are used",
+       Need::optional, Use::stored},
+      n.specimen_mesh);
+  d.number({"specimen_scale", "m", "length of that mesh's unit", Need::optional, Use::stored}, n.specimen_scale,
+           above(0));
+  d.only_with("specimen_scale", "specimen_mesh");
+}
+
+/// Linear elasticity, solved beforehand (TVCG99 sec. 4).
+struct QuasiStaticSpec : SolidSpec {
+  static constexpr std::string_view kind = "quasi_static";
+  std::optional<Nonlinear> nonlinear;
+  std::optional<Offline> offline;  ///< absent: the mesh itself with linear elements
+};
+
+inline void describe(Description& d, QuasiStaticSpec& b) {
+  describe(d, static_cast<SolidSpec&>(b));
+  d.table({"nonlinear", "", "the quasi non-linear correction", Need::optional, Use::agreed, "linear"}, b.nonlinear);
+  d.table({"offline", "", "what the tensors are computed from", Need::optional, Use::stored, "the mesh itself"},
+          b.offline);
+}
+
+ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
+
+}  // namespace palpate

@@ -1,0 +1,10 @@
+#include "common/models/moving/precompute.hpp"
+#include "common/models/spring_mass/spec.hpp"
+
+namespace palpate {
+
+ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress) {
+  return moving_archive_job(body, SpringMassSpec::kind, progress);
+}
+
+}  // namespace palpate

@@ -1,0 +1,22 @@
+#pragma once
+#include <string_view>
+
+#include "common/dynamics/spec.hpp"
+#include "common/models/kind.hpp"
+
+namespace palpate {
+
+/// Springs along the edges, their stiffness fitted to Young's modulus; for comparison (RR3510 sec. 5).
+struct SpringMassSpec : MovingSpec {
+  static constexpr std::string_view kind = "spring_mass";
+};
+
+inline void describe(Description& d, SpringMassSpec& b) {
+  describe(d, static_cast<MovingSpec&>(b));
+  d.require(!b.dynamic.corotational, "dynamic.corotational",
+            "corotational is for elements, and springs turn with the tissue by themselves");
+}
+
+ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress);
+
+}  // namespace palpate

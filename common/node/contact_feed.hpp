@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/presence.hpp"
+#include "common/sim/deformer.hpp"
+
+namespace palpate {
+
+/// Brings contacts and reduced states from the bus to a deformer: those of haptic nodes with the same scene, and no
+/// others; modal states and catheters only where the scene has such bodies. When the haptic node dies in contact, it
+/// keeps the last contacts on the bus for the one that returns.
+class ContactFeed {
+ public:
+  ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer);
+
+  /// Takes what has come; true if the surfaces have something new to show.
+  bool take();
+  /// Looks whether the haptic node has died; call a few times a second.
+  void watch_haptic();
+  std::uint64_t refused() const { return refused_; }  ///< messages of other scenes, or that do not fit this one
+
+ private:
+  template <class M>
+  void take_all(Reader<M>& reader);
+
+  const Presence& presence_;
+  Deformer& deformer_;
+  std::unique_ptr<Reader<ContactState>> contacts_;
+  std::unique_ptr<Reader<ModalState>> modes_;         ///< null: no modal shell
+  std::unique_ptr<Reader<CatheterState>> catheters_;  ///< null: no catheter
+  std::unique_ptr<Writer<ContactState>> held_;
+  bool haptic_alive_ = false;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace palpate

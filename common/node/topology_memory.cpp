@@ -1,0 +1,89 @@
+#include "common/node/topology_memory.hpp"
+
+#include <algorithm>
+
+#include "common/realtime/clock.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t interval_ns = 50'000'000;
+
+}  // namespace
+
+TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::vector<Archive>& archives)
+    : bus_(bus),
+      presence_(presence),
+      reader_(bus.reader(topics::topology_change, Keep::all)),
+      writer_(bus.writer(topics::held_topology)) {
+  for (std::size_t b = 0; b < archives.size(); ++b) {
+    if (archives[b].tetrahedra.empty()) continue;
+    Followed& body = bodies_[static_cast<int>(b)];
+    body.tetrahedra = archives[b].tetrahedra.size();
+    body.told.node = presence.node();
+    body.told.body = static_cast<std::uint32_t>(b);
+  }
+  tell(now_ns());
+}
+
+// The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it
+// would come again and again.
+bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
+  const bool fits = std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
+  if (change.seq == 1) body.removed.clear();
+  if (fits) body.removed.insert(body.removed.end(), change.removed.begin(), change.removed.end());
+  body.run = change.run;
+  body.seq = change.seq;
+  body.news = true;
+  return fits;
+}
+
+void TopologyMemory::take_changes(std::vector<int>& changed) {
+  while (const auto change = reader_->take()) {
+    const auto found = bodies_.find(static_cast<int>(change->body));
+    if (change->run != run_) continue;
+    if (found == bodies_.end()) {
+      ++refused_;
+      continue;
+    }
+    Followed& body = found->second;
+    const std::uint64_t next = change->run == body.run ? body.seq + 1 : 1;
+    if (change->seq < next) continue;
+    if (change->seq > next) {
+      reader_ = bus_.reader(topics::topology_change, Keep::all);
+      continue;
+    }
+    if (apply(*change, body))
+      changed.push_back(found->first);
+    else
+      ++refused_;
+  }
+}
+
+void TopologyMemory::tell(std::int64_t now) {
+  for (auto& [index, body] : bodies_) {
+    if (!body.news || now - body.told_ns < interval_ns) continue;
+    HeldTopology& m = body.told;
+    m.seq = m.run == body.run ? m.seq + 1 : 1;
+    m.run = body.run;
+    m.removed.assign(body.removed.begin(), body.removed.end());
+    body.news = !writer_->write(m);
+    body.told_ns = now;
+  }
+}
+
+std::vector<int> TopologyMemory::take() {
+  std::vector<int> changed;
+  const Presence::Peer* owner = presence_.last_met("deform");
+  if (owner && owner->status.run != 0 && owner->status.run != run_) {
+    run_ = owner->status.run;
+    reader_ = bus_.reader(topics::topology_change, Keep::all);  // what came before it was known comes again
+  }
+  take_changes(changed);
+  tell(now_ns());
+  std::ranges::sort(changed);
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
+}  // namespace palpate

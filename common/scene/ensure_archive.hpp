@@ -1,0 +1,23 @@
+#pragma once
+#include "common/fem/condensation.hpp"
+#include "common/scene/scene.hpp"
+#include "common/archive/archive.hpp"
+
+namespace palpate {
+
+/// What became of a body's archive.
+struct ArchiveState {
+  std::filesystem::path file;  ///< empty for a catheter, which needs none
+  bool up_to_date = false;     ///< nothing had to be computed
+  std::string refused;         ///< why the file that was there was rebuilt; empty if there was none or it was good
+  double seconds = 0;          ///< from the loaded mesh to the renamed archive
+};
+
+/// Sees to it that the archive of a body exists and is whole: reads it, or loads the mesh, computes and
+/// writes. Throws std::runtime_error on a bad mesh or body and on a full disk.
+ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress = {});
+
+/// ensure_archive() for every body, and the parts asked for.
+std::vector<Archive> load_or_precompute(const Scene& scene, ArchivePart part, const Progress& progress = {});
+
+}  // namespace palpate

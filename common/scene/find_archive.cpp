@@ -1,0 +1,37 @@
+#include "common/scene/find_archive.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "common/models/content_hash.hpp"
+
+namespace palpate {
+
+std::optional<Archive> made_archive(const MeshedSpec&) {
+  return {};
+}
+
+std::filesystem::path archive_path(const Body& body) {
+  const MeshedSpec* meshed = as<MeshedSpec>(body);
+  return meshed ? archive_path(meshed->mesh, meshed->name, content_hash(body)) : std::filesystem::path();
+}
+
+Archive find_archive(const Scene& scene, const Body& body, ArchivePart part) {
+  const std::string hash = content_hash(body);
+  if (auto made = std::visit([](const auto& spec) { return made_archive(spec); }, body)) {
+    made->content_hash = hash;
+    return std::move(*made);
+  }
+  const auto file = archive_path(body);
+  const auto advice = fmt::format("run `palpate precompute {}` first", scene.file.string());
+  if (!std::filesystem::exists(file))
+    throw std::runtime_error(fmt::format("body '{}' has no archive of tensors yet: {}", name_of(body), advice));
+  try {
+    return read_archive(file, part, hash);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}; {}", error.what(), advice));
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,149 @@
+#include "common/sim/dynamic_world.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/tool/instrument.hpp"
+#include "common/describe/state_bytes.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double gone_after = 120;  // [s] of silence, as the network forgets a participant
+
+ToolDofs dofs_of(const ToolState& s) {
+  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
+}
+
+/// One tool in a keyframe.
+struct ToolMemory {
+  Eigen::Matrix4d pose;
+  ToolDofs dofs;
+  ToolState consumed;
+  std::uint64_t heard;
+  std::uint64_t present;
+};
+
+}  // namespace
+
+DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archives)
+    : dt_(1.0 / scene.rates.haptic_hz),
+      tools_(scene.tools.size()),
+      newest_(scene.tools.size()),
+      consumed_(scene.tools.size()),
+      waiting_(scene.tools.size(), 0),
+      anew_(scene.tools.size(), 0),
+      leaving_(scene.tools.size(), 0),
+      left_(scene.tools.size(), 0),
+      heard_(scene.tools.size(), 0) {
+  for (const Tool& tool : scene.tools) {
+    trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
+    parts_.push_back(tool_parts(tool));
+    forceps_.push_back(tool.forceps() ? std::optional(tool.forceps()->jaws) : std::nullopt);
+  }
+  parts_before_ = parts_;
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    tools_[t].moving.parts = parts_[t];
+    tools_[t].moving.parts_before = parts_before_[t];
+  }
+  const StepSettings settings{scene.contact, scene.tools, dt_};
+  for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
+    const auto* spec = as<MovingSpec>(scene.bodies[b]);
+    if (!spec) continue;
+    const bool springs = as<SpringMassSpec>(scene.bodies[b]) != nullptr;
+    organs_.push_back(std::make_unique<DynamicOrgan>(archives[b], *spec, settings,
+                                                     springs ? make_spring_model : make_element_model));
+    body_of_.push_back(b);
+  }
+}
+
+bool DynamicWorld::take(const ToolState& state) {
+  if (state.tool >= tools_.size() || !tip_pose(trocars_[state.tool], dofs_of(state)).matrix().allFinite()) return false;
+  newest_[state.tool] = state;
+  waiting_[state.tool] = 1;
+  return true;
+}
+
+void DynamicWorld::leave(int tool) {
+  waiting_[tool] = 0;
+  leaving_[tool] = tools_[tool].present;
+}
+
+void DynamicWorld::drop_absent() {
+  const auto patience = static_cast<std::uint64_t>(gone_after / dt_);
+  for (int t = 0; t < tools(); ++t) {
+    left_[t] = std::exchange(leaving_[t], 0);
+    const bool silent = !waiting_[t] && heard_[t] + patience < ticks_;
+    if (left_[t] || silent) tools_[t].present = false;
+  }
+}
+
+void DynamicWorld::turn_jaws(int t) {
+  if (forceps_[t]) set_opening(std::clamp(tools_[t].dofs.grip, 0.0, forceps_[t]->most_open), parts_[t]);
+}
+
+void DynamicWorld::tick() {
+  drop_absent();
+  if (ticks_ % keyframe_interval() == 0)
+    for (auto& organ : organs_) organ->forget_factors();
+  for (int t = 0; t < tools(); ++t) {
+    ToolInTick& tool = tools_[t];
+    tool.moving.before = tool.moving.now;
+    parts_before_[t] = parts_[t];
+    anew_[t] = waiting_[t];
+    if (!waiting_[t]) continue;
+    waiting_[t] = 0;
+    heard_[t] = ticks_;
+    const ToolState& state = newest_[t];
+    tool.dofs = dofs_of(state);
+    tool.moving.now = tip_pose(trocars_[t], tool.dofs);
+    turn_jaws(t);
+    // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
+    if (!tool.present || state.run != consumed_[t].run) {
+      tool.moving.before = tool.moving.now;
+      parts_before_[t] = parts_[t];
+    }
+    tool.present = true;
+    consumed_[t] = state;
+  }
+  for (auto& organ : organs_) organ->tick(tools_, dt_);
+  ++ticks_;
+}
+
+std::vector<std::uint8_t> DynamicWorld::save() const {
+  std::vector<std::uint8_t> bytes;
+  std::vector<ToolMemory> tools;
+  for (std::size_t t = 0; t < tools_.size(); ++t)
+    tools.push_back({tools_[t].moving.now.matrix(), tools_[t].dofs, consumed_[t], heard_[t], tools_[t].present});
+  state_bytes::put(bytes, std::span<const std::uint64_t>(&ticks_, 1));
+  state_bytes::put(bytes, std::span<const ToolMemory>(tools));
+  for (const auto& organ : organs_) state_bytes::put(bytes, std::span<const std::uint8_t>(organ->save()));
+  return bytes;
+}
+
+void DynamicWorld::restore(std::span<const std::uint8_t> state) {
+  const auto ticks = state_bytes::take<std::uint64_t>(state);
+  const auto tools = state_bytes::take<ToolMemory>(state);
+  if (ticks.size() != 1 || tools.size() != tools_.size())
+    throw std::runtime_error("the recorded state is of another scene");
+  ticks_ = ticks[0];
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    tools_[t].moving.now.matrix() = tools[t].pose;
+    tools_[t].dofs = tools[t].dofs;
+    turn_jaws(static_cast<int>(t));
+    tools_[t].present = tools[t].present != 0;
+    consumed_[t] = tools[t].consumed;
+    heard_[t] = tools[t].heard;
+  }
+  std::vector<MovingTool> moving;
+  for (const ToolInTick& tool : tools_) moving.push_back(tool.moving);
+  for (auto& organ : organs_) organ->restore(state_bytes::take<std::uint8_t>(state), moving);
+}
+
+std::uint64_t DynamicWorld::hash() const {
+  std::uint64_t hash = 0;
+  for (const auto& organ : organs_) hash = hash * 31 + organ->hash();
+  return hash;
+}
+
+}  // namespace palpate

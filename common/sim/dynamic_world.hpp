@@ -1,0 +1,68 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/bus/messages.hpp"
+#include "common/scene/scene.hpp"
+#include "common/tool/kinematics.hpp"
+#include "common/models/moving/dynamic_organ.hpp"
+
+namespace palpate {
+
+/// All dynamic bodies of a scene with the tools that move among them: what the deformation node owns and advances. A
+/// tick is a function of the tools' newest states and of the world's own state.
+class DynamicWorld {
+ public:
+  /// One archive per body of the scene; those of quasi-static bodies are not looked at.
+  DynamicWorld(const Scene& scene, const std::vector<Archive>& archives);
+
+  double dt() const { return dt_; }  ///< [s] nominal period of a tick: that of the haptic loop
+  /// Ticks from one keyframe to the next: a second.
+  std::uint64_t keyframe_interval() const { return static_cast<std::uint64_t>(std::lround(1 / dt_)); }
+  int tools() const { return static_cast<int>(tools_.size()); }
+  std::span<const int> bodies() const { return body_of_; }  ///< the dynamic ones
+  const DynamicOrgan& organ(int i) const { return *organs_[i]; }
+  DynamicOrgan& organ(int i) { return *organs_[i]; }
+  int organs() const { return static_cast<int>(organs_.size()); }
+
+  /// The newest state of a tool; false (and nothing kept) if the scene has no such tool or the pose is no number.
+  bool take(const ToolState& state);
+  /// The tool's haptic node has ended: from the next tick on it is gone, with what it held.
+  void leave(int tool);
+  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut, for
+  /// two minutes.
+  void tick();
+
+  std::uint64_t ticks() const { return ticks_; }
+  const ToolInTick& tool(int t) const { return tools_[t]; }
+  /// The state that the last tick consumed; tool_run 0 before any.
+  const ToolState& consumed(int t) const { return consumed_[t]; }
+  bool consumed_anew(int t) const { return anew_[t]; }  ///< by the last tick
+  bool has_left(int t) const { return left_[t]; }       ///< in the last tick
+
+  std::vector<std::uint8_t> save() const;
+  void restore(std::span<const std::uint8_t> state);
+  std::uint64_t hash() const;
+
+ private:
+  void drop_absent();
+  void turn_jaws(int tool);
+
+  double dt_;
+  std::vector<Trocar> trocars_;
+  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
+  std::vector<std::optional<ForcepsJaws>> forceps_;                 ///< per tool; none for other kinds
+  std::vector<ToolInTick> tools_;
+  std::vector<ToolState> newest_, consumed_;
+  std::vector<char> waiting_, anew_, leaving_, left_;
+  std::vector<std::uint64_t> heard_;  ///< tick of the last state, per tool
+  std::vector<std::unique_ptr<DynamicOrgan>> organs_;
+  std::vector<int> body_of_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,280 @@
+#include "common/sim/local_models.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "common/geometry/segment.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double softening =
+    0.02;                      // of a contact's own compliance: contacts that nearly depend on one another stay finite
+constexpr int asked_each = 8;  // ticks from one look at what stiffness is wanted to the next
+constexpr int condensed_for = 16;  // ticks for which the contacts' stiffness holds while they stay the same
+
+void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
+  std::copy_n(from.data(), 3, to.begin());
+}
+
+void copy(const Eigen::Matrix3d& from, std::array<double, 9>& to) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) to[3 * r + c] = from(r, c);
+}
+
+/// [m/N] between two anchors; zero where a node is not known.
+Eigen::Matrix3d compliance_between(const LocalStiffness::Answer& answer, const Anchor& a, const Anchor& b) {
+  Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
+  for (int v = 0; v < 3; ++v)
+    for (int w = 0; w < 3; ++w) {
+      if (a.weights[v] == 0 || b.weights[w] == 0) continue;
+      const int i = answer.find(a.nodes[v]), j = answer.find(b.nodes[w]);
+      if (i >= 0 && j >= 0) c += a.weights[v] * b.weights[w] * answer.block(i, j);
+    }
+  return c;
+}
+
+/// The quasi-static part of a hybrid body as its connection nodes feel it.
+CondensedPart condensed_part(const Archive& archive) {
+  CondensedPart part;
+  if (!archive.hybrid) return part;
+  const HybridTensors& h = *archive.hybrid;
+  part.nodes = h.connection;
+  part.stiffness.setZero(3 * h.connection.size(), 3 * h.connection.size());
+  const auto place = [&](const Dof& d) {
+    return 3 * (std::lower_bound(h.connection.begin(), h.connection.end(), d.node) - h.connection.begin()) + d.axis;
+  };
+  for (std::size_t i = 0, k = 0; i < h.dofs.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++k)
+      part.stiffness(place(h.dofs[i]), place(h.dofs[j])) = part.stiffness(place(h.dofs[j]), place(h.dofs[i])) =
+          h.stiffness[k];
+  return part;
+}
+
+}  // namespace
+
+LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives) : world_(world) {
+  for (int i = 0; i < world.organs(); ++i) {
+    const ElasticMesh& mesh = world.organ(i).mesh();
+    double edges = 0;
+    for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
+    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]])),
+                       .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
+  }
+}
+
+void LocalModels::refresh() {
+  if (++ticks_ % asked_each != 0) return;
+  for (int i = 0; i < world_.organs(); ++i) {
+    OfOrgan& own = organs_[i];
+    const DynamicOrgan& organ = world_.organ(i);
+    if (own.stiffness->take()) own.shape.clear();
+    by_distance_.clear();
+    bool lacks = own.stiffness->current().topology != organ.removed().size();
+    for (int t = 0; t < world_.tools(); ++t) {
+      const ToolInTick& tool = world_.tool(t);
+      if (!tool.present) continue;
+      for (int p = 0; p < tool.moving.size(); ++p) {
+        const Segment axis = tool.moving.axis(p);
+        const double radius = tool.moving.radius(p);
+        for (int facet : organ.surface().find(axis.start, axis.end, radius + own.look_ahead))
+          for (int node : organ.topology().facet(facet)) {
+            const Eigen::Vector3d& x = organ.surface().positions()[node];
+            const double distance = (x - nearest_point(axis, x)).norm() - radius;
+            by_distance_.emplace_back(distance, node);
+            lacks |= distance < 0.5 * own.look_ahead && own.stiffness->current().find(node) < 0;
+          }
+      }
+    }
+    for (const TissueContact& c : organ.contacts())
+      for (int v = 0; v < 3; ++v)
+        if (c.anchor.weights[v] != 0) {
+          by_distance_.emplace_back(-1, c.anchor.nodes[v]);
+          lacks |= own.stiffness->current().find(c.anchor.nodes[v]) < 0;
+        }
+    if (!lacks || by_distance_.empty()) continue;
+    std::sort(by_distance_.begin(), by_distance_.end());
+    own.wanted.clear();
+    for (const auto& [distance, node] : by_distance_) {
+      if (static_cast<int>(own.wanted.size()) == LocalStiffness::most_nodes) break;
+      if (std::find(own.wanted.begin(), own.wanted.end(), node) == own.wanted.end()) own.wanted.push_back(node);
+    }
+    std::sort(own.wanted.begin(), own.wanted.end());
+    own.stiffness->ask(own.wanted, organ.removed());
+  }
+}
+
+// K_i = sum over the same tool's contacts j of (A^-1)_ij, A = P C P^T over everything that all tools hold: three rows
+// for what sticks, the normal alone for what slides. It is how the force at i grows when that tool moves.
+void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
+  const auto contacts = organ.contacts();
+  std::vector<std::array<int, 5>> shape;
+  for (const TissueContact& c : contacts)
+    shape.push_back({c.tool, c.sticking, c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
+  if (shape == own.shape && ++own.age < condensed_for) return;
+  own.shape = std::move(shape);
+  own.age = 0;
+  own.contact.assign(contacts.size(), Eigen::Matrix3d::Zero());
+
+  std::vector<int> first;
+  int rows = 0;
+  const auto is_whole = [](const TissueContact& c) { return c.sticking != 0 || c.sample == TissueContact::in_jaws; };
+  for (const TissueContact& c : contacts) {
+    first.push_back(rows);
+    rows += is_whole(c) ? 3 : 1;
+  }
+  const auto rows_of = [&](const TissueContact& c) -> Eigen::MatrixXd {
+    return is_whole(c) ? Eigen::MatrixXd(Eigen::Matrix3d::Identity()) : Eigen::MatrixXd(c.normal.transpose());
+  };
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, rows);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
+      a.block(first[i], first[j], p.rows(), q.rows()) =
+          p * compliance_between(own.stiffness->current(), contacts[i].anchor, contacts[j].anchor) * q.transpose();
+    }
+  const double typical = rows > 0 ? a.trace() / rows : 0;
+  if (!(typical > 0)) return;
+  a.diagonal().array() += softening * typical;
+  const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(rows, rows));
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      if (contacts[i].tool != contacts[j].tool) continue;
+      const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
+      own.contact[i] += p.transpose() * inverse.block(first[i], first[j], p.rows(), q.rows()) * q;
+    }
+}
+
+void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
+  OfOrgan& own = organs_[i];
+  const auto contacts = world_.organ(i).contacts();
+  if (std::ranges::none_of(contacts, [&](const TissueContact& c) { return c.tool == tool; })) return;
+  condense(own, world_.organ(i));
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const TissueContact& c = contacts[k];
+    const bool grasped = c.sample == TissueContact::in_jaws;
+    if (c.tool != tool || (!grasped && c.force.dot(c.normal) <= 0) || model.contacts.size() == most_contacts) continue;
+    LocalContact& out = model.contacts.emplace_back();
+    out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
+    out.grasped = grasped;
+    copy(anchor_position(c.anchor, world_.organ(i).surface().positions()), out.position);
+    copy(c.normal, out.normal);
+    copy(c.force, out.force);
+    copy(own.contact[k], out.stiffness);
+  }
+}
+
+// The surface nearest to the tool's parts, with each node's own static stiffness.
+void LocalModels::add_surface(int tool, int i, LocalContactModel& model) {
+  const DynamicOrgan& organ = world_.organ(i);
+  const ToolInTick& t = world_.tool(tool);
+  const LocalStiffness::Answer& answer = organs_[i].stiffness->current();
+  by_distance_.clear();
+  for (int p = 0; p < t.moving.size(); ++p) {
+    const Segment axis = t.moving.axis(p);
+    const double radius = t.moving.radius(p);
+    for (int facet : organ.surface().find(axis.start, axis.end, radius + organs_[i].look_ahead))
+      if (!organ.is_joint(facet))
+        by_distance_.emplace_back(
+            std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
+  }
+  std::sort(by_distance_.begin(), by_distance_.end());
+  add_triangles(
+      i, [&](int facet) { return organ.topology().facet(facet); },
+      [&](int node, LocalNode& out) {
+        copy(organ.surface().positions()[node], out.position);
+        copy(organ.model().velocity(node), out.velocity);
+        const int known = answer.find(node);
+        if (known < 0) return;
+        Eigen::Matrix3d c = answer.block(known, known);
+        c.diagonal().array() += 1e-6 * c.trace() + 1e-12;
+        copy(Eigen::Matrix3d(c.inverse()), out.stiffness);
+      },
+      model);
+}
+
+// The nearest triangles first, until the message is full.
+template <class Corners, class Fill>
+void LocalModels::add_triangles(int i, Corners&& corners, Fill&& fill, LocalContactModel& model) {
+  const auto body = static_cast<std::uint32_t>(world_.bodies()[i]);
+  const auto place = [&](int node) -> std::uint32_t {
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+      if (model.nodes[n].body == body && model.nodes[n].node == static_cast<std::uint32_t>(node))
+        return static_cast<std::uint32_t>(n);
+    LocalNode& out = model.nodes.emplace_back();
+    out.body = body;
+    out.node = static_cast<std::uint32_t>(node);
+    fill(node, out);
+    return static_cast<std::uint32_t>(model.nodes.size() - 1);
+  };
+  seen_.clear();
+  for (const auto& [distance, triangle] : by_distance_) {
+    if (static_cast<int>(model.triangles.size()) == most_triangles ||
+        static_cast<int>(model.nodes.size()) + 3 > most_nodes)
+      break;
+    if (std::find(seen_.begin(), seen_.end(), triangle) != seen_.end()) continue;
+    seen_.push_back(triangle);
+    const auto nodes = corners(triangle);
+    const std::uint32_t a = place(nodes[0]), b = place(nodes[1]), c = place(nodes[2]);
+    model.triangles.push_back({a, b, c});
+  }
+}
+
+void LocalModels::add_still_contacts(int tool, int i, LocalContactModel& model) {
+  const HybridTouch& still = *world_.organ(i).still_part();
+  for (std::size_t k = 0; k < still.contacts().size(); ++k) {
+    const TouchContact& c = still.contacts()[k];
+    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == most_contacts) continue;
+    LocalContact& out = model.contacts.emplace_back();
+    out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
+    out.grasped = c.grasped;
+    copy(anchor_position(c.anchor, still.part().positions()), out.position);
+    copy(c.normal, out.normal);
+    copy(still.force(static_cast<int>(k)), out.force);
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    for (int v = 0; v < 3; ++v) stiffness += c.anchor.weights[v] * still.part().stiffness(c.anchor.nodes[v]);
+    copy(c.touch == Touch::sliding
+             ? Eigen::Matrix3d(c.normal * c.normal.dot(stiffness * c.normal) * c.normal.transpose())
+             : stiffness,
+         out.stiffness);
+  }
+}
+
+void LocalModels::add_still_surface(int tool, int i, LocalContactModel& model) {
+  const HybridTouch& still = *world_.organ(i).still_part();
+  const TouchSurface& surface = still.surface();
+  by_distance_.clear();
+  const ToolInTick& t = world_.tool(tool);
+  for (int p = 0; p < t.moving.size(); ++p) {
+    const Segment axis = t.moving.axis(p);
+    const double radius = t.moving.radius(p);
+    for (int triangle : surface.find(axis, axis, radius + organs_[i].look_ahead))
+      by_distance_.emplace_back(std::sqrt(closest_points(axis, surface.corners(triangle)).squared_distance) - radius,
+                                triangle);
+  }
+  std::sort(by_distance_.begin(), by_distance_.end());
+  add_triangles(
+      i, [&](int triangle) { return surface.triangle(triangle); },
+      [&](int node, LocalNode& out) {
+        copy(surface.positions()[node], out.position);
+        copy(still.part().stiffness(node), out.stiffness);
+      },
+      model);
+}
+
+bool LocalModels::describe(int tool, LocalContactModel& model) {
+  model.contacts.clear();
+  model.nodes.clear();
+  model.triangles.clear();
+  if (!world_.tool(tool).present) return false;
+  for (int i = 0; i < world_.organs(); ++i) {
+    add_contacts(tool, i, model);
+    add_surface(tool, i, model);
+    if (!world_.organ(i).still_part()) continue;
+    add_still_contacts(tool, i, model);
+    add_still_surface(tool, i, model);
+  }
+  return !model.contacts.empty() || !model.triangles.empty();
+}
+
+}  // namespace palpate

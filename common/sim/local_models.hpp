@@ -1,0 +1,51 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "common/bus/messages.hpp"
+#include "common/sim/dynamic_world.hpp"
+#include "common/sim/local_stiffness.hpp"
+
+namespace palpate {
+
+/// Makes the local contact models of all tools: what they hold and touch, the surface around them, and its static
+/// stiffness, which a thread of its own keeps working out.
+class LocalModels {
+ public:
+  static constexpr int most_contacts = 32, most_nodes = 40, most_triangles = 32;  ///< a message of 5 kB a millisecond
+
+  /// One archive per body of the scene.
+  LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives);
+
+  /// Fills everything but run, seq and the tool's state; false if no dynamic tissue is near the tool.
+  bool describe(int tool, LocalContactModel& model);
+  /// Asks for the stiffness that the tools' places need now, and takes what has been worked out. Call once a tick.
+  void refresh();
+
+ private:
+  struct OfOrgan {
+    std::unique_ptr<LocalStiffness> stiffness;
+    double look_ahead;                      ///< [m] beyond a sphere's surface
+    std::vector<Eigen::Matrix3d> contact;   ///< [N/m] per contact of the organ
+    std::vector<std::array<int, 5>> shape;  ///< what they were worked out for
+    std::vector<int> wanted;
+    int age = 0;
+  };
+  void condense(OfOrgan& own, const DynamicOrgan& organ);
+  void add_contacts(int tool, int i, LocalContactModel& model);
+  void add_surface(int tool, int i, LocalContactModel& model);
+  void add_still_contacts(int tool, int i, LocalContactModel& model);
+  void add_still_surface(int tool, int i, LocalContactModel& model);
+
+  template <class Corners, class Fill>
+  void add_triangles(int i, Corners&& corners, Fill&& fill, LocalContactModel& model);
+
+  const DynamicWorld& world_;
+  std::vector<OfOrgan> organs_;
+  std::vector<std::pair<double, int>> by_distance_;
+  std::vector<int> seen_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace palpate

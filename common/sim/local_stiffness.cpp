@@ -1,0 +1,134 @@
+#include "common/sim/local_stiffness.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <numbers>
+#include <optional>
+
+#include "common/fem/assembly.hpp"
+#include "common/fem/factorisation.hpp"
+#include "common/fem/fixation.hpp"
+#include "common/realtime/settings.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double floating_hz = 0.2;  // far below an organ's lowest frequency
+
+// K + w^2 M over the free dofs of the remaining tetrahedra, with what is joined to it.
+SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
+                           const CondensedPart& joined) {
+  SparseMatrix k = assemble_stiffness(mesh, materials, dofs);
+  std::vector<Eigen::Triplet<double, std::int64_t>> extra;
+  const double w = 2 * std::numbers::pi * floating_hz;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const auto& tet = mesh.tetrahedra[t];
+    const double volume =
+        tet_gradients({mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]}).volume;
+    for (int node : tet)
+      for (int axis = 0; axis < 3; ++axis)
+        if (dofs.is_free(node, axis))
+          extra.emplace_back(dofs.index(node, axis), dofs.index(node, axis),
+                             w * w * materials.at(static_cast<int>(t)).density * volume / 4);
+  }
+  const int n = 3 * static_cast<int>(joined.nodes.size());
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const int a = dofs.index(joined.nodes[i / 3], i % 3), b = dofs.index(joined.nodes[j / 3], j % 3);
+      if (a >= 0 && b >= 0) extra.emplace_back(std::max(a, b), std::min(a, b), joined.stiffness(i, j));
+    }
+  SparseMatrix more(k.rows(), k.cols());
+  more.setFromTriplets(extra.begin(), extra.end());
+  k += more;
+  k.makeCompressed();
+  return k;
+}
+
+}  // namespace
+
+int LocalStiffness::Answer::find(int node) const {
+  const auto at = std::lower_bound(nodes.begin(), nodes.end(), node);
+  return at != nodes.end() && *at == node ? static_cast<int>(at - nodes.begin()) : -1;
+}
+
+LocalStiffness::LocalStiffness(const ElasticMesh& mesh, CondensedPart joined)
+    : mesh_(mesh), joined_(std::move(joined)), worker_([this](const std::stop_token& stop) { work(stop); }) {}
+
+bool LocalStiffness::ask(std::span<const int> nodes, std::span<const int> removed) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || asked_) return false;
+  question_.nodes.assign(nodes.begin(), nodes.begin() + std::min<std::size_t>(nodes.size(), most_nodes));
+  question_.removed.assign(removed.begin(), removed.end());
+  asked_ = true;
+  wake_.notify_one();
+  return true;
+}
+
+bool LocalStiffness::take() {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || !answered_) return false;
+  std::swap(current_, next_);
+  answered_ = false;
+  return true;
+}
+
+void LocalStiffness::work(const std::stop_token& stop) {
+  leave_realtime();
+  while (true) {
+    Question question;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [this] { return asked_; })) return;
+      question = question_;
+    }
+    std::optional<Answer> answer;
+    try {
+      answer = solve(question);
+    } catch (const std::exception& error) {  // what is left is too badly shaped: the last answer stands
+      spdlog::warn("stiffness near the tools: {}", error.what());
+    }
+    const std::lock_guard lock(mutex_);
+    answered_ |= answer.has_value();
+    if (answer) next_ = std::move(*answer);
+    asked_ = false;
+  }
+}
+
+LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
+  Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
+  std::vector<bool> gone(mesh_.tetrahedra.size(), false);
+  for (int t : question.removed) gone[t] = true;
+  TetMesh left{.nodes = mesh_.rest, .tetrahedra = {}, .groups = {}};
+  MaterialField materials{mesh_.materials, {}};
+  for (std::size_t t = 0; t < gone.size(); ++t) {
+    if (gone[t]) continue;
+    left.tetrahedra.push_back(mesh_.tetrahedra[t]);
+    if (!mesh_.material_of.empty()) materials.of_element.push_back(mesh_.material_of[t]);
+  }
+  const auto n = static_cast<Eigen::Index>(answer.nodes.size());
+  answer.compliance.setZero(3 * n, 3 * n);
+  DofMap dofs(left);
+  for (int node = 0; node < mesh_.nodes(); ++node)
+    for (int axis = 0; axis < 3; ++axis)
+      if (mesh_.fixed[node][axis] && dofs.index(node, axis) != DofMap::kUnused) dofs.fix(node, axis);
+  dofs.number();
+  if (dofs.size() == 0 || n == 0) return answer;
+
+  const SparseMatrix k = static_matrix(left, materials, dofs, joined_);
+  Factorisation factor(k);
+  factor.factorise(k);
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dofs.size(), 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (dofs.is_free(answer.nodes[i], axis)) unit(dofs.index(answer.nodes[i], axis), 3 * i + axis) = 1;
+  const Eigen::MatrixXd x = factor.solve(unit);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (dofs.is_free(answer.nodes[i], axis))
+        answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
+  return answer;
+}
+
+}  // namespace palpate

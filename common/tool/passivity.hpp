@@ -1,0 +1,104 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/tool/passivity_spec.hpp"
+
+namespace palpate {
+
+/// What the hand gets of one tool at its tip, world frame, and at its handle.
+struct PortForce {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N] on the tool
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the tool
+  double grip = 0;                                   ///< [N m] on the handle, opens the jaws
+};
+
+/// How one tool moved from the last tick to this one.
+struct PortMotion {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< [m] of the tip
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< [rad] rotation vector
+  double opening = 0;                               ///< [rad] of the handle
+};
+
+/// The motion between two poses of the tip frame.
+PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double opening);
+
+/// Passivity observer and controller in the time domain (B. Hannaford and J.-H. Ryu, "Time-domain passivity control of
+/// haptic interfaces", IEEE Trans. Robotics and Automation 18(1), 2002) over the ports of all tools together: one tool
+/// may take out what another has put in.
+///
+/// Observer: the force given at a tick is held until the next, so the energy put into the tissue grows by -F_k .
+/// (x_{k+1} - x_k), exactly, however the hand moves in between. Controller: the next motion is unknown, but differs
+/// from the last one by no more than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks
+/// that the slew limit needs to let it fall. If that could bring the energy below -reserve, first the parts that push
+/// along their motion are damped, then the whole force is made smaller. A force that resists is left at least as large
+/// as a sampled damper of most_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
+/// that was taken away earns its return. The energy falls below -reserve only where a motion changes by more than the
+/// reach, by that jump times the force. Never allocates after construction.
+class PassivityGuard {
+ public:
+  static constexpr double most_damping =
+      0.02;  ///< [kg] damping times tick: well below twice the mass of a hand on a device
+  static constexpr double most_acceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
+  static constexpr double memory =
+      0.1;  ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
+  static constexpr double lever = 0.3;  ///< [m] from reach to angular reach
+  static constexpr double for_resisting =
+      0.05;                               ///< share of the reserve that is kept for resisting while all else is gone
+  static constexpr double still = 1e-12;  ///< [m, rad] less is no motion
+
+  /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is
+  /// most_acceleration dt^2, or less where that times most_force were over half the reserve, or the largest change seen
+  /// lately.
+  PassivityGuard(const Passivity& settings, int tools, double most_force, double slew, double dt);
+
+  /// A tick begins: counts the energy of what hold() gave over this motion, one entry per tool.
+  void observe(std::span<const PortMotion> motion);
+  /// Damps and limits what is asked for, one entry per tool, where the energy could fall too low. Entries that are not
+  /// finite are left.
+  void control(std::span<PortForce> asked);
+  /// What the tool's hand really gets until the next tick.
+  void hold(int tool, const PortForce& given) { held_[tool] = given; }
+
+  double energy() const { return energy_; }                     ///< [J] put in by all tools; negative: taken out
+  bool limited(int tool) const { return limited_[tool] != 0; }  ///< by the last control()
+
+  /// Everything that the next tick depends on, as bytes.
+  std::size_t state_size() const { return sizeof(double) + held_.size() * (7 + 7 + 3) * sizeof(double); }
+  void save(unsigned char* to);
+  void restore(const unsigned char* from);
+
+ private:
+  /// By how much the next motion may differ from the last one.
+  struct Reach {
+    double shift = 0, turn = 0, opening = 0;  ///< [m], [rad], [rad]
+  };
+  /// Energy of all tools until the next tick [J]: at most taken out by some, surely put in by the others.
+  struct Outlook {
+    double risk = 0, income = 0;
+  };
+
+  double risk(int tool, const PortForce& f) const;
+  Outlook outlook(std::span<const PortForce> asked) const;
+  double affordable_resistance(double left) const;
+  void damp_pushes(std::span<PortForce> asked, double missing);
+  void shrink(std::span<PortForce> asked, double spare);
+  void resist(std::span<PortForce> asked);
+  template <class Visit>
+  void visit_state(Visit&& visit);
+
+  bool controller_;
+  double reserve_, slew_, most_per_shift_, fade_,
+      energy_ = 0;  ///< slew_ [N] per tick; most_per_shift_ [N/m] on the motion of a tick
+  Reach least_reach_;
+  std::vector<PortForce> held_;
+  std::vector<PortMotion> motion_;
+  std::vector<Reach> reach_;
+  std::vector<double> resisting_;  ///< [N] that may stand against the motion whatever the energy is
+  std::vector<std::uint8_t> limited_;
+};
+
+}  // namespace palpate
