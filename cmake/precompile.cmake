@@ -15,7 +15,7 @@ endfunction()
 function(palpate_precompiled_header name)
   add_library(precompiled_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
   target_link_libraries(precompiled_${name} PRIVATE ${ARGN})
-  target_precompile_headers(precompiled_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled_${name}.hpp)
+  target_precompile_headers(precompiled_${name} PRIVATE <cmake/precompiled_${name}.hpp>)
 endfunction()
 
 # Gives it to every target in and below this folder that has C++ sources and no compiler options of its own.
