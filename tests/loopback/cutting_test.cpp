@@ -8,6 +8,7 @@
 #include "common/models/topology_feed.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/find_archive.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

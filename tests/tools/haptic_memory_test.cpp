@@ -7,6 +7,7 @@
 #include "common/scene/scene.hpp"
 #include "common/tensors/compliance.hpp"
 #include "common/tensors/find_archive.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 
