@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Sets up, builds, precomputes the liver's tensors and runs the liver scene for ten seconds over DDS on loopback.
+# Sets up, builds the programs, precomputes the liver's tensors and runs the liver scene for ten seconds over DDS on loopback.
 # Leaves out/liver.mp4, out/liver.png, out/liver.lcmlog and out/summary.json.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-./scripts/build.sh release
+./scripts/build.sh release programs
 mkdir -p out
 bin=build/release/bin
 "$bin/palpate" precompute scenes/liver.toml

@@ -26,8 +26,8 @@ class BusContract : public ::testing::TestWithParam<const char*> {
       a = make_memory_bus(network);
       b = make_memory_bus(network);
     } else {
-      a = make_dds_bus({.domain = test_domain()});
-      b = make_dds_bus({.domain = test_domain()});
+      a = make_dds_bus({.domain = own_domain()});
+      b = make_dds_bus({.domain = own_domain()});
     }
   }
 

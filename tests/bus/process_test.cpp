@@ -54,7 +54,7 @@ class Peer {
 
 class TwoProcesses : public ::testing::Test {
  protected:
-  const int domain = test_domain();
+  const int domain = own_domain();
   std::unique_ptr<Bus> bus = make_dds_bus({.domain = domain});
 
   template <class M>
@@ -263,7 +263,7 @@ TEST(DdsSettings, ARealInterfaceGetsDatagramsThatFitAFrame) {
   EXPECT_NE(network.find("<MaxMessageSize>1400B</MaxMessageSize>"), std::string::npos);
   EXPECT_NE(network.find("<Peer address=\"192.0.2.1\"/>"), std::string::npos);
   EXPECT_NE(network.find("<AllowMulticast>false</AllowMulticast>"), std::string::npos);
-  EXPECT_NO_THROW(make_dds_bus({.domain = 1 + test_domain() % 200, .interface = "lo", .peers = {"192.0.2.1"}}));
+  EXPECT_NO_THROW(make_dds_bus({.domain = own_domain() + 100, .interface = "lo", .peers = {"192.0.2.1"}}));
 }
 
 }  // namespace

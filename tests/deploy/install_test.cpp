@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 
 namespace palpate::testing {

@@ -4,6 +4,7 @@
 
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/security.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/keys/own_folder.hpp"
 #include "tools/keys/documents.hpp"
 #include "tools/keys/key_folder.hpp"
@@ -21,7 +22,7 @@ class KeyRefusal : public ::testing::Test {
   /// The sentence with which a bus refuses these keys; empty if it joins.
   static std::string refusal(const fs::path& keys, const std::string& role) {
     try {
-      make_dds_bus({.domain = 1 + getpid() % 200, .keys = keys, .role = role});
+      make_dds_bus({.domain = own_domain(), .keys = keys, .role = role});
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -56,7 +57,7 @@ class KeyRefusal : public ::testing::Test {
 TEST_F(KeyRefusal, GoodKeysJoin) {
   EXPECT_EQ(refusal(keys_, "haptic"), "");
   EXPECT_EQ(refusal(keys_ / "deform", "deform"), "") << "the folder of one role alone";
-  const std::string place = make_dds_bus({.domain = 1 + getpid() % 200, .keys = keys_, .role = "haptic"})->place();
+  const std::string place = make_dds_bus({.domain = own_domain(), .keys = keys_, .role = "haptic"})->place();
   EXPECT_TRUE(place.ends_with(fmt::format(", with the keys in {}", keys_.string()))) << place;
 }
 
@@ -167,7 +168,7 @@ TEST_F(KeyRefusal, FilesThatAreNoKeys) {
 }
 
 TEST_F(KeyRefusal, WhatTheRoleMayNot) {
-  const auto bus = make_dds_bus({.domain = 1 + getpid() % 200, .keys = keys_, .role = "observer"});
+  const auto bus = make_dds_bus({.domain = own_domain(), .keys = keys_, .role = "observer"});
   EXPECT_NO_THROW(bus->reader(topics::tool_state));
   try {
     bus->writer(topics::tool_state);
@@ -179,7 +180,7 @@ TEST_F(KeyRefusal, WhatTheRoleMayNot) {
 }
 
 TEST_F(KeyRefusal, TwoRolesInOneProcess) {
-  const BusSettings one{.domain = 1 + getpid() % 200, .keys = keys_, .role = "observer"};
+  const BusSettings one{.domain = own_domain(), .keys = keys_, .role = "observer"};
   const auto bus = make_dds_bus(one);
   EXPECT_NO_THROW(make_dds_bus(one));
   EXPECT_THROW(make_dds_bus({.domain = one.domain, .keys = keys_, .role = "haptic"}), std::runtime_error);

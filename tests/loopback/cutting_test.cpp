@@ -8,6 +8,7 @@
 #include "common/node/topology_feed.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

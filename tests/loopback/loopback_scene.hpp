@@ -72,11 +72,6 @@ inline std::string program(const std::string& name) {
   return std::string(PALPATE_BIN) + "/" + name;
 }
 
-/// A DDS domain of this process's own.
-inline int own_domain() {
-  return 1 + getpid() % 200;
-}
-
 /// Runs a command line and returns its exit status; standard output and error go to `output`.
 inline int run_command(const std::string& command, std::string* output = nullptr) {
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");

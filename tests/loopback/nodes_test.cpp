@@ -10,6 +10,7 @@
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/kinematics.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common/bus/version_watch.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "common/bus/dds_bus.hpp"
 #include "common/realtime/clock.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/sequence.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
 

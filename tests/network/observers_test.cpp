@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/bus/domain.hpp"
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {

@@ -7,6 +7,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 

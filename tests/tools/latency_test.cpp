@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 #include "tools/latency/hop_times.hpp"
@@ -91,7 +92,7 @@ TEST(RoundTrips, CountWhatIsLostAndWhatIsLate) {
 TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
   const std::string domain = std::to_string(own_domain());
   const ProgramResult result = run_program(program("palpate") + " latency --seconds 2 --rate 200 --json --udp-port " +
-                                           std::to_string(20000 + getpid() % 10000) + " --domain " + domain);
+                                           std::to_string(own_udp_port()) + " --domain " + domain);
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);
   for (const char* way : {"round_trip_us", "bare_dds_us", "bare_udp_us"}) {
@@ -108,9 +109,9 @@ TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
 TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
   const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string();
   const OwnFolder folder("latency");
-  const ProgramResult result = run_program(
-      program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() +
-      " --udp-port " + std::to_string(20000 + getpid() % 10000) + " --domain " + std::to_string(own_domain()));
+  const ProgramResult result =
+      run_program(program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() +
+                  " --udp-port " + std::to_string(own_udp_port()) + " --domain " + std::to_string(own_domain()));
   ASSERT_EQ(result.status, 0) << result.err;
   const json hops = json::parse(text_of(folder / "latency.json"))["hops_us"];
   EXPECT_GT(hops["tool_to_force"]["p50"].get<double>(), 1);

@@ -11,6 +11,7 @@
 
 #include "common/bus/dds_entity.hpp"
 #include "common/scene/scene.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 

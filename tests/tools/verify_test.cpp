@@ -7,6 +7,7 @@
 #include "common/bus/log_reader.hpp"
 #include "common/bus/log_writer.hpp"
 #include "idl/topics.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {

@@ -6,6 +6,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/realtime/clock.hpp"
+#include "tests/bus/domain.hpp"
 #include "tests/network/nodes.hpp"
 #include "tests/network/observer.hpp"
 #include "tests/network/security/secured_test.hpp"

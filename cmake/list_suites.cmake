@@ -1,0 +1,16 @@
+# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES.
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+get_filename_component(name ${PROGRAM} NAME)
+string(REPLACE "\n" ";" lines "${listing}")
+set(tests "")
+foreach(line IN LISTS lines)
+  if(line MATCHES "^([^ ]+)\\.( |$)")  # cases are indented
+    set(suite ${CMAKE_MATCH_1})
+    string(APPEND tests "add_test([=[${name}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n")
+    if(PROPERTIES)
+      string(REPLACE ";" " " properties "${PROPERTIES}")
+      string(APPEND tests "set_tests_properties([=[${name}.${suite}]=] PROPERTIES ${properties})\n")
+    endif()
+  endif()
+endforeach()
+file(WRITE ${LIST} "${tests}")

@@ -1,0 +1,1 @@
+// Empty: the source of the targets that hold precompiled headers.

@@ -1,0 +1,13 @@
+# palpate_test_suites(TARGET [PROPERTY VALUE ...]): one test of ctest for every GoogleTest suite of a program, so that the
+# cases of a suite share a process and what it has set up. Suites are listed after each build of the program.
+function(palpate_test_suites target)
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
+  set(include_list ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
+  add_custom_command(TARGET ${target} POST_BUILD VERBATIM
+    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${ARGN}"
+            -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
+    BYPRODUCTS ${list})
+  # ctest reads it at its start; without the program the test fails by name.
+  file(WRITE ${include_list} "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n  add_test(${target} ${target}_not_built)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include_list})
+endfunction()
