@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/contact/cut_surface.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
@@ -17,6 +16,7 @@
 #include "common/tool/kinematics.hpp"
 #include "deform_node/hybrid_touch.hpp"
 #include "deform_node/tissue_contact.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/tool/kinematics.hpp"
 #include "deform_node/dynamic_organ.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "deform_node/dynamic_world.hpp"
 #include "deform_node/local_stiffness.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

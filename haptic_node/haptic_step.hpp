@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/catheter/catheter_body.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/archive.hpp"
@@ -17,6 +16,7 @@
 #include "haptic_node/safety.hpp"
 #include "haptic_node/task.hpp"
 #include "haptic_node/touch_body.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/mesh/tube.hpp"
 #include "common/models/modal_shape.hpp"
 #include "common/models/nonlinear.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tensors/archive.hpp"
 #include "common/tensors/compliance.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -2,10 +2,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/kernels/kernels.hpp"
 #include "common/tensors/archive.hpp"
 #include "common/tensors/compliance.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -66,7 +66,7 @@ class Log : public ::testing::Test {
     std::uint64_t last = 0;
     while (reader.next(event)) {
       if (!event.read(topics::tool_state, tool)) continue;
-      EXPECT_TRUE(same(tool, tool_sample(tool.seq)));
+      EXPECT_TRUE(tool == tool_sample(tool.seq));
       EXPECT_GT(tool.seq, last);
       last = tool.seq;
       ++count;
@@ -85,19 +85,19 @@ TEST_F(Log, GivesBackWhatWasWritten) {
 
   LogReader reader(file_);
   ASSERT_TRUE(reader.has_header());
-  EXPECT_TRUE(same(reader.header(), header()));
+  EXPECT_TRUE(reader.header() == header());
   LogEvent event;
   for (std::uint64_t i = 1; i <= 1000; ++i) {
     ToolState tool;
     ASSERT_TRUE(reader.next(event));
     ASSERT_TRUE(event.read(topics::tool_state, tool));
-    EXPECT_TRUE(same(tool, tool_sample(i)));
+    EXPECT_TRUE(tool == tool_sample(i));
     EXPECT_EQ(event.receive_ns, static_cast<std::int64_t>(1000 * i));
     if (i % 10 != 0) continue;
     ContactState contact;
     ASSERT_TRUE(reader.next(event));
     ASSERT_TRUE(event.read(topics::contact_state, contact));
-    EXPECT_TRUE(same(contact, contact_sample(static_cast<int>(i) / 10 % 4)));
+    EXPECT_TRUE(contact == contact_sample(static_cast<int>(i) / 10 % 4));
   }
   EXPECT_FALSE(reader.next(event));
   EXPECT_TRUE(reader.damage().empty());

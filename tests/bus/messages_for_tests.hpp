@@ -1,5 +1,5 @@
 #pragma once
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 
 /// Messages in which every field differs from its default and from its neighbours.
 namespace palpate::testing {
@@ -115,6 +115,33 @@ inline CatheterState catheter_sample(int particles = 5) {
 
 inline TaskRecord task_sample() {
   return {1, 2, 3, 4, 5, 0.01, 0.02, 3.5, 0.25, 6, 7, 8, 9.5, 10};
+}
+
+/// Calls f with one of every message or more.
+template <class F>
+void for_each_message(F&& f) {
+  f(tool_sample());
+  f(device_sample());
+  f(contact_sample(3));
+  f(contact_sample(0));
+  f(force_sample());
+  f(surface_sample(5));
+  f(status_sample());
+  f(keyframe_sample());
+  f(scene_sample());
+  f(topology_sample());
+  f(held_topology_sample());
+  f(local_model_sample());
+  f(local_model_sample(0, 0));
+  f(deform_step_sample());
+  f(deform_keyframe_sample());
+  f(modal_sample());
+  f(modal_sample(0, 0));
+  f(catheter_sample());
+  f(task_sample());
+  f(probe_sample());
+  f(answer_sample());
+  f(picture_sample());
 }
 
 }  // namespace palpate::testing

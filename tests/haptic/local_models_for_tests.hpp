@@ -1,5 +1,5 @@
 #pragma once
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 #include "tests/haptic/block_scene.hpp"
 
 /// Local contact models made by hand.
