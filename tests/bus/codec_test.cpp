@@ -71,6 +71,12 @@ TEST(Codec, TheSchemaSpellsOutFieldsAndTopics) {
   EXPECT_NE(schema_text().find("topic palpate/held_contacts ContactState\n"), std::string::npos);
 }
 
+TEST(Codec, ASchemaIsTheSameInAnotherOrderOfItsLinesAlone) {
+  EXPECT_TRUE(same_schema("A: x u8\nB: y u8\n", "B: y u8\nA: x u8\n"));
+  EXPECT_FALSE(same_schema("A: x u8\nB: y u8\n", "A: y u8\nB: x u8\n"));
+  EXPECT_FALSE(same_schema("A: x u8\nB: y u8\n", "A: x u8\n"));
+}
+
 TEST(Print, JsonReadsBackWithEveryValue) {
   for_each_message([]<class M>(const M& message) {
     const auto json = nlohmann::json::parse(to_json(message));

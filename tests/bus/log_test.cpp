@@ -242,6 +242,17 @@ TEST_F(Log, FilesThatAreNoLogAreRefusedInWords) {
   EXPECT_THROW(LogWriter(folder_ / "no" / "such" / "folder"), std::runtime_error);
 }
 
+TEST_F(Log, IsReadWhateverTheOrderOfItsSchema) {
+  {
+    LogWriter writer(file_);
+    LogHeader other = header();
+    const std::size_t first = other.schema.find('\n') + 1;
+    other.schema = other.schema.substr(first) + other.schema.substr(0, first);
+    writer.write(header_channel, 1, other);
+  }
+  EXPECT_NO_THROW(LogReader{file_});
+}
+
 TEST_F(Log, HasItsNameOnlyOnceItsHeaderIsInIt) {
   {
     const LogWriter writer(file_, header());
