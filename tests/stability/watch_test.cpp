@@ -65,7 +65,7 @@ Result pulled_by_a_couple(double force) {
   Watch watch;
   for (std::uint64_t i = 0; i < 50; ++i) {
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     for (const double side : {1.0, -1.0})
       m.contacts.push_back(

@@ -118,7 +118,7 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
     const ToolDofs dofs = dofs_of(hand.at);
     const double depth = -quantised(hand.at, link.quantum);
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     const double k = link.local ? stiffness : 0;
     if (depth > 0)
@@ -198,7 +198,7 @@ LoopEnd touch_tissue(int delay, bool controller) {
     models.refresh();
     wait_for_workers();
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
     if (models.describe(0, m)) late.emplace_back(i + delay, m);
     while (!late.empty() && late.front().first <= i) {

@@ -81,7 +81,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
     for (std::size_t t = 0; t < dofs.size(); ++t) {
       const ToolDofs& d = dofs[t];
       LocalContactModel m;
-      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
       m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
       if (models->describe(static_cast<int>(t), m)) waiting.push_back(m);
     }
