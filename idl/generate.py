@@ -200,14 +200,15 @@ def main(source, *where):
         page.write_text(before + MARKS[0] + "\n" + table(idl) + "\n" + MARKS[1] + rest.split(MARKS[1])[1])
         return
     head = "// Written by idl/generate.py; do not edit.\n"
-    files = {"messages.hpp": messages, "fields.hpp": fields, "limits.hpp": limits, "topics.hpp": topics,
-             "dds_types.hpp": dds_types}
+    headers = {"messages.hpp": messages, "fields.hpp": fields, "limits.hpp": limits, "topics.hpp": topics,
+               "dds_types.hpp": dds_types}
+    files = {name: head + "#pragma once\n" + write(idl) for name, write in headers.items()}
+    files |= {"limits.cpp": head + limits_cpp(idl), "topics.md": table(idl)}
     folder = Path(where[0])
     folder.mkdir(parents=True, exist_ok=True)
-    for name, write in files.items():
-        (folder / name).write_text(head + "#pragma once\n" + write(idl))
-    (folder / "limits.cpp").write_text(head + limits_cpp(idl))
-    (folder / "topics.md").write_text(table(idl))
+    for name, text in files.items():  # what stays as it was keeps its time, so that nothing is compiled anew
+        if not (folder / name).exists() or (folder / name).read_text() != text:
+            (folder / name).write_text(text)
 
 
 if __name__ == "__main__":
