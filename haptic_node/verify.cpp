@@ -179,7 +179,7 @@ class RunVerifier {
       if (found == recorded.task.end()) continue;
       TaskRecord computed = found->second;
       describe(haptic.tasks()[i], computed);
-      if (same(computed, found->second)) {
+      if (computed == found->second) {
         ++report_.tasks;
         continue;
       }

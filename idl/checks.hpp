@@ -28,6 +28,9 @@ bool finite(const std::ranges::range auto& values) {
 inline bool time(std::int64_t value) {
   return value >= -largest_time_ns && value <= largest_time_ns;
 }
+bool time(const std::ranges::range auto& values) {
+  return each(values, [](std::int64_t value) { return time(value); });
+}
 inline bool short_enough(const std::string& text) {
   return text.size() <= longest_text;
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the C++ of the messages from the annotated IDL, whose head says how it is annotated.
 
-    generate.py MESSAGES.idl FOLDER           messages.hpp, fields.hpp, limits.hpp, limits.cpp, topics.hpp, dds_types.hpp
-                                              and topics.md, the table of topics
+    generate.py MESSAGES.idl FOLDER           messages.hpp, fields.hpp, limits.hpp, limits.cpp, topics.hpp,
+                                              dds_types.hpp, and topics.md, the table of topics
     generate.py MESSAGES.idl --page PAGE.md   puts that table between the page's two marks
 
 What does not have the form is refused with a sentence FILE:LINE.
@@ -33,15 +33,16 @@ def field_text(f):
 
 
 def messages(idl):
-    text = "#include <array>\n#include <cstdint>\n#include <string>\n#include <vector>\n\n/// The messages as plain values.\n"
-    text += f"namespace {idl.module} {{\n"
+    text = "".join(f"#include <{header}>\n" for header in ("array", "cstdint", "string", "vector"))
+    text += f"\n/// The messages as plain values.\nnamespace {idl.module} {{\n"
     for item in idl.items:
         text += "\n" + doc(item.comment)
         if isinstance(item, Const):
             text += f"inline constexpr {NUMBERS[item.type]} {item.name} = {item.value}{'u' * ('uns' in item.type)};\n"
         elif isinstance(item, Enum):
             text += f"enum {item.name} : std::uint32_t {{\n"
-            text += "".join(f"  {n} = {v},{'  ///< ' + words if words else ''}\n" for n, v, words in item.values) + "};\n"
+            text += "".join(f"  {n} = {v},{'  ///< ' + words if words else ''}\n" for n, v, words in item.values)
+            text += "};\n"
         else:
             text += f"struct {item.name} {{\n" + "".join(map(field_text, item.fields))
             text += f"  friend bool operator==(const {item.name}&, const {item.name}&) = default;\n}};\n"
@@ -54,8 +55,8 @@ def fields(idl):
 
 #include "idl/messages.hpp"
 
-/// The fields of the messages in wire order. `fields(v, a, others...)` calls v("name", a.name, others.name...) for each;
-/// the others may be any structs with the same member names. `key_fields(v, a)` calls v(a.name) for those that are the key.
+/// Fields in wire order: `fields(v, a, others...)` calls v("name", a.name, others.name...) for each; the others are any
+/// structs with the same member names. `key_fields(v, a)` calls v(a.name) for those that are the key.
 namespace {idl.module} {{
 
 /// Calls X(M) for every message that a topic carries, and for every other struct.
@@ -98,7 +99,8 @@ struct Limits;
         if bounds:
             text += f"template <>\nstruct Limits<{s.name}> {{\n{''.join(bounds)}}};\n"
     text += "\n/// True if a node may use the message. Indices into the scene are checked by the node that uses them.\n"
-    return text + "".join(f"bool valid(const {s.name}& m);\n" for s in idl.structs()) + f"\n}}  // namespace {idl.module}\n"
+    text += "".join(f"bool valid(const {s.name}& m);\n" for s in idl.structs())
+    return text + f"\n}}  // namespace {idl.module}\n"
 
 
 def limits_cpp(idl):
@@ -116,9 +118,11 @@ def topics(idl):
     for s in idl.messages():
         for t in s.topics:
             reliable, depth, local, recorders = qos(idl, t)
-            writers, readers = (" | ".join(f"roles::{r}" for r in roles_in(idl, t, c)) or "0" for c in ("writers", "readers"))
-            rows += (f'/// {t.content}\ninline constexpr Topic<{s.name}> {t.name}{{\n    "palpate/{t.name}", "{s.name}", '
-                     f'{{{str(reliable).lower()}, {depth}, {str(local).lower()}, {recorders}}}, {writers}, {readers}}};\n')
+            writers, readers = (" | ".join(f"roles::{role}" for role in roles_in(idl, t, cell)) or "0"
+                                for cell in ("writers", "readers"))
+            rows += (f'/// {t.content}\ninline constexpr Topic<{s.name}> {t.name}{{\n    "palpate/{t.name}", '
+                     f'"{s.name}", {{{str(reliable).lower()}, {depth}, {str(local).lower()}, {recorders}}}, '
+                     f"{writers}, {readers}}};\n")
     return f"""#include <tuple>
 
 #include "idl/messages.hpp"
@@ -170,13 +174,14 @@ struct Generated;
     for s in idl.structs():
         if s.name in lent:
             text += f"static_assert(sizeof({s.name}) == sizeof({idl.module}_{s.name}));\n"
-            text += "".join(f"static_assert(offsetof({s.name}, {f.name}) == offsetof({idl.module}_{s.name}, {f.name}));\n"
-                            for f in s.fields)
+            text += "".join(f"static_assert(offsetof({s.name}, {f.name}) == "
+                            f"offsetof({idl.module}_{s.name}, {f.name}));\n" for f in s.fields)
     return text + f"\n}}  // namespace {idl.module}::dds\n"
 
 
 def table(idl):
-    heads = ["topic", "message", "key", "delivery", "kept per key", "late joiners", "rate", "writers", "readers", "content"]
+    heads = ["topic", "message", "key", "delivery", "kept per key", "late joiners", "rate", "writers", "readers",
+             "content"]
     rows = [heads, ["---"] * len(heads)]
     for s in idl.messages():
         for t in s.topics:

@@ -175,8 +175,8 @@ class Idl:
         return topics
 
     def read_field(self, struct, line):
-        match = re.fullmatch(r"\s+(@key )?(\S.*?) (\w+)(?:\[(\d+)\])?;\s*// \[([^\]]+)\] \[([^\]]+)\] (?:\[([^\]]+)\] )?"
-                             r"([^\s\[].*)", line)
+        match = re.fullmatch(r"\s+(@key )?(\S.*?) (\w+)(?:\[(\d+)\])?;\s*"
+                             r"// \[([^\]]+)\] \[([^\]]+)\] (?:\[([^\]]+)\] )?([^\s\[].*)", line)
         if not match:
             raise Fault(self.at, f"a field of {struct.name} is 'type name;  // [unit] [frame] [limits] meaning', "
                         f"the limits where it has some, not: {line.strip()}")
@@ -279,13 +279,13 @@ def conditions(idl, struct):
 
 def qos(idl, topic):
     """reliable, depth, transient local, depth for recorders; a depth of 0 keeps all."""
-    match = re.fullmatch(r"(reliable|best effort), keeps (\w+)(?:, keeps (\w+) for recorders)?"
+    match = re.fullmatch(r"(reliable|best effort), keeps ([1-9a-z]\w*)(?:, keeps ([1-9a-z]\w*) for recorders)?"
                          r"(?:, late joiners get (the newest|all))?", topic.cells["delivery"])
     depth = "0" if match and match[2] == "all" else match and idl.number(match[2])
     recorders = idl.number(match[3]) if match and match[3] else "0"
     if not match or depth is None or recorders is None or (match[4] == "all") != (match[2] == "all"):
-        raise Fault(topic.line, f"the topic {topic.name}: delivery is 'reliable, keeps N' with what the head of the file "
-                    f"allows, all for late joiners where all is kept, not: {topic.cells['delivery']}")
+        raise Fault(topic.line, f"the topic {topic.name}: delivery is 'reliable, keeps N' with what the head of the "
+                    f"file allows, all for late joiners where all is kept, not: {topic.cells['delivery']}")
     return match[1] == "reliable", int(depth), match[4] is not None, int(recorders)
 
 

@@ -70,6 +70,7 @@ TEST(ToyChecks, RefuseEachFieldBeyondItsLimits) {
       },
       [](Dish& d) { d.complaint = 0; },
       [](Dish& d) { d.complaint = late + 1; },
+      [](Dish& d) { d.courses_ns[1] = std::numeric_limits<std::int64_t>::max(); },
       [](Dish& d) { d.note.assign(checks::longest_text + 1, 'x'); },
       [](Dish& d) { d.recipe.assign(checks::longest_text + 1, 'x'); },
       [](Dish& d) { d.stamp.resize(9); },
@@ -91,9 +92,9 @@ TEST(ToyFields, AreVisitedInOrderAndTheKeysApart) {
   std::string names;
   Dish d = dish();
   fields([&](const char* name, auto&, const auto&) { names.append(name).append(" "); }, d, d);
-  EXPECT_EQ(
-      names,
-      "name table seq publish_ns weight sauce warmth up corners complaint note recipe stamp rim tint peas forks ");
+  EXPECT_EQ(names,
+            "name table seq publish_ns weight sauce warmth up corners complaint courses_ns note recipe stamp rim tint "
+            "peas forks ");
   int keyed = 0;
   key_fields([&](const auto&) { ++keyed; }, d);
   EXPECT_EQ(keyed, 2);
