@@ -41,7 +41,6 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       model_(scene.tools.size()),
       earlier_(bus, {world.bodies().begin(), world.bodies().end()}) {
   presence_.set_clock(&clock_);
-  keyframe_.dt = world.dt();
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies) moves_.push_back(as<MovingSpec>(body) != nullptr), names_.push_back(name_of(body));
 }
@@ -66,7 +65,7 @@ void DynamicLoop::begin_tissue(std::int64_t now) {
     if (held && world_.organ(i).begin_without(held->removed))
       spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(),
                    held->node);
-    publish_change(i, gone_before, world_.organ(i).removed(), 0);
+    publish_change(i, gone_before, world_.organ(i).removed());
   }
   begun_ = true;
 }
@@ -100,10 +99,9 @@ void DynamicLoop::tick() {
   publish_models();
 }
 
-void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vector<int>& removed, std::uint64_t tick) {
+void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vector<int>& removed) {
   const int body = world_.bodies()[organ];
-  TopologyChange m{
-      .body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .tick = tick, .cause = cause};
+  TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .cause = cause};
   m.removed.assign(removed.begin(), removed.end());
   changes_->write(m);
 }
@@ -111,7 +109,7 @@ void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vecto
 void DynamicLoop::publish_changes() {
   for (int i = 0; i < world_.organs(); ++i) {
     for (const DynamicOrgan::Change& change : world_.organ(i).changes()) {
-      publish_change(i, change.cause, change.removed, world_.ticks() - 1);
+      publish_change(i, change.cause, change.removed);
       report_.cut += change.cause == RemovalCause::cut ? change.removed.size() : 0;
       report_.torn += change.cause == RemovalCause::torn ? change.removed.size() : 0;
       report_.fallen += change.cause == RemovalCause::fell_away ? change.removed.size() : 0;
@@ -132,7 +130,6 @@ void DynamicLoop::publish_models() {
     m.tool = static_cast<std::uint32_t>(t);
     m.run = run_;
     ++m.seq;
-    m.tick = world_.ticks() - 1;
     m.tool_run = s.run;
     m.tool_step = s.step;
     m.sense_ns = s.sense_ns;

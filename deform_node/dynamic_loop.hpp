@@ -48,7 +48,7 @@ class DynamicLoop {
   void take_tools();
   void begin_tissue(std::int64_t now);
   void tick();
-  void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed, std::uint64_t tick);
+  void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed);
   void publish_changes();
   void publish_models();
   void publish_frames();

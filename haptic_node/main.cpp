@@ -127,12 +127,8 @@ void run(const NodeOptions& o) {
   if (haptic.has_moving_tissue()) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   const auto scene_writer = bus->writer(topics::scene);
-  scene_writer->write({.run = run_id,
-                       .seq = 1,
-                       .scene_hash = loaded.scene_hash,
-                       .text = to_toml(scene),
-                       .version = PALPATE_VERSION,
-                       .code_path = code_path()});
+  scene_writer->write(
+      {.run = run_id, .seq = 1, .scene_hash = loaded.scene_hash, .text = to_toml(scene), .code_path = code_path()});
   catch_shutdown_signals();
   say_ready(o);
   wait_for_devices(devices, *bus);

@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 
-#include "common/bus/messages.hpp"
 #include "common/tool/kinematics.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

@@ -7,7 +7,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "common/bus/fields.hpp"
 #include "common/bus/log_reader.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/kernels/kernels.hpp"
@@ -16,6 +15,7 @@
 #include "common/sim/haptic_step.hpp"
 #include "haptic_node/publisher.hpp"
 #include "haptic_node/recorded_models.hpp"
+#include "idl/fields.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
@@ -179,7 +179,7 @@ class RunVerifier {
       if (found == recorded.task.end()) continue;
       TaskRecord computed = found->second;
       describe(haptic.tasks()[i], computed);
-      if (same(computed, found->second)) {
+      if (computed == found->second) {
         ++report_.tasks;
         continue;
       }

@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/archive/archive.hpp"
 #include "common/tool/kinematics.hpp"
+#include "idl/messages.hpp"
 #include "render_node/draw_list.hpp"
 #include "render_node/refine.hpp"
 #include "render_node/thick_wall.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/fields.hpp"
+#include "idl/fields.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {

@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -10,8 +11,8 @@
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "common/bus/stamp.hpp"
-#include "common/bus/validate.hpp"
 #include "common/bus/version_watch.hpp"
+#include "idl/limits.hpp"
 
 namespace palpate {
 namespace {
@@ -148,6 +149,47 @@ class DdsWriter final : public Writer<M> {
   std::uint64_t refused_ = 0;
 };
 
+/// A reader of the middleware, with its topic and what wakes the bus for it.
+class Inlet {
+ public:
+  Inlet(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t& type, const std::string& name,
+        const Qos& qos, Keep keep)
+      : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr),
+               fmt::format("creating topic {}", name)),
+        reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), nullptr),
+                fmt::format("creating the reader of {}", name)),
+        condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
+    dds_waitset_attach(waitset, condition_, 0);
+  }
+
+  /// Hands waiting samples to `accept` until it returns true. False if it never did.
+  bool take(const std::function<bool(const void*)>& accept) {
+    for (;;) {
+      void* sample = nullptr;
+      dds_sample_info_t info;
+      if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return false;
+      const bool accepted = info.valid_data && accept(sample);
+      dds_return_loan(reader_, &sample, 1);
+      if (accepted) return true;
+    }
+  }
+
+  int writers() const {
+    dds_liveliness_changed_status_t status{};
+    dds_get_liveliness_changed_status(reader_, &status);
+    return static_cast<int>(status.alive_count);
+  }
+
+  int known_writers() const {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader_, &status);
+    return static_cast<int>(status.current_count);
+  }
+
+ private:
+  Entity topic_, reader_, condition_;
+};
+
 /// Where a reader finds what it wants of a topic.
 template <class M>
 std::string stream_name(const Topic<M>& topic, Keep keep) {
@@ -158,51 +200,26 @@ template <class M>
 class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep)
-      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), stream_name(topic, keep).c_str(),
-                                nullptr, nullptr),
-               fmt::format("creating topic {}", topic.name)),
-        reader_(dds_create_reader(participant, topic_, reader_qos(topic.qos, keep).get(), nullptr),
-                fmt::format("creating the reader of {}", topic.name)),
-        condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
-    dds_waitset_attach(waitset, condition_, 0);
-  }
+      : inlet_(participant, waitset, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep) {}
 
   std::optional<M> take() override {
-    for (;;) {
-      void* sample = nullptr;
-      dds_sample_info_t info;
-      if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return std::nullopt;
-      std::optional<M> message;
-      if (info.valid_data) message = accept(*static_cast<const typename dds::Generated<M>::Type*>(sample));
-      dds_return_loan(reader_, &sample, 1);
-      if (message) return message;
-    }
+    std::optional<M> message;
+    const bool taken = inlet_.take([&](const void* sample) {
+      fields(dds::CopyOut{}, message.emplace(), *static_cast<const typename dds::Generated<M>::Type*>(sample));
+      const bool good = valid(*message);
+      invalid_ += !good;
+      return good;
+    });
+    if (!taken) message.reset();
+    return message;
   }
 
-  int writers() const override {
-    dds_liveliness_changed_status_t status{};
-    dds_get_liveliness_changed_status(reader_, &status);
-    return static_cast<int>(status.alive_count);
-  }
-
-  int known_writers() const override {
-    dds_subscription_matched_status_t status{};
-    dds_get_subscription_matched_status(reader_, &status);
-    return static_cast<int>(status.current_count);
-  }
-
+  int writers() const override { return inlet_.writers(); }
+  int known_writers() const override { return inlet_.known_writers(); }
   std::uint64_t invalid() const override { return invalid_; }
 
  private:
-  std::optional<M> accept(const typename dds::Generated<M>::Type& sample) {
-    std::optional<M> message(std::in_place);
-    fields(dds::CopyOut{}, *message, sample);
-    if (valid(*message)) return message;
-    ++invalid_;
-    return std::nullopt;
-  }
-
-  Entity topic_, reader_, condition_;
+  Inlet inlet_;
   std::uint64_t invalid_ = 0;
 };
 

@@ -1,66 +1,14 @@
 #pragma once
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 
-#include "common/bus/fields.hpp"
-#include "palpate.h"
+#include "common/bus/field_kinds.hpp"
+#include "idl/dds_types.hpp"
+#include "idl/fields.hpp"
 
 /// Messages to and from the structs that idlc generates. Sequences and strings are lent to Cyclone DDS on the
 /// way out and copied on the way in.
 namespace palpate::dds {
-
-template <class M>
-struct Generated;
-#define PALPATE_GENERATED(M)                                                         \
-  template <>                                                                        \
-  struct Generated<M> {                                                              \
-    using Type = palpate_##M;                                                        \
-    static const dds_topic_descriptor_t& descriptor() { return palpate_##M##_desc; } \
-  };
-PALPATE_MESSAGES(PALPATE_GENERATED)
-#undef PALPATE_GENERATED
-
-// Sequences of these are lent as they are.
-#define PALPATE_SAME_PLACE(M, field) static_assert(offsetof(M, field) == offsetof(palpate_##M, field))
-static_assert(sizeof(NodalForce) == sizeof(palpate_NodalForce));
-PALPATE_SAME_PLACE(NodalForce, body);
-PALPATE_SAME_PLACE(NodalForce, node);
-PALPATE_SAME_PLACE(NodalForce, force);
-static_assert(sizeof(HeldContact) == sizeof(palpate_HeldContact));
-PALPATE_SAME_PLACE(HeldContact, body);
-PALPATE_SAME_PLACE(HeldContact, nodes);
-PALPATE_SAME_PLACE(HeldContact, weights);
-PALPATE_SAME_PLACE(HeldContact, offset);
-PALPATE_SAME_PLACE(HeldContact, normal);
-PALPATE_SAME_PLACE(HeldContact, force);
-PALPATE_SAME_PLACE(HeldContact, sample);
-PALPATE_SAME_PLACE(HeldContact, sticking);
-static_assert(sizeof(LocalContact) == sizeof(palpate_LocalContact));
-PALPATE_SAME_PLACE(LocalContact, body);
-PALPATE_SAME_PLACE(LocalContact, grasped);
-PALPATE_SAME_PLACE(LocalContact, position);
-PALPATE_SAME_PLACE(LocalContact, normal);
-PALPATE_SAME_PLACE(LocalContact, force);
-PALPATE_SAME_PLACE(LocalContact, stiffness);
-static_assert(sizeof(LocalNode) == sizeof(palpate_LocalNode));
-PALPATE_SAME_PLACE(LocalNode, body);
-PALPATE_SAME_PLACE(LocalNode, node);
-PALPATE_SAME_PLACE(LocalNode, position);
-PALPATE_SAME_PLACE(LocalNode, velocity);
-PALPATE_SAME_PLACE(LocalNode, stiffness);
-static_assert(sizeof(LocalTriangle) == sizeof(palpate_LocalTriangle));
-PALPATE_SAME_PLACE(LocalTriangle, a);
-PALPATE_SAME_PLACE(LocalTriangle, b);
-PALPATE_SAME_PLACE(LocalTriangle, c);
-static_assert(sizeof(ConsumedStep) == sizeof(palpate_ConsumedStep));
-PALPATE_SAME_PLACE(ConsumedStep, tool);
-PALPATE_SAME_PLACE(ConsumedStep, run);
-PALPATE_SAME_PLACE(ConsumedStep, step);
-static_assert(sizeof(ShellForce) == sizeof(palpate_ShellForce));
-PALPATE_SAME_PLACE(ShellForce, node);
-PALPATE_SAME_PLACE(ShellForce, force);
-#undef PALPATE_SAME_PLACE
 
 /// Copies the text into a bounded string; what does not fit is cut before the character that it would split.
 template <std::size_t n>

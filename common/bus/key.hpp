@@ -1,28 +1,25 @@
 #pragma once
 #include <string>
 
-#include "common/bus/messages.hpp"
+#include "idl/fields.hpp"
 
 /// Which stream of a topic a message belongs to, and where it stands in it.
 namespace palpate {
 
-/// The key field as text; empty for messages without a key.
+/// The keys as text; empty for messages without one.
 template <class M>
 std::string key_of(const M& message) {
-  if constexpr (requires {
-                  message.node;
-                  message.body;
-                }) {
-    return message.node + " " + std::to_string(message.body);
-  } else if constexpr (requires { message.tool; }) {
-    return std::to_string(message.tool);
-  } else if constexpr (requires { message.body; }) {
-    return std::to_string(message.body);
-  } else if constexpr (requires { message.node; }) {
-    return message.node;
-  } else {
-    return {};
-  }
+  std::string text;
+  key_fields(
+      [&]<class Key>(const Key& key) {
+        if (!text.empty()) text += ' ';
+        if constexpr (std::same_as<Key, std::string>)
+          text += key;
+        else
+          text += std::to_string(key);
+      },
+      message);
+  return text;
 }
 
 /// Start of the loop that wrote the message, 0 where the message does not say.

@@ -2,15 +2,58 @@
 
 #include <zlib.h>
 
+#include <set>
+#include <sstream>
+
+#include "common/bus/codec_visitors.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
+namespace {
+
+std::multiset<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::multiset<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.insert(line);
+  return lines;
+}
+
+}  // namespace
+
+template <class Visitor, class Header>
+requires std::same_as<std::remove_const_t<Header>, LogHeader>
+void fields(Visitor& visit, Header& h) {
+  visit("scene_hash", h.scene_hash);
+  visit("scene", h.scene);
+  visit("schema", h.schema);
+  visit("version", h.version);
+  visit("code_path", h.code_path);
+  visit("host", h.host);
+  visit("start_wall_ns", h.start_wall_ns);
+  visit("start_monotonic_ns", h.start_monotonic_ns);
+}
+template <class Visitor, class Footer>
+requires std::same_as<std::remove_const_t<Footer>, LogFooter>
+void fields(Visitor& visit, Footer& f) {
+  visit("stop_monotonic_ns", f.stop_monotonic_ns);
+  visit("written", f.written);
+  visit("lost", f.lost);
+  visit("error", f.error);
+}
+
+template void encode(const LogHeader&, Bytes&);
+template bool decode(std::span<const std::uint8_t>, LogHeader&);
+template void encode(const LogFooter&, Bytes&);
+template bool decode(std::span<const std::uint8_t>, LogFooter&);
+
+bool same_schema(const std::string& a, const std::string& b) {
+  return lines_of(a) == lines_of(b);
+}
 
 std::string schema_text() {
-  std::string text = schema_line<NodalForce>() + schema_line<HeldContact>() + schema_line<LocalContact>() +
-                     schema_line<LocalNode>() + schema_line<LocalTriangle>() + schema_line<ConsumedStep>() +
-                     schema_line<ShellForce>();
+  std::string text;
 #define PALPATE_SCHEMA(M) text += schema_line<M>();
+  PALPATE_PARTS(PALPATE_SCHEMA)
   PALPATE_MESSAGES(PALPATE_SCHEMA)
 #undef PALPATE_SCHEMA
   topics::for_each([&](const auto& topic) {

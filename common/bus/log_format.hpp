@@ -20,6 +20,7 @@ struct LogHeader {
   std::string host;
   std::int64_t start_wall_ns = 0;       ///< since 1970
   std::int64_t start_monotonic_ns = 0;  ///< the same moment on CLOCK_MONOTONIC of the recorder's host
+  friend bool operator==(const LogHeader&, const LogHeader&) = default;
 };
 
 /// Last event of a log whose recorder ended in order.
@@ -30,14 +31,14 @@ struct LogFooter {
   std::string error;          ///< last reason for that, empty if none
 };
 
-PALPATE_FIELDS(LogHeader, scene_hash, scene, schema, version, code_path, host, start_wall_ns, start_monotonic_ns)
-PALPATE_FIELDS(LogFooter, stop_monotonic_ns, written, lost, error)
-
 inline constexpr const char* header_channel = "palpate/log_header";
 inline constexpr const char* footer_channel = "palpate/log_footer";
 
 /// The encoding of every message, one line each, then "topic NAME MESSAGE" lines.
 std::string schema_text();
+
+/// True if the two texts describe the same messages, in whatever order.
+bool same_schema(const std::string& a, const std::string& b);
 
 /// Envelope of each event's data: "PLPT", u16 version, u16 0, u32 CRC-32 of channel name, receive time and
 /// payload, i64 receive time, payload.

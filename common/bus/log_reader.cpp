@@ -46,7 +46,7 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std
     position_ = 0;
     damage_.clear();
   }
-  if (has_header_ && header_.schema != schema_text())
+  if (has_header_ && !same_schema(header_.schema, schema_text()))
     throw std::runtime_error(fmt::format("{}: was recorded by version {} with other messages than this program reads",
                                          file.string(), header_.version));
 }

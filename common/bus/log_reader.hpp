@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/bus/log_format.hpp"
+#include "idl/limits.hpp"
 
 namespace palpate {
 

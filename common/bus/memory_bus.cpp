@@ -8,7 +8,7 @@
 
 #include "common/bus/key.hpp"
 #include "common/bus/stamp.hpp"
-#include "common/bus/validate.hpp"
+#include "idl/limits.hpp"
 
 namespace palpate {
 namespace {
@@ -19,32 +19,34 @@ struct Bell {
   std::size_t waiting = 0;  ///< samples in all queues of the bus, under the network's mutex
 };
 
-template <class M>
+/// A message of whatever type: writers and readers of one topic agree on it.
+struct Sample {
+  std::shared_ptr<const void> message;
+  std::string key;
+};
+
 struct Queue {
   std::shared_ptr<Bell> bell;
   Keep keep;
-  std::deque<M> samples;
+  std::deque<Sample> samples;
 };
 
 /// One topic: who reads it, how many write it, and what late joiners get.
-template <class M>
 struct Channel {
-  std::vector<Queue<M>*> queues;
+  std::vector<Queue*> queues;
   int writers = 0;
-  std::map<std::pair<const void*, std::string>, std::deque<M>> kept;  ///< by writer and key
+  std::map<std::pair<const void*, std::string>, std::deque<Sample>> kept;  ///< by writer and key
 };
 
-template <class M>
-void deliver(Queue<M>& queue, const M& message) {
+void deliver(Queue& queue, const Sample& sample) {
   if (queue.keep == Keep::latest) {
-    const auto same_key = [&](const M& other) { return key_of(other) == key_of(message); };
-    const auto old = std::find_if(queue.samples.begin(), queue.samples.end(), same_key);
+    const auto old = std::ranges::find(queue.samples, sample.key, &Sample::key);
     if (old != queue.samples.end()) {
       queue.samples.erase(old);
       --queue.bell->waiting;
     }
   }
-  queue.samples.push_back(message);
+  queue.samples.push_back(sample);
   ++queue.bell->waiting;
   queue.bell->rung.notify_all();
 }
@@ -56,63 +58,113 @@ class MemoryNetwork {
   std::mutex mutex;
 
   template <class M>
-  Channel<M>& channel(const Topic<M>& topic) {
+  Channel& channel(const Topic<M>& topic) {
     const std::lock_guard lock(mutex);
-    return std::get<std::map<std::string, Channel<M>>>(channels_)[topic.name];
+    return channels_[{topic.name, topic.message}];
   }
 
  private:
-#define PALPATE_CHANNEL(M) std::map<std::string, Channel<M>>,
-  std::tuple<PALPATE_MESSAGES(PALPATE_CHANNEL) int> channels_;
-#undef PALPATE_CHANNEL
+  std::map<std::pair<std::string, std::string>, Channel> channels_;  ///< by topic and message
 };
 
 namespace {
+
+/// What writes, apart from the type of the message.
+class Outlet {
+ public:
+  Outlet(MemoryNetwork& network, Channel& channel, const Qos& qos) : network_(network), channel_(channel), qos_(qos) {
+    const std::lock_guard lock(network_.mutex);
+    ++channel_.writers;
+  }
+  Outlet(const Outlet&) = delete;
+  ~Outlet() {
+    const std::lock_guard lock(network_.mutex);
+    --channel_.writers;
+    std::erase_if(channel_.kept, [&](const auto& entry) { return entry.first.first == this; });
+  }
+
+  void write(const Sample& sample) {
+    const std::lock_guard lock(network_.mutex);
+    for (Queue* queue : channel_.queues) deliver(*queue, sample);
+    if (!qos_.transient_local) return;
+    auto& kept = channel_.kept[{this, sample.key}];
+    kept.push_back(sample);
+    if (qos_.depth != keep_all && kept.size() > 1) kept.pop_front();
+  }
+
+  int readers() const {
+    const std::lock_guard lock(network_.mutex);
+    return static_cast<int>(channel_.queues.size());
+  }
+
+ private:
+  MemoryNetwork& network_;
+  Channel& channel_;
+  Qos qos_;
+};
+
+/// What reads, apart from the type of the message.
+class Inlet {
+ public:
+  Inlet(MemoryNetwork& network, Channel& channel, std::shared_ptr<Bell> bell, Keep keep)
+      : network_(network), channel_(channel), queue_{std::move(bell), keep, {}} {
+    const std::lock_guard lock(network_.mutex);
+    channel_.queues.push_back(&queue_);
+    for (const auto& [owner, samples] : channel_.kept)
+      for (const Sample& sample : samples) deliver(queue_, sample);
+  }
+  Inlet(const Inlet&) = delete;
+  ~Inlet() {
+    const std::lock_guard lock(network_.mutex);
+    std::erase(channel_.queues, &queue_);
+    queue_.bell->waiting -= queue_.samples.size();
+  }
+
+  /// Null if nothing waits.
+  std::shared_ptr<const void> take() {
+    const std::lock_guard lock(network_.mutex);
+    if (queue_.samples.empty()) return nullptr;
+    std::shared_ptr<const void> message = std::move(queue_.samples.front().message);
+    queue_.samples.pop_front();
+    --queue_.bell->waiting;
+    return message;
+  }
+
+  int writers() const {
+    const std::lock_guard lock(network_.mutex);
+    return channel_.writers;
+  }
+
+ private:
+  MemoryNetwork& network_;
+  Channel& channel_;
+  Queue queue_;
+};
 
 template <class M>
 class MemoryWriter final : public Writer<M> {
  public:
   MemoryWriter(std::shared_ptr<MemoryNetwork> network, const Topic<M>& topic)
-      : network_(std::move(network)), channel_(network_->channel(topic)), qos_(topic.qos) {
-    const std::lock_guard lock(network_->mutex);
-    ++channel_.writers;
-  }
-  ~MemoryWriter() override {
-    const std::lock_guard lock(network_->mutex);
-    --channel_.writers;
-    std::erase_if(channel_.kept, [&](const auto& entry) { return entry.first.first == this; });
-  }
+      : network_(std::move(network)), outlet_(*network_, network_->channel(topic), topic.qos) {}
 
   bool write(const M& message) override {
-    const std::lock_guard lock(network_->mutex);
     if (!valid(message)) {
       ++refused_;
       return false;
     }
-    M sent = message;
-    stamp(sent);
-    for (Queue<M>* queue : channel_.queues) deliver(*queue, sent);
-    if (qos_.transient_local) keep_for_late_joiners(sent);
+    const auto sent = std::make_shared<M>(message);
+    stamp(*sent);
+    outlet_.write({sent, key_of(message)});
     return true;
   }
 
-  int readers() const override {
-    const std::lock_guard lock(network_->mutex);
-    return static_cast<int>(channel_.queues.size());
-  }
+  int readers() const override { return outlet_.readers(); }
   std::uint64_t refused() const override { return refused_; }
   bool delivered() const override { return true; }
 
  private:
-  void keep_for_late_joiners(const M& message) {
-    auto& kept = channel_.kept[{this, key_of(message)}];
-    kept.push_back(message);
-    if (qos_.depth != keep_all && kept.size() > 1) kept.pop_front();
-  }
-
   std::shared_ptr<MemoryNetwork> network_;
-  Channel<M>& channel_;
-  Qos qos_;
+  Outlet outlet_;
   std::uint64_t refused_ = 0;
 };
 
@@ -120,38 +172,21 @@ template <class M>
 class MemoryReader final : public Reader<M> {
  public:
   MemoryReader(std::shared_ptr<MemoryNetwork> network, std::shared_ptr<Bell> bell, const Topic<M>& topic, Keep keep)
-      : network_(std::move(network)), channel_(network_->channel(topic)), queue_{std::move(bell), keep, {}} {
-    const std::lock_guard lock(network_->mutex);
-    channel_.queues.push_back(&queue_);
-    for (const auto& [owner, samples] : channel_.kept)
-      for (const M& sample : samples) deliver(queue_, sample);
-  }
-  ~MemoryReader() override {
-    const std::lock_guard lock(network_->mutex);
-    std::erase(channel_.queues, &queue_);
-    queue_.bell->waiting -= queue_.samples.size();
-  }
+      : network_(std::move(network)), inlet_(*network_, network_->channel(topic), std::move(bell), keep) {}
 
   std::optional<M> take() override {
-    const std::lock_guard lock(network_->mutex);
-    if (queue_.samples.empty()) return std::nullopt;
-    std::optional<M> message = std::move(queue_.samples.front());
-    queue_.samples.pop_front();
-    --queue_.bell->waiting;
-    return message;
+    const std::shared_ptr<const void> message = inlet_.take();
+    if (!message) return std::nullopt;
+    return *static_cast<const M*>(message.get());
   }
 
-  int writers() const override {
-    const std::lock_guard lock(network_->mutex);
-    return channel_.writers;
-  }
+  int writers() const override { return inlet_.writers(); }
   int known_writers() const override { return writers(); }
   std::uint64_t invalid() const override { return 0; }  // writers refuse invalid samples
 
  private:
   std::shared_ptr<MemoryNetwork> network_;
-  Channel<M>& channel_;
-  Queue<M> queue_;
+  Inlet inlet_;
 };
 
 class MemoryBus final : public Bus {

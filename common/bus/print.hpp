@@ -4,7 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "common/bus/fields.hpp"
+#include "common/bus/field_kinds.hpp"
+#include "idl/fields.hpp"
 
 /// Messages as text for people and scripts. Numbers are written so that reading them back gives the same
 /// value.

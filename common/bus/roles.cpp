@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "idl/topics.hpp"
@@ -12,50 +11,32 @@
 namespace palpate {
 namespace {
 
-const std::vector<std::string> nodes{"haptic", "deform", "render", "driver", "recorder"};
-
-bool holds(const std::vector<std::string>& list, const std::string& word) {
-  return std::ranges::find(list, word) != list.end();
-}
-
-/// Nodes that a cell of the table names: "-", "all", "all but haptic", "who asked" (of the clock) or "deform, render".
-std::vector<std::string> named_in(const std::string& cell) {
-  if (cell == "-") return {};
-  if (cell == "all") return nodes;
-  if (cell == "who asked") return named_in(topics::clock_probe.writer);
-  std::vector<std::string> named;
-  if (cell.starts_with("all but ")) {
-    std::ranges::copy_if(nodes, std::back_inserter(named),
-                         [&](const std::string& node) { return "all but " + node != cell; });
-    if (named.size() + 1 == nodes.size()) return named;
-  } else {
-    std::istringstream words(cell);
-    for (std::string word; std::getline(words >> std::ws, word, ',');) named.push_back(word);
-    if (!named.empty() && std::ranges::all_of(named, [](const std::string& word) { return holds(nodes, word); }))
-      return named;
-  }
-  throw std::logic_error(fmt::format("the table of topics names '{}', which is no role", cell));
+/// The bit of a role that takes part, 0 for the others.
+std::uint32_t bit_of(const std::string& role) {
+  const auto* at = std::ranges::find(roles::names, role);
+  return at == std::end(roles::names) ? 0 : 1u << (at - std::begin(roles::names));
 }
 
 }  // namespace
 
 const std::vector<std::string>& bus_roles() {
-  static const std::vector<std::string> roles = [] {
-    std::vector<std::string> all = nodes;
-    all.insert(all.end(), {"observer", "player", "latency"});
-    return all;
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> roles(std::begin(roles::names), std::end(roles::names));
+    roles.insert(roles.end(), {"observer", "player", "latency"});
+    return roles;
   }();
-  return roles;
+  return all;
 }
 
 Rights rights_of(const std::string& role) {
-  if (!holds(bus_roles(), role))
+  if (std::ranges::find(bus_roles(), role) == bus_roles().end())
     throw std::runtime_error(fmt::format("'{}' is no role on the bus: {}", role, fmt::join(bus_roles(), ", ")));
+  const std::uint32_t bit = bit_of(role);
   const bool reads_all = role == "recorder" || role == "observer" || role == "latency";
   Rights rights;
   topics::for_each([&](const auto& topic) {
-    const bool writes = role == "player" || holds(named_in(topic.writer), role);
-    const bool reads = reads_all || holds(named_in(topic.readers), role);
+    const bool writes = role == "player" || (topic.writers & bit) != 0;
+    const bool reads = reads_all || (topic.readers & bit) != 0;
     if (writes) rights.writes.push_back(topic.name);
     if (reads) rights.reads.push_back(topic.name);
     if (topic.qos.recorder_depth == 0) return;

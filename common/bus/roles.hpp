@@ -14,7 +14,7 @@ struct Rights {
 /// round trips over topics of its own and reads all.
 const std::vector<std::string>& bus_roles();
 
-/// The rights of a role by the columns `writer` and `readers` of the table of topics. Throws std::runtime_error for
+/// The rights of a role by the writers and readers in the table of topics. Throws std::runtime_error for
 /// a role that there is not.
 Rights rights_of(const std::string& role);
 

@@ -6,13 +6,18 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/mesh/tube.hpp"
 #include "common/models/modal_shell/modal_shape.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 #include "common/scene/scene.hpp"
+<<<<<<< HEAD:common/sim/deformer.hpp
 #include "common/archive/archive.hpp"
 #include "common/archive/compliance.hpp"
+=======
+#include "common/tensors/archive.hpp"
+#include "common/tensors/compliance.hpp"
+#include "idl/messages.hpp"
+>>>>>>> messages:common/models/deformer.hpp
 
 namespace palpate {
 

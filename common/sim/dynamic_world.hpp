@@ -6,10 +6,16 @@
 #include <span>
 #include <vector>
 
+<<<<<<< HEAD:common/sim/dynamic_world.hpp
 #include "common/bus/messages.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/kinematics.hpp"
 #include "common/models/moving/dynamic_organ.hpp"
+=======
+#include "common/tool/kinematics.hpp"
+#include "deform_node/dynamic_organ.hpp"
+#include "idl/messages.hpp"
+>>>>>>> messages:deform_node/dynamic_world.hpp
 
 namespace palpate {
 

@@ -5,11 +5,16 @@
 #include <span>
 #include <vector>
 
+<<<<<<< HEAD:common/sim/haptic_step.hpp
 #include "common/bus/messages.hpp"
 #include "common/models/catheter/catheter_body.hpp"
+=======
+#include "common/catheter/catheter_body.hpp"
+>>>>>>> messages:haptic_node/haptic_step.hpp
 #include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
 #include "common/tool/kinematics.hpp"
+<<<<<<< HEAD:common/sim/haptic_step.hpp
 #include "common/sim/forceps_hand.hpp"
 #include "common/models/moving/local_body.hpp"
 #include "common/models/modal_shell/modal_body.hpp"
@@ -17,6 +22,16 @@
 #include "common/tool/safety.hpp"
 #include "common/models/catheter/task.hpp"
 #include "common/contact/touch_body.hpp"
+=======
+#include "haptic_node/forceps_hand.hpp"
+#include "haptic_node/local_body.hpp"
+#include "haptic_node/modal_body.hpp"
+#include "haptic_node/passivity.hpp"
+#include "haptic_node/safety.hpp"
+#include "haptic_node/task.hpp"
+#include "haptic_node/touch_body.hpp"
+#include "idl/messages.hpp"
+>>>>>>> messages:haptic_node/haptic_step.hpp
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

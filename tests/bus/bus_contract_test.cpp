@@ -54,7 +54,7 @@ class BusContract : public ::testing::TestWithParam<const char*> {
     ASSERT_TRUE(writer->write(message)) << topic.name;
     const auto received = take_within(*b, *reader);
     ASSERT_TRUE(received) << topic.name;
-    EXPECT_TRUE(same(*received, message)) << topic.name;
+    EXPECT_TRUE(*received == message) << topic.name;
   }
 
   std::unique_ptr<Bus> a, b;

@@ -57,7 +57,7 @@ TEST_F(PlayedLog, ComesBackInOrderAtItsOwnPace) {
   SceneText scene = *scenes->take();
   EXPECT_GT(scene.publish_ns, start - 50 * ms);  // moved to the time of the replay
   scene.publish_ns = scene_sample().publish_ns;
-  EXPECT_TRUE(same(scene, scene_sample()));
+  EXPECT_TRUE(scene == scene_sample());
   std::int64_t last = 0;
   for (std::uint64_t step = 0; step < 200; ++step) {
     if (step == 100) continue;

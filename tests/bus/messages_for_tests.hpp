@@ -1,5 +1,5 @@
 #pragma once
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 
 /// Messages in which every field differs from its default and from its neighbours.
 namespace palpate::testing {
@@ -45,7 +45,7 @@ inline HapticKeyframe keyframe_sample() {
 }
 
 inline SceneText scene_sample() {
-  return {9, 1, "hash", "title = \"liver\"\n", "0.1.0", "avx2", 2};
+  return {9, 1, "hash", "title = \"liver\"\n", "avx2", 2};
 }
 
 inline ForceState force_sample() {
@@ -69,7 +69,7 @@ inline DeviceState device_sample() {
 }
 
 inline TopologyChange topology_sample(std::uint64_t seq = 3) {
-  return {1, 2, seq, 4, fell_away, {17, 5, 4000001}, 5};
+  return {1, 2, seq, fell_away, {17, 5, 4000001}, 5};
 }
 
 inline HeldTopology held_topology_sample(std::uint32_t body = 1) {
@@ -78,7 +78,7 @@ inline HeldTopology held_topology_sample(std::uint32_t body = 1) {
 
 inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uint32_t triangles = 3) {
   LocalContactModel m;
-  m.tool = 1, m.run = 2, m.seq = 3, m.tick = 4, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7, m.publish_ns = 8;
+  m.tool = 1, m.run = 2, m.seq = 3, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7, m.publish_ns = 8;
   m.yaw = 0.1, m.pitch = 0.2, m.depth = 0.3, m.roll = 0.4, m.grip = 0.5;
   for (std::uint32_t i = 0; i < contacts; ++i)
     m.contacts.push_back(
@@ -95,7 +95,7 @@ inline DeformStep deform_step_sample() {
 }
 
 inline DeformKeyframe deform_keyframe_sample() {
-  return {1, 2, 3, 0.001, "avx2 0.1.0", {0, 1, 2, 254, 255}, 4};
+  return {1, 2, 3, "avx2 0.1.0", {0, 1, 2, 254, 255}, 4};
 }
 
 inline ModalState modal_sample(std::uint32_t modes = 4, std::uint32_t forces = 3) {
@@ -115,6 +115,33 @@ inline CatheterState catheter_sample(int particles = 5) {
 
 inline TaskRecord task_sample() {
   return {1, 2, 3, 4, 5, 0.01, 0.02, 3.5, 0.25, 6, 7, 8, 9.5, 10};
+}
+
+/// Calls f with one of every message or more.
+template <class F>
+void for_each_message(F&& f) {
+  f(tool_sample());
+  f(device_sample());
+  f(contact_sample(3));
+  f(contact_sample(0));
+  f(force_sample());
+  f(surface_sample(5));
+  f(status_sample());
+  f(keyframe_sample());
+  f(scene_sample());
+  f(topology_sample());
+  f(held_topology_sample());
+  f(local_model_sample());
+  f(local_model_sample(0, 0));
+  f(deform_step_sample());
+  f(deform_keyframe_sample());
+  f(modal_sample());
+  f(modal_sample(0, 0));
+  f(catheter_sample());
+  f(task_sample());
+  f(probe_sample());
+  f(answer_sample());
+  f(picture_sample());
 }
 
 }  // namespace palpate::testing

@@ -106,9 +106,9 @@ TEST_F(TwoProcesses, ALateJoinerGetsSceneStatusAndHeldContacts) {
   expected.run = peer.run();
   const auto text = take_within(*scene);
   ASSERT_TRUE(text);
-  EXPECT_TRUE(same(*text, expected));
+  EXPECT_TRUE(*text == expected);
   EXPECT_EQ(take_within(*status)->run, peer.run());
-  EXPECT_TRUE(same(*take_within(*held), contact_sample()));
+  EXPECT_TRUE(*take_within(*held) == contact_sample());
 }
 
 TEST_F(TwoProcesses, ALargeSurfaceArrivesWhole) {

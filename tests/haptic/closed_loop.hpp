@@ -70,7 +70,7 @@ class TouchedBlock {
   /// What a deform node would tell of it; `stiffer` multiplies the stiffness that it claims.
   LocalContactModel describe(const ToolDofs& dofs, std::uint64_t step, double stiffer = 1) const {
     LocalContactModel m;
-    m.run = 1, m.seq = step + 1, m.tick = step, m.tool_run = 1, m.tool_step = step;
+    m.run = 1, m.seq = step + 1, m.tool_run = 1, m.tool_step = step;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     const auto copy3 = [](const Eigen::Vector3d& v) { return std::array<double, 3>{v[0], v[1], v[2]}; };
     const auto copy9 = [](const Eigen::Matrix3d& k) {

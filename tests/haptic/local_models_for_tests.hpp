@@ -1,5 +1,5 @@
 #pragma once
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 #include "tests/haptic/block_scene.hpp"
 
 /// Local contact models made by hand.
@@ -17,7 +17,7 @@ inline LocalContactModel empty_model(const Tool& tool, const Eigen::Vector3d& ti
                                      std::uint64_t seq = 1) {
   const ToolDofs dofs = tip_at(tool, tip);
   LocalContactModel m;
-  m.run = 77, m.seq = seq, m.tick = step, m.tool_run = 5, m.tool_step = step;
+  m.run = 77, m.seq = seq, m.tool_run = 5, m.tool_step = step;
   m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
   return m;
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/bus/messages.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 namespace {

@@ -61,12 +61,7 @@ class VerifyMoving : public ::testing::Test {
     Recorder recorder(*recorders, {.file = log(), .version = "test"});
     const auto models = bus->writer(topics::local_contact_model);
     const auto text = bus->writer(topics::scene);
-    text->write({.run = run_id,
-                 .seq = 1,
-                 .scene_hash = "hash",
-                 .text = to_toml(scene),
-                 .version = "test",
-                 .code_path = code_path()});
+    text->write({.run = run_id, .seq = 1, .scene_hash = "hash", .text = to_toml(scene), .code_path = code_path()});
     HapticStep haptic(scene, std::vector<Archive>(1));
     Publisher publisher(*bus, haptic, run_id);
     const auto tip = [](int tool, int i) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 
+#include "idl/fields.hpp"
 #include "tests/bus/messages_for_tests.hpp"
 
 /// A message of each type of about the size that it has in a running scene of an organ with 640 surface nodes and two
@@ -54,9 +55,18 @@ M realistic() {
     DeformKeyframe m = deform_keyframe_sample();
     m.state.resize(keyframe_bytes, 7);
     return m;
-  } else {
-    static_assert(std::same_as<M, HeldTopology>);
+  } else if constexpr (std::same_as<M, HeldTopology>) {
     return held_topology_sample();
+  } else {  // whatever comes: every number 1, every text a word
+    M m;
+    const auto fill = []<class T>(const char*, T& field) {
+      if constexpr (std::is_arithmetic_v<T>)
+        field = 1;
+      else if constexpr (std::same_as<T, std::string>)
+        field = "word";
+    };
+    fields(fill, m);
+    return m;
   }
 }
 

@@ -47,8 +47,8 @@ TEST(StabilityWatch, ADuctIsMovedByTheCatheterThatLeansOnIt) {
 }
 
 TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
-  const Result shallow = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.002, 200),
-               deep = press_organ(organ_scene("tensor_mass"), organ_mesh(), 0.004, 200);
+  const Result shallow = press_organ(organ_scene(), organ_mesh(), 0.002, 200),
+               deep = press_organ(organ_scene(), organ_mesh(), 0.004, 200);
   EXPECT_GT(shallow.max_force, 1e-3);
   EXPECT_GT(deep.max_force, 1.5 * shallow.max_force);
   EXPECT_GT(deep.energy_growth, -1e-12);
@@ -57,7 +57,7 @@ TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
 /// Moving tissue whose two contacts pull against each other with `force` [N], ten millimetres apart.
 Result pulled_by_a_couple(double force) {
   Scene scene = block_scene();
-  scene.bodies[0].model = "tensor_mass";
+  make_moving(scene);
   scene.passivity.controller = false;
   HapticStep haptic(scene, std::vector<Archive>(1));
   const ToolDofs dofs = tip_at(scene.tools[0], {0, 0, 0.008});
@@ -65,7 +65,7 @@ Result pulled_by_a_couple(double force) {
   Watch watch;
   for (std::uint64_t i = 0; i < 50; ++i) {
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     for (const double side : {1.0, -1.0})
       m.contacts.push_back(

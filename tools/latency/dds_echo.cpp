@@ -4,8 +4,8 @@
 namespace palpate::latency {
 namespace {
 
-constexpr Topic<ToolState> question{"palpate/latency_question", "ToolState", topics::tool_state.qos, "", "", "", ""};
-constexpr Topic<ForceState> answer{"palpate/latency_answer", "ForceState", topics::force_state.qos, "", "", "", ""};
+constexpr Topic<ToolState> question{"palpate/latency_question", "ToolState", topics::tool_state.qos};
+constexpr Topic<ForceState> answer{"palpate/latency_answer", "ForceState", topics::force_state.qos};
 
 template <class Out, class In>
 class BusEcho : public Echo {

@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "common/bus/messages.hpp"
 #include "common/realtime/histogram.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 

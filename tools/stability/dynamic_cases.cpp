@@ -3,33 +3,33 @@
 
 #include <cmath>
 
-#include "common/dynamics/make_model.hpp"
 #include "common/models/quasi_static/fitted_curve.hpp"
-#include "common/models/solid/precompute.hpp"
 #include "tools/stability/organ_bench.hpp"
 
 namespace palpate::stability {
 namespace {
 
+const Body kinds[] = {TensorMassSpec{}, SpringMassSpec{}};
 constexpr const char* precisions[] = {"single", "double"};
 
 double bound_of(const Scene& scene, const Archive& archive) {
   const Body& body = scene.bodies[0];
-  const auto model = make_dynamic_model(elastic_mesh(archive), body);
-  return largest_step(integrator_of(body), model->frequency_bound(), body.dynamic.damping);
+  const Dynamic& motion = motion_of(body);
+  const auto model = model_maker(body)(elastic_mesh(archive), motion);
+  return largest_step(integrator_of(motion), model->frequency_bound(), motion.damping);
 }
 
 /// Free motion from a pluck at one step size: the energy of the undamped tissue may not grow.
 Result pluck(const Scene& scene, double step, int count) {
-  const Archive archive = precompute(scene.bodies[0], organ_mesh());
+  const Archive archive = precompute_tissue(scene.bodies[0], organ_mesh());
   const double bound = bound_of(scene, archive);
   const auto make = [&] {
     Scene asked = scene;
-    asked.bodies[0].dynamic.step = step;
+    tissue_of(asked).dynamic.step = step;
     return OrganBench(asked, {archive});
   };
   (void)make();  // refuses beyond the bound
-  const auto model = make_dynamic_model(elastic_mesh(archive), scene.bodies[0]);
+  const auto model = model_maker(scene.bodies[0])(elastic_mesh(archive), motion_of(scene.bodies[0]));
   double strongest = 0, first = 0, last = 0;
   for (int n = 0; n < model->nodes(); ++n)
     if (model->mass(n) > 0)
@@ -52,19 +52,19 @@ Result pluck(const Scene& scene, double step, int count) {
 
 std::vector<Point> dynamic_points(const Extent& extent) {
   std::vector<Point> points;
-  for (const char* model : {"tensor_mass", "spring_mass"})
+  for (const Body& kind : kinds)
     for (const char* integrator : {"rk4", "semi_implicit"})
       for (const bool corotational : {false, true}) {
-        if (corotational && (std::string(model) != "tensor_mass" || extent.quick)) continue;
-        Scene scene = organ_scene(model);
-        scene.bodies[0].dynamic.integrator = integrator;
-        scene.bodies[0].dynamic.damping = 0;
-        scene.bodies[0].dynamic.precision = "double";
-        scene.bodies[0].dynamic.corotational = corotational;
-        const std::string name = fmt::format("step {} {}{}", model, integrator, corotational ? " corotational" : "");
+        if (corotational && (!as<TensorMassSpec>(kind) || extent.quick)) continue;
+        Scene scene = organ_scene(kind);
+        tissue_of(scene).dynamic.integrator = integrator;
+        tissue_of(scene).dynamic.damping = 0;
+        tissue_of(scene).dynamic.precision = "double";
+        tissue_of(scene).dynamic.corotational = corotational;
+        const std::string name = fmt::format("step {} {}{}", kind_of(kind), integrator, corotational ? " corotational" : "");
         for (double s : extent.quick ? std::vector{0.9, 1.5} : std::vector{0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 3.0, 10.0})
           points.push_back({name, "step / bound [1]", fmt::format("{:g}", s), [scene, s, extent, corotational] {
-                              return pluck(scene, s * bound_of(scene, precompute(scene.bodies[0], organ_mesh())),
+                              return pluck(scene, s * bound_of(scene, precompute_tissue(scene.bodies[0], organ_mesh())),
                                            extent.quick   ? 500
                                            : corotational ? 2000
                                                           : 20000);
@@ -74,38 +74,38 @@ std::vector<Point> dynamic_points(const Extent& extent) {
   for (double a : extent.quick ? std::vector{0.0, 1e4} : std::vector{0.0, 1e-3, 1.0, 60.0, 1e3, 1e4, 1e6})
     for (const char* integrator : {"rk4", "semi_implicit"})
       points.push_back({fmt::format("damping {}", integrator), "damping [1/s]", fmt::format("{:g}", a), [=] {
-                          Scene scene = organ_scene("tensor_mass");
-                          scene.bodies[0].dynamic.damping = a;
-                          scene.bodies[0].dynamic.integrator = integrator;
+                          Scene scene = organ_scene();
+                          tissue_of(scene).dynamic.damping = a;
+                          tissue_of(scene).dynamic.integrator = integrator;
                           return press_organ(scene, organ_mesh(), 0.004, extent.quick ? 100 : 1000);
                         }});
   for (double e : extent.quick ? std::vector{1.0} : std::vector{1.0, 1e3, 1e6, 1e8})
     for (const char* precision : precisions)
       points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e),
                         [=] {
-                          Scene scene = organ_scene("tensor_mass");
-                          scene.bodies[0].material.young = e;
-                          scene.bodies[0].dynamic.precision = precision;
+                          Scene scene = organ_scene();
+                          tissue_of(scene).material.young = e;
+                          tissue_of(scene).dynamic.precision = precision;
                           return press_organ(scene, organ_mesh(), 0.004, 100);
                         },
                         120});
   for (double d : extent.quick ? std::vector{1e-12, 0.019} : std::vector{1e-12, 1e-6, 1e-3, 0.01, 0.019, 0.03})
     points.push_back({"press moving", "depth [m] of 0.02", fmt::format("{:g}", d),
-                      [=] { return press_organ(organ_scene("tensor_mass"), organ_mesh(), d, 300); }});
+                      [=] { return press_organ(organ_scene(), organ_mesh(), d, 300); }});
   return points;
 }
 
 std::vector<Point> cut_points(const Extent& extent) {
   std::vector<Point> points;
-  for (const char* model : {"tensor_mass", "spring_mass"}) {
-    if (extent.quick && std::string(model) != "tensor_mass") continue;
+  for (const Body& kind : kinds) {
+    if (extent.quick && !as<TensorMassSpec>(kind)) continue;
     points.push_back(
-        {fmt::format("cut down {}", model), "tetrahedra left", "1 and 0", [=] {
-           Scene scene = organ_scene(model);
+        {fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
+           Scene scene = organ_scene(kind);
            const TetMesh mesh = organ_mesh(2);
-           const Archive archive = precompute(scene.bodies[0], mesh);
-           const auto tissue = make_dynamic_model(elastic_mesh(archive), scene.bodies[0]);
-           const double step = 0.5 * largest_step(integrator_of(scene.bodies[0]), tissue->frequency_bound(), 60);
+           const Archive archive = precompute_tissue(scene.bodies[0], mesh);
+           const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
+           const double step = 0.5 * largest_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
            const int count = elastic_mesh(archive).tetrahedra.size();
            Result r{.note = {}};
            for (int t = count - 1; t >= 0; --t) {
@@ -123,10 +123,10 @@ std::vector<Point> cut_points(const Extent& extent) {
            return r;
          }});
     points.push_back(
-        {fmt::format("cut away {}", model), "by", "cautery through the whole block", [=] {
-           Scene scene = organ_scene(model);
-           scene.tools[0].cautery = Cautery{.radius = 0.008};
-           OrganBench bench(scene, {precompute(scene.bodies[0], organ_mesh())});
+        {fmt::format("cut away {}", kind_of(kind)), "by", "cautery through the whole block", [=] {
+           Scene scene = organ_scene(kind);
+           scene.tools[0].probe()->cautery = Cautery{.radius = 0.008};
+           OrganBench bench(scene, {precompute_tissue(scene.bodies[0], organ_mesh())});
            for (int i = 0; i < 1500; ++i)
              bench.tick({0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500}, 1);
            Result r = bench.result();
@@ -137,9 +137,9 @@ std::vector<Point> cut_points(const Extent& extent) {
   }
   for (double threshold : extent.quick ? std::vector{0.05} : std::vector{1e-6, 1e-3, 0.05, 0.5})
     points.push_back({"tearing", "volume change [1]", fmt::format("{:g}", threshold), [=] {
-                        Scene scene = organ_scene("tensor_mass");
-                        scene.bodies[0].tearing = Tearing{.criterion = "volume", .threshold = threshold};
-                        OrganBench bench(scene, {precompute(scene.bodies[0], organ_mesh())});
+                        Scene scene = organ_scene();
+                        tissue_of(scene).tearing = Tearing{.criterion = "volume", .threshold = threshold};
+                        OrganBench bench(scene, {precompute_tissue(scene.bodies[0], organ_mesh())});
                         for (int i = 0; i < 400; ++i)
                           bench.tick({0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0)});
                         Result r = bench.result();

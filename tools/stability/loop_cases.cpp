@@ -87,7 +87,7 @@ constexpr double tip_radius = 0.008, push = 0.01;
 
 Scene wall_scene(const Link& link) {
   Scene scene = block_scene();
-  scene.bodies[0].model = "tensor_mass";
+  make_moving(scene);
   scene.contact.friction = 0;
   scene.rates.haptic_hz = link.rate;
   scene.passivity.controller = link.controller;
@@ -118,7 +118,7 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
     const ToolDofs dofs = dofs_of(hand.at);
     const double depth = -quantised(hand.at, link.quantum);
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     const double k = link.local ? stiffness : 0;
     if (depth > 0)
@@ -169,10 +169,10 @@ Result largest_stiffness(const Link& link) {
 
 /// Tissue of the deformation node under the hand, its local contact models `delay` ticks late.
 LoopEnd touch_tissue(int delay, bool controller) {
-  Scene scene = organ_scene("tensor_mass");
+  Scene scene = organ_scene();
   scene.passivity.controller = controller;
   scene.contact.friction = 0;
-  const std::vector<Archive> archives{precompute(scene.bodies[0], organ_mesh())};
+  const std::vector<Archive> archives{precompute_tissue(scene.bodies[0], organ_mesh())};
   DynamicWorld world(scene, archives);
   LocalModels models(world, archives);
   HapticStep haptic(scene, archives);
@@ -198,7 +198,7 @@ LoopEnd touch_tissue(int delay, bool controller) {
     models.refresh();
     wait_for_workers();
     LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
     if (models.describe(0, m)) late.emplace_back(i + delay, m);
     while (!late.empty() && late.front().first <= i) {
@@ -215,12 +215,12 @@ LoopEnd touch_tissue(int delay, bool controller) {
 /// The block of quasi-static tissue, its stiffness by its Young's modulus.
 LoopEnd touch_block(double young, double rate, bool controller) {
   Scene scene = block_scene();
-  scene.bodies[0].material.young = young;
+  block_of(scene).material.young = young;
   scene.rates.haptic_hz = rate;
   scene.passivity.controller = controller;
   scene.tools[0].max_force = 20;
   scene.tools[0].max_force_rate = 1e5;
-  HapticStep haptic(scene, {precompute(scene.bodies[0], block_mesh())});
+  HapticStep haptic(scene, {precompute(block_of(scene), block_mesh())});
   Hand hand{.at = 0.002};
   const auto dofs_of = [&] { return std::array{tip_at(scene.tools[0], {0, 0, tip_radius + hand.at})}; };
   haptic.start(dofs_of());

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/mesh/generators.hpp"
-#include "common/models/solid/precompute.hpp"
 
 namespace palpate::stability {
 
@@ -45,19 +44,18 @@ Result OrganBench::result() const {
   return r;
 }
 
-Scene organ_scene(const std::string& model) {
+Scene organ_scene(Body body) {
+  MovingSpec& tissue = *as<MovingSpec>(body);
+  tissue.name = "block";
+  tissue.material = {.young = 5000, .poisson = 0.4, .density = 1000};
+  tissue.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
+  tissue.dynamic.damping = 60;
   Scene scene;
-  Body body;
-  body.name = "block";
-  body.model = model;
-  body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
-  body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-  body.dynamic.damping = 60;
-  scene.bodies.push_back(body);
+  scene.bodies.push_back(std::move(body));
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.3};
-  tool.radius = 0.006;
+  tool.probe()->radius = 0.006;
   tool.shaft_length = 0.01;
   scene.tools.push_back(tool);
   return scene;
@@ -68,7 +66,7 @@ TetMesh organ_mesh(int cells) {
 }
 
 Result press_organ(const Scene& scene, const TetMesh& mesh, double depth, int ticks) {
-  OrganBench bench(scene, {precompute(scene.bodies[0], mesh)});
+  OrganBench bench(scene, {precompute_tissue(scene.bodies[0], mesh)});
   const double high = 0.02 + 0.0061, low = 0.026 - depth;
   for (int i = 0; i < ticks; ++i) {
     const double share = std::min(1.0, 2.0 * std::min(i, ticks - i) / ticks * 2);

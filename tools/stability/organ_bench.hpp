@@ -32,10 +32,10 @@ class OrganBench {
 };
 
 /// A small block of moving tissue, base fixed, under a probe; 5 kPa. `body`: of the kind that is wanted.
-template <class Spec = TensorMassSpec>
-Scene organ_scene(Spec body = {}) {
+Scene organ_scene(Body body = TensorMassSpec{});
+inline MovingSpec& tissue_of(Scene& scene) {
+  return *as<MovingSpec>(scene.bodies[0]);
 }
-
 TetMesh organ_mesh(int cells = 4);
 
 /// Pressed to `depth` [m] and left, `ticks` in all.

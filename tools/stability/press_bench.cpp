@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/study/solid_kinds.hpp"
+
 namespace palpate::stability {
 
 void Watch::look(const HapticStep& haptic) {
@@ -49,7 +51,7 @@ Result Watch::result() const {
 
 Scene block_scene(double scale) {
   Scene scene;
-  Body body;
+  QuasiStaticSpec body;
   body.name = "block";
   body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
   body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
@@ -57,11 +59,15 @@ Scene block_scene(double scale) {
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.2 * scale};
-  tool.radius = 0.008 * scale;
+  tool.probe()->radius = 0.008 * scale;
   tool.shaft_radius = 0.0025 * scale;
   tool.shaft_length = 0.3 * scale;
   scene.tools.push_back(tool);
   return scene;
+}
+
+void make_moving(Scene& scene) {
+  scene.bodies[0] = as_kind<TensorMassSpec>(block_of(scene));
 }
 
 TetMesh block_mesh(double scale, int cells) {
@@ -75,7 +81,7 @@ ToolDofs tip_at(const Tool& tool, const Eigen::Vector3d& p, double roll) {
 
 Result press(const Scene& scene, const TetMesh& mesh, const std::function<Eigen::Vector3d(int)>& path, int steps) {
   std::vector<Archive> archives;
-  for (const Body& body : scene.bodies) archives.push_back(precompute(body, mesh));
+  for (const Body& body : scene.bodies) archives.push_back(precompute(*as<QuasiStaticSpec>(body), mesh));
   HapticStep haptic(scene, archives);
   const Tool& tool = scene.tools[0];
   haptic.start(std::array{tip_at(tool, path(0))});

@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "common/mesh/generators.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/sim/haptic_step.hpp"
 #include "tools/stability/case.hpp"
 
@@ -29,6 +29,11 @@ class Watch {
 
 /// A block 0.1 x 0.1 x 0.05 m times `scale`, base fixed, top at z = 0, and a probe above it along -z.
 Scene block_scene(double scale = 1);
+inline QuasiStaticSpec& block_of(Scene& scene) {
+  return *as<QuasiStaticSpec>(scene.bodies[0]);
+}
+/// The block as moving tissue, which is worked out elsewhere.
+void make_moving(Scene& scene);
 TetMesh block_mesh(double scale = 1, int cells = 6);
 
 /// Puts the first tool's tip at p, roll as given.

@@ -5,13 +5,13 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "common/dynamics/make_model.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/sim/local_models.hpp"
 #include "haptic_node/device.hpp"
 #include "tools/stability/held_nodes.hpp"
 #include "tools/stability/press_bench.hpp"
 #include "tools/stability/wait_for_workers.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -35,7 +35,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
   }
   std::vector<std::unique_ptr<Device>> devices;
   for (int t = 0; t < haptic.tools(); ++t) {
-    if (scene.tools[t].device != "scripted")
+    if (!std::holds_alternative<ScriptedDeviceSpec>(scene.tools[t].device))
       throw std::runtime_error(fmt::format("tool '{}' is not scripted", scene.tools[t].name));
     devices.push_back(make_device(scene, t));
   }
@@ -81,7 +81,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
     for (std::size_t t = 0; t < dofs.size(); ++t) {
       const ToolDofs& d = dofs[t];
       LocalContactModel m;
-      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tick = i, m.tool_run = 1, m.tool_step = i;
+      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
       m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
       if (models->describe(static_cast<int>(t), m)) waiting.push_back(m);
     }
@@ -110,8 +110,9 @@ class OwnCache {
 template <class Change>
 void change_materials(Scene& scene, Change&& change) {
   for (Body& body : scene.bodies) {
-    change(body.material);
-    for (MaterialRegion& region : body.materials) change(region.material);
+    std::visit([&](auto& spec) { change(spec.material); }, body);
+    if (auto* solid = as<SolidSpec>(body))
+      for (MaterialRegion& region : solid->materials) change(region.material);
   }
 }
 
@@ -125,9 +126,9 @@ double extent_of(const SurfaceMap& surface) {
 /// Held nodes of the quasi-static bodies, by a hundredth of their size.
 void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>& points) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (scene.bodies[b].model != "quasi_static") continue;
+    if (!as<QuasiStaticSpec>(scene.bodies[b])) continue;
     for (const int count : extent.quick ? std::vector{1, 64, 512} : std::vector{1, 8, 32, 64, 96, 256, 512})
-      points.push_back({"held nodes", fmt::format("number, of body '{}'", scene.bodies[b].name), std::to_string(count),
+      points.push_back({"held nodes", fmt::format("number, of body '{}'", name_of(scene.bodies[b])), std::to_string(count),
                         [=] {
                           const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
                           return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface),
@@ -142,13 +143,15 @@ Result play_at_step(Scene scene, double share) {
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
   std::string bounds;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (!is_dynamic(scene.bodies[b])) continue;
-    Body& body = scene.bodies[b];
-    body.dynamic.step = 0;
-    const DynamicOrgan organ(archives[b], scene, static_cast<int>(b));
-    const double bound = largest_step(integrator_of(body), organ.model().frequency_bound(), body.dynamic.damping);
-    body.dynamic.step = share * bound;
-    bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, scene.bodies[b].name);
+    auto* body = as<MovingSpec>(scene.bodies[b]);
+    if (!body) continue;
+    body->dynamic.step = 0;
+    const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
+    const DynamicOrgan organ(archives[b], *body, settings, model_maker(scene.bodies[b]));
+    const double bound =
+        largest_step(integrator_of(body->dynamic), organ.model().frequency_bound(), body->dynamic.damping);
+    body->dynamic.step = share * bound;
+    bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, name_of(scene.bodies[b]));
   }
   Result r = play(scene, archives, {});
   r.note += bounds;
@@ -189,7 +192,7 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
   for (double nu : extent.quick ? std::vector{0.49999} : std::vector{0.0, 0.499, 0.49999})
     add("poisson [1]", fmt::format("{:g}", nu), {},
         [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
-  if (std::ranges::any_of(scene.bodies, is_dynamic))
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return as<MovingSpec>(body) != nullptr; }))
     for (double share : extent.quick ? std::vector{1.5} : std::vector{0.1, 0.5, 0.999, 1.001, 1.5, 10.0})
       points.push_back({"scene", "step of moving tissue / bound [1]", fmt::format("{:g}", share),
                         [=] { return play_at_step(scene, share); }, 600});

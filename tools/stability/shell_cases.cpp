@@ -16,24 +16,27 @@ constexpr double radius = 0.0045, length = 0.04;
 
 Scene duct_scene(double thickness) {
   Scene scene = block_scene();
-  Body& duct = scene.bodies[0];
-  duct = Body{};
+  ModalShellSpec duct;
   duct.name = "duct";
-  duct.model = "modal_shell";
   duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
-  duct.shell = Shell{.thickness = thickness, .modes = 20};
-  duct.fixed.push_back({.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}});
+  duct.shell = {.thickness = thickness, .modes = 20};
+  duct.fixed.push_back({{.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}}});
+  scene.bodies[0] = duct;
   Tool& tool = scene.tools[0];
   tool.pivot = {0, 0.15, length / 2};
   tool.axis = -Vector3d::UnitY();
   tool.up = Vector3d::UnitZ();
-  tool.radius = 0.003;
+  tool.probe()->radius = 0.003;
   tool.shaft_length = 0.02;
   return scene;
 }
 
-Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
-  HapticStep haptic(scene, {precompute_shell(scene.bodies[0], mesh)});
+ModalShellSpec& duct_of(Scene& scene) {
+  return *as<ModalShellSpec>(scene.bodies[0]);
+}
+
+Result press_wall(Scene scene, const ShellMesh& mesh, double surface, double depth) {
+  HapticStep haptic(scene, {precompute(duct_of(scene), mesh)});
   const auto at = [&](double above) {
     return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, length / 2})};
   };
@@ -51,14 +54,14 @@ Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, dou
 /// contact's coming and going between ticks.
 Result tap_wall(double young, double rate, double speed) {
   Scene scene = duct_scene(0.001);
-  scene.bodies[0].material.young = young;
-  scene.bodies[0].shell->damping_ratio = 0;
+  duct_of(scene).material.young = young;
+  duct_of(scene).shell.damping_ratio = 0;
   scene.contact.friction = 0;
   scene.rates.haptic_hz = rate;
   scene.passivity.controller = false;
   scene.tools[0].max_force = 1e6;
   scene.tools[0].max_force_rate = 1e12;
-  HapticStep haptic(scene, {precompute_shell(scene.bodies[0], make_tube(radius, length, 12, 12))});
+  HapticStep haptic(scene, {precompute(duct_of(scene), make_tube(radius, length, 12, 12))});
   constexpr double reach = 0.0003;  // [m] to both sides of the wall
   const auto at = [&](double time) {
     return std::array{
@@ -110,7 +113,7 @@ std::vector<Point> shell_points(const Extent& extent) {
   for (const char* bending : {"polynomial", "discrete_kirchhoff"})
     points.push_back({"singular triangle", "bending", bending, [=] {
                         Scene scene = duct_scene(0.001);
-                        scene.bodies[0].shell->bending = bending;
+                        duct_of(scene).shell.bending = bending;
                         return press_wall(scene, plate_mesh(8), 0.0005, 0.001);
                       }});
   points.push_back({"coplanar patches", "plate of right triangles", "8 x 8",
@@ -119,7 +122,7 @@ std::vector<Point> shell_points(const Extent& extent) {
     points.push_back({"shell young", "E [Pa]", fmt::format("{:g}", e),
                       [e] {
                         Scene scene = duct_scene(0.001);
-                        scene.bodies[0].material.young = e;
+                        duct_of(scene).material.young = e;
                         return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
                       },
                       120});
@@ -136,7 +139,7 @@ std::vector<Point> shell_points(const Extent& extent) {
     points.push_back({"shell damping", "ratio [1]", fmt::format("{:g}", z),
                       [z] {
                         Scene scene = duct_scene(0.001);
-                        scene.bodies[0].shell->damping_ratio = z;
+                        duct_of(scene).shell.damping_ratio = z;
                         return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
                       },
                       120});

@@ -43,14 +43,14 @@ std::vector<Point> material_points(const Extent& extent) {
   std::vector<Point> points;
   for (double e : extent.quick ? std::vector{1.0, 1e12} : std::vector{1.0, 1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     points.push_back({"young", "E [Pa]", fmt::format("{:g}", e),
-                      [e] { return press_block([e](Scene& s) { s.bodies[0].material.young = e; }, block_mesh()); }});
+                      [e] { return press_block([e](Scene& s) { block_of(s).material.young = e; }, block_mesh()); }});
   for (double c : extent.quick ? std::vector{1e8, 1e-8} : std::vector{1e2, 1e4, 1e6, 1e8, 1e-4, 1e-8})
     points.push_back({"contrast", "E upper / E lower [1]", fmt::format("{:g}", c), [c] {
                         return press_block(
                             [c](Scene& s) {
-                              Material upper = s.bodies[0].material;
+                              Material upper = block_of(s).material;
                               upper.young *= c;
-                              s.bodies[0].materials.push_back(
+                              block_of(s).materials.push_back(
                                   {{.indices = {}, .box = Box{{-1, -1, -0.026}, {1, 1, 1}}, .group = {}}, upper});
                             },
                             block_mesh());
@@ -65,7 +65,7 @@ std::vector<Point> material_points(const Extent& extent) {
                  nu);
              parse_scene(text, "a.toml");
            }
-           return press_block([nu](Scene& s) { s.bodies[0].material.poisson = nu; }, block_mesh());
+           return press_block([nu](Scene& s) { block_of(s).material.poisson = nu; }, block_mesh());
          }});
   return points;
 }
@@ -95,7 +95,8 @@ std::vector<Point> hold_points(const Extent& extent) {
   const auto add = [&](const std::string& how, int count) {
     points.push_back({"held_nodes", how, std::to_string(count), [how, count] {
                         const TetMesh mesh = block_mesh(1, how == "spread" && count > 100 ? 16 : 8);
-                        return hold_nodes(precompute(block_scene().bodies[0], mesh), how, count, 0.001, 512);
+                        Scene scene = block_scene();
+                        return hold_nodes(precompute(block_of(scene), mesh), how, count, 0.001, 512);
                       }});
   };
   for (int n : extent.quick ? std::vector{1, 64} : std::vector{1, 8, 64, 256, 512}) add("spread", n);

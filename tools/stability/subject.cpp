@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/describe/digest.hpp"
 #include "common/models/content_hash.hpp"
 
 namespace palpate::stability {
@@ -13,14 +14,23 @@ namespace {
 std::string digest_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return checksum(bytes.data(), bytes.size());
+  return digest(bytes);
+}
+
+std::string text_of(const BusDeviceSpec& device) {
+  return std::string(device.kind);
+}
+template <class Recorded>
+std::string text_of(const Recorded& device) {
+  return std::string(device.kind) + (device.trajectory.empty() ? "" : digest_of(device.trajectory));
 }
 
 std::string digest_of(const Scene& scene) {
   std::string all = scene_hash(scene);
   for (const Body& body : scene.bodies) all += content_hash(body);
-  for (const Tool& tool : scene.tools) all += tool.device + (tool.trajectory.empty() ? "" : digest_of(tool.trajectory));
-  return checksum(all.data(), all.size());
+  for (const Tool& tool : scene.tools)
+    all += std::visit([](const auto& device) { return text_of(device); }, tool.device);
+  return digest(all);
 }
 
 }  // namespace

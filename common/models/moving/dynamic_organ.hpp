@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/messages.hpp"
 #include "common/contact/cut_surface.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
@@ -17,8 +16,14 @@
 #include "common/dynamics/spec.hpp"
 #include "common/archive/archive.hpp"
 #include "common/tool/kinematics.hpp"
+<<<<<<< HEAD:common/models/moving/dynamic_organ.hpp
 #include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/tissue_contact.hpp"
+=======
+#include "deform_node/hybrid_touch.hpp"
+#include "deform_node/tissue_contact.hpp"
+#include "idl/messages.hpp"
+>>>>>>> messages:deform_node/dynamic_organ.hpp
 
 namespace palpate {
 

@@ -5,16 +5,16 @@
 #include <span>
 #include <type_traits>
 
-#include "common/bus/validate.hpp"
 #include "common/tool/kinematics.hpp"
+#include "idl/limits.hpp"
 
 namespace palpate {
 
 /// A LocalContactModel as plain memory of fixed size: it crosses threads and enters keyframes as bytes.
 struct LocalModel {
-  static constexpr int max_contacts = Limits::local_contacts;
-  static constexpr int max_nodes = Limits::local_nodes;
-  static constexpr int max_triangles = Limits::local_triangles;
+  static constexpr int max_contacts = Limits<LocalContactModel>::contacts;
+  static constexpr int max_nodes = Limits<LocalContactModel>::nodes;
+  static constexpr int max_triangles = Limits<LocalContactModel>::triangles;
 
   struct Contact {
     std::array<double, 3> position, normal, force;  ///< [m], unit into the tissue, [N] on the tissue; world

@@ -1,0 +1,41 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <ranges>
+#include <string>
+
+/// What the generated checks of messages are made of.
+namespace palpate::checks {
+
+inline constexpr std::int64_t largest_time_ns = 2'000'000'000'000'000'000;  ///< two may be added and a third taken off
+inline constexpr std::size_t longest_text = 1048576;                        ///< [bytes]
+
+template <class Sequence, class Condition>
+bool each(const Sequence& sequence, Condition&& condition) {
+  return std::all_of(sequence.begin(), sequence.end(), condition);
+}
+
+bool finite(std::floating_point auto value) {
+  return std::isfinite(value);
+}
+bool finite(const std::ranges::range auto& values) {
+  return each(values, [](auto value) { return std::isfinite(value); });
+}
+
+inline bool time(std::int64_t value) {
+  return value >= -largest_time_ns && value <= largest_time_ns;
+}
+bool time(const std::ranges::range auto& values) {
+  return each(values, [](std::int64_t value) { return time(value); });
+}
+inline bool short_enough(const std::string& text) {
+  return text.size() <= longest_text;
+}
+inline bool unit(const std::array<double, 3>& n) {
+  return std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6;
+}
+
+}  // namespace palpate::checks

@@ -1,0 +1,28 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+/// What the generator writes for the toy, word for word. After a change on purpose, the text below
+/// "toy_golden.txt should be" is the new file.
+namespace palpate {
+namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(ToyIdl, ComesOutWordForWord) {
+  std::string written;
+  for (const char* name :
+       {"messages.hpp", "fields.hpp", "limits.hpp", "limits.cpp", "topics.hpp", "dds_types.hpp", "topics.md"})
+    written.append("== ").append(name).append("\n").append(text_of(std::filesystem::path(PALPATE_TOY_WRITTEN) / name));
+  EXPECT_EQ(written, text_of(PALPATE_TOY_GOLDEN)) << "toy_golden.txt should be\n" << written;
+}
+
+}  // namespace
+}  // namespace palpate
