@@ -5,8 +5,8 @@
 #include "bench/report.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "common/tool/trajectory.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
@@ -22,11 +22,13 @@ struct Insertion {
   Insertion() {
     for (Body& body : scene.bodies) {
       archives.emplace_back();
-      if (!body.shell) continue;
-      body.shell->modes = most_modes;
-      archives.back() = precompute_shell(body, load_shell_mesh(body.mesh, body.scale));
+      auto* duct = as<ModalShellSpec>(body);
+      if (!duct) continue;
+      duct->shell.modes = most_modes;
+      archives.back() = precompute(*duct, load_shell_mesh(duct->mesh, duct->scale));
     }
-    for (const Tool& tool : scene.tools) motions.push_back(load_trajectory(tool.trajectory));
+    for (const Tool& tool : scene.tools)
+      motions.push_back(load_trajectory(std::get<ScriptedDeviceSpec>(tool.device).trajectory));
   }
 };
 
@@ -39,8 +41,8 @@ Timed run(const Insertion& whole, int modes, int particles, int every) {
   Scene scene = whole.scene;
   std::vector<Archive> archives = whole.archives;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (scene.bodies[b].catheter) scene.bodies[b].catheter->particles = particles;
-    if (!scene.bodies[b].shell) continue;
+    if (auto* wire = as<CatheterSpec>(scene.bodies[b])) wire->catheter.particles = particles;
+    if (!as<ModalShellSpec>(scene.bodies[b])) continue;
     ModalTensors& modal = *archives[b].modal;
     modal.shape.resize(modal.shape.size() / modal.omega.size() * modes);
     modal.omega.resize(modes);

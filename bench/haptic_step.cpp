@@ -13,7 +13,7 @@ namespace {
 /// The scripted motion of the liver scene; steps in contact are sampled, and their hand-over to the ring.
 void one_contact(const Scene& scene, const std::vector<Archive>& archives, bool quick) {
   HapticStep haptic(scene, archives);
-  const Trajectory motion = load_trajectory(scene.tools[0].trajectory);
+  const Trajectory motion = load_trajectory(std::get<ScriptedDeviceSpec>(scene.tools[0].device).trajectory);
   SpscRing<StepRecord> ring(64);
   bench::Samples steps, pushes;
   std::vector<ToolDofs> dofs(haptic.tools());
@@ -62,7 +62,7 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
   constexpr double radius = 0.1;
   const Eigen::Vector3d centre(0.007, 0, 0);
   Tool tool = scene.tools[0];
-  tool.radius = radius;
+  tool.probe()->radius = radius;
   tool.shaft_length = 0.5 * radius;
   tool.up = Eigen::Vector3d::UnitZ();
   scene.tools.clear();

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "bench/soft_boxes.hpp"
+#include "common/archive/compliance.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/fem/direct.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/archive/compliance.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 
 /// The questions of RR3510's table 1, put to any model: fields and stiffnesses of one solid under one load.
 namespace palpate::bench {
@@ -17,7 +17,7 @@ using Field = std::vector<Eigen::Vector3d>;
 
 /// A body in the forms that the models and the direct solver take, with nodal loads [N].
 struct LoadedSolid {
-  Body body;
+  QuasiStaticSpec body;
   StaticProblem problem;
   ElasticMesh mesh;
   Field load;
@@ -66,7 +66,7 @@ inline Field top_load(const TetMesh& mesh, const Eigen::Vector3d& traction) {
 
 /// The solid stands on its bottom and is pressed and pushed on its top.
 inline LoadedSolid make_loaded_solid(TetMesh mesh, const Material& material) {
-  Body body;
+  QuasiStaticSpec body;
   body.name = "solid";
   body.material = material;
   body.fixed.emplace_back();

@@ -2,15 +2,15 @@
 // its own mesh and from quadratic locking-free elements, turn and turn about in one run; and what precompute takes.
 #include "bench/report.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/solid/precompute.hpp"
-#include "common/tool/trajectory.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
 
 Archive compute(const Scene& scene, std::optional<Offline> offline, const char* name) {
-  Body body = scene.bodies[0];
+  auto body = std::get<QuasiStaticSpec>(scene.bodies[0]);
   body.offline = offline;
   const auto mesh = load_tet_mesh(body.mesh, body.scale);
   const auto begin = std::chrono::steady_clock::now();
@@ -35,7 +35,7 @@ void lap(HapticStep& haptic, const Trajectory& motion, bench::Samples& samples) 
 }
 
 void measure(const Scene& scene, bool quick) {
-  const Trajectory motion = load_trajectory(scene.tools[0].trajectory);
+  const Trajectory motion = load_trajectory(std::get<ScriptedDeviceSpec>(scene.tools[0].device).trajectory);
   const std::vector<ToolDofs> start{motion.at(0)};
   HapticStep plain(scene, {compute(scene, {}, "liver1400_plain")});
   HapticStep fine(scene, {compute(scene, Offline{0, "p2", "locking_free"}, "liver1400_p2_locking_free")});

@@ -1,4 +1,4 @@
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 struct Case {
   std::string name;
-  Body body;
+  QuasiStaticSpec body;
   TetMesh mesh;
 };
 

@@ -18,8 +18,8 @@ struct SolidAnswer {
   int unknowns;
 };
 
-inline FixedRegion hold_face(const char* group, std::array<bool, 3> axes = {true, true, true}) {
-  FixedRegion region;
+inline BoundaryCondition hold_face(const char* group, std::array<bool, 3> axes = {true, true, true}) {
+  BoundaryCondition region;
   region.where.group = group;
   region.axes = axes;
   return region;
@@ -30,7 +30,7 @@ inline FixedRegion hold_face(const char* group, std::array<bool, 3> axes = {true
 struct SolidCase {
   TetMesh mesh;
   Material material;
-  std::vector<FixedRegion> fixed;
+  std::vector<BoundaryCondition> fixed;
   Traction traction;
   double resultant = 1;
 };
@@ -42,7 +42,7 @@ struct SolidState {
 };
 
 inline SolidState solve_case(const SolidCase& solid, const Offline& offline) {
-  Body body;
+  SolidSpec body;
   body.name = "solid";
   body.material = solid.material;
   body.fixed = solid.fixed;
@@ -153,7 +153,7 @@ inline SolidAnswer nafems_le10(int n, const Offline& offline) {
                    hold_face("x1", {true, true, false})},
                   {},
                   1};
-  FixedRegion edge;
+  BoundaryCondition edge;
   edge.axes = {false, false, true};
   for (int i = 0; i < static_cast<int>(solid.mesh.nodes.size()); ++i) {
     auto& x = solid.mesh.nodes[i];

@@ -8,8 +8,8 @@
 #include "common/contact/held_points.hpp"
 #include "common/fem/direct.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/sim/deformer.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/sim/deformer.hpp"
 
 namespace palpate {
 namespace {
@@ -27,7 +27,7 @@ int top_node(const Archive& archive) {
 void measure(const std::string& scene_file, const std::string& name, bool quick) {
   const Scene scene = load_scene(scene_file);
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
-  const Body& body = scene.bodies[0];
+  const auto& body = std::get<QuasiStaticSpec>(scene.bodies[0]);
   const int contact = top_node(archives[0]);
 
   const StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));

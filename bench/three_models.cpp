@@ -46,7 +46,7 @@ void speed(std::string_view name, const std::string& bench, const ElasticMesh& m
 
 /// One contact held afresh and the visible surface superposed.
 void speed_precomputed(const ElasticMesh& mesh, int steps) {
-  Body body;
+  QuasiStaticSpec body;
   body.name = "box";
   body.material = kTissue;
   body.fixed.emplace_back();

@@ -42,7 +42,8 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       earlier_(bus, {world.bodies().begin(), world.bodies().end()}) {
   presence_.set_clock(&clock_);
   keyframe_.code_path = std::move(code_path);
-  for (const Body& body : scene.bodies) moves_.push_back(as<MovingSpec>(body) != nullptr), names_.push_back(name_of(body));
+  for (const Body& body : scene.bodies)
+    moves_.push_back(as<MovingSpec>(body) != nullptr), names_.push_back(name_of(body));
 }
 
 void DynamicLoop::take_tools() {

@@ -11,8 +11,8 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/sim/dynamic_world.hpp"
-#include "deform_node/earlier_cuts.hpp"
 #include "common/sim/local_models.hpp"
+#include "deform_node/earlier_cuts.hpp"
 #include "deform_node/surface_publisher.hpp"
 
 namespace palpate {

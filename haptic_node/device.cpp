@@ -44,8 +44,8 @@ class LogDevice : public Device {
       if (samples_.size() < max_samples) samples_.push_back({dofs, state.seq});
     }
     if (samples_.empty())
-      throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})",
-                                           file.string(), place.tool.name, place.index));
+      throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})", file.string(),
+                                           place.tool.name, place.index));
   }
   DeviceSample read(double seconds) override { return samples_[std::min(at(seconds), samples_.size() - 1)]; }
   bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }

@@ -13,8 +13,8 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/spsc_ring.hpp"
-#include "haptic_node/device.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "haptic_node/device.hpp"
 #include "haptic_node/local_feed.hpp"
 #include "haptic_node/publisher.hpp"
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "common/tool/kinematics.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {

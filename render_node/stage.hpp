@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/tet_mesh.hpp"
 #include "common/archive/archive.hpp"
+#include "common/mesh/tet_mesh.hpp"
 #include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
 #include "render_node/draw_list.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/scene/scene.hpp"
-#include "common/archive/archive.hpp"
 #include "tools/footprint.hpp"
 
 namespace palpate {

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate {
 

@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "common/fem/constraint.hpp"
 #include "common/archive/archive.hpp"
+#include "common/fem/constraint.hpp"
 
 namespace palpate {
 

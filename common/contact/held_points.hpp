@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "common/archive/compliance.hpp"
 #include "common/geometry/anchor.hpp"
 #include "common/kernels/kernels.hpp"
-#include "common/archive/compliance.hpp"
 
 namespace palpate {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "common/contact/contact_law.hpp"
-#include "common/geometry/segment.hpp"
 #include "common/contact/touch_surface.hpp"
-#include "common/tool/spec.hpp"
+#include "common/geometry/segment.hpp"
 #include "common/tool/jaws.hpp"
 #include "common/tool/moving_tool.hpp"
+#include "common/tool/spec.hpp"
 
 namespace palpate {
 

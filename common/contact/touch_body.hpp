@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/tool_contacts.hpp"
-#include "common/contact/step_settings.hpp"
 #include "common/archive/compliance.hpp"
+#include "common/contact/step_settings.hpp"
+#include "common/contact/tool_contacts.hpp"
 #include "common/tool/forceps.hpp"
 
 namespace palpate {

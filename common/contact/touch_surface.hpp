@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/geometry/buckets.hpp"
 #include "common/geometry/triangle.hpp"
-#include "common/archive/archive.hpp"
 #include "common/tool/tool_part.hpp"
 
 namespace palpate {

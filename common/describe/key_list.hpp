@@ -73,7 +73,7 @@ class KeyList : public Description {
   std::vector<DescribedTable> tables_;
   std::map<std::string, std::size_t, std::less<>> kinds_of_;  ///< alternatives per variant, by its key
   std::vector<std::size_t> inside_;                           ///< the table being described, and those around it
-  std::vector<std::pair<std::string, std::string>> kind_;  ///< key and kind of the alternative, and those around it
+  std::vector<std::pair<std::string, std::string>> kind_;     ///< key and kind of the alternative, and those around it
   std::vector<std::size_t> kind_at_;                          ///< the depth of tables at which each began
 };
 

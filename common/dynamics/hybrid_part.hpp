@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/contact_law.hpp"
-#include "common/dynamics/dynamic_model.hpp"
 #include "common/archive/archive.hpp"
 #include "common/archive/compliance.hpp"
+#include "common/contact/contact_law.hpp"
+#include "common/dynamics/dynamic_model.hpp"
 
 namespace palpate {
 

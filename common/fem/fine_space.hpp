@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "common/fem/offline_spec.hpp"
-#include "common/mesh/tet_mesh.hpp"
 #include "common/fem/solid_spec.hpp"
+#include "common/mesh/tet_mesh.hpp"
 
 namespace palpate {
 

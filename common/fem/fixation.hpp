@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/tet_mesh.hpp"
 #include "common/fem/solid_spec.hpp"
+#include "common/mesh/tet_mesh.hpp"
 
 namespace palpate {
 

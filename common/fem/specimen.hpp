@@ -1,6 +1,6 @@
 #pragma once
-#include "common/mesh/tet_mesh.hpp"
 #include "common/fem/solid_spec.hpp"
+#include "common/mesh/tet_mesh.hpp"
 
 namespace palpate {
 

@@ -27,9 +27,7 @@ class StoredText : public TomlWriter {
   }
 
  protected:
-  bool takes(const Key& key) const override {
-    return key.use == Use::stored || (key.use == Use::inertia && inertia_);
-  }
+  bool takes(const Key& key) const override { return key.use == Use::stored || (key.use == Use::inertia && inertia_); }
   bool takes_empty_tables() const override { return false; }
 
  private:

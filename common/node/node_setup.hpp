@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/bus/dds_bus.hpp"
 #include "common/scene/scene.hpp"
-#include "common/archive/archive.hpp"
 
 /// What every node does before its loop: arguments, scene, archives, logging.
 namespace palpate {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
-#include "common/archive/archive.hpp"
 
 namespace palpate {
 

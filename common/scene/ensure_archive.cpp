@@ -40,7 +40,8 @@ ShellMesh wall_of(const Archive& archive) {
 /// Empty for a body without a mesh.
 ArchiveJob load_job(const Body& body, const Progress& progress) {
   const auto load = [&](const auto& spec) -> ArchiveJob {
-    if constexpr (std::derived_from<std::remove_cvref_t<decltype(spec)>, MeshedSpec>) return archive_job(spec, progress);
+    if constexpr (std::derived_from<std::remove_cvref_t<decltype(spec)>, MeshedSpec>)
+      return archive_job(spec, progress);
     return {};
   };
   return std::visit(load, body);

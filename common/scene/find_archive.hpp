@@ -1,6 +1,6 @@
 #pragma once
-#include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate {
 

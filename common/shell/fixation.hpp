@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/mesh/shell_mesh.hpp"
-#include "common/shell/spec.hpp"
 #include "common/shell/shell_dofs.hpp"
+#include "common/shell/spec.hpp"
 
 namespace palpate {
 

@@ -6,18 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "common/archive/archive.hpp"
+#include "common/archive/compliance.hpp"
 #include "common/mesh/tube.hpp"
 #include "common/models/modal_shell/modal_shape.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 #include "common/scene/scene.hpp"
-<<<<<<< HEAD:common/sim/deformer.hpp
-#include "common/archive/archive.hpp"
-#include "common/archive/compliance.hpp"
-=======
-#include "common/tensors/archive.hpp"
-#include "common/tensors/compliance.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:common/models/deformer.hpp
 
 namespace palpate {
 
@@ -41,8 +36,8 @@ class Deformer {
   Deformer(const Scene& scene, const std::vector<Archive>& archives);
 
   /// Keep the newest state of each tool, or body, of the newest run. A run that another has followed does not come
-  /// back. False (and nothing kept) if the sample is of such a run, or names a body or a node that this scene does not
-  /// have, or has other modes or particles.
+  /// back. False (and nothing kept) if the sample is of such a run, or names a body or a node that this scene does
+  /// not have, or has other modes or particles.
   bool take(const ContactState& contacts);
   bool take(const ModalState& state);
   bool take(const CatheterState& state);

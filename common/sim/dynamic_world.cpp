@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/tool/instrument.hpp"
 #include "common/describe/state_bytes.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
@@ -51,8 +51,8 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
     const auto* spec = as<MovingSpec>(scene.bodies[b]);
     if (!spec) continue;
     const bool springs = as<SpringMassSpec>(scene.bodies[b]) != nullptr;
-    organs_.push_back(std::make_unique<DynamicOrgan>(archives[b], *spec, settings,
-                                                     springs ? make_spring_model : make_element_model));
+    organs_.push_back(
+        std::make_unique<DynamicOrgan>(archives[b], *spec, settings, springs ? make_spring_model : make_element_model));
     body_of_.push_back(b);
   }
 }

@@ -6,16 +6,10 @@
 #include <span>
 #include <vector>
 
-<<<<<<< HEAD:common/sim/dynamic_world.hpp
-#include "common/bus/messages.hpp"
+#include "common/models/moving/dynamic_organ.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/kinematics.hpp"
-#include "common/models/moving/dynamic_organ.hpp"
-=======
-#include "common/tool/kinematics.hpp"
-#include "deform_node/dynamic_organ.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:deform_node/dynamic_world.hpp
 
 namespace palpate {
 
@@ -39,8 +33,8 @@ class DynamicWorld {
   bool take(const ToolState& state);
   /// The tool's haptic node has ended: from the next tick on it is gone, with what it held.
   void leave(int tool);
-  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut, for
-  /// two minutes.
+  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut,
+  /// for two minutes.
   void tick();
 
   std::uint64_t ticks() const { return ticks_; }
@@ -61,7 +55,7 @@ class DynamicWorld {
   double dt_;
   std::vector<Trocar> trocars_;
   std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
-  std::vector<std::optional<ForcepsJaws>> forceps_;                 ///< per tool; none for other kinds
+  std::vector<std::optional<ForcepsJaws>> forceps_;          ///< per tool; none for other kinds
   std::vector<ToolInTick> tools_;
   std::vector<ToolState> newest_, consumed_;
   std::vector<char> waiting_, anew_, leaving_, left_;

@@ -2,9 +2,9 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/touch_body.hpp"
 #include "common/models/catheter/catheter_body.hpp"
 #include "common/tool/grip.hpp"
-#include "common/contact/touch_body.hpp"
 
 namespace palpate {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "common/tool/instrument.hpp"
 #include "common/models/quasi_static/quasi_static_body.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate {
 

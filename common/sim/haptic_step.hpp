@@ -5,33 +5,18 @@
 #include <span>
 #include <vector>
 
-<<<<<<< HEAD:common/sim/haptic_step.hpp
-#include "common/bus/messages.hpp"
-#include "common/models/catheter/catheter_body.hpp"
-=======
-#include "common/catheter/catheter_body.hpp"
->>>>>>> messages:haptic_node/haptic_step.hpp
-#include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
-#include "common/tool/kinematics.hpp"
-<<<<<<< HEAD:common/sim/haptic_step.hpp
-#include "common/sim/forceps_hand.hpp"
-#include "common/models/moving/local_body.hpp"
+#include "common/contact/touch_body.hpp"
+#include "common/models/catheter/catheter_body.hpp"
+#include "common/models/catheter/task.hpp"
 #include "common/models/modal_shell/modal_body.hpp"
+#include "common/models/moving/local_body.hpp"
+#include "common/scene/scene.hpp"
+#include "common/sim/forceps_hand.hpp"
+#include "common/tool/kinematics.hpp"
 #include "common/tool/passivity.hpp"
 #include "common/tool/safety.hpp"
-#include "common/models/catheter/task.hpp"
-#include "common/contact/touch_body.hpp"
-=======
-#include "haptic_node/forceps_hand.hpp"
-#include "haptic_node/local_body.hpp"
-#include "haptic_node/modal_body.hpp"
-#include "haptic_node/passivity.hpp"
-#include "haptic_node/safety.hpp"
-#include "haptic_node/task.hpp"
-#include "haptic_node/touch_body.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:haptic_node/haptic_step.hpp
 
 namespace palpate {
 
@@ -42,9 +27,9 @@ struct ReducedBody {
 };
 
 /// One tick of the haptic loop as a function of the tools' degrees of freedom and of its own state:
-/// sense, collide, hold, force. Jaws close, catheters move against the walls as they stand, then tools meet the bodies.
-/// It allocates nothing, takes no lock and does no I/O after construction, and gives the same bits for the same inputs
-/// on the same code path.
+/// sense, collide, hold, force. Jaws close, catheters move against the walls as they stand, then tools meet the
+/// bodies. It allocates nothing, takes no lock and does no I/O after construction, and gives the same bits for the
+/// same inputs on the same code path.
 class HapticStep {
  public:
   /// One archive per body, read with ArchivePart::touchable; those of dynamic bodies are not looked at.
@@ -147,7 +132,7 @@ class HapticStep {
   PassivityGuard passivity_;
   std::vector<SafetyChain> safety_;
   std::vector<std::optional<ForcepsHand>> hands_;  ///< per tool; of those that are forceps
-  std::vector<std::optional<ProbeJaws>> jaws_;          ///< per tool; of probes
+  std::vector<std::optional<ProbeJaws>> jaws_;     ///< per tool; of probes
   std::vector<std::uint8_t> jaws_closed_;
   std::vector<ToolLoad> loads_;
   std::vector<Output> output_;

@@ -3,15 +3,9 @@
 #include <memory>
 #include <vector>
 
-<<<<<<< HEAD:common/sim/local_models.hpp
-#include "common/bus/messages.hpp"
 #include "common/sim/dynamic_world.hpp"
 #include "common/sim/local_stiffness.hpp"
-=======
-#include "deform_node/dynamic_world.hpp"
-#include "deform_node/local_stiffness.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:deform_node/local_model.hpp
 
 namespace palpate {
 

@@ -92,8 +92,9 @@ TEST(Study, AHybridOfTwoMeshesThatMeetInAllNodesIsStudiedAsOneBody) {
   const auto whole = on_one_mesh(scene.bodies[0]);
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->mesh.nodes.size(), 7u * 7 * 5);
-  EXPECT_EQ(whole->body.hybrid->regions[0].indices.size(), whole->mesh.tetrahedra.size() / 2);
-  for (const int t : whole->body.hybrid->regions[0].indices)
+  const auto& region = std::get<HybridSpec>(whole->body).hybrid.regions[0];
+  EXPECT_EQ(region.indices.size(), whole->mesh.tetrahedra.size() / 2);
+  for (const int t : region.indices)
     for (const int n : whole->mesh.tetrahedra[t]) EXPECT_GT(whole->mesh.nodes[n].z(), 0.02 - 1e-9);
   const auto solid = std::make_shared<SolidCase>(scene, 0, *whole, true);
   for (const Patch& patch : solid->presses().patches) EXPECT_GT(patch.point.z(), 0.001);

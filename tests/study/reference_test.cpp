@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-Body block_body(double poisson = 0.3) {
-  Body body;
+SolidSpec block_body(double poisson = 0.3) {
+  SolidSpec body;
   body.name = "block";
   body.material = {5000, poisson, 1000};
   body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
@@ -155,7 +155,7 @@ double volume(const TetMesh& mesh) {
 }
 
 TEST(Graded, AFinerMeshIsConformingHasTheSameShapeAndKeepsItsNodes) {
-  Body body = block_body();
+  SolidSpec body = block_body();
   body.materials.push_back(
       {.where = {.indices = {}, .box = Box{{-1, -1, 0.015}, {1, 1, 1}}, .group = {}}, .material = {9000, 0.2, 1000}});
   const StaticProblem coarse = make_static_problem(body, make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {4, 4, 2}));

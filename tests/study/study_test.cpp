@@ -93,7 +93,7 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
 TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
   const Folder folder;
   Scene scene = block_scene(folder.at);
-  scene.bodies[0].material.poisson = 0.499;
+  as<SolidSpec>(scene.bodies[0])->material.poisson = 0.499;
   const auto solid = std::make_shared<SolidCase>(scene, 0, on_one(scene), true);
   const auto method = make_quasi_static(solid);
   Result as_is, finer;
@@ -118,7 +118,7 @@ TEST(Study, TensorsFromQuadraticAndLockingFreeElementsArePressed) {
   const ReferenceCache cache(folder.at / "references");
   const auto method = make_quasi_static(std::make_shared<SolidCase>(scene, 0, on_one(scene), true, cache));
   for (const Offline& offline : {Offline{.element = "p2"}, Offline{.refine = 1, .formulation = "locking_free"}}) {
-    const auto apply = [&](Scene& s) { s.bodies[0].offline = offline; };
+    const auto apply = [&](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->offline = offline; };
     const Result result = method->evaluate({"quasi_static", "offline", offline.element, apply, true});
     const Row* row = find(result, "quasi_static", "offline", "", "fine_linear");
     ASSERT_TRUE(row);
@@ -140,7 +140,7 @@ TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
   EXPECT_EQ(second.fine(0)[1].displacement, first.fine(0)[1].displacement);
   EXPECT_EQ(solved, 1);
   Scene stiffer = scene;
-  stiffer.bodies[0].material.young *= 2;
+  as<SolidSpec>(stiffer.bodies[0])->material.young *= 2;
   SolidCase other(stiffer, 0, on_one(stiffer), true, cache, say);
   EXPECT_NEAR(other.fine(0)[1].force, 2 * force, 1e-6 * force);
   EXPECT_EQ(solved, 2);
@@ -214,7 +214,7 @@ TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
   EXPECT_FALSE(store.find(point)) << "a torn file counts as none";
   store.keep(point, result);
   Scene other = scene;
-  other.bodies[0].material.young *= 2;
+  as<SolidSpec>(other.bodies[0])->material.young *= 2;
   EXPECT_FALSE(Store(folder.at, study_key(other, true)).find(point));
 }
 
@@ -262,9 +262,10 @@ modes = 20
       const double worst = std::max({still.err_u_rel, still.err_f_rel, moving.err_u_rel, moving.err_f_rel});
       if (pair && worst < least) best = still, least = worst;
     }
-  EXPECT_EQ(bought.bodies[0].shell->modes, best.knob == "scene" ? 20 : std::stoi(best.value));
-  EXPECT_TRUE(bought.bodies[0].shell->residual);
-  EXPECT_EQ(bought.bodies[0].mesh, scene.bodies[0].mesh);
+  const auto& duct = std::get<ModalShellSpec>(bought.bodies[0]);
+  EXPECT_EQ(duct.shell.modes, best.knob == "scene" ? 20 : std::stoi(best.value));
+  EXPECT_TRUE(duct.shell.residual);
+  EXPECT_EQ(duct.mesh, as<MeshedSpec>(scene.bodies[0])->mesh);
   // Everything is kept: a second run computes nothing.
   std::vector<std::string> said;
   StudyOptions again = options;

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "common/archive/static_solve.hpp"
 #include "common/fem/direct.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "common/archive/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/spread_holds.hpp"
 

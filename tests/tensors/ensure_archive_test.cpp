@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "common/archive/static_solve.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/scene/find_archive.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "common/archive/static_solve.hpp"
+#include "common/scene/find_archive.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 

@@ -4,15 +4,15 @@
 #include <functional>
 #include <set>
 
+#include "common/archive/compliance.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_generators.hpp"
-#include "common/shell/assembly.hpp"
-#include "common/shell/fixation.hpp"
-#include "common/archive/compliance.hpp"
 #include "common/models/content_hash.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
-#include "common/models/modal_shell/precompute.hpp"
+#include "common/shell/assembly.hpp"
+#include "common/shell/fixation.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {

@@ -4,9 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "common/archive/static_solve.hpp"
 #include "common/fem/fine_problem.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "common/archive/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/spread_holds.hpp"
 

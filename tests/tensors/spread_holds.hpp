@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "common/fem/constraint.hpp"
 #include "common/archive/archive.hpp"
+#include "common/fem/constraint.hpp"
 
 namespace palpate::testing {
 

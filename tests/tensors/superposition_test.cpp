@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "common/archive/static_solve.hpp"
 #include "common/fem/direct.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "common/archive/static_solve.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 /// TVCG99 fig. 10 on a plate held at its corners.

@@ -61,7 +61,8 @@ std::vector<Point> dynamic_points(const Extent& extent) {
         tissue_of(scene).dynamic.damping = 0;
         tissue_of(scene).dynamic.precision = "double";
         tissue_of(scene).dynamic.corotational = corotational;
-        const std::string name = fmt::format("step {} {}{}", kind_of(kind), integrator, corotational ? " corotational" : "");
+        const std::string name =
+            fmt::format("step {} {}{}", kind_of(kind), integrator, corotational ? " corotational" : "");
         for (double s : extent.quick ? std::vector{0.9, 1.5} : std::vector{0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 3.0, 10.0})
           points.push_back({name, "step / bound [1]", fmt::format("{:g}", s), [scene, s, extent, corotational] {
                               return pluck(scene, s * bound_of(scene, precompute_tissue(scene.bodies[0], organ_mesh())),
@@ -99,29 +100,30 @@ std::vector<Point> cut_points(const Extent& extent) {
   std::vector<Point> points;
   for (const Body& kind : kinds) {
     if (extent.quick && !as<TensorMassSpec>(kind)) continue;
-    points.push_back(
-        {fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
-           Scene scene = organ_scene(kind);
-           const TetMesh mesh = organ_mesh(2);
-           const Archive archive = precompute_tissue(scene.bodies[0], mesh);
-           const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
-           const double step = 0.5 * largest_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
-           const int count = elastic_mesh(archive).tetrahedra.size();
-           Result r{.note = {}};
-           for (int t = count - 1; t >= 0; --t) {
-             tissue->remove(std::array{t});
-             for (int i = 0; i < 20; ++i) tissue->step(step);
-             for (int n = 0; n < tissue->nodes(); ++n) {
-               if (tissue->mass(n) > 0)
-                 tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
-               r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
-               if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
-             }
-             if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
-           }
-           r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
-           return r;
-         }});
+    points.push_back({fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
+                        Scene scene = organ_scene(kind);
+                        const TetMesh mesh = organ_mesh(2);
+                        const Archive archive = precompute_tissue(scene.bodies[0], mesh);
+                        const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
+                        const double step =
+                            0.5 * largest_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
+                        const int count = elastic_mesh(archive).tetrahedra.size();
+                        Result r{.note = {}};
+                        for (int t = count - 1; t >= 0; --t) {
+                          tissue->remove(std::array{t});
+                          for (int i = 0; i < 20; ++i) tissue->step(step);
+                          for (int n = 0; n < tissue->nodes(); ++n) {
+                            if (tissue->mass(n) > 0)
+                              tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2),
+                                                 Eigen::Vector3d::Zero());
+                            r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
+                            if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
+                          }
+                          if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
+                        }
+                        r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
+                        return r;
+                      }});
     points.push_back(
         {fmt::format("cut away {}", kind_of(kind)), "by", "cautery through the whole block", [=] {
            Scene scene = organ_scene(kind);

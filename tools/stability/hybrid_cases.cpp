@@ -62,9 +62,8 @@ std::vector<Point> hybrid_points(const Extent& extent) {
                         const TetMesh mesh = organ_mesh();
                         Scene scene = hybrid_scene(mesh, share);
                         Result r = press_organ(scene, mesh, 0.004, 300);
-                        r.note +=
-                            fmt::format("; {} of {} tetrahedra are dynamic",
-                                        upper_part(scene).size(), mesh.tetrahedra.size());
+                        r.note += fmt::format("; {} of {} tetrahedra are dynamic", upper_part(scene).size(),
+                                              mesh.tetrahedra.size());
                         return r;
                       }});
   points.push_back({"hybrid share", "dynamic part", "one tetrahedron at a corner", [] {

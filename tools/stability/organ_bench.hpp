@@ -1,6 +1,6 @@
 #pragma once
-#include "common/mesh/tet_mesh.hpp"
 #include "common/archive/archive.hpp"
+#include "common/mesh/tet_mesh.hpp"
 #include "common/sim/dynamic_world.hpp"
 #include "tools/stability/case.hpp"
 #include "tools/study/solid_kinds.hpp"

@@ -128,13 +128,13 @@ void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (!as<QuasiStaticSpec>(scene.bodies[b])) continue;
     for (const int count : extent.quick ? std::vector{1, 64, 512} : std::vector{1, 8, 32, 64, 96, 256, 512})
-      points.push_back({"held nodes", fmt::format("number, of body '{}'", name_of(scene.bodies[b])), std::to_string(count),
-                        [=] {
-                          const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
-                          return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface),
-                                            TouchBody::max_contacts);
-                        },
-                        600});
+      points.push_back(
+          {"held nodes", fmt::format("number, of body '{}'", name_of(scene.bodies[b])), std::to_string(count),
+           [=] {
+             const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
+             return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface), TouchBody::max_contacts);
+           },
+           600});
   }
 }
 

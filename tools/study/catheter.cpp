@@ -21,6 +21,13 @@ constexpr double stiff = 1e-6;                          // [m/N] of the grasps
 constexpr int places = 60;                              // along its length, where shapes are compared
 constexpr const char* insertion_suffix = " insertion";  // of the method in course.csv
 
+Catheter& shape_of(Scene& scene, int body) {
+  return std::get<CatheterSpec>(scene.bodies[body]).catheter;
+}
+const Catheter& shape_of(const Scene& scene, int body) {
+  return std::get<CatheterSpec>(scene.bodies[body]).catheter;
+}
+
 /// What the tip's pull did.
 struct Pulled {
   double force = 0;                    // [N] at the tip
@@ -33,7 +40,7 @@ class Rig {
   Rig(const Scene& scene, int body, double tick, double damping)
       : before_(bytes_in_use()), body_(settings(scene, body, tick, damping), nullptr) {
     bytes_ = bytes_in_use() - before_;
-    const Catheter& shape = *scene.bodies[body].catheter;
+    const Catheter& shape = shape_of(scene, body);
     const Eigen::Vector3d along = (shape.tip - shape.tail).normalized();
     side_ = along.unitOrthogonal();
     length_ = (shape.tip - shape.tail).norm();
@@ -110,7 +117,7 @@ class CatheterMethod : public Method {
       : scene_(scene),
         body_(body),
         quick_(quick),
-        name_(scene.bodies.size() == 1 ? "catheter" : fmt::format("{}:catheter", scene.bodies[body].name)) {
+        name_(scene.bodies.size() == 1 ? "catheter" : fmt::format("{}:catheter", name_of(scene.bodies[body]))) {
     if (!shape(scene).inside.empty()) insertion_.emplace(scene, body);
   }
   int body() const override { return body_; }
@@ -125,10 +132,10 @@ class CatheterMethod : public Method {
     for (const double share : {0.25, 0.5, 2.0}) {
       const int particles = std::max(4, static_cast<int>(std::lround(share * own)));
       add("particles", std::to_string(particles),
-          [b = body_, particles](Scene& s) { s.bodies[b].catheter->particles = particles; });
+          [b = body_, particles](Scene& s) { shape_of(s, b).particles = particles; });
     }
     const std::string other = shape(scene_).integrator == "implicit" ? "semi_implicit" : "implicit";
-    add("integrator", other, [b = body_, other](Scene& s) { s.bodies[b].catheter->integrator = other; });
+    add("integrator", other, [b = body_, other](Scene& s) { shape_of(s, b).integrator = other; });
     for (const int ticks : {2, 4}) {
       if (quick_ && ticks != 2) continue;
       const double hz = ticks * scene_.rates.haptic_hz;
@@ -171,12 +178,12 @@ class CatheterMethod : public Method {
   }
 
  private:
-  const Catheter& shape(const Scene& scene) const { return *scene.bodies[body_].catheter; }
+  const Catheter& shape(const Scene& scene) const { return shape_of(scene, body_); }
   double interval() const { return 1 / scene_.rates.haptic_hz; }
 
   void find_reference() {
     Scene scene = scene_;
-    Catheter& fine = *scene.bodies[body_].catheter;
+    Catheter& fine = shape_of(scene, body_);
     fine.particles = (quick_ ? 4 : 6) * fine.particles;
     fine.integrator = "implicit";
     const double tick = interval() / 8;
@@ -205,7 +212,7 @@ class CatheterMethod : public Method {
   /// So many times the particles, in ticks smaller by twice as much.
   std::vector<std::array<double, 2>> finer_insertion(int times) const {
     Scene scene = scene_;
-    Catheter& fine = *scene.bodies[body_].catheter;
+    Catheter& fine = shape_of(scene, body_);
     fine.particles = times * (fine.particles - 1) + 1;
     fine.integrator = "implicit";
     return insertion_->course(scene, interval() / (2 * times), interval());

@@ -7,10 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/dynamics/make_model.hpp"
-#include "common/models/solid/precompute.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -71,14 +70,14 @@ StaticProblem without(const SolidCase& solid, const std::vector<int>& slot) {
 }
 
 /// Displacements per mesh node once the model rests.
-Field rest_of(const Archive& archive, Body body, const std::vector<int>& slot, const Field& load,
+Field rest_of(const Archive& archive, const Body& body, const std::vector<int>& slot, const Field& load,
               std::vector<double>& seconds) {
-  body.dynamic.damping = std::max(60.0, body.dynamic.damping);
-  body.dynamic.gravity.setZero();
-  const auto model = make_dynamic_model(elastic_mesh(archive), body);
+  Dynamic motion = motion_of(body);
+  motion.damping = std::max(60.0, motion.damping);
+  const auto model = model_maker(body)(elastic_mesh(archive), motion);
   model->remove(slot);
   for (int n = 0; n < archive.surface.size(); ++n) model->set_load(n, load[archive.surface.node_number[n]]);
-  const double step = 0.9 * largest_step(integrator_of(body), model->frequency_bound(), body.dynamic.damping);
+  const double step = 0.9 * largest_step(integrator_of(motion), model->frequency_bound(), motion.damping);
   Field u(load.size(), Eigen::Vector3d::Zero());
   for (int round = 0; round < 400; ++round) {
     const auto times = time_steps(0, 100, [&](int) { model->step(step); });
@@ -114,9 +113,9 @@ Result rest_after_cut(const SolidCase& solid, const Body& body, Row row) {
   const Field load = load_on(solid, newton);
   const Field fresh = solve_loads(left, load).displacement;
   Body alone = body;
-  alone.dynamic.gravity.setZero();
+  motion_of(alone).gravity.setZero();
   const auto begin = std::chrono::steady_clock::now();
-  const Archive archive = precompute(alone, solid.mesh());
+  const Archive archive = precompute_tissue(alone, solid.mesh());
   row.offline_s = seconds_since(begin);
   std::vector<double> seconds;
   const Field ours = rest_of(archive, alone, slot, load, seconds);

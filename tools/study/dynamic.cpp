@@ -8,12 +8,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/dynamics/make_model.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tools/study/cut_rest.hpp"
 #include "tools/study/haptic_press.hpp"
 #include "tools/study/organ_press.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -34,11 +34,13 @@ class Dynamic : public Method {
       : solid_(std::move(solid)),
         model_(std::move(model)),
         name_(solid_->name(model_)),
-        own_(solid_->body().model == model_) {}
+        own_(kind_of(solid_->body()) == model_) {}
   int body() const override { return solid_->index(); }
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
+    const auto* own = as<MovingSpec>(solid_->body());
+    const Dynamic motion = own ? own->dynamic : Dynamic{};
     const auto add = [&](const std::string& knob, const std::string& value, bool serves,
                          std::function<void(Body&)> change) {
       all.push_back({name_, knob, value,
@@ -47,35 +49,35 @@ class Dynamic : public Method {
                        become(body);
                        change(body);
                      },
-                     serves && is_dynamic(solid_->body()) && (own_ || !solid_->has_two_meshes())});
+                     serves && own && (own_ || !solid_->has_two_meshes())});
     };
-    const Body& of = solid_->body();
     add(own_ ? "scene" : "model", own_ ? "as it is" : model_, true, [](Body&) {});
-    const bool turning = of.dynamic.corotational;
+    const bool turning = motion.corotational;
     if (model_ != "spring_mass")
       add("corotational", turning ? "off" : "on", true,
-          [turning](Body& body) { body.dynamic.corotational = !turning; });
+          [turning](Body& body) { motion_of(body).corotational = !turning; });
     if (!own_ && solid_->quick()) return all;
-    const std::string integrator = of.dynamic.integrator == "rk4" ? "semi_implicit" : "rk4";
+    const std::string integrator = motion.integrator == "rk4" ? "semi_implicit" : "rk4";
     add("integrator", integrator, true,
-        [integrator](Body& body) { body.dynamic.integrator = integrator, body.dynamic.step = 0; });
-    const std::string precision = of.dynamic.precision == "single" ? "double" : "single";
-    add("precision", precision, true, [precision](Body& body) { body.dynamic.precision = precision; });
+        [integrator](Body& body) { motion_of(body).integrator = integrator, motion_of(body).step = 0; });
+    const std::string precision = motion.precision == "single" ? "double" : "single";
+    add("precision", precision, true, [precision](Body& body) { motion_of(body).precision = precision; });
     for (const int parts : {1, 2, 4, 8}) {
       if ((solid_->quick() || !own_) && parts != 1 && parts != 4) continue;
       const double step = 0.9 * bound() / parts;
-      add("step", fmt::format("{:.4g} s", step), true, [step](Body& body) { body.dynamic.step = step; });
+      add("step", fmt::format("{:.4g} s", step), true, [step](Body& body) { motion_of(body).step = step; });
     }
-    if (model_ == "hybrid")
+    if (const auto* hybrid = as<HybridSpec>(solid_->body()); hybrid && own_)
       for (const int layers : {-1, 1, 2, 4}) {
         if (solid_->quick() && layers != 1) continue;
-        const auto part = grown_part(of, solid_->mesh(), layers);
+        const auto part = grown_part(*hybrid, solid_->mesh(), layers);
         if (part.empty() || part.size() == solid_->mesh().tetrahedra.size()) continue;
         add("dynamic share",
             fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.size()) /
                                         static_cast<double>(solid_->mesh().tetrahedra.size())),
-            layers > 0 && !solid_->has_two_meshes(),
-            [part](Body& body) { body.hybrid->regions = {Selector{.indices = part, .box = {}, .group = {}}}; });
+            layers > 0 && !solid_->has_two_meshes(), [part](Body& body) {
+              as<HybridSpec>(body)->hybrid.regions = {{{.indices = part, .box = {}, .group = {}}}};
+            });
       }
     if (model_ != "hybrid" && own_) {
       if (!solid_->quick()) all.push_back({name_, "resolution", "edges x 0.6", {}, false});
@@ -96,20 +98,26 @@ class Dynamic : public Method {
   }
 
  private:
+  /// The body as another kind that moves, in the way that it has if it moves already.
+  template <class Spec>
+  static Spec moving(const Body& body) {
+    Spec spec = as_kind<Spec>(*as<SolidSpec>(body));
+    if (const auto* own = as<MovingSpec>(body)) static_cast<MovingSpec&>(spec) = *own;
+    return spec;
+  }
+
   void become(Body& body) const {
-    body.model = model_;
-    body.offline.reset();
-    body.nonlinear.reset();
-    if (model_ != "hybrid") body.hybrid.reset();
+    if (model_ == TensorMassSpec::kind) body = moving<TensorMassSpec>(body);
+    if (model_ == SpringMassSpec::kind) body = moving<SpringMassSpec>(body);
   }
 
   Ready prepare(const Scene& scene) const { return prepare(scene.bodies[body()], solid_->mesh()); }
 
   Ready prepare(Body body, const TetMesh& mesh) const {
-    body.dynamic.gravity.setZero();
+    motion_of(body).gravity.setZero();
     Ready ready;
     const auto begin = std::chrono::steady_clock::now();
-    ready.archive = precompute(body, mesh);
+    ready.archive = precompute_tissue(body, mesh);
     ready.offline = seconds_since(begin);
     std::vector<int> of_mesh(mesh.nodes.size(), -1);
     for (int n = 0; n < ready.archive.surface.size(); ++n) of_mesh[ready.archive.surface.node_number[n]] = n;
@@ -128,7 +136,7 @@ class Dynamic : public Method {
     if (!bound_) {
       Scene scene = solid_->scene();
       become(scene.bodies[body()]);
-      scene.bodies[body()].dynamic.step = 0;
+      motion_of(scene.bodies[body()]).step = 0;
       const Ready ready = prepare(scene);
       const Scene alone = solid_->press_scene(scene, 0);
       bound_ = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
@@ -150,9 +158,9 @@ class Dynamic : public Method {
     const int samples = (solid_->quick() ? 400 : 2400) / static_cast<int>(presses.patches.size());
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
       Scene alone = solid_->press_scene(scene, static_cast<int>(p));
-      alone.bodies[0].dynamic.damping = std::max(rest_damping, alone.bodies[0].dynamic.damping);
-      if (alone.bodies[0].dynamic.step > 0)
-        alone.bodies[0].dynamic.step *= 0.98;  // the bound falls a little with the damping
+      Dynamic& motion = motion_of(alone.bodies[0]);
+      motion.damping = std::max(rest_damping, motion.damping);
+      if (motion.step > 0) motion.step *= 0.98;  // the bound falls a little with the damping
       OrganPress press(alone, ready.archive, presses.patches[p], presses.radius, tick());
       row.memory_bytes = static_cast<double>(press.bytes());
       answers.emplace_back();
@@ -185,11 +193,8 @@ class Dynamic : public Method {
   const PressAnswers& same_mesh() {
     if (!same_mesh_.empty()) return same_mesh_;
     Scene scene = solid_->scene();
-    Body& still = scene.bodies[body()];
-    still.model = "quasi_static";
-    still.hybrid.reset();
-    still.nonlinear.reset();
-    still.offline.reset();
+    const auto still = as_kind<QuasiStaticSpec>(solid_->solid());
+    scene.bodies[body()] = still;
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
@@ -218,18 +223,20 @@ class Dynamic : public Method {
   /// Against the same model in double precision with RK4 and a sixteenth of its bound.
   void add_course(Scene scene, const Ready& ready, Row row, Result& result) {
     const auto ours = course(scene, ready);
-    Body& of = scene.bodies[body()];
-    const std::string key = fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), of.dynamic.corotational,
-                                        of.model, ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
+    const Body& of = scene.bodies[body()];
+    Dynamic& motion = motion_of(scene.bodies[body()]);
+    const std::string key =
+        fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, kind_of(of),
+                    ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
     if (!small_step_.contains(key)) {
-      of.dynamic.integrator = "rk4";
-      of.dynamic.precision = "double";
-      of.dynamic.step = 0;
+      motion.integrator = "rk4";
+      motion.precision = "double";
+      motion.step = 0;
       const Scene alone = solid_->press_scene(scene, 0);
-      of.dynamic.step = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
-                            .organ()
-                            .largest_step() /
-                        16;
+      motion.step = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
+                        .organ()
+                        .largest_step() /
+                    16;
       small_step_[key] = course(scene, ready);
     }
     row.reference = "small_step";

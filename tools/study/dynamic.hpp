@@ -19,6 +19,6 @@ FinerBody finer_body(const Body& body, const StaticProblem& problem, double shar
 
 /// The elements of a hybrid's tensor-mass part, grown by so many layers of neighbours; shrunk by as many if
 /// negative.
-std::vector<int> grown_part(const Body& body, const TetMesh& mesh, int layers);
+std::vector<int> grown_part(const HybridSpec& body, const TetMesh& mesh, int layers);
 
 }  // namespace palpate::study

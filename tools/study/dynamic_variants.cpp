@@ -9,27 +9,28 @@ FinerBody finer_body(const Body& body, const StaticProblem& problem, double shar
   StaticProblem fine = refine_graded(
       problem, [=](const Eigen::Vector3d&) { return size; }, 60000);
   FinerBody finer{body, std::move(fine.mesh)};
-  finer.body.fixed.clear();
+  SolidSpec& solid = *as<SolidSpec>(finer.body);
+  solid.fixed.clear();
   for (int axis = 0; axis < 3; ++axis) {
-    FixedRegion region;
+    BoundaryCondition region;
     region.axes = {axis == 0, axis == 1, axis == 2};
     for (int n = 0; n < static_cast<int>(finer.mesh.nodes.size()); ++n)
       if (fine.dofs.index(n, axis) == DofMap::kFixed) region.where.indices.push_back(n);
-    if (!region.where.indices.empty()) finer.body.fixed.push_back(std::move(region));
+    if (!region.where.indices.empty()) solid.fixed.push_back(std::move(region));
   }
-  finer.body.materials.clear();
+  solid.materials.clear();
   for (std::size_t m = 1; m < fine.materials.materials.size(); ++m) {
     MaterialRegion region;
     region.material = fine.materials.materials[m];
     for (std::size_t t = 0; t < fine.materials.of_element.size(); ++t)
       if (fine.materials.of_element[t] == m) region.where.indices.push_back(static_cast<int>(t));
-    if (!region.where.indices.empty()) finer.body.materials.push_back(std::move(region));
+    if (!region.where.indices.empty()) solid.materials.push_back(std::move(region));
   }
-  finer.body.touchable.reset();
+  solid.touchable.reset();
   return finer;
 }
 
-std::vector<int> grown_part(const Body& body, const TetMesh& mesh, int layers) {
+std::vector<int> grown_part(const HybridSpec& body, const TetMesh& mesh, int layers) {
   std::vector<char> in(mesh.tetrahedra.size(), 0);
   for (const int t : dynamic_elements(body, mesh)) in[t] = 1;
   for (int layer = 0; layer < std::abs(layers); ++layer) {

@@ -6,13 +6,13 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "common/models/catheter/catheter_body.hpp"
 #include "common/dynamics/element_tensors.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/shell_generators.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 #include "common/models/modal_shell/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tools/study/haptic_press.hpp"
 
 namespace palpate::study {
@@ -50,7 +50,7 @@ Scene press_scene(Body body, double radius, const Eigen::Vector3d& at) {
   Tool ball;
   ball.name = "ball";
   ball.pivot = at + Eigen::Vector3d(0, 0, 0.3);
-  ball.radius = radius;
+  ball.probe()->radius = radius;
   ball.shaft_radius = 0.3 * radius;
   ball.shaft_length = 0.4 * radius;
   ball.max_force = 1e9;
@@ -59,8 +59,8 @@ Scene press_scene(Body body, double radius, const Eigen::Vector3d& at) {
   return scene;
 }
 
-Body block_body() {
-  Body body;
+QuasiStaticSpec block_body() {
+  QuasiStaticSpec body;
   body.name = "block";
   body.material = {5000, 0.4, 1000};
   body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
@@ -115,13 +115,12 @@ void over_edges(Growth& growth) {
 void over_modes(Growth& growth) {
   const ShellMesh mesh = make_tube(0.0045, 0.06, 16, 24);
   for (const int modes : growth.quick() ? std::vector{10, 40} : std::vector{10, 20, 40, 80, 160, 320}) {
-    Body body;
+    ModalShellSpec body;
     body.name = "duct";
-    body.model = "modal_shell";
     body.material = {1e5, 0.45, 1050};
-    body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "end0"}});
-    body.shell = Shell{.thickness = 8e-4, .modes = modes};
-    const Archive archive = precompute_shell(body, mesh);
+    body.fixed.push_back({{.where = {.indices = {}, .box = {}, .group = "end0"}}});
+    body.shell = {.thickness = 8e-4, .modes = modes};
+    const Archive archive = precompute(body, mesh);
     const Patch side{{0.0045, 0.0002, 0.031}, {-1, 0, 0}, 0};
     Scene scene = press_scene(body, 0.002, side.point);
     scene.tools[0].axis = side.inward;

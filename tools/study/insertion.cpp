@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "common/mesh/shell_file.hpp"
-#include "common/models/modal_shell/precompute.hpp"
 #include "common/models/modal_shell/modal_body.hpp"
+#include "common/models/modal_shell/precompute.hpp"
 #include "tools/study/measure.hpp"
 
 namespace palpate::study {
@@ -31,8 +31,8 @@ double force_on_wall(const CatheterBody& catheter) {
 }  // namespace
 
 CatheterSettings catheter_settings(const Scene& scene, int catheter, double tick) {
-  const Body& of = scene.bodies[catheter];
-  return {.shape = *of.catheter,
+  const auto& of = std::get<CatheterSpec>(scene.bodies[catheter]);
+  return {.shape = of.catheter,
           .young = of.material.young,
           .density = of.material.density,
           .step = tick,
@@ -40,20 +40,20 @@ CatheterSettings catheter_settings(const Scene& scene, int catheter, double tick
 }
 
 Insertion::Insertion(const Scene& scene, int catheter) : catheter_(catheter) {
-  const Catheter& shape = *scene.bodies[catheter].catheter;
-  duct_ = static_cast<int>(std::ranges::find(scene.bodies, shape.inside, &Body::name) - scene.bodies.begin());
-  const Body& duct = scene.bodies[duct_];
-  archive_ = precompute_shell(duct, load_shell_mesh(duct.mesh, duct.scale));
+  const Catheter& shape = std::get<CatheterSpec>(scene.bodies[catheter]).catheter;
+  const auto name = [](const Body& body) { return name_of(body); };
+  duct_ = static_cast<int>(std::ranges::find(scene.bodies, shape.inside, name) - scene.bodies.begin());
+  const auto& duct = std::get<ModalShellSpec>(scene.bodies[duct_]);
+  archive_ = precompute(duct, load_shell_mesh(duct.mesh, duct.scale));
   feed_ = share_led * (shape.tip - shape.tail).norm();
 }
 
 std::vector<std::array<double, 2>> Insertion::course(const Scene& scene, double tick, double interval,
                                                      std::vector<double>* times) const {
-  Scene ticking = scene;
-  ticking.rates.haptic_hz = 1 / tick;
-  ModalBody duct(archive_, ticking, duct_);
-  CatheterBody catheter(catheter_settings(ticking, catheter_, tick), &duct);
-  const Catheter& shape = *scene.bodies[catheter_].catheter;
+  ModalBody duct(archive_, std::get<ModalShellSpec>(scene.bodies[duct_]),
+                 StepSettings{scene.contact, scene.tools, tick});
+  CatheterBody catheter(catheter_settings(scene, catheter_, tick), &duct);
+  const Catheter& shape = std::get<CatheterSpec>(scene.bodies[catheter_]).catheter;
   const Eigen::Vector3d along = (shape.tip - shape.tail).normalized(), side = along.unitOrthogonal();
   std::array jaw{Eigen::Isometry3d::Identity()};
   const Eigen::Vector3d held = shape.tip - held_at * feed_ * along;

@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "common/models/catheter/catheter_body.hpp"
 #include "common/archive/archive.hpp"
+#include "common/models/catheter/catheter_body.hpp"
 
 namespace palpate::study {
 

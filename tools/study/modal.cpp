@@ -58,7 +58,7 @@ class Modal : public Method {
         quick_(quick),
         mesh_(load_shell_mesh(of(scene).mesh, of(scene).scale)),
         name_(scene.bodies.size() == 1 ? "modal_shell" : fmt::format("{}:modal_shell", of(scene).name)),
-        as_is_(precompute_shell(of(scene), mesh_)),
+        as_is_(precompute(of(scene), mesh_)),
         errors_(node_areas(as_is_.surface), choose_presses(scene, as_is_.surface, quick)) {}
 
   int body() const override { return body_; }
@@ -66,7 +66,9 @@ class Modal : public Method {
   std::vector<Point> points() const override {
     std::vector<Point> all;
     const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Shell&)> change) {
-      all.push_back({name_, knob, value, [b = body_, change](Scene& scene) { change(*scene.bodies[b].shell); }, true});
+      all.push_back({name_, knob, value,
+                     [b = body_, change](Scene& scene) { change(std::get<ModalShellSpec>(scene.bodies[b]).shell); },
+                     true});
     };
     add("scene", "as it is", [](Shell&) {});
     const std::vector<int> counts = quick_ ? std::vector{5, 20, 50} : std::vector{5, 10, 20, 50, 100, 200};
@@ -82,7 +84,7 @@ class Modal : public Method {
     point.apply(scene);
     Row row{scene_.file.stem().string(), point.method, point.knob, point.value};
     const auto begin = std::chrono::steady_clock::now();
-    const Archive archive = precompute_shell(of(scene), mesh_);
+    const Archive archive = precompute(of(scene), mesh_);
     row.offline_s = seconds_since(begin);
     std::vector<double> seconds;
     const Pressed ours = press(scene, archive, &seconds, &row.memory_bytes);
@@ -98,10 +100,10 @@ class Modal : public Method {
   }
 
  private:
-  const Body& of(const Scene& scene) const { return scene.bodies[body_]; }
-  Body& of(Scene& scene) const { return scene.bodies[body_]; }
+  const ModalShellSpec& of(const Scene& scene) const { return std::get<ModalShellSpec>(scene.bodies[body_]); }
+  ModalShellSpec& of(Scene& scene) const { return std::get<ModalShellSpec>(scene.bodies[body_]); }
   double step() const { return 1 / scene_.rates.haptic_hz; }
-  double touching() const { return errors_.presses().radius + of(scene_).shell->thickness / 2; }
+  double touching() const { return errors_.presses().radius + of(scene_).shell.thickness / 2; }
 
   Scene press_scene(const Scene& from, const Patch& patch) const {
     Scene scene;
@@ -115,9 +117,9 @@ class Modal : public Method {
     ball.name = "ball";
     ball.axis = patch.inward;
     ball.up = patch.inward.unitOrthogonal();
-    ball.radius = errors_.presses().radius;
-    ball.shaft_radius = 0.3 * ball.radius;
-    ball.shaft_length = 0.4 * ball.radius;
+    ball.probe()->radius = errors_.presses().radius;
+    ball.shaft_radius = 0.3 * errors_.presses().radius;
+    ball.shaft_length = 0.4 * errors_.presses().radius;
     ball.pivot = patch.point - 0.3 * patch.inward;
     ball.max_force = 1e9;
     ball.max_force_rate = 1e15;
@@ -171,21 +173,21 @@ class Modal : public Method {
   const Pressed& all_modes() {
     if (all_modes_) return *all_modes_;
     Scene scene = scene_;
-    Shell& shell = *of(scene).shell;
+    Shell& shell = of(scene).shell;
     shell.modes = 0;
     for (const auto& fixed : as_is_.surface.fixed)
       for (const bool axis : fixed) shell.modes += !axis;
     shell.residual = true;
-    return all_modes_.emplace(press(scene, precompute_shell(of(scene), mesh_), nullptr, nullptr));
+    return all_modes_.emplace(press(scene, precompute(of(scene), mesh_), nullptr, nullptr));
   }
 
   const Pressed& refined() {
     if (refined_) return *refined_;
     Scene scene = scene_;
     const ShellMesh fine = refine(mesh_);
-    of(scene).shell->modes = modes_of_refined;
-    of(scene).shell->residual = true;
-    Selector near;
+    of(scene).shell.modes = modes_of_refined;
+    of(scene).shell.residual = true;
+    NodeSelector near;
     for (int n = 0; n < static_cast<int>(fine.nodes.size()); ++n)
       for (const Patch& p : errors_.presses().patches)
         if ((fine.nodes[n] - p.point).norm() < 4 * errors_.presses().radius) {
@@ -193,7 +195,7 @@ class Modal : public Method {
           break;
         }
     of(scene).touchable = near;
-    return refined_.emplace(press(scene, precompute_shell(of(scene), fine), nullptr, nullptr));
+    return refined_.emplace(press(scene, precompute(of(scene), fine), nullptr, nullptr));
   }
 
   const Scene& scene_;

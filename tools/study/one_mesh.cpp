@@ -6,19 +6,21 @@
 
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/hybrid/join_meshes.hpp"
-#include "common/models/moving/precompute.hpp"
+#include "common/models/hybrid/precompute.hpp"
 
 namespace palpate::study {
 
 std::optional<OneMesh> on_one_mesh(const Body& body) {
-  OneMesh one{body, load_tet_mesh(body.mesh, body.scale)};
-  if (!body.hybrid || body.hybrid->mesh.empty()) return one;
-  const TetMesh moving = load_tet_mesh(body.hybrid->mesh, body.hybrid->scale);
-  if (!precompute_dynamic(body, one.mesh, &moving).hybrid->gap.empty()) return {};
+  const SolidSpec& solid = *as<SolidSpec>(body);
+  OneMesh one{body, load_tet_mesh(solid.mesh, solid.scale)};
+  auto* spec = as<HybridSpec>(one.body);
+  if (!spec || spec->hybrid.mesh.empty()) return one;
+  const TetMesh moving = load_tet_mesh(spec->hybrid.mesh, spec->hybrid.scale);
+  if (!precompute(*spec, one.mesh, &moving).hybrid->gap.empty()) return {};
   std::vector<int> part(moving.tetrahedra.size());
   std::iota(part.begin(), part.end(), static_cast<int>(one.mesh.tetrahedra.size()));
-  one.mesh = join_meshes(one.mesh, moving, fmt::format("body '{}'", body.name));
-  one.body.hybrid = Hybrid{.regions = {Selector{.indices = part, .box = {}, .group = {}}}, .mesh = {}};
+  one.mesh = join_meshes(one.mesh, moving, fmt::format("body '{}'", spec->name));
+  spec->hybrid = {.regions = {{{.indices = part, .box = {}, .group = {}}}}, .mesh = {}};
   return one;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/tool/instrument.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 
@@ -15,7 +16,8 @@ OrganPress::OrganPress(const Scene& scene, const Archive& archive, const Patch& 
       depth_(-0.05 * radius),
       parts_(tool_parts(scene.tools[0])),
       before_(bytes_in_use()),
-      organ_(archive, scene, 0),
+      organ_(archive, *as<MovingSpec>(scene.bodies[0]),
+             StepSettings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz}, model_maker(scene.bodies[0])),
       bytes_(bytes_in_use() - before_),
       trocar_(make_trocar(scene.tools[0].pivot, scene.tools[0].axis, scene.tools[0].up)) {
   tool_.moving.parts = tool_.moving.parts_before = parts_;

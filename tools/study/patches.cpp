@@ -48,9 +48,9 @@ std::vector<double> smoothness(const SurfaceMap& s, double reach) {
 
 double study_radius(const Scene& scene, const SurfaceMap& surface, std::string& from) {
   for (const Tool& tool : scene.tools)
-    if (tool.kind == "probe") {
+    if (const ProbeSpec* probe = tool.probe()) {
       from = "the tip of tool '" + tool.name + "'";
-      return tool.radius;
+      return probe->radius;
     }
   from = "the mean edge of the surface, for want of a probe";
   return mean_edge(surface);

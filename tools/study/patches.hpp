@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate::study {
 

@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tools/study/haptic_press.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -32,11 +33,10 @@ std::vector<int> nearest_nodes(const SolidCase& solid, int count) {
   return nodes;
 }
 
-void make_quasi_static_body(Body& body) {
-  body.model = "quasi_static";
-  body.hybrid.reset();
-  body.tearing.reset();
-  body.dynamic = {};
+/// The body, which becomes a quasi-static one if it is not.
+QuasiStaticSpec& as_quasi_static(Body& body) {
+  if (!as<QuasiStaticSpec>(body)) body = as_kind<QuasiStaticSpec>(*as<SolidSpec>(body));
+  return *as<QuasiStaticSpec>(body);
 }
 
 class QuasiStatic : public Method {
@@ -47,12 +47,13 @@ class QuasiStatic : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const bool serves = !is_dynamic(solid_->body());
+    const auto* own = as<QuasiStaticSpec>(solid_->body());
+    const bool serves = own != nullptr;
     const int b = solid_->index();
     const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
       all.push_back({name_, knob, value,
                      [=](Scene& scene) {
-                       make_quasi_static_body(scene.bodies[b]);
+                       as_quasi_static(scene.bodies[b]);
                        change(scene);
                      },
                      serves});
@@ -61,7 +62,7 @@ class QuasiStatic : public Method {
     add("rule", other_rule(), [rule = other_rule()](Scene& scene) { scene.contact.rule = rule; });
     for (const int count : tensor_counts())
       add("tensors", std::to_string(count), [b, nodes = nearest_nodes(*solid_, count)](Scene& scene) {
-        scene.bodies[b].touchable = Selector{.indices = nodes, .box = {}, .group = {}};
+        as_quasi_static(scene.bodies[b]).touchable = NodeSelector{{.indices = nodes, .box = {}, .group = {}}};
       });
     all.push_back({name_, "precision", "single", {}, serves});
     all.push_back({name_, "precision", "double", {}, serves});
@@ -72,9 +73,10 @@ class QuasiStatic : public Method {
         {"refine 2", {.refine = 2}}};
     for (const auto& [value, offline] : better) {
       if (solid_->quick() && value != "refine 1") continue;
-      add("offline", value, [b, offline](Scene& scene) { scene.bodies[b].offline = offline; });
+      add("offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; });
     }
-    if (solid_->body().nonlinear) add("correction", "off", [b](Scene& scene) { scene.bodies[b].nonlinear.reset(); });
+    if (own && own->nonlinear)
+      add("correction", "off", [b](Scene& scene) { as_quasi_static(scene.bodies[b]).nonlinear.reset(); });
     return all;
   }
 
@@ -83,13 +85,11 @@ class QuasiStatic : public Method {
       throw std::runtime_error(fmt::format("{} tetrahedra take palpate precompute many minutes; a study goes up to {}",
                                            64 * solid_->mesh().tetrahedra.size(), most_tetrahedra));
     Scene scene = solid_->scene();
-    if (point.apply)
-      point.apply(scene);
-    else
-      make_quasi_static_body(scene.bodies[body()]);
+    if (point.apply) point.apply(scene);
+    QuasiStaticSpec& spec = as_quasi_static(scene.bodies[body()]);
     Row row{solid_->scene().file.stem().string(), point.method, point.knob, point.value};
     const auto begin = std::chrono::steady_clock::now();
-    Archive archive = compute(scene.bodies[body()]);
+    Archive archive = compute(spec);
     row.offline_s = seconds_since(begin);
     if (point.value == "single") round_tensors(archive);
     Result result;
@@ -129,7 +129,7 @@ class QuasiStatic : public Method {
     return counts;
   }
 
-  Archive compute(const Body& body) const {
+  Archive compute(const QuasiStaticSpec& body) const {
     if (body.nonlinear && !body.nonlinear->specimen_mesh.empty()) {
       const TetMesh specimen = load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
       return precompute(body, solid_->mesh(), &specimen);

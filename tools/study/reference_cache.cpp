@@ -6,16 +6,16 @@
 #include <fstream>
 #include <optional>
 
-#include "common/models/content_hash.hpp"
+#include "common/describe/digest.hpp"
 
 namespace palpate::study {
 namespace {
 
 std::string sum_of(const std::vector<double>& values) {
-  return checksum(values.data(), values.size() * sizeof(double));
+  return digest(values.data(), values.size() * sizeof(double));
 }
 
-/// Checksum, then the numbers; nothing where the file is absent or damaged.
+/// Digest, then the numbers; nothing where the file is absent or damaged.
 std::optional<std::vector<double>> read_numbers(const std::filesystem::path& file) {
   std::error_code error;
   const auto bytes = std::filesystem::file_size(file, error);
@@ -35,7 +35,7 @@ std::optional<std::vector<double>> read_numbers(const std::filesystem::path& fil
 std::vector<double> ReferenceCache::get(const std::string& key,
                                         const std::function<std::vector<double>()>& compute) const {
   if (folder_.empty()) return compute();
-  const auto file = folder_ / (checksum(key.data(), key.size()) + ".reference");
+  const auto file = folder_ / (digest(key) + ".reference");
   if (auto found = read_numbers(file)) return *std::move(found);
   const std::vector<double> values = compute();
   std::filesystem::create_directories(folder_);

@@ -13,6 +13,7 @@
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
 #include "tools/study/reference/newton.hpp"
+#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -32,7 +33,8 @@ void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
 
 /// Empty unless the body has a second mesh.
 std::string second_mesh(const Body& body) {
-  return body.hybrid && !body.hybrid->mesh.empty() ? content_hash(body) : "";
+  const auto* hybrid = as<HybridSpec>(body);
+  return hybrid && !hybrid->hybrid.mesh.empty() ? content_hash(body) : "";
 }
 
 Scene with_body(Scene scene, int index, Body body) {
@@ -49,12 +51,12 @@ SolidCase::SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, Re
       quick_(quick),
       cache_(std::move(cache)),
       say_(std::move(say)),
-      problem_(make_static_problem(this->body(), std::move(whole.mesh))),
-      surface_(make_surface_map(this->body(), problem_.mesh, problem_.dofs)),
+      problem_(make_static_problem(solid(), std::move(whole.mesh))),
+      surface_(make_surface_map(solid(), problem_.mesh, problem_.dofs)),
       errors_(node_areas(surface_), choose_presses(scene, surface_, quick)) {}
 
 std::string SolidCase::name(const std::string& model) const {
-  return scene_.bodies.size() == 1 ? model : fmt::format("{}:{}", body().name, model);
+  return scene_.bodies.size() == 1 ? model : fmt::format("{}:{}", solid().name, model);
 }
 
 Scene SolidCase::press_scene(const Scene& from, int patch) const {
@@ -62,8 +64,10 @@ Scene SolidCase::press_scene(const Scene& from, int patch) const {
   Scene scene;
   scene.file = from.file;
   scene.bodies = {from.bodies[body_]};
-  scene.bodies[0].dynamic.gravity.setZero();
-  scene.bodies[0].tearing.reset();
+  if (auto* moving = as<MovingSpec>(scene.bodies[0])) {
+    moving->dynamic.gravity.setZero();
+    moving->tearing.reset();
+  }
   scene.contact = from.contact;
   scene.contact.friction = 0;
   scene.rates = from.rates;
@@ -72,7 +76,7 @@ Scene SolidCase::press_scene(const Scene& from, int patch) const {
   ball.name = "ball";
   ball.axis = at.inward;
   ball.up = at.inward.unitOrthogonal();
-  ball.radius = presses().radius;
+  ball.probe()->radius = presses().radius;
   ball.shaft_radius = 0.3 * presses().radius;
   ball.shaft_length = 0.4 * presses().radius;
   ball.pivot = at.point - 0.3 * at.inward;
@@ -106,12 +110,7 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strid
 // the mesh.
 std::string SolidCase::key(int patch, const Fineness& fineness) const {
   constexpr int definitions = 2;  // changes with every change of how references are solved
-  Body plain = body();
-  plain.model = "quasi_static";
-  plain.hybrid.reset();
-  plain.tearing.reset();
-  plain.nonlinear.reset();
-  plain.offline.reset();
+  const Body plain = as_kind<QuasiStaticSpec>(solid());
   const Patch& at = presses().patches[patch];
   std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
                                  fineness.ball, fineness.growth);

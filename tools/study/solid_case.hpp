@@ -25,6 +25,7 @@ class SolidCase {
   const Scene& scene() const { return scene_; }
   int index() const { return body_; }
   const Body& body() const { return scene_.bodies[body_]; }
+  const SolidSpec& solid() const { return *as<SolidSpec>(body()); }
   bool has_two_meshes() const { return !second_mesh_.empty(); }  ///< in the scene's files
   bool quick() const { return quick_; }
   const TetMesh& mesh() const { return problem_.mesh; }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/describe/digest.hpp"
 #include "common/models/content_hash.hpp"
 
 namespace palpate::study {
@@ -35,7 +36,7 @@ Store::Store(const std::filesystem::path& folder, const std::string& key) : fold
 
 std::filesystem::path Store::file(const Point& point) const {
   std::string name = fmt::format("{} {} {}", point.method, point.knob, point.value);
-  const std::string hash = checksum(name.data(), name.size()).substr(0, 8);
+  const std::string hash = digest(name).substr(0, 8);
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return folder_ / fmt::format("{}-{}.csv", name.substr(0, 80), hash);
@@ -60,8 +61,8 @@ std::string study_key(const Scene& scene, bool quick) {
       fmt::format("{} {} {} {}", PALPATE_VERSION, definitions, quick ? "quick" : "whole", scene_hash(scene));
   for (const Body& body : scene.bodies) {
     key += " " + content_hash(body);
-    if (body.catheter && !body.catheter->inside.empty()) key += " with insertion";
-    if (body.hybrid && !body.hybrid->mesh.empty()) key += " on one mesh";
+    if (const auto* wire = as<CatheterSpec>(body); wire && !wire->catheter.inside.empty()) key += " with insertion";
+    if (const auto* hybrid = as<HybridSpec>(body); hybrid && !hybrid->hybrid.mesh.empty()) key += " on one mesh";
   }
   return key;
 }

@@ -39,17 +39,18 @@ class JoinedAtNodes : public Method {
 void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods& methods) {
   const bool quick = options.quick;
   const Body& body = scene.bodies[b];
-  if (body.catheter) {
+  if (as<CatheterSpec>(body)) {
     methods.push_back(make_catheter(scene, b, quick));
     return;
   }
-  if (body.shell) {
+  if (as<ModalShellSpec>(body)) {
     methods.push_back(make_modal(scene, b, quick));
     return;
   }
   auto whole = on_one_mesh(body);
   if (!whole) {
-    methods.push_back(std::make_unique<JoinedAtNodes>(b, scene.bodies.size() == 1 ? "hybrid" : body.name + ":hybrid"));
+    methods.push_back(
+        std::make_unique<JoinedAtNodes>(b, scene.bodies.size() == 1 ? "hybrid" : name_of(body) + ":hybrid"));
     return;
   }
   auto solid =
@@ -57,7 +58,7 @@ void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods
   methods.push_back(make_quasi_static(solid));
   methods.push_back(make_linearity(solid));
   std::vector<std::string> models{"tensor_mass", "spring_mass"};
-  if (body.model == "hybrid") models.insert(models.begin(), "hybrid");
+  if (as<HybridSpec>(body)) models.insert(models.begin(), "hybrid");
   for (const std::string& model : models) methods.push_back(make_dynamic(solid, model));
 }
 

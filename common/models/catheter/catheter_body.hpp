@@ -9,10 +9,10 @@
 #include "common/models/catheter/grasps.hpp"
 #include "common/models/catheter/lumen.hpp"
 #include "common/models/catheter/sleeve.hpp"
+#include "common/models/catheter/spec.hpp"
 #include "common/models/catheter/tool_touches.hpp"
 #include "common/models/catheter/wall.hpp"
 #include "common/models/catheter/wall_touches.hpp"
-#include "common/models/catheter/spec.hpp"
 
 namespace palpate {
 

@@ -19,10 +19,10 @@ void check_duct(const CatheterSpec& wire, const ShellSpec& duct, const ShellMesh
                     mouths > 2 ? ": is there a hole in the wall?" : ""));
   const double lumen = lumen_radius(mesh) - 0.5 * duct.shell.thickness;
   if (wire.catheter.radius >= lumen)
-    throw std::runtime_error(fmt::format(
-        "{}: the catheter '{}' is {:.4g} mm wide, and the duct '{}' is {:.4g} mm wide inside "
-        "at its narrowest",
-        duct.mesh.string(), wire.name, 2e3 * wire.catheter.radius, duct.name, 2e3 * std::max(0.0, lumen)));
+    throw std::runtime_error(
+        fmt::format("{}: the catheter '{}' is {:.4g} mm wide, and the duct '{}' is {:.4g} mm wide inside "
+                    "at its narrowest",
+                    duct.mesh.string(), wire.name, 2e3 * wire.catheter.radius, duct.name, 2e3 * std::max(0.0, lumen)));
 }
 
 }  // namespace palpate

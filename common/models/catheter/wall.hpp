@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/anchor.hpp"
 #include "common/contact/touch_surface.hpp"
+#include "common/geometry/anchor.hpp"
 
 namespace palpate {
 

@@ -1,8 +1,8 @@
 #pragma once
+#include "common/archive/archive.hpp"
 #include "common/fem/fixation.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/models/hybrid/spec.hpp"
-#include "common/archive/archive.hpp"
 
 namespace palpate {
 

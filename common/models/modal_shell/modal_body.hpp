@@ -1,7 +1,7 @@
 #pragma once
+#include "common/contact/touch_body.hpp"
 #include "common/models/catheter/wall.hpp"
 #include "common/models/modal_shell/modal_newmark.hpp"
-#include "common/contact/touch_body.hpp"
 #include "common/shell/spec.hpp"
 
 namespace palpate {

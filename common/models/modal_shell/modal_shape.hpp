@@ -2,15 +2,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "common/kernels/kernels.hpp"
-<<<<<<< HEAD:common/models/modal_shell/modal_shape.hpp
 #include "common/archive/archive.hpp"
 #include "common/archive/compliance.hpp"
-=======
-#include "common/tensors/archive.hpp"
-#include "common/tensors/compliance.hpp"
+#include "common/kernels/kernels.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:common/models/modal_shape.hpp
 
 namespace palpate {
 

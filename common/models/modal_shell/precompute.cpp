@@ -6,13 +6,13 @@
 #include <new>
 #include <stdexcept>
 
-#include "common/mesh/shell_file.hpp"
 #include "common/fem/factorisation.hpp"
 #include "common/fem/stopwatch.hpp"
+#include "common/mesh/shell_file.hpp"
+#include "common/models/solid/precompute.hpp"
 #include "common/shell/fixation.hpp"
 #include "common/shell/modes.hpp"
 #include "common/shell/shell_system.hpp"
-#include "common/models/solid/precompute.hpp"
 
 namespace palpate {
 namespace {
@@ -66,7 +66,8 @@ void add_compliance(const SparseMatrix& stiffness, const ShellDofs& dofs, Archiv
   }
 }
 
-void add_modes(const ShellSpec& body, const ShellSystem& system, const std::vector<double>& node_mass, Archive& archive) {
+void add_modes(const ShellSpec& body, const ShellSystem& system, const std::vector<double>& node_mass,
+               Archive& archive) {
   const auto modes = lowest_modes(system.stiffness, system.mass, body.shell.modes);
   ModalTensors& modal = archive.modal.emplace();
   modal.thickness = body.shell.thickness;
@@ -121,8 +122,7 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   archive.other_dofs = free_dofs(archive.surface, archive.surface.touchable, archive.surface.size());
   watch.lap("surface");
 
-  const ShellMaterial material{body.material.young, body.material.poisson, body.material.density,
-                               body.shell.thickness};
+  const ShellMaterial material{body.material.young, body.material.poisson, body.material.density, body.shell.thickness};
   const auto bending = body.shell.bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
   const auto system = make_shell_system(mesh, material, bending, std::move(dofs), where);
   watch.lap("assembly");

@@ -1,9 +1,9 @@
 #pragma once
+#include "common/archive/archive.hpp"
 #include "common/fem/condensation.hpp"
 #include "common/mesh/shell_mesh.hpp"
 #include "common/models/modal_shell/spec.hpp"
 #include "common/shell/shell_dofs.hpp"
-#include "common/archive/archive.hpp"
 
 namespace palpate {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <string_view>
 
-#include "common/shell/spec.hpp"
 #include "common/models/kind.hpp"
+#include "common/shell/spec.hpp"
 
 namespace palpate {
 

@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/geometry/triangle.hpp"
+#include "common/describe/state_bytes.hpp"
 #include "common/dynamics/make_model.hpp"
+#include "common/geometry/triangle.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/jaws.hpp"
-#include "common/describe/state_bytes.hpp"
 
 namespace palpate {
 namespace {

@@ -6,24 +6,19 @@
 #include <span>
 #include <vector>
 
+#include "common/archive/archive.hpp"
 #include "common/contact/cut_surface.hpp"
+#include "common/contact/step_settings.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
-#include "common/dynamics/tearing.hpp"
-#include "common/mesh/shown_surface.hpp"
-#include "common/contact/step_settings.hpp"
 #include "common/dynamics/make_model.hpp"
 #include "common/dynamics/spec.hpp"
-#include "common/archive/archive.hpp"
-#include "common/tool/kinematics.hpp"
-<<<<<<< HEAD:common/models/moving/dynamic_organ.hpp
+#include "common/dynamics/tearing.hpp"
+#include "common/mesh/shown_surface.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/tissue_contact.hpp"
-=======
-#include "deform_node/hybrid_touch.hpp"
-#include "deform_node/tissue_contact.hpp"
+#include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
->>>>>>> messages:deform_node/dynamic_organ.hpp
 
 namespace palpate {
 
@@ -34,8 +29,8 @@ struct ToolInTick {
   bool present = false;  ///< its pose is known
 };
 
-/// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a time;
-/// the same inputs from the same state give the same bits.
+/// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a
+/// time; the same inputs from the same state give the same bits.
 class DynamicOrgan {
  public:
   /// Throws std::runtime_error naming the body if the scene's step is not stable, with the bound.

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/hybrid_part.hpp"
-#include "common/contact/step_settings.hpp"
 
 namespace palpate {
 

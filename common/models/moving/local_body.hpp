@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 
-#include "common/models/moving/local_model.hpp"
 #include "common/contact/touch_body.hpp"
+#include "common/models/moving/local_model.hpp"
 
 namespace palpate {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/anchor.hpp"
 #include "common/contact/cut_surface.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/geometry/anchor.hpp"
 #include "common/mesh/shown_surface.hpp"
 #include "common/tool/moving_tool.hpp"
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <span>
 
+#include "common/archive/archive.hpp"
 #include "common/models/quasi_static/fitted_curve.hpp"
 #include "common/models/quasi_static/spec.hpp"
-#include "common/archive/archive.hpp"
 
 namespace palpate {
 

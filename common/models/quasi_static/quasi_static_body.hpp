@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "common/models/quasi_static/nonlinear.hpp"
 #include "common/contact/touch_body.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
 
 namespace palpate {
 

@@ -1,6 +1,5 @@
 #include "common/models/solid/precompute.hpp"
 
-
 namespace palpate {
 
 std::vector<Dof> free_dofs(const SurfaceMap& surface, int begin, int end) {

@@ -1,7 +1,7 @@
 #pragma once
+#include "common/archive/archive.hpp"
 #include "common/fem/condensation.hpp"
 #include "common/mesh/tet_mesh.hpp"
-#include "common/archive/archive.hpp"
 
 namespace palpate {
 

@@ -14,7 +14,8 @@ bool any_free(const DofMap& dofs, int node) {
   return dofs.is_free(node, 0) || dofs.is_free(node, 1) || dofs.is_free(node, 2);
 }
 
-std::vector<char> touchable_mask(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs, const Surface& surface) {
+std::vector<char> touchable_mask(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,
+                                 const Surface& surface) {
   std::vector<char> allowed(mesh.nodes.size(), !body.touchable);
   const std::string place = fmt::format("body '{}': [body.touchable]", body.name);
   if (body.touchable)
@@ -36,7 +37,8 @@ std::vector<int> inner_nodes(const Surface& surface, std::vector<int> nodes) {
 
 }  // namespace
 
-SurfaceMap make_surface_map(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs, const std::vector<int>& also) {
+SurfaceMap make_surface_map(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,
+                            const std::vector<int>& also) {
   const auto surface = extract_surface(mesh);
   const auto touchable = touchable_mask(body, mesh, dofs, surface);
   SurfaceMap map;

@@ -1,4 +1,5 @@
 #include "common/models/moving/precompute.hpp"
+
 #include "common/models/spring_mass/spec.hpp"
 
 namespace palpate {
