@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/scene/scene.hpp"
 #include "common/models/catheter/catheter_body.hpp"
 
 namespace palpate::study {
