@@ -8,9 +8,6 @@
 
 namespace palpate {
 
-/// Fills in what a task record says of the task.
-void describe(const Task& task, TaskRecord& record);
-
 /// Turns step records into messages and writes them. Runs on the publisher thread.
 class Publisher {
  public:

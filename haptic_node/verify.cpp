@@ -14,8 +14,8 @@
 #include "common/scene/scene.hpp"
 #include "common/tensors/find_archive.hpp"
 #include "haptic_node/haptic_step.hpp"
-#include "haptic_node/publisher.hpp"
 #include "haptic_node/recorded_models.hpp"
+#include "haptic_node/step_messages.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
