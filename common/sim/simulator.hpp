@@ -88,7 +88,6 @@ class Simulator {
  private:
   void move_tissue();
   void show();
-  void forget_factors();
 
   const Scene scene_;  // the tissue refers to it
   HapticStep haptic_;

@@ -28,15 +28,10 @@ void take_messages(std::span<const std::uint8_t>& from, std::vector<M>& messages
 
 }  // namespace
 
-void Simulator::forget_factors() {
-  haptic_.forget_factors();
-  for (int i = 0; i < world_.organs(); ++i) world_.organ(i).forget_factors();
-}
-
 std::vector<std::uint8_t> Simulator::save() {
-  forget_factors();
   std::vector<std::uint8_t> haptic(haptic_.state_size()), bytes;
-  haptic_.save(haptic);
+  haptic_.save(haptic);  // forgets its own factors
+  for (int i = 0; i < world_.organs(); ++i) world_.organ(i).forget_factors();
   put_one(bytes, steps_);
   put(bytes, std::span<const std::uint8_t>(haptic));
   put(bytes, std::span<const std::uint8_t>(world_.save()));

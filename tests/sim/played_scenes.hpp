@@ -35,7 +35,7 @@ inline PlayedScene cut_block(const std::string& model = "tensor_mass") {
   if (model == "hybrid") {
     scene.bodies[0].hybrid = Hybrid{};
     scene.bodies[0].hybrid->regions.push_back(
-        {.indices = {}, .box = Box{{-0.031, -0.031, -0.001}, {0.001, 0.031, 0.031}}, .group = {}});
+        {.indices = {}, .box = Box{{-0.001, -0.031, -0.001}, {0.031, 0.031, 0.031}}, .group = {}});
   }
   scene.tools[0].cautery = Cautery{.radius = 0.006};
   const TetMesh mesh = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3});
