@@ -13,7 +13,7 @@
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/haptic_step.hpp"
-#include "haptic_node/publisher.hpp"
+#include "common/sim/step_messages.hpp"
 #include "haptic_node/recorded_models.hpp"
 #include "idl/fields.hpp"
 #include "idl/topics.hpp"

@@ -27,7 +27,7 @@ class ContentHash : public ::testing::Test {
   }
   /// Of the body as one of the kind, changed.
   template <class Kind = QuasiStaticSpec>
-  std::string with(const std::function<void(Kind&)>& change) const {
+  std::string with(const std::function<void(std::type_identity_t<Kind>&)>& change) const {
     Kind changed;
     static_cast<SolidSpec&>(changed) = body;
     change(changed);

@@ -1,4 +1,4 @@
-#include "haptic_node/step_record.hpp"
+#include "common/sim/step_record.hpp"
 
 #include <algorithm>
 
