@@ -17,8 +17,8 @@ Publisher::Publisher(Bus& bus, const HapticStep& haptic, std::uint64_t run)
   catheter_ = bus.writer(topics::catheter_state);
   task_ = bus.writer(topics::task_record);
   catheter_states_ = catheter_states(haptic, run);
-  for (const ReducedBody& b : haptic.catheters())
-    task_records_.push_back({.body = static_cast<std::uint32_t>(b.body), .run = run});
+  for (const auto& c : haptic.catheters())
+    task_records_.push_back({.body = static_cast<std::uint32_t>(c.body), .run = run});
 }
 
 void Publisher::publish(const StepRecord& r) {

@@ -178,7 +178,7 @@ class RunVerifier {
       const auto found = recorded.task.find(static_cast<std::uint32_t>(haptic.catheters()[i].body));
       if (found == recorded.task.end()) continue;
       TaskRecord computed = found->second;
-      describe(haptic.tasks()[i], computed);
+      describe(haptic.task(static_cast<int>(i)), computed);
       if (computed == found->second) {
         ++report_.tasks;
         continue;

@@ -152,7 +152,6 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
 void LocalModels::add_origin(int tool, LocalContactModel& model) const {
   const ToolState& s = world_.consumed(tool);
   model.tool = static_cast<std::uint32_t>(tool);
-  model.tick = world_.ticks() - 1;
   model.tool_run = s.run;
   model.tool_step = s.step;
   model.sense_ns = s.sense_ns;

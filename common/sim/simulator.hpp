@@ -67,7 +67,7 @@ class Simulator {
   ToolView tool(int t) const;
   double energy() const { return haptic_.energy(); }  ///< [J] that all tools have put into what they touch
   const ContactState& contacts(int tool) const { return contacts_[tool]; }
-  std::span<const Task> tasks() const { return haptic_.tasks(); }  ///< one a catheter
+  const Task& task(int i) const { return haptic_.task(i); }  ///< of haptic().catheters()[i]
   std::vector<ChangeView> changes() const;
   /// Rebuilt when it is asked for, and valid until the next call or step. Walls and catheters are shown
   /// as they were in the newest of every StepRecord::shape_interval steps.

@@ -73,9 +73,9 @@ std::uint64_t Simulator::hash() const {
   for (const ContactState& m : contacts_) encode(m, contacts);
   digest.add(std::span<const std::uint8_t>(contacts));
   digest.add(world_.hash());
-  for (const ReducedBody& b : haptic_.modal_bodies()) digest.add(haptic_.modal(b.body).coordinates());
-  for (const ReducedBody& b : haptic_.catheters())
-    digest.add(std::span<const Eigen::Vector3d>(haptic_.catheter(b.body).positions()));
+  for (const auto& m : haptic_.modal_bodies()) digest.add(m.part->coordinates());
+  for (const auto& c : haptic_.catheters())
+    digest.add(std::span<const Eigen::Vector3d>(c.part->body().positions()));
   return digest.value();
 }
 

@@ -60,18 +60,18 @@ void describe_contacts(const StepRecord& r, int tool, ContactState& m) {
 
 std::vector<ModalState> modal_states(const HapticStep& haptic, std::uint64_t run) {
   std::vector<ModalState> messages;
-  for (const ReducedBody& b : haptic.modal_bodies()) {
-    messages.push_back({.body = static_cast<std::uint32_t>(b.body), .run = run});
-    messages.back().coordinates.resize(b.size);
+  for (const auto& m : haptic.modal_bodies()) {
+    messages.push_back({.body = static_cast<std::uint32_t>(m.body), .run = run});
+    messages.back().coordinates.resize(m.part->coordinates().size());
   }
   return messages;
 }
 
 std::vector<CatheterState> catheter_states(const HapticStep& haptic, std::uint64_t run) {
   std::vector<CatheterState> messages;
-  for (const ReducedBody& b : haptic.catheters()) {
-    messages.push_back({.body = static_cast<std::uint32_t>(b.body), .run = run});
-    messages.back().position.resize(3 * b.size);
+  for (const auto& c : haptic.catheters()) {
+    messages.push_back({.body = static_cast<std::uint32_t>(c.body), .run = run});
+    messages.back().position.resize(3 * c.part->body().positions().size());
   }
   return messages;
 }

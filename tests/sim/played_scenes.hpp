@@ -30,16 +30,18 @@ inline PlayedScene pressed_block() {
 }
 
 /// Moving tissue, 30 mm high: pressed, and cut while the pedal is down.
-inline PlayedScene cut_block(const std::string& model = "tensor_mass") {
-  Scene scene = block_scene(model);
-  if (model == "hybrid") {
-    scene.bodies[0].hybrid = Hybrid{};
-    scene.bodies[0].hybrid->regions.push_back(
-        {.indices = {}, .box = Box{{-0.001, -0.031, -0.001}, {0.031, 0.031, 0.031}}, .group = {}});
+template <class Spec = TensorMassSpec>
+PlayedScene cut_block() {
+  Spec body;
+  if constexpr (std::same_as<Spec, HybridSpec>) {
+    ElementSelector right;
+    right.box = Box{{-0.001, -0.031, -0.001}, {0.031, 0.031, 0.031}};
+    body.hybrid.regions.push_back(right);
   }
-  scene.tools[0].cautery = Cautery{.radius = 0.006};
+  Scene scene = block_scene(body);
+  scene.tools[0].probe()->cautery = Cautery{.radius = 0.006};
   const TetMesh mesh = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3});
-  std::vector<Archive> archives{precompute(scene.bodies[0], mesh)};
+  std::vector<Archive> archives{precompute_block(scene, mesh, nullptr)};
   const Tool tool = scene.tools[0];
   return {"cut_block", scene, archives, [tool](int i) -> std::vector<sim::ToolInput> {
             const double down = 0.001 - 0.004 * std::sin(0.01 * i);

@@ -64,8 +64,8 @@ void add_bodies(Simulator& simulator, Hashes& h, Course& course) {
   h.energy.add(simulator.energy());
   h.tissue.add(simulator.tissue().hash());
   const HapticStep& haptic = simulator.haptic();
-  for (const ReducedBody& b : haptic.modal_bodies()) h.modes.add(haptic.modal(b.body).coordinates());
-  for (const ReducedBody& b : haptic.catheters()) h.particles.add(haptic.catheter(b.body).positions());
+  for (const auto& m : haptic.modal_bodies()) h.modes.add(m.part->coordinates());
+  for (const auto& c : haptic.catheters()) h.particles.add(c.part->body().positions());
   for (const ChangeView& change : simulator.changes()) course.removed += change.removed.size();
   if (simulator.steps() % surface_interval != 0) return;
   for (int b = 0; b < simulator.bodies(); ++b) {

@@ -65,13 +65,13 @@ TEST_P(EveryKindOfTissue, ShowsThePressedSurfaceAtOnceAfterAStateIsRestored) {
 
 INSTANTIATE_TEST_SUITE_P(Simulator, EveryKindOfTissue,
                          ::testing::Values(Case{"quasi_static", testing::pressed_block, 400},
-                                           Case{"tensor_mass", [] { return testing::cut_block(); }, 400},
-                                           Case{"hybrid", [] { return testing::cut_block("hybrid"); }, 400},
+                                           Case{"tensor_mass", [] { return testing::cut_block<>(); }, 400},
+                                           Case{"hybrid", [] { return testing::cut_block<HybridSpec>(); }, 400},
                                            Case{"catheter", testing::fed_catheter, 700}),
                          [](const auto& info) { return info.param.name; });
 
 TEST(Simulator, AStateOfAnotherSceneIsRefused) {
-  const PlayedScene block = testing::pressed_block(), tissue = testing::cut_block();
+  const PlayedScene block = testing::pressed_block(), tissue = testing::cut_block<>();
   Simulator one(block.scene, block.archives), other(tissue.scene, tissue.archives);
   one.start(block.inputs(0));
   const auto state = one.save();
@@ -135,7 +135,7 @@ TEST(Simulator, APressedSurfaceGivesWayUnderTheTipAndComesBack) {
 }
 
 TEST(Simulator, MovingTissuePushesTheToolBackAndLosesWhatIsCut) {
-  const PlayedScene played = testing::cut_block();
+  const PlayedScene played = testing::cut_block<>();
   Simulator simulator(played.scene, played.archives);
   simulator.start(played.inputs(0));
   double pushed = 0;
@@ -161,8 +161,8 @@ TEST(Simulator, ACatheterIsLedInAndTheTaskIsKept) {
   Simulator simulator(played.scene, played.archives);
   simulator.start(played.inputs(0));
   play(simulator, played, 0, 600);
-  EXPECT_EQ(simulator.tasks()[0].grasps, 1u);
-  EXPECT_GT(simulator.tasks()[0].inserted, 0.008);
+  EXPECT_EQ(simulator.task(0).grasps, 1u);
+  EXPECT_GT(simulator.task(0).inserted, 0.008);
   EXPECT_GT(simulator.tool(0).grip_torque, 0);
 }
 
@@ -182,7 +182,7 @@ struct FreeHandle {
 };
 
 TEST(Simulator, AFreeDevicePressedIntoAnOrganIsPushedOut) {
-  for (const PlayedScene& played : {testing::pressed_block(), testing::cut_block()}) {
+  for (const PlayedScene& played : {testing::pressed_block(), testing::cut_block<>()}) {
     Simulator simulator(played.scene, played.archives);
     const Tool& tool = played.scene.tools[0];
     const double top = played.scene.tools[0].pivot.z() > 0.25 ? 0.03 : 0;

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
-#include "common/scene/scene.hpp"
 #include "common/models/catheter/catheter_body.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate::study {
 

@@ -55,9 +55,7 @@ class ModalBody : public TouchBody, public CatheterWall {
         if (w.anchor.weights[v] != 0) visit(w.anchor.nodes[v], Eigen::Vector3d(w.anchor.weights[v] * w.force));
   }
 
-  std::size_t state_size() const override;
-  void save(unsigned char* to) const override;
-  void restore(const unsigned char* from, std::span<const MovingTool> tools) override;
+  void state(State& s, std::span<const MovingTool> tools) override;
 
  private:
   ModalBody(const Archive& archive, const ShellSpec& body, const StepSettings& settings, ModalConstants constants);
