@@ -288,6 +288,26 @@ TEST_F(ShellFiles, TheContentHashLeavesOutDampingAndResidual) {
   EXPECT_EQ(with([](ModalShellSpec& b) { b.name = "other"; }), original);
 }
 
+TEST_F(ShellFiles, AClosedEndIsRefusedWhereACatheterIsLedInAlone) {
+  ShellMesh cup = duct_mesh();
+  cup.nodes.push_back({0, 0, 0});
+  for (int j = 0; j < 12; ++j) cup.triangles.push_back({static_cast<int>(cup.nodes.size()) - 1, (j + 1) % 12, j});
+  write_shell_mesh(cup, folder / "duct.msh");
+  CatheterSpec wire;
+  wire.name = "wire";
+  wire.catheter.inside = "duct";
+  scene.bodies.push_back(wire);
+  std::string sentence;
+  try {
+    ensure_archive(scene, body());
+  } catch (const std::runtime_error& error) {
+    sentence = error.what();
+  }
+  EXPECT_NE(sentence.find("and the surface has 1 boundary line"), std::string::npos) << sentence;
+  as<CatheterSpec>(scene.bodies[1])->catheter.inside.clear();
+  EXPECT_FALSE(ensure_archive(scene, body()).up_to_date);
+}
+
 /// A straight catheter from the origin to x = 0.1 m.
 CatheterSpec catheter_body() {
   CatheterSpec body;
