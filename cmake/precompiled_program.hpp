@@ -1,5 +1,5 @@
-// What most sources include, parsed once. A source still includes what it uses: scripts/nightly.sh tidy reads it
-// without this.
+// What most sources include, parsed once. A source still includes what it uses: `nightly.sh tidy` reads it without
+// this.
 #pragma once
 #include <fmt/format.h>
 

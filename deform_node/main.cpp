@@ -98,7 +98,8 @@ void run(const NodeOptions& o) {
 
 int main(int argc, char** argv) {
   palpate::NodeOptions options;
-  CLI::App app{"deform_node: rebuilds the organs' shape from contact information and publishes the surface"};
+  palpate::cli::CommandLine app{
+      "deform_node: rebuilds the organs' shape from contact information and publishes the surface"};
   palpate::add_node_options(app, options);
   app.add_flag("--whole", palpate::whole, "Begin with whole bodies, even if other nodes know them to have been cut");
   return palpate::node_main("deform_node", argc, argv, app, palpate::run, options);

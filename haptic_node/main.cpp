@@ -166,7 +166,7 @@ void run(const NodeOptions& o) {
 
 int main(int argc, char** argv) {
   palpate::NodeOptions options;
-  CLI::App app{"haptic_node: collision and force at the device's rate, from precomputed tensors"};
+  palpate::cli::CommandLine app{"haptic_node: collision and force at the device's rate, from precomputed tensors"};
   palpate::add_node_options(app, options);
   return palpate::node_main("haptic_node", argc, argv, app, palpate::run, options);
 }

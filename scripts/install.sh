@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what palpate is built from (Debian packages). Does nothing if all is there.
+# install.sh [PACKAGE ...]: installs what palpate is built from (Debian packages), and these. Nothing if all is there.
 set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache pkg-config git
@@ -7,7 +7,8 @@ packages=(
   cyclonedds-dev cyclonedds-tools libssl-dev liblcm-dev zlib1g-dev libxxhash-dev
   libgmsh-dev libhdf5-dev hdf5-tools libosmesa6-dev libpng-dev libfreetype-dev fonts-dejavu-core ffmpeg
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev openssh-client openssh-server python3 python3-numpy python3-h5py python3-matplotlib
+  libgtest-dev libbenchmark-dev clang-format openssh-client openssh-server python3 python3-numpy python3-h5py python3-matplotlib
+  "$@"
 )
 missing=()
 for package in "${packages[@]}"; do

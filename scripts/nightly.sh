@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), stability (every
-# case), address (with undefined behaviour) and thread (sanitizers, short forms). All of them where none is named.
+# case), address (with undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs).
+# All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long stability address thread
+[ $# -gt 0 ] || set -- long stability address thread tidy
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -17,7 +18,8 @@ for stage in "$@"; do
       ./scripts/build.sh "$stage"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
       OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
-    -h|--help) sed -n '2,3p' "$0"; exit 0 ;;
+    tidy) ./scripts/tidy.sh ;;
+    -h|--help) sed -n '2,4p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done

@@ -3,4 +3,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./scripts/build.sh release
-ctest --preset release --timeout 300 "$@"
+./scripts/format.sh --check
+# One more than there are cores: tests that start nodes mostly wait.
+ctest --preset release --timeout 300 --parallel $(($(nproc) + 1)) "$@"

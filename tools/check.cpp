@@ -219,11 +219,11 @@ void check(const Scene& scene) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app) {
-  auto* command = app.add_subcommand("check", "Validate a scene and say what will be built, and what it takes");
+void add_check_command(cli::Command& app) {
+  cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
   auto file = std::make_shared<std::string>();
-  command->add_option("SCENE", *file, "scene file")->required();
-  command->callback([file] { check(load_scene(*file)); });
+  command.add_option("SCENE", *file, "scene file").required();
+  command.does([file] { check(load_scene(*file)); });
 }
 
 }  // namespace palpate

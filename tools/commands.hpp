@@ -1,22 +1,22 @@
 #pragma once
-#include <CLI/CLI.hpp>
+#include "common/cli/command_line.hpp"
 
 /// One function per sub-command of `palpate`, each in the file of its name. The callbacks throw
 /// std::exception on failure; main prints the sentence and exits with 1.
 namespace palpate {
 
-void add_check_command(CLI::App& app);
-void add_precompute_command(CLI::App& app);
-void add_solve_command(CLI::App& app);
-void add_stability_command(CLI::App& app);
-void add_study_command(CLI::App& app);
-void add_run_command(CLI::App& app);
-void add_record_command(CLI::App& app);
-void add_info_command(CLI::App& app);
-void add_export_command(CLI::App& app);
-void add_latency_command(CLI::App& app);
-void add_replay_command(CLI::App& app);
-void add_top_command(CLI::App& app);
-void add_keys_command(CLI::App& app);
+void add_check_command(cli::Command& app);
+void add_precompute_command(cli::Command& app);
+void add_solve_command(cli::Command& app);
+void add_stability_command(cli::Command& app);
+void add_study_command(cli::Command& app);
+void add_run_command(cli::Command& app);
+void add_record_command(cli::Command& app);
+void add_info_command(cli::Command& app);
+void add_export_command(cli::Command& app);
+void add_latency_command(cli::Command& app);
+void add_replay_command(cli::Command& app);
+void add_top_command(cli::Command& app);
+void add_keys_command(cli::Command& app);
 
 }  // namespace palpate

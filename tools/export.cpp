@@ -76,15 +76,15 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app) {
+void add_export_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("export", "Write one topic of a log as CSV or JSON lines");
-  command->add_option("log", o->log, "LCM event log")->required();
-  command->add_option("--topic", o->topic, "Topic, with or without palpate/ before it")->required();
-  command->add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
-  command->add_flag("--jsonl", o->json, "One JSON object a line")->excludes("--csv");
-  command->add_option("-o,--output", o->file, "File (default: standard output)");
-  command->callback([o] { run(*o); });
+  cli::Command command = app.add_command("export", "Write one topic of a log as CSV or JSON lines");
+  command.add_option("log", o->log, "LCM event log").required();
+  command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it").required();
+  command.add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
+  command.add_flag("--jsonl", o->json, "One JSON object a line").excludes({"--csv"});
+  command.add_option("-o,--output", o->file, "File (default: standard output)");
+  command.does([o] { run(*o); });
 }
 
 }  // namespace palpate

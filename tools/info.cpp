@@ -119,16 +119,16 @@ void print_text(const LogSummary& s, const std::string& file) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app) {
+void add_info_command(cli::Command& app) {
   struct Options {
     std::string file;
     bool json = false;
   };
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("info", "Rates, gaps and latencies of a topic log");
-  command->add_option("log", o->file, "LCM event log")->required();
-  command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o] {
+  cli::Command command = app.add_command("info", "Rates, gaps and latencies of a topic log");
+  command.add_option("log", o->file, "LCM event log").required();
+  command.add_flag("--json", o->json, "Print JSON");
+  command.does([o] {
     const LogSummary summary = summarise_log(o->file);
     if (o->json) {
       fmt::print("{}\n", json_of(summary, o->file).dump(2));

@@ -4,9 +4,9 @@
 #include "tools/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"palpate: a distributed haptic simulator of soft tissue"};
-  app.set_version_flag("--version", PALPATE_VERSION);
-  app.require_subcommand(1);
+  palpate::cli::CommandLine app{"palpate: a distributed haptic simulator of soft tissue"};
+  app.show_version(PALPATE_VERSION);
+  app.require_command();
   palpate::add_check_command(app);
   palpate::add_precompute_command(app);
   palpate::add_run_command(app);
@@ -21,9 +21,7 @@ int main(int argc, char** argv) {
   palpate::add_top_command(app);
   palpate::add_keys_command(app);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
+    if (const auto status = app.read(argc, argv)) return *status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "palpate: %s\n", error.what());
     return 1;

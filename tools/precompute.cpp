@@ -60,11 +60,11 @@ void precompute_body(const Scene& scene, const Body& body) {
 
 }  // namespace
 
-void add_precompute_command(CLI::App& app) {
-  auto* command = app.add_subcommand("precompute", "Compute the tensors of every body of a scene, once");
+void add_precompute_command(cli::Command& app) {
+  cli::Command command = app.add_command("precompute", "Compute the tensors of every body of a scene, once");
   auto file = std::make_shared<std::string>();
-  command->add_option("SCENE", *file, "scene file")->required();
-  command->callback([file] {
+  command.add_option("SCENE", *file, "scene file").required();
+  command.does([file] {
     const Scene scene = load_scene(*file);
     for (const auto& body : scene.bodies) precompute_body(scene, body);
   });

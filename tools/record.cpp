@@ -96,15 +96,14 @@ void record(Options& o) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app) {
+void add_record_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("record", "Write every topic of a running system into an LCM event log");
-  add_network_options(*command, o->network, "recorder");
-  command->add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
-  command->add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--supervised", o->supervised)->group("");
-  command->callback([o] { record(*o); });
+  cli::Command command = app.add_command("record", "Write every topic of a running system into an LCM event log");
+  add_network_options(command, o->network, "recorder");
+  command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
+  command.add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)").positive();
+  command.add_flag("--supervised", o->supervised).hidden();
+  command.does([o] { record(*o); });
 }
 
 }  // namespace palpate

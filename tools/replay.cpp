@@ -85,21 +85,19 @@ void play(const Options& o) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& app) {
+void add_replay_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("replay", "Play a topic log back to DDS, or verify it");
-  command->add_option("log", o->file, "LCM event log")->required();
-  command->add_option("--speed", o->play.speed, "2 plays twice as fast")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
-  add_network_options(*command, o->network, "player");
-  command->add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
+  cli::Command command = app.add_command("replay", "Play a topic log back to DDS, or verify it");
+  command.add_option("log", o->file, "LCM event log").required();
+  command.add_option("--speed", o->play.speed, "2 plays twice as fast").positive().show_default();
+  command.add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
+  add_network_options(command, o->network, "player");
+  command.add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
   command
-      ->add_flag("--verify", o->verify,
-                 "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
-      ->excludes("--speed", "--topic", "--json");
-  command->callback([o] { o->verify ? verify(o->file) : play(*o); });
+      .add_flag("--verify", o->verify,
+                "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
+      .excludes({"--speed", "--topic", "--json"});
+  command.does([o] { o->verify ? verify(o->file) : play(*o); });
 }
 
 }  // namespace palpate

@@ -221,25 +221,25 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app) {
+void add_run_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* run_command = app.add_subcommand("run", "Start the nodes that a scene needs on this machine");
-  run_command->add_option("scene", o->scene, "Scene file")->required();
+  cli::Command run_command = app.add_command("run", "Start the nodes that a scene needs on this machine");
+  run_command.add_option("scene", o->scene, "Scene file").required();
   run_command
-      ->add_option("--seconds", o->seconds,
-                   "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")
-      ->check(CLI::PositiveNumber);
-  run_command->add_option("--record", o->record, "Write all topics to this LCM event log");
-  run_command->add_option("--film", o->film, "Write a film (MP4)");
-  run_command->add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
-  run_command->add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
-  run_command->add_option("--domain", o->domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
-  run_command->add_option("--keys", o->keys, "Folder of keys in place of the scene's");
+      .add_option("--seconds", o->seconds,
+                  "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")
+      .positive();
+  run_command.add_option("--record", o->record, "Write all topics to this LCM event log");
+  run_command.add_option("--film", o->film, "Write a film (MP4)");
+  run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
+  run_command.add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
+  run_command.add_option("--domain", o->domain, "DDS domain in place of the scene's").between(0, 230);
+  run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command
-      ->add_option("--processes", o->processes,
-                   "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")
-      ->check(CLI::IsMember({2, 3}));
-  run_command->callback([o] { run(*o); });
+      .add_option("--processes", o->processes,
+                  "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")
+      .one_of({2, 3});
+  run_command.does([o] { run(*o); });
 }
 
 }  // namespace palpate

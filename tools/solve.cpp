@@ -132,28 +132,28 @@ void solve(const SolveArguments& arguments) {
 
 }  // namespace
 
-void add_solve_command(CLI::App& app) {
-  auto* command = app.add_subcommand("solve", "Compute one static state of a body, offline");
+void add_solve_command(cli::Command& app) {
+  cli::Command command = app.add_command("solve", "Compute one static state of a body, offline");
   auto arguments = std::make_shared<SolveArguments>();
-  command->add_option("SCENE", arguments->scene, "scene file")->required();
-  command->add_option("--body", arguments->body, "name of the body; needed where the scene has several");
+  command.add_option("SCENE", arguments->scene, "scene file").required();
+  command.add_option("--body", arguments->body, "name of the body; needed where the scene has several");
   command
-      ->add_option("--hold", arguments->holds,
-                   "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
-                   "component leaves that axis free")
-      ->allow_extra_args(false);
+      .add_option("--hold", arguments->holds,
+                  "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
+                  "component leaves that axis free")
+      .one_value_each_time();
   command
-      ->add_option("--touch", arguments->touches,
-                   "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
-      ->allow_extra_args(false);
-  command->add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
-      ->check(CLI::IsMember({"tensors", "direct"}))
-      ->capture_default_str();
-  command->add_option("--csv", arguments->csv,
-                      "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
-                      "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
-  command->add_option("--vtu", arguments->vtu, "write a file for ParaView");
-  command->callback([arguments] { solve(*arguments); });
+      .add_option("--touch", arguments->touches,
+                  "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
+      .one_value_each_time();
+  command.add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
+      .one_of({"tensors", "direct"})
+      .show_default();
+  command.add_option("--csv", arguments->csv,
+                     "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
+                     "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
+  command.add_option("--vtu", arguments->vtu, "write a file for ParaView");
+  command.does([arguments] { solve(*arguments); });
 }
 
 }  // namespace palpate

@@ -163,16 +163,14 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_top_command(CLI::App& app) {
+void add_top_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
-  command->add_option("--interval", o->interval, "Time between two looks [s]")
-      ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
-  command->add_flag("--once", o->once, "One look, then end");
-  add_network_options(*command, o->network, "observer");
-  command->callback([o] { run(*o); });
+  cli::Command command =
+      app.add_command("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
+  command.add_option("--interval", o->interval, "Time between two looks [s]").between(0.1, 60.0).show_default();
+  command.add_flag("--once", o->once, "One look, then end");
+  add_network_options(command, o->network, "observer");
+  command.does([o] { run(*o); });
 }
 
 }  // namespace palpate

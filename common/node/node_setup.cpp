@@ -10,11 +10,11 @@
 
 namespace palpate {
 
-void add_node_options(CLI::App& app, NodeOptions& o) {
-  app.set_version_flag("--version", PALPATE_VERSION);
-  app.add_option("scene", o.scene, "Scene file")->required();
-  app.add_option("--seconds", o.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
-  app.add_option("--domain", o.domain, "DDS domain in place of the scene's")->check(CLI::Range(0, 230));
+void add_node_options(cli::CommandLine& app, NodeOptions& o) {
+  app.show_version(PALPATE_VERSION);
+  app.add_option("scene", o.scene, "Scene file").required();
+  app.add_option("--seconds", o.seconds, "Stop after so many seconds").positive();
+  app.add_option("--domain", o.domain, "DDS domain in place of the scene's").between(0, 230);
   app.add_option("--interface", o.interface, "Network interface in place of the scene's");
   app.add_option("--peer", o.peers, "Host to look for peers on, in place of the scene's; may be repeated");
   app.add_option("--keys", o.keys, "Folder of keys in place of the scene's");
@@ -53,9 +53,9 @@ void say_ready(const NodeOptions& options) {
   std::fflush(stdout);
 }
 
-int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&),
+int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
               const NodeOptions& options) {
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = app.read(argc, argv)) return *status;
   spdlog::set_default_logger(spdlog::stderr_color_mt(name));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
   try {

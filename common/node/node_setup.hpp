@@ -1,10 +1,10 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "common/archive/archive.hpp"
 #include "common/bus/dds_bus.hpp"
+#include "common/cli/command_line.hpp"
 #include "common/scene/scene.hpp"
 
 /// What every node does before its loop: arguments, scene, archives, logging.
@@ -18,7 +18,7 @@ struct NodeOptions {
   bool supervised = false;  ///< started by `palpate run`: says "ready" and prints one JSON line at the end
 };
 
-void add_node_options(CLI::App& app, NodeOptions& options);
+void add_node_options(cli::CommandLine& app, NodeOptions& options);
 
 /// The scene's network section with what the command line replaces. `role`: of roles.hpp, for the keys.
 BusSettings bus_settings(const Scene& scene, const NodeOptions& options, const std::string& role);
@@ -42,7 +42,7 @@ std::uint64_t new_run();
 void say_ready(const NodeOptions& options);
 
 /// Runs `body` with logging under the node's name; prints the sentence of an exception and returns the exit status.
-int node_main(const char* name, int argc, char** argv, CLI::App& app, void (*body)(const NodeOptions&),
+int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
               const NodeOptions& options);
 
 }  // namespace palpate

@@ -40,6 +40,7 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"((.*/)?gmshc?\.h(_cwrap)?)", {"common/mesh", "tools/generate"}},
       {R"((.*/)?cholmod.*\.h)", {"common/fem"}},
       {R"((.*/)?(cblas|lapacke?|openblas.*)\.h)", {"common/fem"}},
+      {R"(CLI/.*)", {"common/cli"}},
       {R"(Spectra/.*)", {"common/shell"}},
       {R"((.*/)?(hdf5|H5.*)\.h)", {"common/archive"}},
       {R"((.*/)?toml(\+\+)?/.*|toml\.hpp)", {"common/scene"}},

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -8,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/cli/command_line.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
@@ -91,25 +91,24 @@ void save_motions(const std::filesystem::path& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes the meshes of the example scenes and some of their motions"};
-  app.require_subcommand(1);
+  palpate::cli::CommandLine app{"Makes the meshes of the example scenes and some of their motions"};
+  app.require_command();
   std::filesystem::path file;
   const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
-    CLI::App* shape = app.add_subcommand(name, what);
-    shape->add_option("-o,--output", file, "file to write")->required();
-    shape->callback(make);
+    cli::Command shape = app.add_command(name, what);
+    shape.add_option("-o,--output", file, "file to write").required();
+    shape.does(make);
     return shape;
   };
 
   LiverOptions liver;
-  CLI::App* shape = add_shape("liver", "the default organ (.msh)", [&] { save(make_liver(liver), file); });
-  shape->add_option("--frequency", liver.frequency, "fineness f of the surface: 10 f^2 + 2 nodes")
-      ->check(CLI::Range(2, 64));
-  shape->add_option("--size", liver.inner_size, "edge length inside [m]")->check(CLI::PositiveNumber);
+  cli::Command shape = add_shape("liver", "the default organ (.msh)", [&] { save(make_liver(liver), file); });
+  shape.add_option("--frequency", liver.frequency, "fineness f of the surface: 10 f^2 + 2 nodes").between(2, 64);
+  shape.add_option("--size", liver.inner_size, "edge length inside [m]").positive();
 
   int plate_cells = 18;
   shape = add_shape("plate", "a thin square plate (.msh)", [&] { save(make_plate(plate_cells), file); });
-  shape->add_option("--cells", plate_cells, "cells along each side")->check(CLI::Range(4, 1000));
+  shape.add_option("--cells", plate_cells, "cells along each side").between(4, 1000);
 
   add_shape("ribs", "the backdrop of the liver scene (.stl)", [&] { save(make_ribs(), file); });
 
@@ -119,26 +118,26 @@ int main(int argc, char** argv) {
   add_shape("cylinder_hybrid", "the cylinder of two halves (.msh)", [&] { save(make_cylinder_hybrid(), file); });
 
   add_shape("duct", "the cystic duct, a surface (.msh)", [&] { save(make_duct(), file); });
-  shape = app.add_subcommand("motions", "the trajectories of a scene of the duct");
-  shape->add_option("SCENE", file, "scene file, which names them")->required();
-  shape->callback([&] { save_motions(file); });
+  shape = app.add_command("motions", "the trajectories of a scene of the duct");
+  shape.add_option("SCENE", file, "scene file, which names them").required();
+  shape.does([&] { save_motions(file); });
 
   BlockOptions block;
   shape = add_shape("block", "a block (.msh)", [&] { save(make_top_centred_block(block), file); });
-  shape->add_option("--min", block.min, "lowest corner [m]");
-  shape->add_option("--max", block.max, "highest corner [m]");
-  shape->add_option("--cells", block.cells, "cells along x, y, z");
-  shape->add_option("--growth", block.growth, "growth of the cells away from the middle of the top; 1: uniform");
+  shape.add_option("--min", block.min, "lowest corner [m]");
+  shape.add_option("--max", block.max, "highest corner [m]");
+  shape.add_option("--cells", block.cells, "cells along x, y, z");
+  shape.add_option("--growth", block.growth, "growth of the cells away from the middle of the top; 1: uniform");
 
   CylinderOptions cylinder;
   shape =
       add_shape("cylinder", "a cylinder about the z axis (.msh)", [&] { save(make_sized_cylinder(cylinder), file); });
-  shape->add_option("--radius", cylinder.radius, "[m]")->check(CLI::PositiveNumber);
-  shape->add_option("--height", cylinder.height, "[m]")->check(CLI::PositiveNumber);
-  shape->add_option("--size", cylinder.size, "edge length aimed at [m]")->check(CLI::PositiveNumber);
+  shape.add_option("--radius", cylinder.radius, "[m]").positive();
+  shape.add_option("--height", cylinder.height, "[m]").positive();
+  shape.add_option("--size", cylinder.size, "edge length aimed at [m]").positive();
 
   try {
-    CLI11_PARSE(app, argc, argv);
+    if (const auto status = app.read(argc, argv)) return *status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "palpate_generate: %s\n", error.what());
     return 1;

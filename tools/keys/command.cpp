@@ -60,17 +60,17 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_keys_command(CLI::App& app) {
+void add_keys_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("keys", "Make the keys by which nodes know each other and encrypt what they send");
-  command->add_option("folder", o->folder, "Folder to make, with an authority and a folder for each role")->required();
-  command->add_option("--days", o->days, "How long the keys hold")->check(CLI::Range(1, 7300))->capture_default_str();
-  CLI::Option* add =
-      command->add_option("--add", o->role, "Make further keys of this role from the authority that is there")
-          ->check(CLI::IsMember(bus_roles()));
-  command->add_option("--name", o->name, "Their folder's name (default: the role)")->needs(add);
-  command->callback([o] { run(*o); });
+  cli::Command command =
+      app.add_command("keys", "Make the keys by which nodes know each other and encrypt what they send");
+  command.add_option("folder", o->folder, "Folder to make, with an authority and a folder for each role").required();
+  command.add_option("--days", o->days, "How long the keys hold").between(1, 7300).show_default();
+  const cli::Option add =
+      command.add_option("--add", o->role, "Make further keys of this role from the authority that is there")
+          .one_of(bus_roles());
+  command.add_option("--name", o->name, "Their folder's name (default: the role)").needs(add);
+  command.does([o] { run(*o); });
 }
 
 }  // namespace palpate

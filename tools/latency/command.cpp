@@ -259,25 +259,21 @@ void run(Options& o) {
 
 }  // namespace
 
-void add_latency_command(CLI::App& app) {
+void add_latency_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  cli::Command command = app.add_command(
       "latency",
       "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");
-  command->add_option("scene", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
-  command->add_flag("--attach", o->attach, "Measure the hops of a simulation that runs already");
-  command->add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
-  command->add_option("--rate", o->rate, "Messages a second over each way [Hz]")
-      ->check(CLI::Range(1.0, 5000.0))
-      ->capture_default_str();
-  command->add_option("--seconds", o->seconds, "How long")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--udp-port", o->port, "Port of the bare UDP messages")
-      ->check(CLI::Range(1024, 65535))
-      ->capture_default_str();
-  command->add_flag("--json", o->json, "Print JSON");
-  command->add_option("-o,--output", o->out, "Folder for latency.json and its plot");
-  add_network_options(*command, o->network, "latency");
-  command->callback([o] { run(*o); });
+  command.add_option("scene", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
+  command.add_flag("--attach", o->attach, "Measure the hops of a simulation that runs already");
+  command.add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
+  command.add_option("--rate", o->rate, "Messages a second over each way [Hz]").between(1.0, 5000.0).show_default();
+  command.add_option("--seconds", o->seconds, "How long").positive().show_default();
+  command.add_option("--udp-port", o->port, "Port of the bare UDP messages").between(1024, 65535).show_default();
+  command.add_flag("--json", o->json, "Print JSON");
+  command.add_option("-o,--output", o->out, "Folder for latency.json and its plot");
+  add_network_options(command, o->network, "latency");
+  command.does([o] { run(*o); });
 }
 
 }  // namespace palpate

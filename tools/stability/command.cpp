@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
+#include "common/cli/command_line.hpp"
 #include "tools/commands.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
@@ -33,15 +33,15 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_stability_command(CLI::App& app) {
+void add_stability_command(cli::Command& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
-  command->add_option("scene", options->scene, "scene file; without one, the general cases");
-  command->add_option("-o,--output", options->folder, "folder for stability.csv, plots and page")->required();
-  command->add_flag("--quick", options->quick, "the subset that takes a minute");
-  command->add_option("--only", options->only, "cases whose name contains this");
-  command->callback([options] { run(*options); });
+  cli::Command command =
+      app.add_command("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
+  command.add_option("scene", options->scene, "scene file; without one, the general cases");
+  command.add_option("-o,--output", options->folder, "folder for stability.csv, plots and page").required();
+  command.add_flag("--quick", options->quick, "the subset that takes a minute");
+  command.add_option("--only", options->only, "cases whose name contains this");
+  command.does([options] { run(*options); });
 }
 
 }  // namespace palpate

@@ -1,0 +1,73 @@
+#pragma once
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+/// The command line. Behind plain types, because the package that reads it takes seconds to compile.
+namespace palpate::cli {
+
+/// What more is asked of an option.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option& required();
+  Option& positive();
+  Option& between(int low, int high);
+  Option& between(double low, double high);
+  Option& one_of(std::initializer_list<int> values);
+  Option& one_of(const std::vector<std::string>& values);
+  Option& show_default();
+  Option& one_value_each_time();  ///< of a list: each value has the option's name before it
+  Option& excludes(const std::vector<std::string>& names);
+  Option& needs(const Option& other);
+  Option& hidden();
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command with its options; a handle.
+class Command {
+ public:
+  explicit Command(CLI::App* app) : app_(app) {}
+
+  /// `name`: "--name", "-n,--name", or "name" for one told by its place. `value` is written when the command line is
+  /// read, and holds the default. For std::string, int, double, std::filesystem::path, std::vector<std::string>,
+  /// std::array<double, 3> and std::array<int, 3>.
+  template <class T>
+  Option add_option(const std::string& name, T& value, const std::string& meaning);
+  Option add_flag(const std::string& name, bool& value, const std::string& meaning = "");
+  Command add_command(const std::string& name, const std::string& meaning);
+  /// What it does; run while the command line is read.
+  void does(const std::function<void()>& work);
+
+ protected:
+  CLI::App* app_;
+};
+
+/// The command line of a program.
+class CommandLine : public Command {
+ public:
+  explicit CommandLine(const std::string& meaning);
+  ~CommandLine();
+
+  void show_version(const std::string& version);  ///< with --version
+  void require_command();                         ///< one of those added must be given
+  /// The status with which the program shall end now: after --help, or a mistake, which is said on standard error.
+  /// What a command throws passes through.
+  std::optional<int> read(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> own_;
+};
+
+}  // namespace palpate::cli
