@@ -21,15 +21,11 @@ class State {
   bool restoring() const { return from_ != nullptr; }
   std::size_t size() const { return size_; }  ///< [bytes] walked so far
 
-  /// Plain memory.
+  /// Plain memory, or a vector or matrix of a fixed size.
   template <class T>
   void value(T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
+    static_assert(std::is_trivially_copyable_v<T> || std::is_base_of_v<Eigen::PlainObjectBase<T>, T>);
     bytes(&v, sizeof v);
-  }
-  template <class Derived>
-  void value(Eigen::PlainObjectBase<Derived>& v) {
-    bytes(v.data(), static_cast<std::size_t>(v.size()) * sizeof(typename Derived::Scalar));
   }
   /// Plain memory of a number of entries that never changes.
   template <class Range>

@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/wall.hpp"
+#include "common/describe/state.hpp"
 #include "common/models/catheter/chain.hpp"
 #include "common/models/catheter/coupled_solve.hpp"
 #include "common/models/catheter/grasps.hpp"
 #include "common/models/catheter/lumen.hpp"
 #include "common/models/catheter/sleeve.hpp"
-#include "common/describe/state.hpp"
 #include "common/models/catheter/spec.hpp"
 #include "common/models/catheter/tool_touches.hpp"
-#include "common/models/catheter/wall.hpp"
 #include "common/models/catheter/wall_touches.hpp"
 
 namespace palpate {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/models/modal_shell/modal_body.hpp"
 #include "common/tool/instrument.hpp"
 
 namespace palpate {
@@ -46,7 +45,7 @@ CatheterPart::CatheterPart(const CatheterSpec& spec, const StepSettings& setting
 }
 
 void CatheterPart::join(const FindPart& find) {
-  duct_ = dynamic_cast<ModalBody*>(find(inside_));
+  duct_ = dynamic_cast<CatheterWall*>(find(inside_));
   body_ = std::make_unique<CatheterBody>(settings_, duct_);
 }
 

@@ -2,15 +2,13 @@
 #include <memory>
 #include <vector>
 
-#include "common/contact/step_settings.hpp"
 #include "common/contact/body_part.hpp"
+#include "common/contact/step_settings.hpp"
 #include "common/models/catheter/catheter_body.hpp"
 #include "common/models/catheter/spec.hpp"
 #include "common/models/catheter/task.hpp"
 
 namespace palpate {
-
-class ModalBody;
 
 /// A catheter in the haptic step: it moves by itself against the wall of its duct and against the tools, forceps take
 /// hold of it, and what the trainee does with it is measured.
@@ -40,7 +38,7 @@ class CatheterPart : public BodyPart {
   std::vector<std::uint8_t> is_forceps_;  ///< per tool
   std::vector<Eigen::Isometry3d> jaws_;   ///< per tool
   std::unique_ptr<CatheterBody> body_;
-  ModalBody* duct_ = nullptr;  ///< what it is led into
+  CatheterWall* duct_ = nullptr;  ///< what it is led into
   Task task_;
   int wall_contacts_ = 0;  ///< in the last step
   bool held_before_ = false;
