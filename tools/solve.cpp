@@ -14,6 +14,7 @@
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
 #include "tools/solution_file.hpp"
+#include "tools/solve_nonlinear.hpp"
 
 namespace palpate {
 namespace {
@@ -21,6 +22,12 @@ namespace {
 struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
   std::vector<std::string> holds, touches;
+};
+
+/// A static state, and what was held for it.
+struct Solved {
+  SolutionTable table;
+  std::vector<Constraint> held;
 };
 
 const Body& choose_body(const Scene& scene, const std::string& name) {
@@ -46,7 +53,7 @@ std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh
   return constraints;
 }
 
-SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments) {
+Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const SolidSpec& solid = *as<SolidSpec>(body);
   const auto problem = make_static_problem(solid, load_tet_mesh(solid.mesh, solid.scale));
   const auto& mesh = problem.mesh;
@@ -64,7 +71,7 @@ SolutionTable solve_by_direct(const Body& body, const SolveArguments& arguments)
                             : solve_direct(problem, constraints);
   table.displacement = solution.displacement;
   table.force = solution.force;
-  return table;
+  return {table, constraints};
 }
 
 /// The surface in ascending mesh node number. An archive knows no reactions, so that a CSV leaves out the
@@ -88,12 +95,23 @@ SolutionTable sorted_table(const SurfaceMap& surface, const SurfaceSolution& sol
   return table;
 }
 
-SolutionTable solve_by_tensors(const Scene& scene, const Body& body, const SolveArguments& arguments) {
+Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArguments& arguments) {
   ensure_archive(scene, body);
   const auto archive = find_archive(scene, body, ArchivePart::surface);
   const auto& surface = archive.surface;
-  return sorted_table(surface, solve_tensors(archive, constraints_of(arguments, archive.mesh_nodes, surface.position,
-                                                                     surface.node_number, surface.triangles)));
+  const auto held =
+      constraints_of(arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
+  return {sorted_table(surface, solve_tensors(archive, held)), held};
+}
+
+/// [body.nonlinear], where the body has one.
+void correct(const Scene& scene, const Body& body, Solved& solved) {
+  const auto* still = as<QuasiStaticSpec>(body);
+  if (!still || !still->nonlinear) return;
+  ensure_archive(scene, body);  // it holds the press of the specimen
+  const auto law = make_quasi_nonlinear(*still, find_archive(scene, body, ArchivePart::header));
+  const double scale = correct_solution(law, solved.held, solved.table);
+  fmt::print("corrected by [body.nonlinear]: forces are {:.4g} times the linear ones\n", scale);
 }
 
 void summarise(const SolutionTable& table, const SolveArguments& arguments) {
@@ -123,8 +141,10 @@ void solve(const SolveArguments& arguments) {
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
   check_model(body, arguments.method);
-  const auto table =
+  Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
+  correct(scene, body, solved);
+  const SolutionTable& table = solved.table;
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
   if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
   summarise(table, arguments);

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -11,14 +12,37 @@
 namespace palpate {
 
 /// A visitor over what an object remembers from step to step. Each object has one function `state(State&)` that names
-/// its pieces in order; measuring, saving and restoring are the same walk. Never allocates.
+/// its pieces in order; measuring, saving and restoring are the same walk. Lists apart, it never allocates.
 class State {
  public:
-  static State measure() { return State(nullptr, nullptr); }
-  static State save(std::uint8_t* to) { return State(to, nullptr); }
-  static State restore(const std::uint8_t* from) { return State(nullptr, from); }
+  static State measure() { return {}; }
+  /// Into room that has been measured.
+  static State save(std::uint8_t* to) {
+    State s;
+    s.to_ = to;
+    return s;
+  }
+  /// Into bytes that grow.
+  static State save(std::vector<std::uint8_t>& to) {
+    State s;
+    s.grown_ = &to;
+    return s;
+  }
+  /// From what has the measured size.
+  static State restore(const std::uint8_t* from) {
+    State s;
+    s.restoring_ = true;
+    s.from_ = from;
+    return s;
+  }
+  /// From bytes that may be cut short: then std::runtime_error is thrown.
+  static State restore(std::span<const std::uint8_t> from) {
+    State s = restore(from.data());
+    s.left_ = from.size();
+    return s;
+  }
 
-  bool restoring() const { return from_ != nullptr; }
+  bool restoring() const { return restoring_; }
   std::size_t size() const { return size_; }  ///< [bytes] walked so far
 
   /// Plain memory, or a vector or matrix of a fixed size.
@@ -32,17 +56,33 @@ class State {
   void all(Range&& values) {
     bytes(values.data(), values.size() * sizeof(values[0]));
   }
+  /// A list of any length.
+  template <class T>
+  void list(std::vector<T>& values) {
+    std::uint64_t count = values.size();
+    value(count);
+    if (restoring_) {
+      if (count > left_ / sizeof(T)) throw std::runtime_error("the recorded state is cut short");
+      values.resize(count);
+    }
+    bytes(values.data(), count * sizeof(T));
+  }
   void bytes(void* data, std::size_t count) {
     size_ += count;
     if (count == 0) return;
     if (to_) std::memcpy(std::exchange(to_, to_ + count), data, count);
-    if (from_) std::memcpy(data, std::exchange(from_, from_ + count), count);
+    if (grown_) {
+      const auto* first = static_cast<const std::uint8_t*>(data);
+      grown_->insert(grown_->end(), first, first + count);
+    }
+    if (restoring_) std::memcpy(data, take(count), count);
   }
   /// Leaves out `count` bytes: room that is kept for later.
   void skip(std::size_t count) {
     size_ += count;
     if (to_) std::memset(std::exchange(to_, to_ + count), 0, count);
-    if (from_) from_ += count;
+    if (grown_) grown_->resize(grown_->size() + count, 0);
+    if (restoring_) take(count);
   }
   /// What has been restored must be good.
   void require(bool good, const char* sentence) const {
@@ -50,10 +90,18 @@ class State {
   }
 
  private:
-  State(std::uint8_t* to, const std::uint8_t* from) : to_(to), from_(from) {}
+  State() = default;
+  const std::uint8_t* take(std::size_t count) {
+    if (count > left_) throw std::runtime_error("the recorded state is cut short");
+    left_ -= count;
+    return std::exchange(from_, from_ + count);
+  }
 
-  std::uint8_t* to_;
-  const std::uint8_t* from_;
+  bool restoring_ = false;
+  std::uint8_t* to_ = nullptr;
+  std::vector<std::uint8_t>* grown_ = nullptr;
+  const std::uint8_t* from_ = nullptr;
+  std::size_t left_ = std::numeric_limits<std::size_t>::max();  ///< [bytes] that may be taken
   std::size_t size_ = 0;
 };
 

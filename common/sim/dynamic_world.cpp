@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/describe/state_bytes.hpp"
 #include "common/tool/instrument.hpp"
 
 namespace palpate {
@@ -14,15 +13,6 @@ constexpr double gone_after = 120;  // [s] of silence, as the network forgets a 
 ToolDofs dofs_of(const ToolState& s) {
   return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
 }
-
-/// One tool in a keyframe.
-struct ToolMemory {
-  Eigen::Matrix4d pose;
-  ToolDofs dofs;
-  ToolState consumed;
-  std::uint64_t heard;
-  std::uint64_t present;
-};
 
 }  // namespace
 
@@ -110,34 +100,33 @@ void DynamicWorld::tick() {
   ++ticks_;
 }
 
+void DynamicWorld::state(State& s) {
+  s.value(ticks_);
+  std::vector<MovingTool> moving;
+  for (int t = 0; t < tools(); ++t) {
+    ToolInTick& tool = tools_[t];
+    s.value(tool.moving.now.matrix());
+    s.value(tool.dofs);
+    s.value(consumed_[t]);
+    s.value(heard_[t]);
+    s.value(tool.present);
+    if (s.restoring()) turn_jaws(t);
+    moving.push_back(tool.moving);
+  }
+  for (auto& organ : organs_) organ->state(s, moving);
+}
+
 std::vector<std::uint8_t> DynamicWorld::save() const {
   std::vector<std::uint8_t> bytes;
-  std::vector<ToolMemory> tools;
-  for (std::size_t t = 0; t < tools_.size(); ++t)
-    tools.push_back({tools_[t].moving.now.matrix(), tools_[t].dofs, consumed_[t], heard_[t], tools_[t].present});
-  state_bytes::put(bytes, std::span<const std::uint64_t>(&ticks_, 1));
-  state_bytes::put(bytes, std::span<const ToolMemory>(tools));
-  for (const auto& organ : organs_) state_bytes::put(bytes, std::span<const std::uint8_t>(organ->save()));
+  State s = State::save(bytes);
+  const_cast<DynamicWorld*>(this)->state(s);
   return bytes;
 }
 
-void DynamicWorld::restore(std::span<const std::uint8_t> state) {
-  const auto ticks = state_bytes::take<std::uint64_t>(state);
-  const auto tools = state_bytes::take<ToolMemory>(state);
-  if (ticks.size() != 1 || tools.size() != tools_.size())
-    throw std::runtime_error("the recorded state is of another scene");
-  ticks_ = ticks[0];
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    tools_[t].moving.now.matrix() = tools[t].pose;
-    tools_[t].dofs = tools[t].dofs;
-    turn_jaws(static_cast<int>(t));
-    tools_[t].present = tools[t].present != 0;
-    consumed_[t] = tools[t].consumed;
-    heard_[t] = tools[t].heard;
-  }
-  std::vector<MovingTool> moving;
-  for (const ToolInTick& tool : tools_) moving.push_back(tool.moving);
-  for (auto& organ : organs_) organ->restore(state_bytes::take<std::uint8_t>(state), moving);
+void DynamicWorld::restore(std::span<const std::uint8_t> from) {
+  State s = State::restore(from);
+  state(s);
+  if (s.size() != from.size()) throw std::runtime_error("the recorded state is of another scene");
 }
 
 std::uint64_t DynamicWorld::hash() const {

@@ -45,7 +45,8 @@ class DynamicWorld {
   bool has_left(int t) const { return left_[t]; }       ///< in the last tick
 
   std::vector<std::uint8_t> save() const;
-  void restore(std::span<const std::uint8_t> state);
+  void restore(std::span<const std::uint8_t> from);
+  void state(State& s);
   std::uint64_t hash() const;
 
  private:

@@ -14,10 +14,10 @@
 
 namespace palpate {
 
-/// One tick of the haptic loop as a function of the tools' degrees of freedom and of its own state: a loop over tools and
-/// bodies. Tools move and their jaws work, bodies that move by themselves move, then tools meet the bodies, and the hands
-/// get their forces. It allocates nothing, takes no lock and does no I/O after construction, and gives the same bits for
-/// the same inputs on the same code path.
+/// One tick of the haptic loop as a function of the tools' degrees of freedom and of its own state: a loop over tools
+/// and bodies. Tools move and their jaws work, bodies that move by themselves move, then tools meet the bodies, and the
+/// hands get their forces. It allocates nothing, takes no lock and does no I/O after construction, and gives the same
+/// bits for the same inputs on the same code path.
 class HapticStep {
  public:
   /// One archive per body, read with ArchivePart::touchable; those of moving tissue are not looked at.
@@ -52,7 +52,7 @@ class HapticStep {
   std::uint32_t flags(int tool) const { return rigs_[tool]->output().flags; }
   const Eigen::Vector3d& press(int tool) const { return rigs_[tool]->output().press; }
   const Eigen::Isometry3d& pose(int tool) const { return rigs_[tool]->pose(); }
-  double opening(int tool) const { return rigs_[tool]->end().opening(); }  ///< [rad] between a forceps' jaws
+  double opening(int tool) const { return rigs_[tool]->end().opening(); }    ///< [rad] between a forceps' jaws
   double grip_torque(int tool) const { return rigs_[tool]->output().grip; }  ///< [N m] on the handle, opens the jaws
   const Eigen::Vector3d& trocar_force(int tool) const { return rigs_[tool]->output().trocar; }  ///< [N] on the shaft
 
@@ -90,6 +90,7 @@ class HapticStep {
   std::size_t state_size() const;
   void save(std::span<std::uint8_t> to);
   void forget_factors();
+  void state(State& s);                              ///< see save()
   void restore(std::span<const std::uint8_t> from);  ///< throws std::runtime_error on a state of another scene
 
  private:
@@ -98,7 +99,6 @@ class HapticStep {
   void count_energy();
   bool meet_bodies();
   void give_forces(bool healthy);
-  void state(State& s);
 
   double dt_;
   int bodies_;

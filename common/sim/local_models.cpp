@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "common/describe/state_bytes.hpp"
 #include "common/geometry/segment.hpp"
 
 namespace palpate {
@@ -295,27 +294,14 @@ bool LocalModels::describe(int tool, LocalContactModel& model) {
   return !model.contacts.empty() || !model.triangles.empty();
 }
 
-std::vector<std::uint8_t> LocalModels::save() const {
-  std::vector<std::uint8_t> bytes;
-  state_bytes::put_one(bytes, ticks_);
-  for (const OfOrgan& own : organs_) {
-    own.stiffness->save(bytes);
-    state_bytes::put(bytes, std::span<const Eigen::Matrix3d>(own.contact));
-    state_bytes::put(bytes, std::span<const std::array<int, 5>>(own.shape));
-    state_bytes::put_one(bytes, own.age);
-  }
-  return bytes;
-}
-
-void LocalModels::restore(std::span<const std::uint8_t> state) {
-  ticks_ = state_bytes::take_one<std::uint64_t>(state);
+void LocalModels::state(State& s) {
+  s.value(ticks_);
   for (OfOrgan& own : organs_) {
-    own.stiffness->restore(state);
-    own.contact = state_bytes::take<Eigen::Matrix3d>(state);
-    own.shape = state_bytes::take<std::array<int, 5>>(state);
-    own.age = state_bytes::take_one<int>(state);
+    own.stiffness->state(s);
+    s.list(own.contact);
+    s.list(own.shape);
+    s.value(own.age);
   }
-  if (!state.empty()) throw std::runtime_error("the recorded state is of another scene");
 }
 
 }  // namespace palpate

@@ -25,10 +25,8 @@ class LocalModels {
   /// Asks for the stiffness that the tools' places need now, and takes what has been worked out. Call once a tick.
   void refresh();
 
-  /// What is known of the stiffness, as bytes; where the caller works it out.
-  std::vector<std::uint8_t> save() const;
-  /// Throws std::runtime_error on a state of another world.
-  void restore(std::span<const std::uint8_t> state);
+  /// What is known of the stiffness; where the caller works it out.
+  void state(State& s);
 
  private:
   struct OfOrgan {

@@ -11,7 +11,6 @@
 #include "common/fem/factorisation.hpp"
 #include "common/fem/fixation.hpp"
 #include "common/realtime/settings.hpp"
-#include "common/describe/state_bytes.hpp"
 
 namespace palpate {
 namespace {
@@ -150,36 +149,24 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
 
 namespace {
 
-void put(std::vector<std::uint8_t>& to, const LocalStiffness::Answer& answer) {
-  const auto& c = answer.compliance;
-  state_bytes::put(to, std::span<const int>(answer.nodes));
-  state_bytes::put(to, std::span<const double>(c.data(), static_cast<std::size_t>(c.size())));
-  state_bytes::put_one(to, answer.topology);
-}
-
-LocalStiffness::Answer take_answer(std::span<const std::uint8_t>& from) {
-  LocalStiffness::Answer answer{.nodes = state_bytes::take<int>(from)};
-  const auto compliance = state_bytes::take<double>(from);
-  answer.topology = state_bytes::take_one<std::uint64_t>(from);
+void visit(State& s, LocalStiffness::Answer& answer) {
+  std::vector<double> compliance(answer.compliance.data(), answer.compliance.data() + answer.compliance.size());
+  s.list(answer.nodes);
+  s.list(compliance);
+  s.value(answer.topology);
+  if (!s.restoring()) return;
   const std::size_t rows = 3 * answer.nodes.size();
-  if (compliance.size() != rows * rows) throw std::runtime_error("the recorded state holds a stiffness that cannot be");
+  s.require(compliance.size() == rows * rows, "the recorded state holds a stiffness that cannot be");
   const auto n = static_cast<Eigen::Index>(rows);
   answer.compliance = Eigen::Map<const Eigen::MatrixXd>(compliance.data(), n, n);
-  return answer;
 }
 
 }  // namespace
 
-void LocalStiffness::save(std::vector<std::uint8_t>& to) const {
-  put(to, current_);
-  put(to, next_);
-  state_bytes::put_one(to, std::uint8_t{answered_});
-}
-
-void LocalStiffness::restore(std::span<const std::uint8_t>& from) {
-  current_ = take_answer(from);
-  next_ = take_answer(from);
-  answered_ = state_bytes::take_one<std::uint8_t>(from) != 0;
+void LocalStiffness::state(State& s) {
+  visit(s, current_);
+  visit(s, next_);
+  s.value(answered_);
 }
 
 }  // namespace palpate

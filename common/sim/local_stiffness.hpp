@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/describe/state.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
 
 namespace palpate {
@@ -47,10 +48,9 @@ class LocalStiffness {
   bool take();
   const Answer& current() const { return current_; }
 
-  /// Answers as bytes, the one that waits to be taken too; where the caller works.
-  void save(std::vector<std::uint8_t>& to) const;
-  /// Takes what save() wrote off the front. Throws std::runtime_error on what cannot be.
-  void restore(std::span<const std::uint8_t>& from);
+  /// The answers, the one that waits to be taken too; where the caller works. Restoring throws std::runtime_error on
+  /// what cannot be.
+  void state(State& s);
 
  private:
   struct Question {

@@ -3,14 +3,14 @@
 #include <span>
 #include <vector>
 
-#include "idl/messages.hpp"
-#include "common/sim/deformer.hpp"
-#include "common/scene/scene.hpp"
 #include "common/archive/archive.hpp"
+#include "common/scene/scene.hpp"
+#include "common/sim/deformer.hpp"
 #include "common/sim/dynamic_world.hpp"
-#include "common/sim/local_models.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "common/sim/local_models.hpp"
 #include "common/sim/step_messages.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate::sim {
 
@@ -81,7 +81,7 @@ class Simulator {
   /// on bit for bit as one that begins with restore().
   std::vector<std::uint8_t> save();
   /// Before the first step of another one of the same scene. Throws std::runtime_error on a state that does not fit.
-  void restore(std::span<const std::uint8_t> state);
+  void restore(std::span<const std::uint8_t> from);
   /// XXH3 of what the last step left: tools, forces, contacts, tissue, walls and catheters.
   std::uint64_t hash() const;
 

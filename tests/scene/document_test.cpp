@@ -1,33 +1,35 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <map>
+#include <sstream>
+#include <stdexcept>
 #include <string>
-#include <vector>
 
+#include "common/scene/reference.hpp"
 #include "common/scene/scene.hpp"
 
 namespace palpate {
 namespace {
 
-/// The keys of docs/scene.md: below a heading "## `[[body]]` ...", the rows "| `young` | ...".
-std::map<std::string, std::vector<std::string>> documented_keys() {
+TEST(SceneReference, ThePageIsWhatTheDescriptionsSay) {
   std::ifstream stream(PALPATE_SOURCE_DIR "/docs/scene.md");
-  std::map<std::string, std::vector<std::string>> tables;
-  std::string table;
-  for (std::string line; std::getline(stream, line);) {
-    const auto quoted = [&](std::size_t from) { return line.substr(from, line.find('`', from) - from); };
-    if (line.starts_with("## ")) table = line.starts_with("## `") ? quoted(4) : "";
-    if (!table.empty() && line.starts_with("| `")) tables[table].push_back(quoted(3));
-  }
-  return tables;
+  std::ostringstream page;
+  page << stream.rdbuf();
+  EXPECT_EQ(page.str(), with_reference(page.str(), scene_keys())) << "write it anew: scene_reference docs/scene.md";
 }
 
-TEST(SceneReference, ListsTheKeysThatTheParserKnows) {
-  std::map<std::string, std::vector<std::string>> known;
-  for (const DescribedTable& table : scene_keys().tables())
-    for (const DescribedKey& key : table.keys) known[table.path.name()].push_back(key.name);
-  EXPECT_EQ(documented_keys(), known);
+TEST(SceneReference, EveryTableOfKeysIsOnThePage) {
+  EXPECT_THROW(with_reference("## `scene`: the top\n\n| key |\n", scene_keys()), std::runtime_error);
+}
+
+TEST(SceneReference, AKeyOfSomeKindsSaysOfWhich) {
+  const KeyList& keys = scene_keys();
+  const DescribedKey* shell = keys.find("body")->find("shell");
+  ASSERT_TRUE(shell);
+  EXPECT_EQ(shell->kinds, std::vector<std::string>{"modal_shell"});
+  EXPECT_EQ(keys.find("body")->find("poisson")->fallback, "needed; 0.45 for `catheter`");
+  EXPECT_EQ(keys.find("contact")->find("friction")->type, "number ≥ 0");
+  EXPECT_EQ(keys.find("contact")->find("friction")->fallback, "0.3");
 }
 
 }  // namespace

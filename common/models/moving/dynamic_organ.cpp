@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/describe/state_bytes.hpp"
 #include "common/dynamics/make_model.hpp"
 #include "common/geometry/triangle.hpp"
 #include "common/mesh/normals.hpp"
@@ -243,48 +242,57 @@ void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eig
   vertex_normals(position, shown_.triangles(topology_), normal);
 }
 
-std::vector<std::uint8_t> DynamicOrgan::save() const {
-  std::vector<std::uint8_t> bytes;
-  state_bytes::put(bytes, std::span<const int>(removed_));
-  state_bytes::put(bytes, model_->state());
-  state_bytes::put(bytes, contacts_.list());
-  state_bytes::put(bytes, std::span<const char>(jaws_closed_));
-  state_bytes::put(bytes, std::span<const std::uint8_t>(still_ ? still_->save() : std::vector<std::uint8_t>{}));
-  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.previous()));
-  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(surface_.positions()));
-  return bytes;
+DynamicOrgan::Memory DynamicOrgan::memory() const {
+  const auto motion = model_->state();
+  const auto list = contacts_.list();
+  return {removed_,
+          {motion.begin(), motion.end()},
+          {list.begin(), list.end()},
+          jaws_closed_,
+          {surface_.previous().begin(), surface_.previous().end()},
+          {surface_.positions().begin(), surface_.positions().end()}};
 }
 
-void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
-  const auto removed = state_bytes::take<int>(state);
-  const auto motion = state_bytes::take<std::byte>(state);
-  const auto contacts = state_bytes::take<TissueContact>(state);
-  const auto jaws = state_bytes::take<char>(state);
-  const auto still = state_bytes::take<std::uint8_t>(state);
-  const auto previous = state_bytes::take<Eigen::Vector3d>(state), present = state_bytes::take<Eigen::Vector3d>(state);
+void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
+  Memory m = s.restoring() ? Memory{} : memory();
+  s.list(m.removed);
+  s.list(m.motion);
+  s.list(m.contacts);
+  s.list(m.jaws);
+  s.list(m.previous);
+  s.list(m.present);
+  if (s.restoring()) recall(m, tools);
+  if (still_) still_->state(s, tools);
+}
+
+// Whether what was read can be of this body and these tools.
+bool DynamicOrgan::fits(const Memory& m, std::span<const MovingTool> tools) const {
   const auto known = [&](const TissueContact& c) {
     const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
     const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < tools[c.tool].size();
     return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
   };
-  const bool fits = std::ranges::all_of(contacts, known) && motion.size() == model_->state().size() &&
-                    jaws.size() == jaws_closed_.size() && contacts.size() <= TissueContacts::most &&
-                    previous.size() == position_.size() && present.size() == position_.size() &&
-                    std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
-  if (!fits || !removed_.empty())
+  const bool sizes = m.motion.size() == model_->state().size() && m.jaws.size() == jaws_closed_.size() &&
+                     m.contacts.size() <= TissueContacts::most && m.previous.size() == position_.size() &&
+                     m.present.size() == position_.size();
+  return sizes && std::ranges::all_of(m.contacts, known) &&
+         std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+}
+
+void DynamicOrgan::recall(const Memory& m, std::span<const MovingTool> tools) {
+  if (!fits(m, tools) || !removed_.empty())
     throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
-  removed_ = removed;
+  removed_ = m.removed;
   topology_.erase(removed_);
   surface_.follow();
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
-  model_->set_state(motion);
-  contacts_.set_list(contacts);
-  jaws_closed_ = jaws;
-  if (still_) still_->restore(still, tools);
-  surface_.set_positions(previous);
-  surface_.set_positions(present);
-  position_ = present;
+  model_->set_state(m.motion);
+  contacts_.set_list(m.contacts);
+  jaws_closed_ = m.jaws;
+  surface_.set_positions(m.previous);
+  surface_.set_positions(m.present);
+  position_ = m.present;
   follow_change();
 }
 

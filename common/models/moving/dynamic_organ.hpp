@@ -9,6 +9,7 @@
 #include "common/archive/archive.hpp"
 #include "common/contact/cut_surface.hpp"
 #include "common/contact/step_settings.hpp"
+#include "common/describe/state.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
 #include "common/dynamics/make_model.hpp"
@@ -73,13 +74,22 @@ class DynamicOrgan {
   /// Position [m] and unit normal per node of the archive's surface map; nodes off the surface have no normal.
   void shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal);
 
-  /// State as bytes, for keyframes; and its hash (XXH3, 64 bits).
-  std::vector<std::uint8_t> save() const;
-  /// `tools`: as they were. Throws std::runtime_error on a state of another body.
-  void restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools);
-  std::uint64_t hash() const;
+  /// For keyframes. `tools`: as they are, where it restores; throws std::runtime_error on a state of another body.
+  void state(State& s, std::span<const MovingTool> tools);
+  std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
+  /// What it remembers, the quasi-static part's apart.
+  struct Memory {
+    std::vector<int> removed;
+    std::vector<std::byte> motion;
+    std::vector<TissueContact> contacts;
+    std::vector<char> jaws;
+    std::vector<Eigen::Vector3d> previous, present;
+  };
+  Memory memory() const;
+  bool fits(const Memory& memory, std::span<const MovingTool> tools) const;
+  void recall(const Memory& memory, std::span<const MovingTool> tools);
   void work_jaws(std::span<const ToolInTick> tools);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "common/describe/state_bytes.hpp"
-
 namespace palpate {
 namespace {
 
@@ -66,22 +64,14 @@ void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::
     if (part_.owns(n)) position[n] = rest[n].cast<float>() + moved_[n];
 }
 
-std::vector<std::uint8_t> HybridTouch::save() const {
-  std::vector<std::uint8_t> bytes(contacts_.state_size());
-  contacts_.save(bytes.data());
+void HybridTouch::state(State& s, std::span<const MovingTool> tools) {
+  contacts_.state(s, tools);
   std::vector<Eigen::Vector3d> forces;
-  for (std::size_t c = 0; c < contacts().size(); ++c) forces.push_back(force(static_cast<int>(c)));
-  state_bytes::put(bytes, std::span<const Eigen::Vector3d>(forces));
-  return bytes;
-}
-
-void HybridTouch::restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools) {
-  if (state.size() < contacts_.state_size()) throw std::runtime_error("the recorded state is of another hybrid body");
-  contacts_.restore(state.data(), tools);
-  state = state.subspan(contacts_.state_size());
-  const auto forces = state_bytes::take<Eigen::Vector3d>(state);
-  if (forces.size() != contacts().size()) throw std::runtime_error("the recorded state is of another hybrid body");
-  part_.adopt(model_, forces);
+  if (!s.restoring())
+    for (std::size_t c = 0; c < contacts().size(); ++c) forces.push_back(force(static_cast<int>(c)));
+  s.list(forces);
+  s.require(forces.size() == contacts().size(), "the recorded state is of another hybrid body");
+  if (s.restoring()) part_.adopt(model_, forces);
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 
 #include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
+#include "common/describe/state.hpp"
 #include "common/dynamics/hybrid_part.hpp"
 
 namespace palpate {
@@ -42,8 +43,7 @@ class HybridTouch {
 
   /// What is held is factorised anew in the next step, so that a restored state goes on alike.
   void forget_factor() { part_.law().forget_factor(); }
-  std::vector<std::uint8_t> save() const;
-  void restore(std::span<const std::uint8_t> state, std::span<const MovingTool> tools);
+  void state(State& s, std::span<const MovingTool> tools = {});
 
  private:
   DynamicModel& model_;
