@@ -41,8 +41,7 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
     const auto make = [&](const auto& spec) { return make_organ(spec, archives[b], settings); };
     auto organ = std::visit(make, scene.bodies[b]);
     if (!organ) continue;
-    organs_.push_back(
-        std::make_unique<DynamicOrgan>(archives[b], *spec, settings, springs ? make_spring_model : make_element_model));
+    organs_.push_back(std::move(organ));
     body_of_.push_back(b);
   }
 }

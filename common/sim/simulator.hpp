@@ -86,6 +86,8 @@ class Simulator {
   std::uint64_t hash() const;
 
  private:
+  void forget_factors();
+  void state(State& s);
   void move_tissue();
   void show();
 

@@ -1,5 +1,7 @@
 #include "common/sim/tool_rig.hpp"
 
+#include "idl/messages.hpp"
+
 namespace palpate {
 
 ToolRig::ToolRig(int index, const Tool& tool, double dt)
