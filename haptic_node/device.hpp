@@ -8,12 +8,21 @@
 
 namespace palpate {
 
-/// Where one tool's degrees of freedom come from.
+/// What the hand gets at the tool's tip, world frame.
+struct Wrench {
+  Eigen::Vector3d force;   ///< [N] on the tool
+  Eigen::Vector3d torque;  ///< [N m] on the tool, about its tip
+};
+
+/// What one tool's degrees of freedom come from, and its force goes to.
 class Device {
  public:
   virtual ~Device() = default;
   /// Pose at a time [s] since the loop began. Called in the haptic step: no allocation, no lock, no I/O.
   virtual DeviceSample read(double seconds) = 0;
+  /// The force of the step that used the last read(), and the torque [N m] on the handle, which opens the jaws. Called
+  /// in the same tick: no allocation, no lock, no I/O. What has no motors takes no notice.
+  virtual void render(const Wrench& /*wrench*/, double /*grip*/) {}
   /// True when a recorded or scripted motion is over.
   virtual bool finished(double seconds) const = 0;
   /// False until the first pose is known (a driver elsewhere has not spoken yet).

@@ -89,6 +89,8 @@ void HapticLoop::tick(double time) {
   local_feed_.give(haptic_);
   if (step_ % keyframe_interval_ == 0) checkpoint();
   haptic_.step(dofs_);
+  for (int t = 0; t < haptic_.tools(); ++t)
+    devices_[t]->render({haptic_.force(t), haptic_.torque(t)}, haptic_.grip_torque(t));
 
   const std::int64_t push_begin = now_ns();
   if (StepRecord* record = ring_.begin_push()) {

@@ -142,8 +142,7 @@ void run(const NodeOptions& o) {
   }
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
   for (const auto& c : haptic.catheters())
-    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[c.body]),
-                 c.part->body().size(),
+    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[c.body]), c.part->body().size(),
                  as<CatheterSpec>(scene.bodies[c.body])->catheter.integrator == "implicit"
                      ? std::string("implicit, one step a tick")
                      : fmt::format("semi-implicit, {} substeps a tick", c.part->body().substeps()));

@@ -18,7 +18,7 @@ std::string short_number(double x) {
 }
 
 std::string short_vector(const double* v) {
-  return fmt::format("`[{}, {}, {}]`", v[0], v[1], v[2]);
+  return fmt::format("`[{}, {}, {}]`", v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);  // no negative zero
 }
 
 void note_table(DescribedKey& row, const TablePath& path) {

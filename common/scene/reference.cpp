@@ -5,20 +5,37 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace palpate {
 namespace {
 
-std::string row(const DescribedKey& key) {
-  std::string meaning = key.meaning;
-  if (!key.kinds.empty() && key.kinds.size() < key.of_kinds)
-    meaning += fmt::format(" (`{}` alone)", fmt::join(key.kinds, "`, `"));
+/// The kinds that lack the key, as far as the table's other keys tell; empty where that is not clear.
+std::vector<std::string> kinds_without(const DescribedKey& key, const DescribedTable& table) {
+  std::set<std::string> kinds;
+  for (const DescribedKey& other : table.keys)
+    if (other.of_kinds == key.of_kinds) kinds.insert(other.kinds.begin(), other.kinds.end());
+  if (kinds.size() != key.of_kinds) return {};
+  for (const std::string& kind : key.kinds) kinds.erase(kind);
+  return {kinds.begin(), kinds.end()};
+}
+
+std::string whose(const DescribedKey& key, const DescribedTable& table) {
+  if (key.kinds.empty() || key.kinds.size() == key.of_kinds) return {};
+  const auto without = kinds_without(key, table);
+  if (!without.empty() && without.size() < key.kinds.size())
+    return fmt::format(" (not `{}`)", fmt::join(without, "`, `"));
+  return fmt::format(" (`{}` alone)", fmt::join(key.kinds, "`, `"));
+}
+
+std::string row(const DescribedKey& key, const DescribedTable& table) {
+  const std::string meaning = key.meaning + whose(key, table);
   return fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.type, key.fallback, meaning);
 }
 
 std::string table_text(const DescribedTable& table) {
   std::string text = "| key | type | default | meaning |\n| --- | --- | --- | --- |\n";
-  for (const DescribedKey& key : table.keys) text += row(key);
+  for (const DescribedKey& key : table.keys) text += row(key, table);
   return text;
 }
 
