@@ -4,8 +4,8 @@
 #include "bench/report.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/sim/step_record.hpp"
 #include "common/tool/trajectory.hpp"
-#include "haptic_node/step_record.hpp"
 
 namespace palpate {
 namespace {

@@ -127,18 +127,8 @@ void DynamicLoop::publish_models() {
     // An empty one says that there is nothing near any more, and again from time to time, since it may be lost.
     const bool remind = m.seq > 0 && world_.ticks() % reminder_ticks == 0;
     if (!near && !was_near && !remind) continue;
-    const ToolState& s = world_.consumed(t);
-    m.tool = static_cast<std::uint32_t>(t);
     m.run = run_;
     ++m.seq;
-    m.tool_run = s.run;
-    m.tool_step = s.step;
-    m.sense_ns = s.sense_ns;
-    m.yaw = s.yaw;
-    m.pitch = s.pitch;
-    m.depth = s.depth;
-    m.roll = s.roll;
-    m.grip = s.grip;
     models_->write(m);
   }
 }

@@ -4,7 +4,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/scene/scene.hpp"
-#include "haptic_node/step_record.hpp"
+#include "common/sim/step_record.hpp"
 
 namespace palpate {
 

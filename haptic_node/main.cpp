@@ -61,7 +61,7 @@ void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bu
 nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
   nlohmann::json tasks = nlohmann::json::array();
   for (std::size_t i = 0; i < haptic.catheters().size(); ++i) {
-    const Task& task = haptic.tasks()[i];
+    const Task& task = haptic.task(static_cast<int>(i));
     const std::string& body = name_of(scene.bodies[haptic.catheters()[i].body]);
     tasks.push_back({{"body", body},
                      {"inserted_m", task.inserted},
@@ -141,11 +141,12 @@ void run(const NodeOptions& o) {
     bus->wait(20ms);
   }
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
-  for (const ReducedBody& b : haptic.catheters())
-    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[b.body]), b.size,
-                 as<CatheterSpec>(scene.bodies[b.body])->catheter.integrator == "implicit"
+  for (const auto& c : haptic.catheters())
+    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[c.body]),
+                 c.part->body().size(),
+                 as<CatheterSpec>(scene.bodies[c.body])->catheter.integrator == "implicit"
                      ? std::string("implicit, one step a tick")
-                     : fmt::format("semi-implicit, {} substeps a tick", haptic.catheter(b.body).substeps()));
+                     : fmt::format("semi-implicit, {} substeps a tick", c.part->body().substeps()));
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
   if (topology) loop.set_topology(&*topology);
   const LoopReport& report = loop.run(o.seconds);

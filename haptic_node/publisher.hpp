@@ -4,12 +4,9 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
-#include "haptic_node/step_record.hpp"
+#include "common/sim/step_record.hpp"
 
 namespace palpate {
-
-/// Fills in what a task record says of the task.
-void describe(const Task& task, TaskRecord& record);
 
 /// Turns step records into messages and writes them. Runs on the publisher thread.
 class Publisher {

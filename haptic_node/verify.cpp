@@ -13,7 +13,7 @@
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/haptic_step.hpp"
-#include "haptic_node/publisher.hpp"
+#include "common/sim/step_messages.hpp"
 #include "haptic_node/recorded_models.hpp"
 #include "idl/fields.hpp"
 #include "idl/topics.hpp"
@@ -178,7 +178,7 @@ class RunVerifier {
       const auto found = recorded.task.find(static_cast<std::uint32_t>(haptic.catheters()[i].body));
       if (found == recorded.task.end()) continue;
       TaskRecord computed = found->second;
-      describe(haptic.tasks()[i], computed);
+      describe(haptic.task(static_cast<int>(i)), computed);
       if (computed == found->second) {
         ++report_.tasks;
         continue;

@@ -17,7 +17,7 @@ namespace palpate {
 /// them. Where triangles are smaller than a part's radius their vertices carry the contact; where they are larger a
 /// sphere touches at one point of a triangle, and a segment at one point of each triangle along it (BHS01 sec. VII).
 /// Nothing is allocated after construction.
-class ToolContacts {
+class ToolContacts : public Stateful<ToolContacts> {
  public:
   /// What a body's tools have in common with one another, and what is each tool's own.
   struct Options {
@@ -73,10 +73,9 @@ class ToolContacts {
   void let_go(int tool);
 
   /// Surface and contacts as bytes, for replay.
-  std::size_t state_size() const;
-  void save(unsigned char* to) const;
-  /// Throws std::runtime_error on a state that does not fit this surface and these tools.
-  void restore(const unsigned char* from, std::span<const MovingTool> tools);
+  /// The surface, and the contacts of the law. Restoring throws std::runtime_error on a state that does not fit this
+  /// surface and these tools.
+  void state(State& s, std::span<const MovingTool> tools = {});
 
  private:
   static constexpr int most_swept = 512;  ///< points of a segment, less one, that are swept

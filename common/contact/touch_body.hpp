@@ -6,56 +6,43 @@
 #include "common/archive/compliance.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
+#include "common/contact/body_part.hpp"
 #include "common/tool/forceps.hpp"
 
 namespace palpate {
 
-/// What one body does to one tool in a step. Linear and corrected forces share their direction of press.
-struct ToolLoad {
-  Eigen::Vector3d press = Eigen::Vector3d::Zero();   ///< unit or zero: common direction of the press on the tissue
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N] on the tool, after the non-linear correction
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the tool about its tip, likewise
-};
-
 /// One body under the hand whose contacts this node solves: a compliance among its surface nodes, the surface and the
 /// contacts. What moves the surface is the derived class's.
-class TouchBody {
+class TouchBody : public BodyPart {
  public:
   static constexpr int max_contacts = 96;
 
-  virtual ~TouchBody() = default;
-
-  /// Brings the surface up to date, near the tools at least.
-  virtual void update_surface(std::span<const MovingTool> tools) = 0;
   /// collide: finds what the tools touch.
   void collide(std::span<const MovingTool> tools) { contacts_.collide(tools); }
   /// hold: prescribes the contacts' displacements and solves for their forces.
   virtual LawOutcome hold(std::span<const MovingTool> tools);
+  /// collide, hold and load in turn.
+  LawOutcome touch(const ToolsInStep& in, std::span<ToolLoad> loads) override;
   /// force: sums what acts on each tool (one entry per tool).
   virtual void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const;
 
   const TouchSurface& surface() const { return contacts_.surface(); }
   const ContactLaw& law() const { return law_; }
-  /// Takes up a contact that a peer kept for this tool.
-  void adopt(const TouchContact& contact) { contacts_.adopt(contact); }
-  /// Jaws of a probe that close hold the nodes between them as displacement constraints until let_go().
-  void grasp(int tool, const Eigen::Isometry3d& pose, const ProbeJaws& jaws) {
+  const ContactLaw* held() const override { return &law_; }
+  bool adopt(const TouchContact& contact) override;
+  void pinch(int tool, const Eigen::Isometry3d& pose, const ProbeJaws& jaws) override {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });
   }
-  /// The same for a forceps' jaws at this opening [rad]; true if there is something between them.
-  bool grasp(int tool, const Eigen::Isometry3d& pose, const ForcepsShape& shape, double opening);
-  void let_go(int tool) { contacts_.let_go(tool); }
-  double grasp_load(int tool) const;  ///< [N] size of the sum of the forces by which the tool's jaws hold the body
+  BetweenJaws between(const OpenJaws& jaws) override;
+  void grasp(const OpenJaws& jaws) override;
+  void let_go(int tool) override { contacts_.let_go(tool); }
+  double grasp_load(int tool) const override;
   /// [m] by which tissue reaches out from its surface nodes: half the thickness of a wall.
   virtual double wall_radius() const { return 0; }
-  void forget_factor() { law_.forget_factor(); }
-  /// Depth [m] to which a part of a tool reaches into the rest shape; 0 if it does not touch it.
-  virtual double penetration(const Segment& axis, double radius) const;
-
-  virtual std::size_t state_size() const { return contacts_.state_size(); }
-  virtual void save(unsigned char* to) const { contacts_.save(to); }
-  /// Throws std::runtime_error on a state that does not fit this body and these tools.
-  virtual void restore(const unsigned char* from, std::span<const MovingTool> tools) { contacts_.restore(from, tools); }
+  void forget_factor() override { law_.forget_factor(); }
+  double penetration(const Segment& axis, double radius) const override;
+  /// Restoring throws std::runtime_error on a state that does not fit this body and these tools.
+  void state(State& s, std::span<const MovingTool> tools) override { contacts_.state(s, tools); }
 
  protected:
   TouchBody(const SurfaceMap& map, Compliance<double> compliance, const StepSettings& settings,
@@ -76,6 +63,8 @@ class TouchBody {
   std::vector<Eigen::Vector3d> unloaded_;  ///< [m] per node
   ContactLaw law_;
   ToolContacts contacts_;
+  std::vector<ToolLoad> own_;             ///< what this body does to each tool
+  std::vector<GripObstacle> obstacles_;  ///< between jaws
 };
 
 }  // namespace palpate

@@ -194,18 +194,14 @@ bool TouchSurface::encloses(const Eigen::Vector3d& p) const {
   return crossings % 2 == 1;
 }
 
-void TouchSurface::save(unsigned char* to) const {
-  const std::size_t bytes = 3 * sizeof(double) * position_.size();
-  std::memcpy(to, previous_.data(), bytes);
-  std::memcpy(to + bytes, position_.data(), bytes);
-  std::memcpy(to + 2 * bytes, &turn_, sizeof turn_);
+void TouchSurface::state(State& s) {
+  s.bytes(previous_.data(), 3 * sizeof(double) * previous_.size());
+  s.bytes(position_.data(), 3 * sizeof(double) * position_.size());
+  s.value(turn_);
+  if (s.restoring()) follow_restored();
 }
 
-void TouchSurface::restore(const unsigned char* from) {
-  const std::size_t bytes = 3 * sizeof(double) * position_.size();
-  std::memcpy(static_cast<void*>(previous_.data()), from, bytes);
-  std::memcpy(static_cast<void*>(position_.data()), from + bytes, bytes);
-  std::memcpy(&turn_, from + 2 * bytes, sizeof turn_);
+void TouchSurface::follow_restored() {
   turn_ = movable_ > 0 ? static_cast<int>(static_cast<unsigned>(turn_) % static_cast<unsigned>(movable_)) : 0;
   // All nodes count as moved in the step before, so that previous positions settle as they did when this was saved.
   marked_.clear();

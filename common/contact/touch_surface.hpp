@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "common/describe/state.hpp"
 #include "common/archive/archive.hpp"
 #include "common/geometry/buckets.hpp"
 #include "common/geometry/triangle.hpp"
@@ -52,11 +53,10 @@ class TouchSurface {
   bool encloses(const Eigen::Vector3d& p) const;
 
   /// State for replay: previous and present positions and the turn of the far nodes.
-  std::size_t state_size() const { return 6 * sizeof(double) * position_.size() + sizeof(int); }
-  void save(unsigned char* to) const;
-  void restore(const unsigned char* from);
+  void state(State& s);
 
  private:
+  void follow_restored();
   void enter(int triangle);
   int collect(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double radius) const;
 

@@ -31,4 +31,16 @@ std::vector<T> take(std::span<const std::uint8_t>& bytes) {
   return values;
 }
 
+/// One value.
+template <class T>
+void put_one(std::vector<std::uint8_t>& bytes, const T& value) {
+  put(bytes, std::span<const T>(&value, 1));
+}
+template <class T>
+T take_one(std::span<const std::uint8_t>& bytes) {
+  const std::vector<T> values = take<T>(bytes);
+  if (values.size() != 1) throw std::runtime_error("the recorded state holds another number of values");
+  return values[0];
+}
+
 }  // namespace palpate::state_bytes

@@ -1,8 +1,29 @@
 #pragma once
+#include <Eigen/Core>
+#include <algorithm>
+
 #include "common/geometry/triangle.hpp"
-#include "common/tool/tool_part.hpp"
 
 namespace palpate {
+
+/// A straight piece from start to end [m]; a point where they are equal.
+struct Segment {
+  Eigen::Vector3d start = Eigen::Vector3d::Zero(), end = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d at(double share) const { return start + share * (end - start); }  ///< share 0: start, 1: end
+  double length() const { return (end - start).norm(); }
+};
+
+/// Share in [0, 1] of the way from start to end at which a segment comes nearest to p; 0 for a point.
+inline double nearest_share(const Segment& s, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d along = s.end - s.start;
+  const double square = along.squaredNorm();
+  return square > 0 ? std::clamp((p - s.start).dot(along) / square, 0.0, 1.0) : 0.0;
+}
+
+inline Eigen::Vector3d nearest_point(const Segment& s, const Eigen::Vector3d& p) {
+  return s.at(nearest_share(s, p));
+}
 
 /// Where two segments come nearest to each other; of parallel ones, the middle of where they run beside each other.
 struct ClosestOfSegments {

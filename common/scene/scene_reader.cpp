@@ -247,6 +247,12 @@ void SceneReader::indices(const Key& key, std::vector<int>& value) {
   }
 }
 
+void SceneReader::group(const Key& key, std::string& value) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  value = node->is_integer() ? std::to_string(node->as_integer()->get()) : plain_text(*node, key.name);
+}
+
 void SceneReader::path(const Key& key, std::filesystem::path& value) {
   const toml::node* node = find(key);
   if (!node) return;

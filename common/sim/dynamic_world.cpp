@@ -48,9 +48,9 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
   }
   const StepSettings settings{scene.contact, scene.tools, dt_};
   for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
-    const auto* spec = as<MovingSpec>(scene.bodies[b]);
-    if (!spec) continue;
-    const bool springs = as<SpringMassSpec>(scene.bodies[b]) != nullptr;
+    const auto make = [&](const auto& spec) { return make_organ(spec, archives[b], settings); };
+    auto organ = std::visit(make, scene.bodies[b]);
+    if (!organ) continue;
     organs_.push_back(
         std::make_unique<DynamicOrgan>(archives[b], *spec, settings, springs ? make_spring_model : make_element_model));
     body_of_.push_back(b);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "common/describe/state_bytes.hpp"
 #include "common/geometry/segment.hpp"
 
 namespace palpate {
@@ -53,13 +54,15 @@ CondensedPart condensed_part(const Archive& archive) {
 
 }  // namespace
 
-LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives) : world_(world) {
+LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives, LocalStiffness::Worker worker)
+    : world_(world) {
   for (int i = 0; i < world.organs(); ++i) {
     const ElasticMesh& mesh = world.organ(i).mesh();
     double edges = 0;
     for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
-    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]])),
-                       .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
+    organs_.push_back(
+        {.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]]), worker),
+         .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
   }
 }
 
@@ -143,6 +146,20 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
       const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
       own.contact[i] += p.transpose() * inverse.block(first[i], first[j], p.rows(), q.rows()) * q;
     }
+}
+
+// Of which moment the model is, and the pose that the tool had.
+void LocalModels::add_origin(int tool, LocalContactModel& model) const {
+  const ToolState& s = world_.consumed(tool);
+  model.tool = static_cast<std::uint32_t>(tool);
+  model.tool_run = s.run;
+  model.tool_step = s.step;
+  model.sense_ns = s.sense_ns;
+  model.yaw = s.yaw;
+  model.pitch = s.pitch;
+  model.depth = s.depth;
+  model.roll = s.roll;
+  model.grip = s.grip;
 }
 
 void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
@@ -266,6 +283,7 @@ bool LocalModels::describe(int tool, LocalContactModel& model) {
   model.contacts.clear();
   model.nodes.clear();
   model.triangles.clear();
+  add_origin(tool, model);
   if (!world_.tool(tool).present) return false;
   for (int i = 0; i < world_.organs(); ++i) {
     add_contacts(tool, i, model);
@@ -275,6 +293,29 @@ bool LocalModels::describe(int tool, LocalContactModel& model) {
     add_still_surface(tool, i, model);
   }
   return !model.contacts.empty() || !model.triangles.empty();
+}
+
+std::vector<std::uint8_t> LocalModels::save() const {
+  std::vector<std::uint8_t> bytes;
+  state_bytes::put_one(bytes, ticks_);
+  for (const OfOrgan& own : organs_) {
+    own.stiffness->save(bytes);
+    state_bytes::put(bytes, std::span<const Eigen::Matrix3d>(own.contact));
+    state_bytes::put(bytes, std::span<const std::array<int, 5>>(own.shape));
+    state_bytes::put_one(bytes, own.age);
+  }
+  return bytes;
+}
+
+void LocalModels::restore(std::span<const std::uint8_t> state) {
+  ticks_ = state_bytes::take_one<std::uint64_t>(state);
+  for (OfOrgan& own : organs_) {
+    own.stiffness->restore(state);
+    own.contact = state_bytes::take<Eigen::Matrix3d>(state);
+    own.shape = state_bytes::take<std::array<int, 5>>(state);
+    own.age = state_bytes::take_one<int>(state);
+  }
+  if (!state.empty()) throw std::runtime_error("the recorded state is of another scene");
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/sim/dynamic_world.hpp"
@@ -10,18 +11,24 @@
 namespace palpate {
 
 /// Makes the local contact models of all tools: what they hold and touch, the surface around them, and its static
-/// stiffness, which a thread of its own keeps working out.
+/// stiffness, which a thread of its own keeps working out unless the caller is to.
 class LocalModels {
  public:
   static constexpr int most_contacts = 32, most_nodes = 40, most_triangles = 32;  ///< a message of 5 kB a millisecond
 
   /// One archive per body of the scene.
-  LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives);
+  LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives,
+              LocalStiffness::Worker worker = LocalStiffness::Worker::thread);
 
-  /// Fills everything but run, seq and the tool's state; false if no dynamic tissue is near the tool.
+  /// Fills everything but run and seq, after a tick; false if no dynamic tissue is near the tool.
   bool describe(int tool, LocalContactModel& model);
   /// Asks for the stiffness that the tools' places need now, and takes what has been worked out. Call once a tick.
   void refresh();
+
+  /// What is known of the stiffness, as bytes; where the caller works it out.
+  std::vector<std::uint8_t> save() const;
+  /// Throws std::runtime_error on a state of another world.
+  void restore(std::span<const std::uint8_t> state);
 
  private:
   struct OfOrgan {
@@ -33,6 +40,7 @@ class LocalModels {
     int age = 0;
   };
   void condense(OfOrgan& own, const DynamicOrgan& organ);
+  void add_origin(int tool, LocalContactModel& model) const;
   void add_contacts(int tool, int i, LocalContactModel& model);
   void add_surface(int tool, int i, LocalContactModel& model);
   void add_still_contacts(int tool, int i, LocalContactModel& model);

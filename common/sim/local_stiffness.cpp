@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <exception>
 #include <numbers>
-#include <optional>
+#include <stdexcept>
 
 #include "common/fem/assembly.hpp"
 #include "common/fem/factorisation.hpp"
 #include "common/fem/fixation.hpp"
 #include "common/realtime/settings.hpp"
+#include "common/describe/state_bytes.hpp"
 
 namespace palpate {
 namespace {
@@ -53,16 +54,22 @@ int LocalStiffness::Answer::find(int node) const {
   return at != nodes.end() && *at == node ? static_cast<int>(at - nodes.begin()) : -1;
 }
 
-LocalStiffness::LocalStiffness(const ElasticMesh& mesh, CondensedPart joined)
-    : mesh_(mesh), joined_(std::move(joined)), worker_([this](const std::stop_token& stop) { work(stop); }) {}
+LocalStiffness::LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Worker worker)
+    : mesh_(mesh), joined_(std::move(joined)) {
+  if (worker == Worker::thread) worker_.emplace([this](const std::stop_token& stop) { work(stop); });
+}
 
 bool LocalStiffness::ask(std::span<const int> nodes, std::span<const int> removed) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || asked_) return false;
   question_.nodes.assign(nodes.begin(), nodes.begin() + std::min<std::size_t>(nodes.size(), most_nodes));
   question_.removed.assign(removed.begin(), removed.end());
-  asked_ = true;
-  wake_.notify_one();
+  if (worker_) {
+    asked_ = true;
+    wake_.notify_one();
+  } else {
+    settle(answer(question_));
+  }
   return true;
 }
 
@@ -83,20 +90,30 @@ void LocalStiffness::work(const std::stop_token& stop) {
       if (!wake_.wait(lock, stop, [this] { return asked_; })) return;
       question = question_;
     }
-    std::optional<Answer> answer;
-    try {
-      answer = solve(question);
-    } catch (const std::exception& error) {  // what is left is too badly shaped: the last answer stands
-      spdlog::warn("stiffness near the tools: {}", error.what());
-    }
+    std::optional<Answer> found = answer(question);
     const std::lock_guard lock(mutex_);
-    answered_ |= answer.has_value();
-    if (answer) next_ = std::move(*answer);
+    settle(std::move(found));
     asked_ = false;
   }
 }
 
-LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
+void LocalStiffness::settle(std::optional<Answer> found) {
+  if (!found) return;  // the last answer stands
+  next_ = std::move(*found);
+  answered_ = true;
+}
+
+// None where what is left is too badly shaped.
+std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& question) const {
+  try {
+    return solve(question);
+  } catch (const std::exception& error) {
+    spdlog::warn("stiffness near the tools: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
   std::vector<bool> gone(mesh_.tetrahedra.size(), false);
   for (int t : question.removed) gone[t] = true;
@@ -129,6 +146,40 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
       if (dofs.is_free(answer.nodes[i], axis))
         answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
   return answer;
+}
+
+namespace {
+
+void put(std::vector<std::uint8_t>& to, const LocalStiffness::Answer& answer) {
+  const auto& c = answer.compliance;
+  state_bytes::put(to, std::span<const int>(answer.nodes));
+  state_bytes::put(to, std::span<const double>(c.data(), static_cast<std::size_t>(c.size())));
+  state_bytes::put_one(to, answer.topology);
+}
+
+LocalStiffness::Answer take_answer(std::span<const std::uint8_t>& from) {
+  LocalStiffness::Answer answer{.nodes = state_bytes::take<int>(from)};
+  const auto compliance = state_bytes::take<double>(from);
+  answer.topology = state_bytes::take_one<std::uint64_t>(from);
+  const std::size_t rows = 3 * answer.nodes.size();
+  if (compliance.size() != rows * rows) throw std::runtime_error("the recorded state holds a stiffness that cannot be");
+  const auto n = static_cast<Eigen::Index>(rows);
+  answer.compliance = Eigen::Map<const Eigen::MatrixXd>(compliance.data(), n, n);
+  return answer;
+}
+
+}  // namespace
+
+void LocalStiffness::save(std::vector<std::uint8_t>& to) const {
+  put(to, current_);
+  put(to, next_);
+  state_bytes::put_one(to, std::uint8_t{answered_});
+}
+
+void LocalStiffness::restore(std::span<const std::uint8_t>& from) {
+  current_ = take_answer(from);
+  next_ = take_answer(from);
+  answered_ = state_bytes::take_one<std::uint8_t>(from) != 0;
 }
 
 }  // namespace palpate

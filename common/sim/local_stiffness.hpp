@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <thread>
@@ -19,11 +20,15 @@ struct CondensedPart {
 };
 
 /// The static compliance of a dynamic body at a few of its nodes, for the local contact model. It is solved from the
-/// remaining tetrahedra on a thread of its own; the loop asks and takes answers without waiting, and goes on with
-/// the last answer meanwhile. A part that floats is held by its inertia at a fifth of a hertz.
+/// remaining tetrahedra, mostly on a thread of its own; the loop asks and takes answers without waiting, and goes on
+/// with the last answer meanwhile. A part that floats is held by its inertia at a fifth of a hertz.
 class LocalStiffness {
  public:
   static constexpr int most_nodes = 64;
+
+  /// Who solves: a thread, so that ask() returns at once; or ask() itself, so that what is known when does not depend
+  /// on how fast a thread is.
+  enum class Worker { thread, caller };
 
   struct Answer {
     std::vector<int> nodes;      ///< ascending
@@ -33,7 +38,7 @@ class LocalStiffness {
     Eigen::Matrix3d block(int i, int j) const { return compliance.block<3, 3>(3 * i, 3 * j); }
   };
 
-  LocalStiffness(const ElasticMesh& mesh, CondensedPart joined);
+  LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Worker worker);
 
   /// Wants these nodes (ascending, the first most_nodes count) after the removal of all of `removed` so far. The newest
   /// question is answered; false if the worker is at it, so that it was not taken.
@@ -42,12 +47,19 @@ class LocalStiffness {
   bool take();
   const Answer& current() const { return current_; }
 
+  /// Answers as bytes, the one that waits to be taken too; where the caller works.
+  void save(std::vector<std::uint8_t>& to) const;
+  /// Takes what save() wrote off the front. Throws std::runtime_error on what cannot be.
+  void restore(std::span<const std::uint8_t>& from);
+
  private:
   struct Question {
     std::vector<int> nodes, removed;
   };
   void work(const std::stop_token& stop);
-  Answer solve(const Question& question);
+  void settle(std::optional<Answer> found);
+  std::optional<Answer> answer(const Question& question) const;
+  Answer solve(const Question& question) const;
 
   const ElasticMesh mesh_;
   const CondensedPart joined_;
@@ -56,7 +68,7 @@ class LocalStiffness {
   bool asked_ = false, answered_ = false;
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::jthread worker_;
+  std::optional<std::jthread> worker_;  ///< none where the caller works
 };
 
 }  // namespace palpate

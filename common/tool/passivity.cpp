@@ -171,35 +171,19 @@ void PassivityGuard::resist(std::span<PortForce> asked) {
   }
 }
 
-template <class Visit>
-void PassivityGuard::visit_state(Visit&& visit) {
-  const auto one = [&visit](double& value) { visit(&value, 1); };
-  one(energy_);
+void PassivityGuard::state(State& s) {
+  s.value(energy_);
   for (std::size_t t = 0; t < held_.size(); ++t) {
-    visit(held_[t].force.data(), 3);
-    visit(held_[t].torque.data(), 3);
-    one(held_[t].grip);
-    visit(motion_[t].shift.data(), 3);
-    visit(motion_[t].turn.data(), 3);
-    one(motion_[t].opening);
-    one(reach_[t].shift);
-    one(reach_[t].turn);
-    one(reach_[t].opening);
+    s.value(held_[t].force);
+    s.value(held_[t].torque);
+    s.value(held_[t].grip);
+    s.value(motion_[t].shift);
+    s.value(motion_[t].turn);
+    s.value(motion_[t].opening);
+    s.value(reach_[t].shift);
+    s.value(reach_[t].turn);
+    s.value(reach_[t].opening);
   }
-}
-
-void PassivityGuard::save(unsigned char* to) {
-  visit_state([&to](const double* from, std::size_t count) {
-    std::memcpy(to, from, count * sizeof(double));
-    to += count * sizeof(double);
-  });
-}
-
-void PassivityGuard::restore(const unsigned char* from) {
-  visit_state([&from](double* to, std::size_t count) {
-    std::memcpy(to, from, count * sizeof(double));
-    from += count * sizeof(double);
-  });
 }
 
 }  // namespace palpate

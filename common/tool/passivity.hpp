@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/describe/state.hpp"
 #include "common/tool/passivity_spec.hpp"
 
 namespace palpate {
@@ -38,7 +39,7 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
 /// as a sampled damper of most_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
 /// that was taken away earns its return. The energy falls below -reserve only where a motion changes by more than the
 /// reach, by that jump times the force. Never allocates after construction.
-class PassivityGuard {
+class PassivityGuard : public Stateful<PassivityGuard> {
  public:
   static constexpr double most_damping =
       0.02;  ///< [kg] damping times tick: well below twice the mass of a hand on a device
@@ -67,9 +68,7 @@ class PassivityGuard {
   bool limited(int tool) const { return limited_[tool] != 0; }  ///< by the last control()
 
   /// Everything that the next tick depends on, as bytes.
-  std::size_t state_size() const { return sizeof(double) + held_.size() * (7 + 7 + 3) * sizeof(double); }
-  void save(unsigned char* to);
-  void restore(const unsigned char* from);
+  void state(State& s);
 
  private:
   /// By how much the next motion may differ from the last one.
@@ -87,8 +86,6 @@ class PassivityGuard {
   void damp_pushes(std::span<PortForce> asked, double missing);
   void shrink(std::span<PortForce> asked, double spare);
   void resist(std::span<PortForce> asked);
-  template <class Visit>
-  void visit_state(Visit&& visit);
 
   bool controller_;
   double reserve_, slew_, most_per_shift_, fade_,

@@ -234,7 +234,7 @@ TEST(SegmentContact, ARestoredStateGoesOnBitForBit) {
   first.law().forget_factor();
   PatchTouch second = make();
   const MovingTool moving = tool.moving();
-  second.contacts().restore(state.data(), {&moving, 1});
+  second.contacts().restore(state.data(), std::span<const MovingTool>(&moving, 1));
   for (int i = 150; i < 300; ++i) {
     pose(tool, i);
     step(first, tool);

@@ -11,8 +11,8 @@ struct DynamicBody {
   ElasticMesh mesh;
 };
 
-inline DynamicBody make_dynamic(TetMesh tets, const Material& material, const std::vector<FixedRegion>& fixed) {
-  Body body;
+inline DynamicBody make_dynamic(TetMesh tets, const Material& material, const std::vector<BoundaryCondition>& fixed) {
+  SolidSpec body;
   body.name = "organ";
   body.material = material;
   body.fixed = fixed;

@@ -6,7 +6,7 @@
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/fem/direct.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/hybrid/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 namespace palpate::testing {
@@ -39,17 +39,16 @@ inline std::vector<int> random_part(const TetMesh& mesh, unsigned seed) {
   }
 }
 
-inline Body hybrid_body(std::vector<int> part, const Eigen::Vector3d& gravity = Eigen::Vector3d::Zero()) {
-  Body body = make_body(5e3, 0.4);
+inline HybridSpec hybrid_body(std::vector<int> part, const Eigen::Vector3d& gravity = Eigen::Vector3d::Zero()) {
+  HybridSpec body;
+  static_cast<SolidSpec&>(body) = make_body(5e3, 0.4);
   MaterialRegion stiff;
   stiff.where.box = Box{{-1, -1, -1}, {0.025, 1, 1}};
   stiff.material = {9e3, 0.3, 1400};
   body.materials = {stiff};
-  body.model = "hybrid";
   body.dynamic.gravity = gravity;
-  body.hybrid.emplace();
-  body.hybrid->regions.emplace_back();
-  body.hybrid->regions[0].indices = std::move(part);
+  body.hybrid.regions.emplace_back();
+  body.hybrid.regions[0].indices = std::move(part);
   return body;
 }
 

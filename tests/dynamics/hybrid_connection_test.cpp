@@ -5,7 +5,6 @@
 #include <set>
 
 #include "common/models/hybrid/join_meshes.hpp"
-#include "common/models/moving/precompute.hpp"
 #include "tests/dynamics/hybrid_bodies.hpp"
 
 /// Partial connections, and what cannot be connected.
@@ -21,23 +20,23 @@ const Vector3d kGravity(1.5, -0.7, -9.81);
 struct Stack {
   TetMesh fine = make_block({0, 0, 0}, {0.04, 0.04, 0.02}, {4, 4, 2});
   TetMesh coarse = make_block({0, 0, 0.02}, {0.04, 0.04, 0.06}, {2, 2, 2});
-  Body body = hybrid_body({}, kGravity);
+  HybridSpec body = hybrid_body({}, kGravity);
 
   Stack() {
-    body.hybrid->regions.clear();
-    body.hybrid->mesh = "coarse.msh";
+    body.hybrid.regions.clear();
+    body.hybrid.mesh = "coarse.msh";
     body.materials.clear();
     fix_below(1e-6);
   }
   void fix_below(double z) {
-    body.fixed = {FixedRegion{}};
+    body.fixed = {BoundaryCondition{}};
     body.fixed[0].where.box = Box{{-1, -1, -1}, {1, 1, z}};
   }
 };
 
 TEST(PartialConnection, JoinsTheNodesThatCoincide) {
   const Stack stack;
-  const auto archive = precompute_dynamic(stack.body, stack.fine, &stack.coarse);
+  const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
   const auto& hybrid = *archive.hybrid;
   ASSERT_EQ(hybrid.connection.size(), 9u);
   for (int node : hybrid.connection) EXPECT_NEAR(archive.surface.position[node].z(), 0.02, 1e-9);
@@ -51,9 +50,9 @@ TEST(PartialConnection, JoinsTheNodesThatCoincide) {
 TEST(PartialConnection, NodesCoincideWithinATolerance) {
   Stack stack;
   for (auto& node : stack.coarse.nodes) node += Vector3d(5e-6, -5e-6, 5e-6);
-  EXPECT_EQ(precompute_dynamic(stack.body, stack.fine, &stack.coarse).hybrid->connection.size(), 9u);
+  EXPECT_EQ(precompute(stack.body, stack.fine, &stack.coarse).hybrid->connection.size(), 9u);
   for (auto& node : stack.coarse.nodes) node.x() += 1e-4;
-  EXPECT_THROW(precompute_dynamic(stack.body, stack.fine, &stack.coarse), std::runtime_error);
+  EXPECT_THROW(precompute(stack.body, stack.fine, &stack.coarse), std::runtime_error);
 }
 
 TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
@@ -62,11 +61,10 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
     const bool shared = std::lround(node.x() * 100) % 2 == 0 && std::lround(node.y() * 100) % 2 == 0;
     if (node.z() > 0.0199 && !shared) node.z() -= 7e-4;
   }
-  const auto archive = precompute_dynamic(stack.body, stack.fine, &stack.coarse);
+  const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
   EXPECT_NEAR(archive.hybrid->largest_gap, 7e-4, 1e-5);
   stack.body.dynamic.gravity.setZero();
-  const HybridRun<double> weightless(precompute_dynamic(stack.body, stack.fine, &stack.coarse), 0, 60,
-                                     Vector3d::Zero());
+  const HybridRun<double> weightless(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, Vector3d::Zero());
   EXPECT_NEAR(weightless.part.gap(weightless.model), archive.hybrid->largest_gap, 1e-12);
   HybridRun<double> run(archive, 0, 60, kGravity);
   run.run(1.0);
@@ -79,7 +77,7 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
 TEST(PartialConnection, FullConnectionHasNoGap) {
   Stack stack;
   stack.coarse = make_block({0, 0, 0.02}, {0.04, 0.04, 0.06}, {4, 4, 4});
-  const auto archive = precompute_dynamic(stack.body, stack.fine, &stack.coarse);
+  const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
   EXPECT_EQ(archive.hybrid->connection.size(), 25u);
   EXPECT_TRUE(archive.hybrid->gap.empty());
   EXPECT_EQ(archive.hybrid->interface.size(), 32u);
@@ -89,10 +87,10 @@ TEST(PartialConnection, RestsWhereTheJoinedMeshWould) {
   const Stack stack;
   const auto problem = make_static_problem(stack.body, join_meshes(stack.fine, stack.coarse, "test"));
   const auto direct = solve_loads(problem, weights(problem, kGravity));
-  HybridRun<double> twice(precompute_dynamic(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
+  HybridRun<double> twice(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
   twice.run(2);
   EXPECT_LT(static_difference(twice, direct), 1e-6);
-  HybridRun<float> once(precompute_dynamic(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
+  HybridRun<float> once(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
   once.run(2);
   EXPECT_LT(static_difference(once, direct), 1e-3);
 }
@@ -123,9 +121,9 @@ TEST(HybridInterface, FacesLieBetweenTheParts) {
   }
 }
 
-std::string refusal(const Body& body, const TetMesh& mesh, const TetMesh* coarse = nullptr) {
+std::string refusal(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse = nullptr) {
   try {
-    precompute_dynamic(body, mesh, coarse);
+    precompute(body, mesh, coarse);
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -135,12 +133,12 @@ std::string refusal(const Body& body, const TetMesh& mesh, const TetMesh* coarse
 TEST(HybridRefusal, IsAPlainSentence) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   auto body = hybrid_body({});
-  body.hybrid->regions[0].box = Box{{-1, -1, -1}, {1, 1, 1}};
+  body.hybrid.regions[0].box = Box{{-1, -1, -1}, {1, 1, 1}};
   EXPECT_EQ(refusal(body, mesh),
             "body 'organ': [body.hybrid] leaves no quasi-static part: the regions hold every element of the mesh");
-  body.hybrid->regions[0].box = Box{{1, 1, 1}, {2, 2, 2}};
+  body.hybrid.regions[0].box = Box{{1, 1, 1}, {2, 2, 2}};
   EXPECT_EQ(refusal(body, mesh), "body 'organ': [[body.hybrid.region]] number 1 selects no element of the mesh");
-  body.hybrid->regions[0].box = Box{{-1, -1, 0.02}, {1, 1, 1}};
+  body.hybrid.regions[0].box = Box{{-1, -1, 0.02}, {1, 1, 1}};
   body.fixed.clear();
   EXPECT_EQ(refusal(body, mesh), "body 'organ': unfixed body: it has no [[body.fixed]] section");
 
@@ -165,7 +163,7 @@ TEST(HybridRefusal, OfAQuasiStaticPartThatWouldFloat) {
           << sentence;
     } else {
       EXPECT_EQ(sentence, "");
-      EXPECT_TRUE(precompute_dynamic(stack.body, stack.fine, &stack.coarse).hybrid->held_by_connection);
+      EXPECT_TRUE(precompute(stack.body, stack.fine, &stack.coarse).hybrid->held_by_connection);
     }
   }
 }

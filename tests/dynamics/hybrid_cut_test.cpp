@@ -34,7 +34,7 @@ double difference_after(const std::vector<int>& removed) {
   run.run(1.6);
 
   auto problem = make_static_problem(body, mesh);
-  const auto part = body.hybrid->regions[0].indices;
+  const auto part = body.hybrid.regions[0].indices;
   std::vector<char> gone(mesh.tetrahedra.size(), 0);
   for (int t : removed) gone[part[t]] = 1;
   TetMesh left;

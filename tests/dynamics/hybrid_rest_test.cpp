@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <numeric>
 
+#include "common/models/moving/precompute.hpp"
+#include "common/models/tensor_mass/spec.hpp"
 #include "tests/dynamics/hybrid_bodies.hpp"
 
 /// The steady state of hybrid bodies in motion.
@@ -73,9 +75,7 @@ TEST(HybridRest, IsTheQuasiStaticStateForEveryBorderAndLoadInSingle) {
 template <class Scalar>
 double difference_from_tensor_mass() {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
-  Body body = hybrid_body({}, kGravity);
-  body.model = "tensor_mass";
-  const auto whole = precompute(body, mesh);
+  const auto whole = precompute_moving(hybrid_body({}, kGravity), TensorMassSpec::kind, mesh);
   TensorMass<Scalar> model(elastic_mesh(whole), Integrator::rk4, kDamping);
   model.set_gravity(kGravity);
   const double dt = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 0);

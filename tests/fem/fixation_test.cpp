@@ -10,7 +10,7 @@ namespace {
 using testing::fix_group;
 using testing::fix_nodes;
 
-std::string refusal(const TetMesh& mesh, const std::vector<FixedRegion>& regions) {
+std::string refusal(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions) {
   try {
     apply_fixation(mesh, regions, "body 'organ'");
   } catch (const std::exception& error) {
@@ -38,7 +38,7 @@ TEST(Fixation, RefusesABodyWithoutFixation) {
 }
 
 TEST(Fixation, RefusesAnEmptySet) {
-  FixedRegion nowhere;
+  BoundaryCondition nowhere;
   nowhere.where.box = Box{{5, 5, 5}, {6, 6, 6}};
   EXPECT_NE(refusal(cube(), {nowhere}).find("empty fixed set"), std::string::npos);
   EXPECT_NE(refusal(cube(), {fix_group("bottom", {false, false, false})}).find("empty fixed set"), std::string::npos);
@@ -52,7 +52,7 @@ TEST(Fixation, RefusesANodeOutOfRangeAndAnUnknownGroup) {
 
 TEST(Fixation, CountsTheRigidMotionsThatRemain) {
   const auto mesh = cube();
-  const auto remaining = [&](const std::vector<FixedRegion>& regions) {
+  const auto remaining = [&](const std::vector<BoundaryCondition>& regions) {
     DofMap dofs(mesh);
     for (const auto& region : regions)
       for (int node : region.where.indices)

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "common/mesh/generators.hpp"
-#include "common/scene/scene.hpp"
+#include "common/models/quasi_static/spec.hpp"
 
 namespace palpate::testing {
 
@@ -35,23 +35,23 @@ inline TetMesh make_organ(const std::array<int, 3>& cells) {
   return mesh;
 }
 
-inline FixedRegion fix_group(const std::string& group, std::array<bool, 3> axes = {true, true, true}) {
-  FixedRegion region;
+inline BoundaryCondition fix_group(const std::string& group, std::array<bool, 3> axes = {true, true, true}) {
+  BoundaryCondition region;
   region.where.group = group;
   region.axes = axes;
   return region;
 }
 
-inline FixedRegion fix_nodes(std::vector<int> nodes, std::array<bool, 3> axes = {true, true, true}) {
-  FixedRegion region;
+inline BoundaryCondition fix_nodes(std::vector<int> nodes, std::array<bool, 3> axes = {true, true, true}) {
+  BoundaryCondition region;
   region.where.indices = std::move(nodes);
   region.axes = axes;
   return region;
 }
 
 /// A body of one material that stands on the group `bottom`.
-inline Body make_body(double young = 10e3, double poisson = 0.45) {
-  Body body;
+inline QuasiStaticSpec make_body(double young = 10e3, double poisson = 0.45) {
+  QuasiStaticSpec body;
   body.name = "organ";
   body.material = {young, poisson, 1000};
   body.fixed = {fix_group("bottom")};

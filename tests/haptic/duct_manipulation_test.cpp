@@ -115,7 +115,7 @@ struct Theatre {
   }
   const CatheterBody& catheter() const { return haptic->catheter(1); }
   const ModalBody& wall() const { return haptic->modal(0); }
-  const Task& task() const { return haptic->tasks()[0]; }
+  const Task& task() const { return haptic->task(0); }
 
   /// The feeding stroke: comes down on the catheter 20 mm before the mouth, takes it, and leads it in by 15 mm.
   void feed() {

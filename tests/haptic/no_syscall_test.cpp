@@ -15,7 +15,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "haptic_node/local_feed.hpp"
-#include "haptic_node/step_record.hpp"
+#include "common/sim/step_record.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
 
 // Every allocation of this process goes through these.

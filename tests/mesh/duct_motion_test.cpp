@@ -22,13 +22,14 @@ class ScriptedForceps {
   explicit ScriptedForceps(const Tool& tool)
       : tool_(tool),
         trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
-        trajectory_(load_trajectory(tool.trajectory)) {}
+        trajectory_(load_trajectory(std::get<ScriptedDeviceSpec>(tool.device).trajectory)) {}
 
   double duration() const { return trajectory_.duration(); }
   double grip(double time) const { return trajectory_.at(time).grip; }
   Eigen::Isometry3d pose(double time) const { return tip_pose(trocar_, trajectory_.at(time)); }
   std::vector<std::pair<Segment, double>> parts(double time) const {
-    const ForcepsShape shape{tool_.shaft_radius, tool_.shaft_length, tool_.jaws->length, tool_.jaws->radius};
+    const ForcepsJaws& jaws = tool_.forceps()->jaws;
+    const ForcepsShape shape{tool_.shaft_radius, tool_.shaft_length, jaws.length, jaws.radius};
     std::vector<std::pair<Segment, double>> parts;
     for (const ToolPart& part : forceps_parts(shape, grip(time)))
       parts.emplace_back(part.axis(pose(time)), part.radius);
@@ -62,8 +63,9 @@ class DuctScene : public testing::Test {
  protected:
   void load(const char* name) {
     scene = load_scene(kScenes + name);
-    duct = load_shell_mesh(scene.bodies[0].mesh, scene.bodies[0].scale);
-    thickness = scene.bodies[0].shell->thickness;
+    const auto& wall = std::get<ModalShellSpec>(scene.bodies[0]);
+    duct = load_shell_mesh(wall.mesh, wall.scale);
+    thickness = wall.shell.thickness;
     for (const Tool& tool : scene.tools) tools.emplace_back(tool);
   }
   /// Least gap of a tool between two times.
@@ -85,8 +87,10 @@ TEST_F(DuctScene, MeshAndMotionsAreThoseOfTheGenerator) {
   EXPECT_EQ(bytes_of(folder.path("duct.msh")), bytes_of(kScenes + "meshes/duct.msh"));
   for (const char* name : {"duct_poke.toml", "catheter_insertion.toml"}) {
     const Scene scene = load_scene(kScenes + name);
-    for (const Tool& tool : scene.tools)
-      EXPECT_EQ(duct_motion(scene, tool), bytes_of(tool.trajectory)) << tool.trajectory;
+    for (const Tool& tool : scene.tools) {
+      const auto& file = std::get<ScriptedDeviceSpec>(tool.device).trajectory;
+      EXPECT_EQ(duct_motion(scene, tool), bytes_of(file)) << file;
+    }
   }
 }
 
@@ -108,8 +112,8 @@ TEST_F(DuctScene, TheFeedingForcepsKeepsClearOfTheDuct) {
 
 TEST_F(DuctScene, TheFeedingForcepsHasTheCatheterBetweenItsJawsAndClosesOnIt) {
   load("catheter_insertion.toml");
-  const Catheter& catheter = *scene.bodies[1].catheter;
-  const double touching = catheter.radius + scene.tools[0].jaws->radius;
+  const Catheter& catheter = std::get<CatheterSpec>(scene.bodies[1]).catheter;
+  const double touching = catheter.radius + scene.tools[0].forceps()->jaws.radius;
   double fed = 0, before = 0;
   bool held = false;
   for (double t = 0; t <= tools[0].duration(); t += 0.01) {
@@ -120,11 +124,12 @@ TEST_F(DuctScene, TheFeedingForcepsHasTheCatheterBetweenItsJawsAndClosesOnIt) {
     const double to_jaw = middle.z() * std::sin(0.5 * opening);
     if (opening < 0.35) {  // closed on it
       EXPECT_NEAR(middle.y(), 0, 2e-4);
-      EXPECT_NEAR(middle.z(), 0.6 * scene.tools[0].jaws->length, 2e-4);
+      EXPECT_NEAR(middle.z(), 0.6 * scene.tools[0].forceps()->jaws.length, 2e-4);
       EXPECT_LT(to_jaw, touching);
       if (held) fed += before - here;
-    } else if (opening > 0.85 && middle.z() > 0 && middle.z() < scene.tools[0].jaws->length) {
-      EXPECT_GT(to_jaw - std::abs(middle.y()), middle.z() > 0.6 * scene.tools[0].jaws->length - 1e-4 ? touching : 0);
+    } else if (opening > 0.85 && middle.z() > 0 && middle.z() < scene.tools[0].forceps()->jaws.length) {
+      EXPECT_GT(to_jaw - std::abs(middle.y()),
+                middle.z() > 0.6 * scene.tools[0].forceps()->jaws.length - 1e-4 ? touching : 0);
     }
     held = opening < 0.35;
     before = here;

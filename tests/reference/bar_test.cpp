@@ -11,7 +11,7 @@ constexpr double kWidth = 0.02, kDepth = 0.03, kLength = 0.1, kYoung = 5000, kPu
 
 struct Bar {
   TetMesh mesh = testing::make_jittered_block({kWidth, kDepth, kLength}, {3, 4, 8}, 0.15);
-  Body body;
+  QuasiStaticSpec body;
 
   explicit Bar(double poisson) {
     body = testing::make_body(kYoung, poisson);

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Body determinate(double young, double poisson, int cells) {
+QuasiStaticSpec determinate(double young, double poisson, int cells) {
   const int n = cells + 1;
   auto body = testing::make_body(young, poisson);
   body.fixed = {testing::fix_nodes({0}), testing::fix_nodes({cells}, {false, true, true}),

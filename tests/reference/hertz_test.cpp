@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "common/mesh/generators.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/sim/haptic_step.hpp"
 
 /// A frictionless tip of radius R pressed into the middle of a block, nu = 0.3, by the haptic step, against
@@ -44,12 +44,12 @@ TetMesh block(double h, double extent) {
 class Block {
  public:
   Block(double h, const std::optional<Offline>& offline, double extent = 8 * tip_radius) : h_(h) {
-    Body body;
+    QuasiStaticSpec body;
     body.name = "block";
     body.material = {.young = young, .poisson = poisson, .density = 1000};
     body.fixed.push_back({.where = {.group = "bottom"}});
     const double reach = 1.2 * tip_radius;
-    body.touchable = Selector{.box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1e-6}}};
+    body.touchable = NodeSelector{{.box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1e-6}}}};
     body.offline = offline;
     archives_.push_back(precompute(body, block(h, extent)));
     scene_.bodies.push_back(body);
@@ -61,7 +61,7 @@ class Block {
     Tool tool;
     tool.name = "ball";
     tool.pivot = Vector3d(h_ * place[0], h_ * place[1], 0.2);
-    tool.radius = tip_radius;
+    tool.probe()->radius = tip_radius;
     tool.max_force = 1e3;
     tool.max_force_rate = 1e9;
     scene_.tools = {tool};

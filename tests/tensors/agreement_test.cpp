@@ -4,7 +4,7 @@
 
 #include "common/archive/static_solve.hpp"
 #include "common/fem/direct.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/spread_holds.hpp"
 
@@ -31,7 +31,7 @@ void expect_agreement(const Archive& archive, const StaticSolution& direct, cons
   EXPECT_LT(relative_difference(tensors.force, force), kTolerance);
 }
 
-void expect_agreement(const Body& body, const TetMesh& mesh, const std::vector<int>& counts) {
+void expect_agreement(const QuasiStaticSpec& body, const TetMesh& mesh, const std::vector<int>& counts) {
   const auto problem = make_static_problem(body, mesh);
   const auto archive = precompute(body, mesh);
   for (int count : counts) {
@@ -100,7 +100,7 @@ TEST(Agreement, HoldsForRegionsOfOtherMaterials) {
 
 TEST(Agreement, HoldsForARestrictedTouchableSet) {
   auto body = testing::make_body();
-  body.touchable = Selector{};
+  body.touchable = NodeSelector{};
   body.touchable->group = "top";
   const auto mesh = testing::make_organ({8, 8, 6});
   const auto archive = precompute(body, mesh);
@@ -144,7 +144,7 @@ TEST(Agreement, BothRoutesOfThePrecomputationAgree) {
 
 TEST(StaticSolve, RefusesInWords) {
   auto body = testing::make_body();
-  body.touchable = Selector{};
+  body.touchable = NodeSelector{};
   body.touchable->group = "top";
   const auto mesh = testing::make_organ({4, 4, 3});
   const auto archive = precompute(body, mesh);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 namespace palpate {
@@ -11,7 +11,7 @@ namespace {
 Archive partly_fixed_archive() {
   auto body = testing::make_body();
   body.fixed = {testing::fix_group("z0"), testing::fix_group("x1", {true, false, false})};
-  body.touchable = Selector{};
+  body.touchable = NodeSelector{};
   body.touchable->box = Box{{0, -1, -1}, {1, 1, 1}};
   return precompute(body, testing::make_organ({6, 5, 4}));
 }
@@ -94,7 +94,7 @@ TEST(SurfaceMap, PutsTouchableNodesFirstAndBothGroupsAscend) {
 
 TEST(SurfaceMap, RefusesATouchableSetWithoutFreeSurfaceNodes) {
   auto body = testing::make_body();
-  body.touchable = Selector{};
+  body.touchable = NodeSelector{};
   body.touchable->group = "z0";
   EXPECT_THROW(precompute(body, testing::make_organ({3, 3, 3})), std::runtime_error);
 }

@@ -5,7 +5,7 @@
 #include "common/archive/static_solve.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/scene/find_archive.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/files_for_tests.hpp"
@@ -35,13 +35,21 @@ class EnsureArchive : public ::testing::Test {
     write_mesh(mesh, folder / "organ.msh");
     scene.file = folder / "scene.toml";
     auto body = testing::make_body();
-    FixedRegion base;
+    BoundaryCondition base;
     base.where.indices = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     body.fixed = {base};
     body.mesh = folder / "organ.msh";
     scene.bodies = {body};
   }
   Body& body() { return scene.bodies[0]; }
+  SolidSpec& solid() { return *as<SolidSpec>(body()); }
+  /// Makes the body one of another kind.
+  template <class Kind>
+  Kind& turn_into() {
+    Kind spec;
+    static_cast<SolidSpec&>(spec) = solid();
+    return body().emplace<Kind>(std::move(spec));
+  }
 
   testing::TemporaryFolder folder;
   TetMesh mesh = testing::make_organ({3, 3, 2});
@@ -53,7 +61,7 @@ TEST_F(EnsureArchive, ComputesOnceAndIsUpToDateAfterwards) {
   EXPECT_FALSE(first.up_to_date);
   EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
   const auto archive = find_archive(scene, body(), ArchivePart::surface);
-  const auto expected = precompute(body(), mesh);
+  const auto expected = precompute(std::get<QuasiStaticSpec>(body()), mesh);
   EXPECT_EQ(archive.surface.node_number, expected.surface.node_number);
   ASSERT_EQ(archive.touchable_compliance.size(), expected.touchable_compliance.size());
   for (std::size_t i = 0; i < archive.touchable_compliance.size(); ++i)
@@ -63,7 +71,7 @@ TEST_F(EnsureArchive, ComputesOnceAndIsUpToDateAfterwards) {
 
 TEST_F(EnsureArchive, SeveralBehavioursOfOneGeometryLiveSideBySide) {
   const auto soft = ensure_archive(scene, body()).file;
-  body().material.young *= 2;
+  solid().material.young *= 2;
   const auto stiff = ensure_archive(scene, body()).file;
   EXPECT_NE(soft, stiff);
   EXPECT_TRUE(std::filesystem::exists(soft));
@@ -100,11 +108,14 @@ TEST_F(EnsureArchive, StoresTheTetrahedraOfBodiesThatMoveWithInertia) {
   MaterialRegion dense;
   dense.where.indices = {0, 1, 2};
   dense.material = {5e4, 0.3, 1300};
-  body().materials = {dense};
-  for (const std::string model : {"tensor_mass", "spring_mass"}) {
-    body().model = model;
+  solid().materials = {dense};
+  for (const bool springs : {false, true}) {
+    if (springs)
+      turn_into<SpringMassSpec>();
+    else
+      turn_into<TensorMassSpec>();
     const auto archive = load_or_precompute(scene, ArchivePart::surface)[0];
-    EXPECT_EQ(archive.model, model);
+    EXPECT_EQ(archive.model, springs ? "spring_mass" : "tensor_mass");
     EXPECT_EQ(archive.density, (std::vector<double>{1000, 1300}));
     EXPECT_EQ(archive.material_of_element.size(), mesh.tetrahedra.size());
     EXPECT_TRUE(archive.touchable_compliance.empty());
@@ -127,9 +138,8 @@ TEST_F(EnsureArchive, StoresTheTetrahedraOfBodiesThatMoveWithInertia) {
 }
 
 TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
-  body().model = "hybrid";
-  body().hybrid.emplace();
-  body().hybrid->regions.push_back({{20, 21, 22, 23, 24, 25}, {}, ""});
+  auto& hybrid = turn_into<HybridSpec>().hybrid;
+  hybrid.regions.push_back({{{20, 21, 22, 23, 24, 25}, {}, ""}});
   EXPECT_FALSE(ensure_archive(scene, body()).up_to_date);
   EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
   const auto archive = find_archive(scene, body(), ArchivePart::surface);
@@ -139,9 +149,9 @@ TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
 
   write_mesh(make_block({0, 0, 0}, {0.04, 0.04, 0.02}, {2, 2, 1}), folder / "organ.msh");
   write_mesh(make_block({0, 0, 0.02}, {0.04, 0.04, 0.04}, {1, 1, 1}), folder / "coarse.msh");
-  body().fixed[0].where.indices = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-  body().hybrid->regions.clear();
-  body().hybrid->mesh = folder / "coarse.msh";
+  solid().fixed[0].where.indices = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  hybrid.regions.clear();
+  hybrid.mesh = folder / "coarse.msh";
   const auto joined = load_or_precompute(scene, ArchivePart::surface)[0];
   EXPECT_EQ(joined.tetrahedra.size(), 6u);
   EXPECT_EQ(joined.hybrid->connection.size(), 4u);
@@ -149,7 +159,7 @@ TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
 }
 
 TEST_F(EnsureArchive, StaticSolveByTensorsIsRefusedForBodiesThatMoveWithInertia) {
-  body().model = "tensor_mass";
+  turn_into<TensorMassSpec>();
   const auto archive = load_or_precompute(scene, ArchivePart::surface)[0];
   EXPECT_THROW(solve_tensors(archive, {hold(archive.surface.node_number[0], 0, 1e-3)}), std::runtime_error);
 }
@@ -158,10 +168,9 @@ TEST_F(EnsureArchive, StoresMaterialRegionsAndSpecimen) {
   MaterialRegion half;
   half.where.indices = {0, 1, 2};
   half.material = {5e4, 0.3, 1000};
-  body().materials = {half};
+  solid().materials = {half};
   write_mesh(make_cylinder(0.015, 0.013, 3, 2), folder / "specimen.msh");
-  body().nonlinear.emplace();
-  body().nonlinear->specimen_mesh = folder / "specimen.msh";
+  std::get<QuasiStaticSpec>(body()).nonlinear.emplace().specimen_mesh = folder / "specimen.msh";
   const auto archives = load_or_precompute(scene, ArchivePart::header);
   ASSERT_EQ(archives.size(), 1u);
   EXPECT_EQ(archives[0].young, (std::vector<double>{10e3, 5e4}));

@@ -77,17 +77,15 @@ TEST(ModalArchive, PartsThatDoNotFitTogetherAreRefused) {
 }
 
 /// A short clamped duct, 60 free nodes.
-Body duct_body() {
-  Body body;
+ModalShellSpec duct_body() {
+  ModalShellSpec body;
   body.name = "duct";
-  body.model = "modal_shell";
   body.material = {1e5, 0.45, 1050};
-  FixedRegion end;
+  ShellBoundaryCondition end;
   end.where.group = "end0";
   body.fixed = {end};
-  body.shell.emplace();
-  body.shell->thickness = 8e-4;
-  body.shell->modes = 30;
+  body.shell.thickness = 8e-4;
+  body.shell.modes = 30;
   return body;
 }
 
@@ -96,9 +94,8 @@ ShellMesh duct_mesh() {
 }
 
 /// K^-1 among translations, with no moments.
-MatrixXd dense_compliance(const Body& body, const ShellMesh& mesh, const ShellDofs& dofs) {
-  const ShellMaterial material{body.material.young, body.material.poisson, body.material.density,
-                               body.shell->thickness};
+MatrixXd dense_compliance(const ShellSpec& body, const ShellMesh& mesh, const ShellDofs& dofs) {
+  const ShellMaterial material{body.material.young, body.material.poisson, body.material.density, body.shell.thickness};
   const MatrixXd lower(assemble_shell_stiffness(mesh, material, Bending::discrete_kirchhoff, dofs, "test"));
   const MatrixXd whole = lower.selfadjointView<Eigen::Lower>();
   return whole.inverse().topLeftCorner(dofs.translations(), dofs.translations());
@@ -107,7 +104,7 @@ MatrixXd dense_compliance(const Body& body, const ShellMesh& mesh, const ShellDo
 TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
   const auto body = duct_body();
   const auto mesh = duct_mesh();
-  const auto archive = precompute_shell(body, mesh);
+  const auto archive = precompute(body, mesh);
   const auto dofs = shell_fixation(mesh, body, "test");
   const MatrixXd expected = dense_compliance(body, mesh, dofs);
   const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
@@ -142,7 +139,7 @@ TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
 }
 
 TEST(ModalArchive, TheResidualFlexibilityIsSemidefinite) {
-  const auto archive = precompute_shell(duct_body(), duct_mesh());
+  const auto archive = precompute(duct_body(), duct_mesh());
   const int t = 3 * archive.surface.touchable;
   const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
   const Eigen::Map<const MatrixXd> shape(archive.modal->shape.data(), 3 * archive.surface.size(),
@@ -164,9 +161,9 @@ TEST(ModalArchive, TouchableNodesComeFirstAndUnusedNodesAreLeftOut) {
   for (auto& [name, group] : mesh.groups)
     for (int& node : group.nodes) ++node;
   auto body = duct_body();
-  body.touchable = Selector{{}, Box{{-1, -1, 0.02}, {1, 0, 1}}, ""};
+  body.touchable = NodeSelector{{{}, Box{{-1, -1, 0.02}, {1, 0, 1}}, ""}};
   body.fixed[0].axes = {true, true, true};
-  const auto archive = precompute_shell(body, mesh);
+  const auto archive = precompute(body, mesh);
   const auto& surface = archive.surface;
   EXPECT_EQ(archive.mesh_nodes, 73);
   EXPECT_EQ(surface.size(), 72);
@@ -184,7 +181,7 @@ TEST(ModalArchive, TouchableNodesComeFirstAndUnusedNodesAreLeftOut) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(surface.node_number[surface.triangles[t][k]], mesh.triangles[t][k]);
 
-  const auto all = precompute_shell(duct_body(), duct_mesh());
+  const auto all = precompute(duct_body(), duct_mesh());
   const Compliance<double> some(archive, Compliance<double>::Rows::surface),
       whole(all, Compliance<double>::Rows::surface);
   for (int j = 0; j < surface.touchable; ++j)
@@ -199,9 +196,9 @@ TEST(ModalArchive, TouchableNodesComeFirstAndUnusedNodesAreLeftOut) {
     }
 }
 
-std::string refusal(const Body& body, const ShellMesh& mesh) {
+std::string refusal(const ModalShellSpec& body, const ShellMesh& mesh) {
   try {
-    precompute_shell(body, mesh);
+    precompute(body, mesh);
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -215,23 +212,20 @@ bool says(const std::string& sentence, const std::string& part) {
 TEST(ModalArchive, BadShellsAreRefusedInWords) {
   const auto mesh = duct_mesh();
   auto body = duct_body();
-  body.shell->modes = 181;
+  body.shell.modes = 181;
   EXPECT_TRUE(says(refusal(body, mesh), "181 modes")) << refusal(body, mesh);
   EXPECT_TRUE(says(refusal(body, mesh), "180 free")) << refusal(body, mesh);
-  body.shell->modes = 180;
+  body.shell.modes = 180;
   EXPECT_EQ(refusal(body, mesh), "");
   body = duct_body();
-  body.shell->thickness = 0.005;
+  body.shell.thickness = 0.005;
   EXPECT_TRUE(says(refusal(body, mesh), "thick")) << refusal(body, mesh);
   body = duct_body();
   body.fixed.clear();
   EXPECT_TRUE(says(refusal(body, mesh), "unfixed")) << refusal(body, mesh);
   body = duct_body();
-  body.touchable = Selector{{}, {}, "end0"};
+  body.touchable = NodeSelector{{{}, {}, "end0"}};
   EXPECT_TRUE(says(refusal(body, mesh), "selects no free node")) << refusal(body, mesh);
-  body = duct_body();
-  body.shell.reset();
-  EXPECT_TRUE(says(refusal(body, mesh), "[body.shell]")) << refusal(body, mesh);
 }
 
 class ShellFiles : public ::testing::Test {
@@ -244,9 +238,10 @@ class ShellFiles : public ::testing::Test {
     body.mesh = folder / "duct.msh";
     scene.bodies = {body};
   }
-  Body& body() { return scene.bodies[0]; }
-  std::string with(const std::function<void(Body&)>& change) const {
-    Body changed = scene.bodies[0];
+  const Body& body() const { return scene.bodies[0]; }
+  const ModalShellSpec& shell() const { return std::get<ModalShellSpec>(body()); }
+  std::string with(const std::function<void(ModalShellSpec&)>& change) const {
+    ModalShellSpec changed = shell();
     change(changed);
     return content_hash(changed);
   }
@@ -259,46 +254,66 @@ TEST_F(ShellFiles, TheArchiveIsComputedOnceAndFound) {
   const auto first = ensure_archive(scene, body());
   EXPECT_FALSE(first.up_to_date);
   EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
-  EXPECT_EQ(archive_path(scene, body()), first.file);
+  EXPECT_EQ(archive_path(body()), first.file);
   const auto archive = find_archive(scene, body(), ArchivePart::surface);
-  auto expected = precompute_shell(body(), load_shell_mesh(body().mesh, 1));
+  auto expected = precompute(shell(), load_shell_mesh(shell().mesh, 1));
   expected.content_hash = content_hash(body());
   EXPECT_TRUE(testing::same(archive, expected));
 }
 
 TEST_F(ShellFiles, TheContentHashCoversWhatChangesAStoredNumber) {
-  const std::vector<std::function<void(Body&)>> changes{
-      [](Body&) {},
-      [](Body& b) { b.shell->thickness = 9e-4; },
-      [](Body& b) { b.shell->bending = "polynomial"; },
-      [](Body& b) { b.shell->modes = 31; },
-      [](Body& b) { b.material.density = 1000; },
-      [](Body& b) { b.material.young = 2e5; },
-      [](Body& b) { b.fixed[0].rotations = false; },
-      [](Body& b) { b.fixed[0].axes[1] = false; },
-      [](Body& b) { b.model = "quasi_static"; },
+  const std::vector<std::function<void(ModalShellSpec&)>> changes{
+      [](ModalShellSpec&) {},
+      [](ModalShellSpec& b) { b.shell.thickness = 9e-4; },
+      [](ModalShellSpec& b) { b.shell.bending = "polynomial"; },
+      [](ModalShellSpec& b) { b.shell.modes = 31; },
+      [](ModalShellSpec& b) { b.material.density = 1000; },
+      [](ModalShellSpec& b) { b.material.young = 2e5; },
+      [](ModalShellSpec& b) { b.fixed[0].rotations = false; },
+      [](ModalShellSpec& b) { b.fixed[0].axes[1] = false; },
   };
-  std::set<std::string> hashes;
+  QuasiStaticSpec solid;
+  static_cast<MeshedSpec&>(solid) = shell();
+  solid.fixed = {shell().fixed[0]};
+  std::set<std::string> hashes{content_hash(solid)};
   for (const auto& change : changes) hashes.insert(with(change));
-  EXPECT_EQ(hashes.size(), changes.size());
+  EXPECT_EQ(hashes.size(), changes.size() + 1);
 }
 
 TEST_F(ShellFiles, TheContentHashLeavesOutDampingAndResidual) {
   const auto original = content_hash(body());
-  EXPECT_EQ(with([](Body& b) { b.shell->damping_ratio = 0.5; }), original);
-  EXPECT_EQ(with([](Body& b) { b.shell->damping = 3; }), original);
-  EXPECT_EQ(with([](Body& b) { b.shell->residual = false; }), original);
-  EXPECT_EQ(with([](Body& b) { b.name = "other"; }), original);
+  EXPECT_EQ(with([](ModalShellSpec& b) { b.shell.damping_ratio = 0.5; }), original);
+  EXPECT_EQ(with([](ModalShellSpec& b) { b.shell.damping = 3; }), original);
+  EXPECT_EQ(with([](ModalShellSpec& b) { b.shell.residual = false; }), original);
+  EXPECT_EQ(with([](ModalShellSpec& b) { b.name = "other"; }), original);
+}
+
+TEST_F(ShellFiles, AClosedEndIsRefusedWhereACatheterIsLedInAlone) {
+  ShellMesh cup = duct_mesh();
+  cup.nodes.push_back({0, 0, 0});
+  for (int j = 0; j < 12; ++j) cup.triangles.push_back({static_cast<int>(cup.nodes.size()) - 1, (j + 1) % 12, j});
+  write_shell_mesh(cup, folder / "duct.msh");
+  CatheterSpec wire;
+  wire.name = "wire";
+  wire.catheter.inside = "duct";
+  scene.bodies.push_back(wire);
+  std::string sentence;
+  try {
+    ensure_archive(scene, body());
+  } catch (const std::runtime_error& error) {
+    sentence = error.what();
+  }
+  EXPECT_NE(sentence.find("and the surface has 1 boundary line"), std::string::npos) << sentence;
+  as<CatheterSpec>(scene.bodies[1])->catheter.inside.clear();
+  EXPECT_FALSE(ensure_archive(scene, body()).up_to_date);
 }
 
 /// A straight catheter from the origin to x = 0.1 m.
-Body catheter_body() {
-  Body body;
+CatheterSpec catheter_body() {
+  CatheterSpec body;
   body.name = "catheter";
-  body.model = "catheter";
   body.material = {1e6, 0.45, 1100};
-  body.catheter.emplace();
-  body.catheter->tip = {0.1, 0, 0};
+  body.catheter.tip = {0.1, 0, 0};
   return body;
 }
 
@@ -308,7 +323,7 @@ TEST(CatheterArchive, IsTheTubeAtRestAndNeedsNoFile) {
   const auto state = ensure_archive(scene, scene.bodies[0]);
   EXPECT_TRUE(state.up_to_date);
   EXPECT_TRUE(state.file.empty());
-  EXPECT_TRUE(archive_path(scene, scene.bodies[0]).empty());
+  EXPECT_TRUE(archive_path(scene.bodies[0]).empty());
   const auto archive = load_or_precompute(scene, ArchivePart::surface)[0];
   EXPECT_EQ(archive.model, "catheter");
   EXPECT_EQ(archive.content_hash, content_hash(scene.bodies[0]));
@@ -320,7 +335,7 @@ TEST(CatheterArchive, IsTheTubeAtRestAndNeedsNoFile) {
     const auto& p = archive.surface.position;
     enclosed += p[a].dot(p[b].cross(p[c])) / 6;
   }
-  const double radius = scene.bodies[0].catheter->radius, ball = 4.0 / 3 * M_PI * std::pow(radius, 3);
+  const double radius = catheter_body().catheter.radius, ball = 4.0 / 3 * M_PI * std::pow(radius, 3);
   EXPECT_NEAR(enclosed, M_PI * radius * radius * 0.1 + ball, 0.06 * M_PI * radius * radius * 0.1);
   for (const auto& p : archive.surface.position) {
     const double along = std::clamp(p[0], 0.0, 0.1);
@@ -330,17 +345,18 @@ TEST(CatheterArchive, IsTheTubeAtRestAndNeedsNoFile) {
 
 TEST(CatheterArchive, TheContentHashCoversItsRestShapeAlone) {
   const auto original = content_hash(catheter_body());
-  const auto with = [](const std::function<void(Body&)>& change) {
+  const auto with = [](const std::function<void(CatheterSpec&)>& change) {
     auto body = catheter_body();
     change(body);
     return content_hash(body);
   };
-  std::set<std::string> hashes{
-      original, with([](Body& b) { b.catheter->tail[1] = 0.01; }), with([](Body& b) { b.catheter->tip[0] = 0.2; }),
-      with([](Body& b) { b.catheter->radius = 0.001; }), with([](Body& b) { b.catheter->particles = 61; })};
+  std::set<std::string> hashes{original, with([](CatheterSpec& b) { b.catheter.tail[1] = 0.01; }),
+                               with([](CatheterSpec& b) { b.catheter.tip[0] = 0.2; }),
+                               with([](CatheterSpec& b) { b.catheter.radius = 0.001; }),
+                               with([](CatheterSpec& b) { b.catheter.particles = 61; })};
   EXPECT_EQ(hashes.size(), 5u);
-  EXPECT_EQ(with([](Body& b) { b.catheter->damping = 1; }), original);
-  EXPECT_EQ(with([](Body& b) { b.material.young = 1; }), original);
+  EXPECT_EQ(with([](CatheterSpec& b) { b.catheter.damping = 1; }), original);
+  EXPECT_EQ(with([](CatheterSpec& b) { b.material.young = 1; }), original);
 }
 
 }  // namespace

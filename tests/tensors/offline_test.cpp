@@ -6,7 +6,7 @@
 
 #include "common/archive/static_solve.hpp"
 #include "common/fem/fine_problem.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 #include "tests/tensors/spread_holds.hpp"
 
@@ -32,7 +32,7 @@ Eigen::MatrixXd touchable_matrix(const Archive& archive) {
 }
 
 /// The direct solution of the same offline mesh against superposition, displacements and the forces of the holds.
-void expect_agreement(Body body, const TetMesh& mesh, const Offline& offline, double tolerance = 1e-9) {
+void expect_agreement(QuasiStaticSpec body, const TetMesh& mesh, const Offline& offline, double tolerance = 1e-9) {
   body.offline = offline;
   const auto archive = precompute(body, mesh);
   const auto problem = make_fine_problem(body, mesh, offline);
@@ -78,7 +78,7 @@ TEST(Offline, DirectSolutionEqualsSuperpositionWithPartlyFixedNodes) {
 
 TEST(Offline, DirectSolutionEqualsSuperpositionWithATouchableSubset) {
   auto body = testing::make_body();
-  body.touchable = Selector{};
+  body.touchable = NodeSelector{};
   body.touchable->group = "top";
   for (const auto& offline : kFiner) expect_agreement(body, testing::make_organ({4, 4, 3}), offline);
 }
@@ -114,7 +114,7 @@ TEST(Offline, ComplianceIsSymmetricPositiveDefinite) {
           << offline.element << " " << poisson;
       EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(touchable_matrix(archive)).info(), Eigen::Success);
 
-      body.touchable = Selector{};
+      body.touchable = NodeSelector{};
       body.touchable->group = "top";
       const auto part = precompute(body, mesh);
       std::vector<int> top;  // C_ot of the subset must be the same numbers as C_tt of the whole

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 namespace palpate {

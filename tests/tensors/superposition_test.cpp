@@ -2,7 +2,7 @@
 
 #include "common/archive/static_solve.hpp"
 #include "common/fem/direct.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
 /// TVCG99 fig. 10 on a plate held at its corners.
@@ -17,7 +17,7 @@ int top_node(int i, int j) {
 
 struct Plate {
   TetMesh mesh = make_block({0, 0, 0}, {0.2, 0.2, 0.01}, {kCells, kCells, 2});
-  Body body = testing::make_body(100e3, 0.3);
+  QuasiStaticSpec body = testing::make_body(100e3, 0.3);
   Archive archive;
 
   Plate() {

@@ -35,8 +35,8 @@ ModalShellSpec& duct_of(Scene& scene) {
   return *as<ModalShellSpec>(scene.bodies[0]);
 }
 
-Result press_wall(Scene scene, const ShellMesh& mesh, double surface, double depth) {
-  HapticStep haptic(scene, {precompute(duct_of(scene), mesh)});
+Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
+  HapticStep haptic(scene, {precompute(std::get<ModalShellSpec>(scene.bodies[0]), mesh)});
   const auto at = [&](double above) {
     return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, length / 2})};
   };

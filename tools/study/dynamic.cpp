@@ -40,7 +40,7 @@ class Dynamic : public Method {
   std::vector<Point> points() const override {
     std::vector<Point> all;
     const auto* own = as<MovingSpec>(solid_->body());
-    const Dynamic motion = own ? own->dynamic : Dynamic{};
+    const palpate::Dynamic motion = own ? own->dynamic : palpate::Dynamic{};
     const auto add = [&](const std::string& knob, const std::string& value, bool serves,
                          std::function<void(Body&)> change) {
       all.push_back({name_, knob, value,
@@ -158,7 +158,7 @@ class Dynamic : public Method {
     const int samples = (solid_->quick() ? 400 : 2400) / static_cast<int>(presses.patches.size());
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
       Scene alone = solid_->press_scene(scene, static_cast<int>(p));
-      Dynamic& motion = motion_of(alone.bodies[0]);
+      auto& motion = motion_of(alone.bodies[0]);
       motion.damping = std::max(rest_damping, motion.damping);
       if (motion.step > 0) motion.step *= 0.98;  // the bound falls a little with the damping
       OrganPress press(alone, ready.archive, presses.patches[p], presses.radius, tick());
@@ -224,7 +224,7 @@ class Dynamic : public Method {
   void add_course(Scene scene, const Ready& ready, Row row, Result& result) {
     const auto ours = course(scene, ready);
     const Body& of = scene.bodies[body()];
-    Dynamic& motion = motion_of(scene.bodies[body()]);
+    auto& motion = motion_of(scene.bodies[body()]);
     const std::string key =
         fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, kind_of(of),
                     ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);

@@ -76,7 +76,7 @@ ModalState HapticPress::modal() const {
 }
 
 std::vector<Eigen::Vector3d> HapticPress::shown() {
-  haptic_.is_modal(0) ? deformer_.take(modal()) : deformer_.take(contacts());
+  !haptic_.modal_bodies().empty() ? deformer_.take(modal()) : deformer_.take(contacts());
   deformer_.deform();
   std::vector<Eigen::Vector3d> u;
   for (const Eigen::Vector3f& d : deformer_.surface(0).displacement) u.push_back(d.cast<double>());

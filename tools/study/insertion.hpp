@@ -4,6 +4,7 @@
 
 #include "common/archive/archive.hpp"
 #include "common/models/catheter/catheter_body.hpp"
+#include "common/scene/scene.hpp"
 
 namespace palpate::study {
 

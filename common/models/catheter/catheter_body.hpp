@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/wall.hpp"
+#include "common/describe/state.hpp"
 #include "common/models/catheter/chain.hpp"
 #include "common/models/catheter/coupled_solve.hpp"
 #include "common/models/catheter/grasps.hpp"
@@ -11,7 +13,6 @@
 #include "common/models/catheter/sleeve.hpp"
 #include "common/models/catheter/spec.hpp"
 #include "common/models/catheter/tool_touches.hpp"
-#include "common/models/catheter/wall.hpp"
 #include "common/models/catheter/wall_touches.hpp"
 
 namespace palpate {
@@ -43,7 +44,7 @@ struct CatheterToolForce {
 /// for any stiffness. `semi_implicit`: BHS01 eq. 28 in substeps, the contacts implicit as before.
 ///
 /// Everything is deterministic; nothing is allocated after construction.
-class CatheterBody {
+class CatheterBody : public Stateful<CatheterBody> {
  public:
   /// `wall`: the duct that it is led into, nullptr for none; outlives the catheter. Throws std::runtime_error
   /// in words: bad numbers, a catheter wider than the duct, a stiffness that semi_implicit would need more
@@ -92,14 +93,11 @@ class CatheterBody {
                           ///< contacts left out
 
   /// Everything that the next step depends on, apart from wall and tools.
-  std::size_t state_size() const;
-  void save(unsigned char* to) const;
-  void restore(const unsigned char* from);
+  void state(State& s);
 
  private:
   static int most_touches(int particles, int parts);
-  template <class Self, class Visit>
-  static void visit_state(Self& self, Visit&& visit);
+  void follow_restored();
   void substep(int index);
   void assemble(double h, double left);
   bool note_tension(double h);

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/wall.hpp"
 #include "common/models/catheter/band_matrix.hpp"
 #include "common/models/catheter/touch.hpp"
-#include "common/models/catheter/wall.hpp"
 #include "common/models/catheter/wall_motion.hpp"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/models/catheter/wall.hpp"
+#include "common/contact/wall.hpp"
 
 namespace palpate {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "common/kernels/kernels.hpp"
 #include "common/mesh/shell_quality.hpp"
+#include "common/models/modal_shell/spec.hpp"
 
 namespace palpate {
 namespace {
@@ -204,26 +204,14 @@ double ModalBody::energy() const {
   return twice / 2;
 }
 
-std::size_t ModalBody::state_size() const {
-  return TouchBody::state_size() + 3 * of_modes();
+void ModalBody::state(State& s, std::span<const MovingTool> tools) {
+  TouchBody::state(s, tools);
+  for (std::vector<double>* v : {&x_, &v_, &tool_force_}) s.all(*v);
 }
 
-void ModalBody::save(unsigned char* to) const {
-  TouchBody::save(to);
-  to += TouchBody::state_size();
-  for (const std::vector<double>* v : {&x_, &v_, &tool_force_}) {
-    std::memcpy(to, v->data(), of_modes());
-    to += of_modes();
-  }
-}
-
-void ModalBody::restore(const unsigned char* from, std::span<const MovingTool> tools) {
-  TouchBody::restore(from, tools);
-  from += TouchBody::state_size();
-  for (std::vector<double>* v : {&x_, &v_, &tool_force_}) {
-    std::memcpy(v->data(), from, of_modes());
-    from += of_modes();
-  }
+std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& spec, const Archive& archive,
+                                           const StepSettings& settings) {
+  return std::make_unique<ModalBody>(archive, spec, settings);
 }
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
 #pragma once
 #include "common/contact/touch_body.hpp"
-#include "common/models/catheter/wall.hpp"
+#include "common/contact/wall.hpp"
 #include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/spec.hpp"
 
@@ -26,7 +26,7 @@ class ModalBody : public TouchBody, public CatheterWall {
   double penetration(const Segment& axis, double radius) const override;
 
   /// Forces of a catheter within this step; before hold().
-  void push(std::span<const WallForce> forces);
+  void push(std::span<const WallForce> forces) override;
 
   const TouchSurface& surface() const override { return TouchBody::surface(); }
   double half_thickness() const override { return half_thickness_; }
@@ -55,9 +55,7 @@ class ModalBody : public TouchBody, public CatheterWall {
         if (w.anchor.weights[v] != 0) visit(w.anchor.nodes[v], Eigen::Vector3d(w.anchor.weights[v] * w.force));
   }
 
-  std::size_t state_size() const override;
-  void save(unsigned char* to) const override;
-  void restore(const unsigned char* from, std::span<const MovingTool> tools) override;
+  void state(State& s, std::span<const MovingTool> tools) override;
 
  private:
   ModalBody(const Archive& archive, const ShellSpec& body, const StepSettings& settings, ModalConstants constants);

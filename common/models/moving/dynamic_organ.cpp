@@ -12,6 +12,7 @@
 #include "common/dynamics/make_model.hpp"
 #include "common/geometry/triangle.hpp"
 #include "common/mesh/normals.hpp"
+#include "common/models/kind.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/jaws.hpp"
 
@@ -290,6 +291,14 @@ void DynamicOrgan::restore(std::span<const std::uint8_t> state, std::span<const 
 std::uint64_t DynamicOrgan::hash() const {
   const auto state = model_->state();
   return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed_.data(), removed_.size() * sizeof(int));
+}
+
+std::unique_ptr<DynamicOrgan> make_organ(const NamedSpec&, const Archive&, const StepSettings&) {
+  return nullptr;
+}
+
+std::unique_ptr<DynamicOrgan> make_organ(const MovingSpec& body, const Archive& archive, const StepSettings& settings) {
+  return std::make_unique<DynamicOrgan>(archive, body, settings, make_element_model);
 }
 
 }  // namespace palpate

@@ -152,21 +152,18 @@ bool LocalBody::holds(const Segment& axis, double radius, int part, int held) co
   });
 }
 
-void LocalBody::save(unsigned char* to) const {
-  std::memcpy(to, &state_, sizeof state_);
-}
-
-void LocalBody::restore(const unsigned char* from) {
-  State state;
-  std::memcpy(&state, from, sizeof state);
-  const LocalModel& m = state.model;
+void LocalBody::state(State& s) {
+  Memory memory = state_;
+  s.value(memory);
+  if (!s.restoring()) return;
+  const LocalModel& m = memory.model;
   const auto within = [](int count, int most) { return count >= 0 && count <= most; };
   bool good = within(m.contacts, LocalModel::max_contacts) && within(m.nodes, LocalModel::max_nodes) &&
               within(m.triangles, LocalModel::max_triangles);
   for (int t = 0; good && t < m.triangles; ++t)
     for (const std::uint32_t n : m.triangle[t]) good = good && n < static_cast<std::uint32_t>(m.nodes);
-  if (!good) throw std::runtime_error("the recorded state holds a local contact model that cannot be");
-  state_ = state;
+  s.require(good, "the recorded state holds a local contact model that cannot be");
+  state_ = memory;
   model_pose_ = tip_pose(trocar_, m.pose());
 }
 

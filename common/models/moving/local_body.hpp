@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 
-#include "common/contact/touch_body.hpp"
+#include "common/contact/body_part.hpp"
+#include "common/describe/state.hpp"
+#include "common/tool/kinematics.hpp"
 #include "common/models/moving/local_model.hpp"
 
 namespace palpate {
@@ -28,13 +30,11 @@ class LocalBody {
   /// True if the last load was less than it should be, because the model is too old or has only just come back.
   bool stale() const { return stale_; }
 
-  std::size_t state_size() const { return sizeof(State); }
-  void save(unsigned char* to) const;
-  /// Throws std::runtime_error on counts or indices that no model has.
-  void restore(const unsigned char* from);
+  /// Restoring throws std::runtime_error on counts or indices that no model has.
+  void state(State& s);
 
  private:
-  struct State {
+  struct Memory {
     LocalModel model;
     double weight = 0;  ///< share of the force that is rendered
   };
@@ -55,7 +55,7 @@ class LocalBody {
 
   Trocar trocar_;
   double friction_, dt_;
-  State state_;
+  Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
   bool stale_ = false;
   std::array<Held, LocalModel::max_contacts> held_{};

@@ -81,4 +81,9 @@ void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad
   }
 }
 
+std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& spec, const Archive& archive,
+                                           const StepSettings& settings) {
+  return std::make_unique<QuasiStaticBody>(archive, spec, settings);
+}
+
 }  // namespace palpate

@@ -13,6 +13,7 @@ class QuasiStaticBody : public TouchBody {
 
   void update_surface(std::span<const MovingTool> tools) override;
   void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;
+  bool superposed() const override { return true; }
 
  private:
   void superpose(int tool, std::vector<double>& displacement);

@@ -19,4 +19,7 @@ inline void describe(Description& d, SpringMassSpec& b) {
 
 ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress);
 
+std::unique_ptr<DynamicOrgan> make_organ(const SpringMassSpec& body, const Archive& archive,
+                                         const StepSettings& settings);
+
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "haptic_node/step_record.hpp"
+#include "common/sim/step_record.hpp"
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 
 void prepare_record(const HapticStep& haptic, StepRecord& r) {
   std::size_t modes = 0, particles = 0;
-  for (const ReducedBody& b : haptic.modal_bodies()) modes += b.size;
-  for (const ReducedBody& b : haptic.catheters()) particles += b.size;
+  for (const auto& m : haptic.modal_bodies()) modes += m.part->coordinates().size();
+  for (const auto& c : haptic.catheters()) particles += c.part->body().positions().size();
   r.coordinates.resize(modes);
   r.particles.resize(3 * particles);
   r.tasks.resize(haptic.catheters().size());
@@ -26,19 +26,18 @@ namespace {
 void fill_shapes(const HapticStep& haptic, StepRecord& r) {
   double* coordinates = r.coordinates.data();
   r.on_shell.clear();
-  for (const ReducedBody& b : haptic.modal_bodies()) {
-    haptic.modal(b.body).show(coordinates, [&](int node, const Eigen::Vector3d& f) {
+  for (const auto& m : haptic.modal_bodies()) {
+    m.part->show(coordinates, [&](int node, const Eigen::Vector3d& f) {
       if (r.on_shell.size() == r.on_shell.capacity()) return;
-      r.on_shell.push_back({static_cast<std::uint32_t>(b.body),
+      r.on_shell.push_back({static_cast<std::uint32_t>(m.body),
                             {static_cast<std::uint32_t>(node),
                              {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}}});
     });
-    coordinates += b.size;
+    coordinates += m.part->coordinates().size();
   }
   double* particles = r.particles.data();
-  for (const ReducedBody& b : haptic.catheters())
-    for (const Eigen::Vector3d& p : haptic.catheter(b.body).positions())
-      particles = std::copy_n(p.data(), 3, particles);
+  for (const auto& c : haptic.catheters())
+    for (const Eigen::Vector3d& p : c.part->body().positions()) particles = std::copy_n(p.data(), 3, particles);
 }
 
 }  // namespace
@@ -64,10 +63,10 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
                     .model_run = moving ? haptic.local(t).model().run : 0,
                     .model_seq = moving ? haptic.local(t).model().seq : 0};
   }
-  for (int b = 0; b < haptic.bodies(); ++b) {
-    if (!haptic.is_touch_body(b)) continue;
-    const ContactLaw& law = haptic.body(b).law();
-    for (const TouchContact& c : law.contacts()) {
+  for (const auto& [b, part] : haptic.entries()) {
+    const ContactLaw* law = part->held();
+    if (!law) continue;
+    for (const TouchContact& c : law->contacts()) {
       if (c.touch == Touch::open || r.contacts == StepRecord::max_contacts) continue;
       HeldContact& to = r.contact[r.contacts];
       to.body = static_cast<std::uint32_t>(b);
@@ -80,14 +79,14 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
       to.sticking = c.touch == Touch::sticking;
       r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool);
     }
-    if (haptic.is_modal(b)) continue;  // its shape follows from its own state
-    law.for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
+    if (!part->superposed()) continue;  // its shape follows from its own state
+    law->for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
       if (r.forces == StepRecord::max_forces) return;
       r.nodal[r.forces] = {static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(node), plain(f)};
-      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law.contacts()[contact].tool);
+      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool);
     });
   }
-  std::ranges::copy(haptic.tasks(), r.tasks.begin());
+  for (std::size_t i = 0; i < r.tasks.size(); ++i) r.tasks[i] = haptic.task(static_cast<int>(i));
   r.has_shapes = !haptic.modal_bodies().empty() || !haptic.catheters().empty();
   r.has_shapes &= step % StepRecord::shape_interval == 0;
   if (r.has_shapes) fill_shapes(haptic, r);

@@ -9,6 +9,12 @@
 
 namespace palpate {
 
+/// A force of the catheter on the wall.
+struct WallForce {
+  Anchor anchor;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on the wall, world
+};
+
 /// The wall of a duct as a catheter meets it in one step, and how it gives way.
 ///
 /// The wall moves by reduced coordinates y [kg^1/2 m]: its displacement within the step, taken as h times the
@@ -33,12 +39,8 @@ class CatheterWall {
   /// Boundary loops of the tube's open ends: surface node indices in order, each loop once, the duct's own
   /// orientation.
   virtual std::span<const std::vector<int>> mouths() const = 0;
-};
-
-/// A force of the catheter on the wall.
-struct WallForce {
-  Anchor anchor;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on the wall, world
+  /// Forces of the catheter within this step. A wall that moves as given takes no notice.
+  virtual void push(std::span<const WallForce> /*forces*/) {}
 };
 
 }  // namespace palpate

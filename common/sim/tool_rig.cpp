@@ -1,0 +1,63 @@
+#include "common/sim/tool_rig.hpp"
+
+namespace palpate {
+
+ToolRig::ToolRig(int index, const Tool& tool, double dt)
+    : name_(tool.name),
+      trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
+      shaft_length_(tool.shaft_length),
+      end_(make_tool_end(index, tool, dt)),
+      safety_(tool.max_force, tool.max_force_rate, dt) {}
+
+bool ToolRig::start(const ToolDofs& dofs) {
+  if (!sense(dofs)) return false;
+  before_ = now_;
+  end_->start(dofs.grip);
+  handle_ = end_->handle();
+  return true;
+}
+
+bool ToolRig::sense(const ToolDofs& dofs) {
+  before_ = now_;
+  dofs_ = dofs;
+  const Eigen::Isometry3d pose = tip_pose(trocar_, dofs);
+  const bool finite = pose.matrix().allFinite();
+  if (finite) now_ = pose;
+  return finite;
+}
+
+PortMotion ToolRig::take_motion() {
+  const double handle = end_->handle();
+  const PortMotion motion = motion_between(before_, now_, handle - handle_);
+  handle_ = handle;
+  return motion;
+}
+
+PortForce ToolRig::ask(const ToolLoad& load) {
+  PortForce asked{load.force, load.torque, end_->torque()};
+  output_ = {.press = load.press, .flags = load.flags};
+  output_.flags |= safety_.limit(asked.force, asked.torque);
+  return asked;
+}
+
+PortForce ToolRig::give(PortForce given, bool limited, bool healthy) {
+  if (limited) output_.flags |= passivity_limited;
+  output_.flags |= safety_.apply(given.force, given.torque, healthy);
+  output_.force = given.force;
+  output_.torque = given.torque;
+  output_.grip = given.grip;
+  output_.trocar = trocar_reaction(trocar_, dofs_, shaft_length_, given.force, given.torque).trocar;
+  return given;
+}
+
+void ToolRig::state(State& s) {
+  s.value(now_.matrix());
+  if (s.restoring()) before_ = now_;
+  SafetyChain::State safety = safety_.state();
+  s.value(safety);
+  if (s.restoring()) safety_.set_state(safety);
+  end_->state(s);
+  s.value(handle_);
+}
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/sim/tool_end.hpp"
+#include "common/tool/passivity.hpp"
+#include "common/tool/safety.hpp"
+
+namespace palpate {
+
+/// One instrument under the hand: its motion about the trocar, what is at its end, and the port through which the hand
+/// gets its force.
+class ToolRig {
+ public:
+  /// What the hand gets, and what is told of it.
+  struct Output {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();  ///< [N], [N m] on the tool, tip
+    Eigen::Vector3d press = Eigen::Vector3d::Zero();   ///< unit or zero, on the tissue
+    Eigen::Vector3d trocar = Eigen::Vector3d::Zero();  ///< [N] of the trocar on the shaft
+    double grip = 0;                                   ///< [N m] on the handle, opens the jaws
+    std::uint32_t flags = 0;                           ///< ForceFlag bits
+  };
+
+  ToolRig(int index, const Tool& tool, double dt);
+
+  const std::string& name() const { return name_; }
+  const Trocar& trocar() const { return trocar_; }
+  const ToolEnd& end() const { return *end_; }
+  const Eigen::Isometry3d& pose() const { return now_; }  ///< tip frame, world
+  MovingTool moving() const {
+    return {.before = before_, .now = now_, .parts_before = end_->parts_before(), .parts = end_->parts()};
+  }
+  const Output& output() const { return output_; }
+
+  /// The tool stands here; call once, before the first step. False for a pose that is not a number.
+  bool start(const ToolDofs& dofs);
+  /// A pose that is not a number is a fault: the tool is taken to stand still, and false comes back.
+  bool sense(const ToolDofs& dofs);
+  /// Its jaws follow the handle.
+  void work(BodyParts bodies) { end_->work(dofs_.grip, before_, bodies); }
+  /// Of the hand's port since the last step.
+  PortMotion take_motion();
+
+  /// What the tissue asks for, within the limits of force and torque.
+  PortForce ask(const ToolLoad& load);
+  /// What the hand gets of it after the watch over the energy: slew limits and a second force limit have the last word.
+  /// `healthy` false reports a fault of this step.
+  PortForce give(PortForce given, bool limited, bool healthy);
+  void trip() { safety_.trip(); }
+
+  void state(State& s);
+
+ private:
+  std::string name_;
+  Trocar trocar_;
+  double shaft_length_;
+  std::unique_ptr<ToolEnd> end_;
+  SafetyChain safety_;
+  ToolDofs dofs_{};
+  Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
+  double handle_ = 0;  ///< [rad] in the last step
+  Output output_;
+};
+
+}  // namespace palpate
