@@ -96,5 +96,5 @@ int main(int argc, char** argv) {
   BusSettings settings{.domain = std::atoi(argv[3])};
   if (argc > 4) settings.interface = argv[4];
   if (argc > 5) settings.peers = {argv[5]};
-  return testing::run(std::atof(argv[1]), std::atof(argv[2]), settings);
+  return palpate::testing::run(std::atof(argv[1]), std::atof(argv[2]), settings);
 }
