@@ -91,7 +91,7 @@ SurfaceMap check_solid_body(const Scene& scene, const Body& body, const SolidSpe
   const TetMesh mesh = load_tet_mesh(solid.mesh, solid.scale);
   const DofMap dofs = apply_fixation(mesh, solid.fixed, fmt::format("body '{}'", solid.name));
   const MaterialField materials = material_field(solid, mesh);
-  const SurfaceMap surface = make_surface_map(solid, mesh, dofs);
+  SurfaceMap surface = make_surface_map(solid, mesh, dofs);
   Archive moving;
   if (moves) moving = dynamic_archive(scene, body, mesh);
   fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", solid.name, mesh.nodes.size(),
@@ -120,7 +120,7 @@ SurfaceMap check_body(const Scene& scene, const Body& body) {
     check_catheter(scene, *wire);
     return {};
   }
-  const SurfaceMap surface = check_shell_body(scene, body);
+  SurfaceMap surface = check_shell_body(scene, body);
   print_archive(scene, body);
   print_memory(shell_memory(scene, body, surface));
   return surface;

@@ -97,7 +97,7 @@ KeyFiles find_keys(const fs::path& folder, const std::string& role) {
   if (!of_all && !of_one)
     fail(
         fmt::format("{} holds no keys of the role '{}': a folder of that name has to be in it", folder.string(), role));
-  const KeyFiles keys = key_files(fs::absolute(of_all ? folder / role : folder));
+  KeyFiles keys = key_files(fs::absolute(of_all ? folder / role : folder));
   const std::string found = between(keys.permissions, "<grant name=\"", '"');
   if (found != role)
     fail(fmt::format("{} holds keys of the role '{}', and this program's is '{}'",

@@ -63,7 +63,7 @@ FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, Mater
           std::move(pressures),
           std::move(fine),
           std::move(dofs),
-          std::move(hats),
+          hats,
           body};
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its offline discretisation", body));

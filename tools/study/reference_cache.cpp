@@ -37,7 +37,7 @@ std::vector<double> ReferenceCache::get(const std::string& key,
   if (folder_.empty()) return compute();
   const auto file = folder_ / (digest(key) + ".reference");
   if (auto found = read_numbers(file)) return *std::move(found);
-  const std::vector<double> values = compute();
+  std::vector<double> values = compute();
   std::filesystem::create_directories(folder_);
   const auto beside = file.string() + "." + std::to_string(getpid());
   std::ofstream out(beside, std::ios::binary);

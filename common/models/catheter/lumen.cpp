@@ -179,7 +179,7 @@ void Lumen::cross(int particle, const Vector3d& from, const Vector3d& to, const 
 
 std::optional<SweptHit> Lumen::crossing(const Vector3d& from, const Vector3d& to) const {
   for (const Mouth& mouth : mouths_)
-    if (const auto hit = crossing(from, to, mouth, mouth.cap, seen_)) return hit;
+    if (auto hit = crossing(from, to, mouth, mouth.cap, seen_)) return hit;
   return std::nullopt;
 }
 
