@@ -58,13 +58,7 @@ FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, Mater
   if (offline.formulation == "locking_free") pressures = make_pressures(space, materials);
   auto fine = fine_dofs(space, dofs);
   auto hats = hat_tractions(space, mesh);
-  return {std::move(space),
-          std::move(materials),
-          std::move(pressures),
-          std::move(fine),
-          std::move(dofs),
-          hats,
-          body};
+  return {std::move(space), std::move(materials), std::move(pressures), std::move(fine), std::move(dofs), hats, body};
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its offline discretisation", body));
 } catch (const std::runtime_error& error) {
