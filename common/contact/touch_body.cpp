@@ -52,7 +52,8 @@ bool TouchBody::adopt(const TouchContact& contact) {
   return true;
 }
 
-// Where the plane in which the jaws turn cuts the surface, edge by edge: nodes alone would miss what passes between them.
+// Where the plane in which the jaws turn cuts the surface, edge by edge: nodes alone would miss what passes between
+// them.
 BetweenJaws TouchBody::between(const OpenJaws& jaws) {
   obstacles_.clear();
   double distance = 0;

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "common/archive/compliance.hpp"
+#include "common/contact/body_part.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
-#include "common/contact/body_part.hpp"
 #include "common/tool/forceps.hpp"
 
 namespace palpate {
@@ -63,7 +63,7 @@ class TouchBody : public BodyPart {
   std::vector<Eigen::Vector3d> unloaded_;  ///< [m] per node
   ContactLaw law_;
   ToolContacts contacts_;
-  std::vector<ToolLoad> own_;             ///< what this body does to each tool
+  std::vector<ToolLoad> own_;            ///< what this body does to each tool
   std::vector<GripObstacle> obstacles_;  ///< between jaws
 };
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "common/describe/state.hpp"
 #include "common/archive/archive.hpp"
+#include "common/describe/state.hpp"
 #include "common/geometry/buckets.hpp"
 #include "common/geometry/triangle.hpp"
 #include "common/tool/tool_part.hpp"

@@ -21,10 +21,10 @@ class ToolEnd {
   /// The jaws follow the handle. `pose`: tip frame at the step's begin, as the bodies stand.
   virtual void work(double /*grip*/, const Eigen::Isometry3d& /*pose*/, BodyParts) {}
 
-  virtual double opening() const { return 0; }                          ///< [rad] between the jaws of a forceps
-  virtual double handle() const { return 0; }                           ///< [rad] where the handle stands
-  virtual double torque() const { return 0; }                           ///< [N m] on the handle, opens the jaws
-  virtual const char* part_name(int part) const = 0;                    ///< as a person calls it
+  virtual double opening() const { return 0; }        ///< [rad] between the jaws of a forceps
+  virtual double handle() const { return 0; }         ///< [rad] where the handle stands
+  virtual double torque() const { return 0; }         ///< [N m] on the handle, opens the jaws
+  virtual const char* part_name(int part) const = 0;  ///< as a person calls it
   virtual void state(State&) {}
 
   std::span<const ToolPart> parts() const { return parts_; }

@@ -14,8 +14,8 @@
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/spsc_ring.hpp"
-#include "haptic_node/local_feed.hpp"
 #include "common/sim/step_record.hpp"
+#include "haptic_node/local_feed.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
 
 // Every allocation of this process goes through these.

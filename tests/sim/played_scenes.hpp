@@ -3,8 +3,8 @@
 #include <functional>
 #include <numbers>
 
-#include "common/sim/simulator.hpp"
 #include "common/scene/find_archive.hpp"
+#include "common/sim/simulator.hpp"
 #include "tests/deform/organ_bench.hpp"
 #include "tests/haptic/block_scene.hpp"
 #include "tests/haptic/duct_scene.hpp"

@@ -11,9 +11,9 @@
 
 #include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "common/sim/digest.hpp"
 #include "common/sim/simulator.hpp"
-#include "common/scene/ensure_archive.hpp"
 #include "haptic_node/device.hpp"
 
 namespace palpate::sim {

@@ -61,6 +61,7 @@ inline void describe(Description& d, CatheterSpec& b) {
 /// The tube about its particles at rest: a surface, and nothing else.
 std::optional<Archive> made_archive(const CatheterSpec& body);
 
-std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& body, const Archive& archive, const StepSettings& settings);
+std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& body, const Archive& archive,
+                                           const StepSettings& settings);
 
 }  // namespace palpate

@@ -17,6 +17,7 @@ inline void describe(Description& d, ModalShellSpec& b) {
 
 ArchiveJob archive_job(const ModalShellSpec& body, const Progress& progress);
 
-std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Archive& archive, const StepSettings& settings);
+std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Archive& archive,
+                                           const StepSettings& settings);
 
 }  // namespace palpate

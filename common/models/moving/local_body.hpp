@@ -3,8 +3,8 @@
 
 #include "common/contact/body_part.hpp"
 #include "common/describe/state.hpp"
-#include "common/tool/kinematics.hpp"
 #include "common/models/moving/local_model.hpp"
+#include "common/tool/kinematics.hpp"
 
 namespace palpate {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "common/contact/step_settings.hpp"
 #include "common/contact/body_part.hpp"
+#include "common/contact/step_settings.hpp"
 #include "common/models/moving/local_body.hpp"
 
 namespace palpate {

@@ -55,6 +55,7 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 
-std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Archive& archive, const StepSettings& settings);
+std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Archive& archive,
+                                           const StepSettings& settings);
 
 }  // namespace palpate
