@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr int most_modes = 200;
+constexpr int kMaxModes = 200;
 
 /// The duct with its 200 lowest modes, of which each run keeps the first.
 struct Insertion {
@@ -24,7 +24,7 @@ struct Insertion {
       archives.emplace_back();
       auto* duct = as<ModalShellSpec>(body);
       if (!duct) continue;
-      duct->shell.modes = most_modes;
+      duct->shell.modes = kMaxModes;
       archives.back() = precompute(*duct, load_shell_mesh(duct->mesh, duct->scale));
     }
     for (const Tool& tool : scene.tools)

@@ -43,7 +43,7 @@ Field fastest_mode(const Case& c) {
   TensorMass<double> model(c.mesh, Integrator::rk4, 0);
   for (int n = 0; n < model.nodes(); ++n)
     model.set_motion(n, 1e-3 * Eigen::Vector3d(n % 3 - 1, n % 5 - 2, n % 7 - 3), {0, 0, 0});
-  const double limit = largest_step(Integrator::rk4, model.frequency_bound(), 0);
+  const double limit = max_step(Integrator::rk4, model.frequency_bound(), 0);
   for (double size = 0, h = limit; size < 1e50; h *= 1.05) {
     for (int i = 0; i < 200; ++i) model.step(h);
     size = 0;
@@ -64,9 +64,9 @@ bool grows(const Case& c, const Field& mode, Integrator integrator, double h) {
   return !(model.energy() < before);
 }
 
-double largest_stable_step(const Case& c, const Field& mode, Integrator integrator) {
+double max_stable_step(const Case& c, const Field& mode, Integrator integrator) {
   const double bound = TensorMass<double>(c.mesh, integrator, 0).frequency_bound();
-  double stable = largest_step(integrator, bound, c.damping), growing = 4 * stable;
+  double stable = max_step(integrator, bound, c.damping), growing = 4 * stable;
   for (int i = 0; i < 9; ++i) {
     const double middle = 0.5 * (stable + growing);
     (grows(c, mode, integrator, middle) ? growing : stable) = middle;
@@ -116,7 +116,7 @@ int steps_within(const Case& c, Integrator integrator, const std::vector<Field>&
 double step_time(const Case& c, Integrator integrator) {
   TensorMass<float> model(c.mesh, integrator, c.damping);
   model.set_gravity(kGravity);
-  const double h = 0.5 * largest_step(integrator, model.frequency_bound(), c.damping);
+  const double h = 0.5 * max_step(integrator, model.frequency_bound(), c.damping);
   bench::Samples samples;
   samples.measure(500, 5000, [&](int) { model.step(h); });
   return samples.median();
@@ -129,13 +129,13 @@ struct Result {
 Result measure(const Case& c, const std::string& name, Integrator integrator, const Field& mode,
                const std::vector<Field>& reference) {
   Result result;
-  result.step = largest_stable_step(c, mode, integrator);
+  result.step = max_stable_step(c, mode, integrator);
   const int steps = steps_within(c, integrator, reference, static_cast<int>(std::ceil(c.interval / result.step)));
   result.wall = step_time(c, integrator) * steps / c.interval;
   const std::string row = c.name + "_" + name;
-  bench::report("integrators", row, "largest_step", 1e3 * result.step, "ms");
+  bench::report("integrators", row, "max_step", 1e3 * result.step, "ms");
   const double bound = TensorMass<double>(c.mesh, integrator, 0).frequency_bound();
-  bench::report("integrators", row, "step_from_bound", 1e3 * largest_step(integrator, bound, c.damping), "ms");
+  bench::report("integrators", row, "step_from_bound", 1e3 * max_step(integrator, bound, c.damping), "ms");
   bench::report("integrators", row, "step_at_equal_error", 1e3 * c.interval / steps, "ms");
   bench::report("integrators", row, "wall_per_second", result.wall, "s");
   return result;
@@ -145,7 +145,7 @@ void compare(const Case& c) {
   const Field mode = fastest_mode(c);
   const double bound = TensorMass<double>(c.mesh, Integrator::rk4, 0).frequency_bound();
   const auto reference = trajectory<double>(
-      c, Integrator::rk4, static_cast<int>(10 * c.interval / largest_step(Integrator::rk4, bound, c.damping)) + 1);
+      c, Integrator::rk4, static_cast<int>(10 * c.interval / max_step(Integrator::rk4, bound, c.damping)) + 1);
   const Result rk4 = measure(c, "rk4", Integrator::rk4, mode, reference);
   const Result semi = measure(c, "semi_implicit", Integrator::semi_implicit, mode, reference);
   const Result forward = measure(c, "forward_euler", Integrator::forward_euler, mode, reference);

@@ -83,7 +83,7 @@ class OtherSide {
 void ping(bench::Samples& samples, int count, const std::function<void(std::uint64_t)>& send,
           const std::function<std::uint64_t(std::chrono::nanoseconds)>& receive) {
   std::uint64_t seq = 0;
-  const std::int64_t deadline = now_ns() + 10 * ns_per_s;
+  const std::int64_t deadline = now_ns() + 10 * kNsPerS;
   for (bool found = false; !found;) {
     send(++seq);
     found = receive(20ms) == seq;
@@ -92,7 +92,7 @@ void ping(bench::Samples& samples, int count, const std::function<void(std::uint
   PeriodicTimer timer(1000);
   for (int i = -200; i < count; ++i) {
     timer.wait();
-    const std::int64_t begin = now_ns(), limit = begin + ns_per_s;
+    const std::int64_t begin = now_ns(), limit = begin + kNsPerS;
     send(++seq);
     while (receive(100ms) != seq && now_ns() < limit) {
     }
@@ -154,8 +154,8 @@ int run(int argc, char** argv) {
   // By turns, so that a change of the host's load meets both.
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, BareDds::as_tool_state,
-                 BareDds::as_force_state);
+    measure_bare(bare, 1 + (domain + 2 * round + 1) % 200, count / rounds, BareDds::kAsToolState,
+                 BareDds::kAsForceState);
     measure_bus(bus, 1 + (domain + 2 * round + 2) % 200, count / rounds);
   }
   report_all("loopback_bare_dds_step", bare);

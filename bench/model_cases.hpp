@@ -111,7 +111,7 @@ Field rest_field(const LoadedSolid& solid, std::span<const int> cut = {}, double
   Model model(solid.mesh, Integrator::rk4, damping);
   model.remove(cut);
   for (int n = 0; n < model.nodes(); ++n) model.set_load(n, solid.load[n]);
-  const double dt = 0.95 * largest_step(Integrator::rk4, model.frequency_bound(), damping);
+  const double dt = 0.95 * max_step(Integrator::rk4, model.frequency_bound(), damping);
   Field u(model.nodes());
   for (int round = 0; round < 400; ++round) {
     for (int i = 0; i < 100; ++i) model.step(dt);

@@ -34,7 +34,7 @@ using testing::TwoHosts;
 namespace fs = std::filesystem;
 
 const std::string scene = PALPATE_SCENES "/liver.toml";
-constexpr int publisher_priority = 40;  // of haptic_node's thread that writes to the bus
+constexpr int kPublisherPriority = 40;  // of haptic_node's thread that writes to the bus
 
 struct Case {
   int observers;
@@ -77,7 +77,7 @@ ThreadTimes times_of(pid_t process) {
     std::istringstream after_name(text.substr(text.rfind(')') + 1));
     constexpr int place_of_priority = 40 - 2;  // of the fields that follow the name
     for (int i = 0; i < place_of_priority; ++i) after_name >> field;
-    if (field == std::to_string(publisher_priority))
+    if (field == std::to_string(kPublisherPriority))
       times.publisher += 1e-9 * ns;
     else if (thread.path().filename() != std::to_string(process))
       times.middleware += 1e-9 * ns;

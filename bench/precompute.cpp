@@ -72,7 +72,7 @@ void measure_precompute(const Case& one, int runs) {
 /// CHOLMOD.
 void measure_conjugate_gradients(const Case& one, const std::string& text, double tolerance, int sample) {
   const auto archive = archive_of(one, nullptr);
-  const auto dofs = apply_fixation(one.mesh, one.body.fixed, one.name);
+  const auto dofs = apply_boundary_conditions(one.mesh, one.body.fixed, one.name);
   const auto lower = assemble_stiffness(one.mesh, material_field(one.body, one.mesh), dofs);
   const SparseMatrix stiffness = lower.selfadjointView<Eigen::Lower>();
   Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(stiffness);

@@ -86,9 +86,9 @@ inline double twist_target() {
 /// there, conjugate to the torque. Target 0.03411; the source prints 0.03208.
 inline SolidAnswer straight_beam_twist(int n, const Offline& offline) {
   SolidCase beam{make_block(Vector3d::Zero(), {6, 0.2, 0.1}, {15 * n, n, n}), {1e7, 0.3, 1}, {hold_face("x0")}, {}, 1};
-  static constexpr double polar = 0.02 * (0.04 + 0.01) / 12;
+  static constexpr double kPolar = 0.02 * (0.04 + 0.01) / 12;
   beam.traction = [](const Vector3d& x, const Vector3d&) -> Vector3d {
-    return x.x() > 6 - 1e-9 ? Vector3d(0, (0.05 - x.z()) / polar, (x.y() - 0.1) / polar) : Vector3d(Vector3d::Zero());
+    return x.x() > 6 - 1e-9 ? Vector3d(0, (0.05 - x.z()) / kPolar, (x.y() - 0.1) / kPolar) : Vector3d(Vector3d::Zero());
   };
   return mean_along_load(beam, offline);
 }

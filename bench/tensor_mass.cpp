@@ -20,7 +20,7 @@ template <class Scalar>
 double measure(const ElasticMesh& mesh, const std::string& name, int steps) {
   TensorMass<Scalar> tissue(mesh, Integrator::rk4, kDamping);
   tissue.set_gravity(kGravity);
-  const double dt = 0.9 * largest_step(Integrator::rk4, tissue.frequency_bound(), kDamping);
+  const double dt = 0.9 * max_step(Integrator::rk4, tissue.frequency_bound(), kDamping);
   bench::Samples samples;
   samples.measure(steps / 10, steps, [&](int) { tissue.step(dt); });
   bench::keep(tissue.displacement(mesh.nodes() - 1));

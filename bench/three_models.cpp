@@ -26,7 +26,7 @@ double step_time(const ElasticMesh& mesh, const std::string& bench, const std::s
   const double damping = 5;
   Model model(mesh, Integrator::rk4, damping);
   model.set_gravity({0, 0, -9.81});
-  const double dt = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), damping);
+  const double dt = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), damping);
   Samples samples;
   samples.measure(steps / 10, steps, [&](int) { model.step(dt); });
   keep(model.displacement(mesh.nodes() - 1));
@@ -38,9 +38,9 @@ double step_time(const ElasticMesh& mesh, const std::string& bench, const std::s
 template <class Model>
 void speed(std::string_view name, const std::string& bench, const ElasticMesh& mesh, int steps) {
   const double median = step_time<Model>(mesh, bench, "box760", steps);
-  const double longest = largest_step(Integrator::rk4, Model(mesh, Integrator::rk4, 5).frequency_bound(), 5);
+  const double longest = max_step(Integrator::rk4, Model(mesh, Integrator::rk4, 5).frequency_bound(), 5);
   row(name, "step_p50", 1e6 * median, "us");
-  row(name, "largest_step", 1e6 * longest, "us");
+  row(name, "max_step", 1e6 * longest, "us");
   row(name, "times_real_time", longest / median, "1");
 }
 

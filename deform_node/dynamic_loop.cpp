@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t reminder_ticks = 64;
-constexpr int loop_priority = 50;  // below the haptic loop, above the picture
+constexpr std::uint64_t kReminderTicks = 64;
+constexpr int kLoopPriority = 50;  // below the haptic loop, above the picture
 
 std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
   std::vector<std::size_t> nodes;
@@ -125,7 +125,7 @@ void DynamicLoop::publish_models() {
     const bool was_near = !m.triangles.empty() || !m.contacts.empty();
     const bool near = local_models_.describe(t, m);
     // An empty one says that there is nothing near any more, and again from time to time, since it may be lost.
-    const bool remind = m.seq > 0 && world_.ticks() % reminder_ticks == 0;
+    const bool remind = m.seq > 0 && world_.ticks() % kReminderTicks == 0;
     if (!near && !was_near && !remind) continue;
     m.run = run_;
     ++m.seq;
@@ -156,7 +156,7 @@ void DynamicLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
-  if (now - last_status_ns_ < ns_per_s) return;
+  if (now - last_status_ns_ < kNsPerS) return;
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(report_.ticks - last_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
@@ -167,7 +167,7 @@ void DynamicLoop::keep_house(std::int64_t now) {
 }
 
 const DynamicReport& DynamicLoop::run(double seconds) {
-  for (const std::string& said : request_realtime({.priority = loop_priority}).sentences) spdlog::info("{}", said);
+  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) spdlog::info("{}", said);
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
   PeriodicTimer timer(1 / world_.dt(), 0);

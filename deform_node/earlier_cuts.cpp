@@ -23,7 +23,7 @@ bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
     HeldTopology& most = most_[body];
     if (held->removed.size() > most.removed.size()) most = std::move(*held);
   }
-  in_time_ = now_ns - *asked_ns_ < patience_ns;
+  in_time_ = now_ns - *asked_ns_ < kPatienceNs;
   return !in_time_ || told_by_all(presence);
 }
 

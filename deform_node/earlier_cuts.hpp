@@ -16,7 +16,7 @@ namespace palpate {
 /// several who know the one is right who knows of most.
 class EarlierCuts {
  public:
-  static constexpr std::int64_t patience_ns = 2'000'000'000;
+  static constexpr std::int64_t kPatienceNs = 2'000'000'000;
 
   /// `bodies`: those that can be cut.
   EarlierCuts(Bus& bus, std::vector<int> bodies)

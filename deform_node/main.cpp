@@ -54,7 +54,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   for (int i = 0; i < world.organs(); ++i)
     spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each",
                  name_of(loaded.scene.bodies[world.bodies()[i]]), world.organ(i).topology().alive_count(),
-                 world.organ(i).steps_in(world.dt()), world.organ(i).largest_step());
+                 world.organ(i).steps_in(world.dt()), world.organ(i).max_step());
   DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
   if (whole) loop.forget_earlier_cuts();
   say_ready(o);

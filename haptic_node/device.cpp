@@ -39,9 +39,9 @@ class LogDevice : public Device {
       if (state.step < first) continue;
       const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal};
       // A step whose sample was lost repeats the one before it.
-      while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < max_samples)
+      while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < kMaxSamples)
         samples_.push_back(samples_.back());
-      if (samples_.size() < max_samples) samples_.push_back({dofs, state.seq});
+      if (samples_.size() < kMaxSamples) samples_.push_back({dofs, state.seq});
     }
     if (samples_.empty())
       throw std::runtime_error(fmt::format("{}: the log holds no motion of tool '{}' (number {})", file.string(),
@@ -51,7 +51,7 @@ class LogDevice : public Device {
   bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }
 
  private:
-  static constexpr std::size_t max_samples = 50'000'000;
+  static constexpr std::size_t kMaxSamples = 50'000'000;
   std::size_t at(double seconds) const { return static_cast<std::size_t>(std::llround(seconds * rate_hz_)); }
   double rate_hz_;
   std::vector<DeviceSample> samples_;

@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t ring_slots = 256;  // a quarter of a second in which the publisher may be kept from running
-constexpr int loop_priority = 80, publisher_priority = 40;
+constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
+constexpr int kLoopPriority = 80, kPublisherPriority = 40;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
       samples_(haptic.tools()),
       dofs_(haptic.tools()),
-      ring_(ring_slots) {
+      ring_(kRingSlots) {
   ring_.for_each_slot([&](StepRecord& slot) { prepare_record(haptic, slot); });
   keyframe_.dt = haptic.dt();
   keyframe_.code_path = std::move(code_path);
@@ -60,7 +60,7 @@ const LoopReport& HapticLoop::run(double seconds) {
       }
     });
   prefault_stack();
-  for (const std::string& said : request_realtime({.priority = loop_priority}).sentences) spdlog::info("{}", said);
+  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) spdlog::info("{}", said);
 
   const std::int64_t begin = now_ns();
   PeriodicTimer timer(1 / haptic_.dt());
@@ -106,14 +106,14 @@ void HapticLoop::tick(double time) {
   report_.step.record(end - sense);
   std::uint32_t flags = 0;
   for (int t = 0; t < haptic_.tools(); ++t) {
-    report_.largest_force = std::max(report_.largest_force, haptic_.force(t).norm());
+    report_.max_force = std::max(report_.max_force, haptic_.force(t).norm());
     flags |= haptic_.flags(t);
   }
   report_.limited += (flags & (force_limited | slew_limited)) != 0;
   report_.regularised += (flags & regularised) != 0;
   report_.faults += (flags & fault) != 0;
   report_.damped += (flags & passivity_limited) != 0;
-  report_.least_energy = std::min(report_.least_energy, haptic_.energy());
+  report_.min_energy = std::min(report_.min_energy, haptic_.energy());
   report_.stale += (flags & stale_model) != 0;
   if (flags & stale_model) shown_stale_.store(true, std::memory_order_relaxed);
   shown_ticks_.store(step_, std::memory_order_relaxed);
@@ -132,7 +132,7 @@ void HapticLoop::checkpoint() {
 }
 
 void HapticLoop::publish_loop() {
-  request_realtime({.priority = publisher_priority, .lock_memory = false});
+  request_realtime({.priority = kPublisherPriority, .lock_memory = false});
   while (!over_.load()) {
     (void)wake_.try_acquire_for(20ms);
     clock_.answer();

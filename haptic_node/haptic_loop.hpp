@@ -28,9 +28,9 @@ struct LoopReport {
   Histogram step, push;       ///< [ns] whole tick; hand-over to the publisher
   Histogram wire;             ///< [ns] from there until the bus has all messages of a step
   PeriodStatistics period;
-  double largest_force = 0;                                                       ///< [N]
+  double max_force = 0;                                                           ///< [N]
   std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
-  double least_energy = 0;                                                        ///< [J] of all tools together
+  double min_energy = 0;                                                          ///< [J] of all tools together
 };
 
 /// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and

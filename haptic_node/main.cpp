@@ -67,7 +67,7 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
                      {"inserted_m", task.inserted},
                      {"deepest_m", task.deepest},
                      {"inserting_s", task.inserting_s()},
-                     {"force_max_n", task.largest_force},
+                     {"force_max_n", task.max_force},
                      {"wall_contacts", task.wall_contacts},
                      {"grasps", task.grasps},
                      {"drops", task.drops},
@@ -76,7 +76,7 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
         "task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} "
         "N, {} wall contacts, "
         "{} grasps, {} drops, held for {:.1f} s",
-        body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.largest_force, task.wall_contacts,
+        body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.max_force, task.wall_contacts,
         task.grasps, task.drops, task.held_s);
   }
   return tasks;
@@ -101,21 +101,21 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"late_us_p99", us(r.period.wake, 0.99)},
           {"slack_us_p50", us(r.period.slack, 0.5)},
           {"slack_us_p1", us(r.period.slack, 0.01)},
-          {"force_max_n", r.largest_force},
+          {"force_max_n", r.max_force},
           {"limited_steps", r.limited},
           {"regularised_steps", r.regularised},
           {"fault_steps", r.faults},
           {"stale_model_steps", r.stale},
           {"passivity_limited_steps", r.damped},
-          {"energy_min_j", r.least_energy}};
+          {"energy_min_j", r.min_energy}};
 }
 
 void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::touchable, ArchivePart::header);
   const Scene& scene = loaded.scene;
-  if (scene.tools.size() > StepRecord::max_tools)
+  if (scene.tools.size() > StepRecord::kMaxTools)
     throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(),
-                                         StepRecord::max_tools));
+                                         StepRecord::kMaxTools));
   HapticStep haptic(scene, loaded.archives);
   std::vector<std::unique_ptr<Device>> devices;
   for (std::size_t t = 0; t < scene.tools.size(); ++t) devices.push_back(make_device(scene, static_cast<int>(t)));
@@ -153,11 +153,11 @@ void run(const NodeOptions& o) {
   if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);
   if (report.damped > 0)
     spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
-                 report.damped, -1e3 * report.least_energy);
+                 report.damped, -1e3 * report.min_energy);
   if (o.supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
                summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(),
-               summary["step_us_p999"].get<double>(), report.period.skipped, report.largest_force);
+               summary["step_us_p999"].get<double>(), report.period.skipped, report.max_force);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void Publisher::publish(const StepRecord& r) {
   if (r.has_shapes) publish_shapes(r);
   if (!task_) return;
   take_tasks(r);
-  if (r.step % task_interval == 0) finish();
+  if (r.step % kTaskInterval == 0) finish();
 }
 
 void Publisher::publish_shapes(const StepRecord& r) {
@@ -75,7 +75,7 @@ void Publisher::publish_contacts(const StepRecord& r, int t) {
   const bool touching = !m.contacts.empty();
   const bool quiet = !touching && !state.touching;
   state.touching = touching;
-  if (quiet && ++state.quiet < quiet_interval) return;
+  if (quiet && ++state.quiet < kQuietInterval) return;
   state.quiet = 0;
   m.run = run_;
   m.seq = ++state.contact_seq;

@@ -24,9 +24,9 @@ class Publisher {
   void take_tasks(const StepRecord& record);
 
   /// Without contact the topic falls silent but for one sample in so many steps.
-  static constexpr int quiet_interval = 100;
+  static constexpr int kQuietInterval = 100;
   /// Steps from one task record to the next.
-  static constexpr std::uint64_t task_interval = 100;
+  static constexpr std::uint64_t kTaskInterval = 100;
   struct OfTool {
     std::uint64_t tool_seq = 0, contact_seq = 0, force_seq = 0;
     bool touching = false;

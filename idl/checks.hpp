@@ -10,8 +10,8 @@
 /// What the generated checks of messages are made of.
 namespace palpate::checks {
 
-inline constexpr std::int64_t largest_time_ns = 2'000'000'000'000'000'000;  ///< two may be added and a third taken off
-inline constexpr std::size_t longest_text = 1048576;                        ///< [bytes]
+inline constexpr std::int64_t kMaxTimeNs = 2'000'000'000'000'000'000;  ///< two may be added and a third taken off
+inline constexpr std::size_t kMaxText = 1048576;                       ///< [bytes]
 
 template <class Sequence, class Condition>
 bool each(const Sequence& sequence, Condition&& condition) {
@@ -26,13 +26,13 @@ bool finite(const std::ranges::range auto& values) {
 }
 
 inline bool time(std::int64_t value) {
-  return value >= -largest_time_ns && value <= largest_time_ns;
+  return value >= -kMaxTimeNs && value <= kMaxTimeNs;
 }
 bool time(const std::ranges::range auto& values) {
   return each(values, [](std::int64_t value) { return time(value); });
 }
 inline bool short_enough(const std::string& text) {
-  return text.size() <= longest_text;
+  return text.size() <= kMaxText;
 }
 inline bool unit(const std::array<double, 3>& n) {
   return std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6;

@@ -6,7 +6,7 @@
 namespace palpate {
 
 /// Depth of a topic whose writer keeps every sample. Only for what is bounded by itself.
-inline constexpr int keep_all = 0;
+inline constexpr int kKeepAll = 0;
 
 /// Quality of service of a topic. Every writer also asserts a liveliness lease, so that its death shows.
 struct Qos {

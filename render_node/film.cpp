@@ -18,8 +18,8 @@ extern char** environ;
 namespace palpate {
 namespace {
 
-constexpr std::size_t queue_length = 6;
-constexpr int encoder_nice = 5;  // pictures may wait, the haptic loop and the renderer may not
+constexpr std::size_t kQueueLength = 6;
+constexpr int kEncoderNice = 5;  // pictures may wait, the haptic loop and the renderer may not
 
 std::vector<std::string> ffmpeg_arguments(int width, int height, double rate, const std::string& out) {
   // H.264 in 4:2:0 wants even sides.
@@ -123,7 +123,7 @@ void Film::start() {
     fail(error == ENOENT ? "films need the program ffmpeg, which is not installed" : std::strerror(error));
   }
   ::fcntl(pipe_, F_SETPIPE_SZ, 1 << 20);
-  ::setpriority(PRIO_PROCESS, ffmpeg_, encoder_nice);
+  ::setpriority(PRIO_PROCESS, ffmpeg_, kEncoderNice);
   writer_ = std::thread([this] { write_entries(); });
 }
 
@@ -138,14 +138,14 @@ Film::~Film() {
 
 bool Film::full() const {
   const std::scoped_lock lock(mutex_);
-  return queue_.size() >= queue_length && !broken_;
+  return queue_.size() >= kQueueLength && !broken_;
 }
 
 void Film::add(const Image& image, int times) {
   if (image.width != width_ || image.height != height_)
     fail(fmt::format("a film of {} x {} cannot take a picture of {} x {}", width_, height_, image.width, image.height));
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return queue_.size() < queue_length || broken_; });
+  changed_.wait(lock, [this] { return queue_.size() < kQueueLength || broken_; });
   if (broken_) {
     lock.unlock();
     stop_writer();

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr int around = 48;  // vertices around the shaft
+constexpr int kAround = 48;  // vertices around the shaft
 
 /// A point of the outline that turns about the shaft: position along it, radius, and the outward normal
 /// there.
@@ -88,12 +88,12 @@ InstrumentShape make_instrument(const InstrumentView& view) {
 
   InstrumentPart& shaft = shape.parts[0];
   const double r = view.shaft_radius;
-  revolve(shaft, {{-shape.hinge, 0, 1, 0}, {-shape.hinge, r, 1, 0}}, 0, 2 * pi, around);
-  revolve(shaft, {{-shape.hinge, r, 0, 1}, {-view.shaft_length, r, 0, 1}}, 0, 2 * pi, around);
-  revolve(shaft, {{-view.shaft_length, r, -1, 0}, {-view.shaft_length, 0, -1, 0}}, 0, 2 * pi, around);
+  revolve(shaft, {{-shape.hinge, 0, 1, 0}, {-shape.hinge, r, 1, 0}}, 0, 2 * pi, kAround);
+  revolve(shaft, {{-shape.hinge, r, 0, 1}, {-view.shaft_length, r, 0, 1}}, 0, 2 * pi, kAround);
+  revolve(shaft, {{-view.shaft_length, r, -1, 0}, {-view.shaft_length, 0, -1, 0}}, 0, 2 * pi, kAround);
   for (const int side : {1, -1}) {
     InstrumentPart& jaw = shape.parts[side > 0 ? 1 : 2];
-    revolve(jaw, tip, side > 0 ? 0 : pi, pi, around / 2);
+    revolve(jaw, tip, side > 0 ? 0 : pi, pi, kAround / 2);
     close_jaw(jaw, tip, side);
   }
   return shape;

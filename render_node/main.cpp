@@ -58,7 +58,7 @@ void summarise(const RenderReport& r, const Film* film, bool supervised) {
                                {"latency_us_p99", us(r.latency, 0.99)},
                                {"draw_us_p50", us(r.draw, 0.5)},
                                {"draw_us_p99", us(r.draw, 0.99)},
-                               {"force_max_n", r.greatest_force},
+                               {"force_max_n", r.peak_force},
                                {"film_frames", film ? film->frames() : 0}};
   if (supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms", r.frames,

@@ -12,11 +12,11 @@ namespace {
 struct Paint {
   float red, green, blue, alpha;
 };
-constexpr Paint panel_paint{0.02f, 0.02f, 0.025f, 0.58f};
-constexpr Paint text_paint{0.93f, 0.94f, 0.92f, 1};
-constexpr Paint groove_paint{0.35f, 0.36f, 0.38f, 0.8f};
-constexpr Paint gauge_paint{0.36f, 0.78f, 0.55f, 1};
-constexpr Paint full_paint{0.93f, 0.42f, 0.26f, 1};
+constexpr Paint kPanelPaint{0.02f, 0.02f, 0.025f, 0.58f};
+constexpr Paint kTextPaint{0.93f, 0.94f, 0.92f, 1};
+constexpr Paint kGroovePaint{0.35f, 0.36f, 0.38f, 0.8f};
+constexpr Paint kGaugePaint{0.36f, 0.78f, 0.55f, 1};
+constexpr Paint kFullPaint{0.93f, 0.42f, 0.26f, 1};
 
 /// UTF-8 to Latin-1; what Latin-1 lacks becomes '?'.
 std::string to_latin1(std::string_view text) {
@@ -92,17 +92,17 @@ void add_overlay(Sheet& sheet, const Overlay& overlay, const FontAtlas& font) {
   const float bar = overlay.gauge ? 0.9f * line : 0;
   const float lines = static_cast<float>(overlay.lines.size()) * line;
   if (lines + bar == 0) return;
-  sheet.area(margin, margin, std::ceil(widest) + 2 * margin, lines + bar + margin, panel_paint);
+  sheet.area(margin, margin, std::ceil(widest) + 2 * margin, lines + bar + margin, kPanelPaint);
   float y = 1.5f * margin + font.ascent();
   for (const std::string& words : overlay.lines) {
-    sheet.text(2 * margin, std::round(y), words, text_paint);
+    sheet.text(2 * margin, std::round(y), words, kTextPaint);
     y += line;
   }
   if (!overlay.gauge) return;
   const float share = std::clamp<float>(overlay.gauge->value / overlay.gauge->full, 0, 1);
   const float top = std::round(1.5f * margin + lines + 0.25f * line), height = std::round(0.35f * line);
-  sheet.area(2 * margin, top, std::ceil(widest), height, groove_paint);
-  sheet.area(2 * margin, top, std::round(share * widest), height, share < 0.9f ? gauge_paint : full_paint);
+  sheet.area(2 * margin, top, std::ceil(widest), height, kGroovePaint);
+  sheet.area(2 * margin, top, std::round(share * widest), height, share < 0.9f ? kGaugePaint : kFullPaint);
 }
 
 void add_legend(Sheet& sheet, const Legend& legend, const FontAtlas& font, int width, int height) {
@@ -112,14 +112,14 @@ void add_legend(Sheet& sheet, const Legend& legend, const FontAtlas& font, int w
   const std::string title = legend.title + " [mm]";
   const float wide = std::max(sheet.width_of(title), bar + 4 * line) + line;
   const float x = width - wide - 0.6f * line, y = std::round(0.5f * (height - tall));
-  sheet.area(x, y - 2 * line, wide, tall + 3 * line, panel_paint);
-  sheet.text(x + 0.5f * line, y - line, title, text_paint);
+  sheet.area(x, y - 2 * line, wide, tall + 3 * line, kPanelPaint);
+  sheet.text(x + 0.5f * line, y - line, title, kTextPaint);
   sheet.scale(x + 0.5f * line, y, bar, tall);
   for (double mark = 0; mark <= max_mm * (1 + 1e-9); mark += step) {
     const float at = std::round(y + tall * static_cast<float>(1 - mark / max_mm));
-    sheet.area(x + 0.5f * line + bar, at, 0.3f * line, 1, text_paint);
+    sheet.area(x + 0.5f * line + bar, at, 0.3f * line, 1, kTextPaint);
     sheet.text(x + line + bar, at + std::round(0.36f * font.ascent()), fmt::format("{:.{}f}", mark, digits),
-               text_paint);
+               kTextPaint);
   }
 }
 

@@ -14,7 +14,7 @@ Refinement::Refinement(std::span<const std::array<int, 3>> triangles, int vertic
 }
 
 void Refinement::mark_creases(std::span<const Eigen::Vector3f> rest) {
-  const float least_cosine = 0.64f;  // 50 degrees between two faces of a vertex
+  const float min_cosine = 0.64f;  // 50 degrees between two faces of a vertex
   std::vector<std::vector<Eigen::Vector3f>> faces(coarse_);
   for (const auto& t : triangles_) {
     const Eigen::Vector3f normal = (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]).normalized();
@@ -22,7 +22,7 @@ void Refinement::mark_creases(std::span<const Eigen::Vector3f> rest) {
   }
   for (int v = 0; v < coarse_; ++v)
     for (const Eigen::Vector3f& a : faces[v])
-      for (const Eigen::Vector3f& b : faces[v]) crease_[v] |= a.dot(b) < least_cosine;
+      for (const Eigen::Vector3f& b : faces[v]) crease_[v] |= a.dot(b) < min_cosine;
 }
 
 void Refinement::split() {

@@ -29,7 +29,7 @@ void describe(const TaskRecord& task, std::vector<std::string>& lines) {
   lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted,
                               1e3 * task.deepest, task.inserting_s));
   lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops,
-                              task.largest_force));
+                              task.max_force));
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ void RenderLoop::write_overlay() {
   std::optional<Gauge> gauge;
   if (!latest_force_.empty()) gauge = Gauge{strongest, full};
   stage_.set_overlay(std::move(lines), gauge);
-  if (strongest > 1.01 * report_.greatest_force) {
-    report_.greatest_force = strongest;
+  if (strongest > 1.01 * report_.peak_force) {
+    report_.peak_force = strongest;
     best_ = stage_;
   }
 }
@@ -114,7 +114,7 @@ void RenderLoop::add_to_film(std::int64_t since_begin) {
 void RenderLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
-  if (now - last_status_ns_ < ns_per_s) return;
+  if (now - last_status_ns_ < kNsPerS) return;
   rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
   shown_steps_ = recent_latency_.count();

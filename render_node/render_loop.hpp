@@ -21,9 +21,9 @@ namespace palpate {
 struct RenderReport {
   double seconds = 0;
   std::uint64_t frames = 0, missed = 0, refused = 0;
-  double greatest_force = 0;  ///< [N]
-  Histogram latency;          ///< [ns] sense time of a step to the picture that first shows it
-  Histogram draw;             ///< [ns] drawing and reading back
+  double peak_force = 0;  ///< [N]
+  Histogram latency;      ///< [ns] sense time of a step to the picture that first shows it
+  Histogram draw;         ///< [ns] drawing and reading back
 };
 
 /// Takes the latest of everything at the visual rate and draws it.

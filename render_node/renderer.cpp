@@ -18,9 +18,9 @@ namespace palpate {
 namespace {
 
 const std::string head = "#version 450 core\n";
-constexpr float bare_steel = 0.045f;  // behind a probe's tip [m]
-constexpr float bare_fork = 5;        // behind a forceps' hinge [radii of the shaft]
-constexpr float satin = 0.35;         // polish of a forceps: flat faces show their shape by shading
+constexpr float kBareSteel = 0.045f;  // behind a probe's tip [m]
+constexpr float kBareFork = 5;        // behind a forceps' hinge [radii of the shaft]
+constexpr float kSatin = 0.35;        // polish of a forceps: flat faces show their shape by shading
 
 }  // namespace
 
@@ -84,9 +84,9 @@ Renderer::Impl::~Impl() {
 }
 
 void Renderer::Impl::check(const Frame& frame) const {
-  if (frame.instruments.size() > max_tools)
+  if (frame.instruments.size() > kMaxTools)
     throw std::runtime_error(
-        fmt::format("a picture shows at most {} instruments, not {}", max_tools, frame.instruments.size()));
+        fmt::format("a picture shows at most {} instruments, not {}", kMaxTools, frame.instruments.size()));
   for (const MeshView& mesh : frame.meshes) {
     const std::size_t n = mesh.position.size();
     if (mesh.rest.size() != n || mesh.normal.size() != n || (!mesh.scalar.empty() && mesh.scalar.size() != n))
@@ -163,8 +163,8 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
   for (const InstrumentView& tool : frame.instruments) {
     const bool forceps = tool.jaw_length > 0;
-    gl.ProgramUniform4f(metal, 4, forceps ? satin : 1, 0, 0,
-                        forceps ? bare_fork * float(tool.shaft_radius) : bare_steel);
+    gl.ProgramUniform4f(metal, 4, forceps ? kSatin : 1, 0, 0,
+                        forceps ? kBareFork * float(tool.shaft_radius) : kBareSteel);
     Instrument& made =
         instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
     if (made.parts.empty()) {

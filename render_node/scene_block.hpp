@@ -3,7 +3,7 @@
 
 namespace palpate {
 
-inline constexpr int max_tools = 8;
+inline constexpr int kMaxTools = 8;
 
 /// The uniform block of shaders/scene.glsl, where its fields are explained.
 struct SceneBlock {
@@ -12,9 +12,9 @@ struct SceneBlock {
   };
   Eigen::Matrix4f view_projection;
   Eigen::Vector4f eye, right, up, forward, light, viewport;
-  Tool tools[max_tools];
+  Tool tools[kMaxTools];
 };
-static_assert(sizeof(SceneBlock) == 64 + 6 * 16 + max_tools * 5 * 16);
+static_assert(sizeof(SceneBlock) == 64 + 6 * 16 + kMaxTools * 5 * 16);
 
 /// Throws std::runtime_error if the camera looks nowhere.
 SceneBlock scene_block(const Frame& frame, int width, int height);

@@ -12,9 +12,9 @@ namespace palpate {
 namespace {
 
 // Of one body after refinement: what 60 frames a second allow. A wall has them twice; a catheter comes smooth.
-constexpr std::size_t most_triangles_of_organ = 16000, most_triangles_of_wall = 6000, most_triangles_of_catheter = 0;
+constexpr std::size_t kMaxTrianglesOfOrgan = 16000, kMaxTrianglesOfWall = 6000, kMaxTrianglesOfCatheter = 0;
 // Linear RGB.
-constexpr std::array<double, 3> bone_colour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165},
+constexpr std::array<double, 3> kBoneColour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165},
     duct_colour{0.60, 0.29, 0.23}, mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
@@ -52,7 +52,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     const auto* wire = as<CatheterSpec>(scene.bodies.at(b));
     Soft body;
     body.coarse = map.position.size();
-    body.most_triangles = shell ? most_triangles_of_wall : wire ? most_triangles_of_catheter : most_triangles_of_organ;
+    body.max_triangles = shell ? kMaxTrianglesOfWall : wire ? kMaxTrianglesOfCatheter : kMaxTrianglesOfOrgan;
     body.finish = shell ? Finish::duct : wire ? Finish::plastic : Finish::tissue;
     const bool given = render_.tissue_colour != Render{}.tissue_colour;
     body.colour = wire ? plastic_colour : shell && !given ? duct_colour : render_.tissue_colour;
@@ -68,7 +68,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
-  add_backdrop(sorted.bones, Finish::bone, bone_colour);
+  add_backdrop(sorted.bones, Finish::bone, kBoneColour);
   add_backdrop(sorted.lining, Finish::lining, lining_colour);
   for (const Tool& tool : scene.tools) {
     Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
@@ -86,7 +86,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
 // A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
 void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) const {
   body.rest.resize(body.coarse);
-  const int levels = refinement_levels(triangles.size(), body.most_triangles);
+  const int levels = refinement_levels(triangles.size(), body.max_triangles);
   body.refinement = Refinement(triangles, static_cast<int>(body.coarse), levels, body.rest);
   std::vector<Eigen::Vector3f> normal(body.coarse);
   vertex_normals(body.rest, triangles, normal);

@@ -42,7 +42,7 @@ class Stage {
     Refinement refinement;
     std::uint64_t shape = 0;  ///< counts changes of the triangles
     std::size_t coarse;
-    std::size_t most_triangles;  ///< after refinement
+    std::size_t max_triangles;  ///< after refinement
     Finish finish = Finish::tissue;
     std::array<double, 3> colour;
     std::vector<Eigen::Vector3f> rest, position, normal;

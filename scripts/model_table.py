@@ -26,7 +26,7 @@ def signed(value):
 
 QUESTIONS = [
     ("time of a step, box of 760 nodes [µs]", "step_p50", number),
-    ("largest stable step [µs]", "largest_step", number),
+    ("largest stable step [µs]", "max_step", number),
     ("simulated time per time of one core", "times_real_time", number),
     ("field error at rest, ν = 0.25", "field_error_nu025", percent),
     ("field error at rest, ν = 0.45", "field_error_nu045", percent),

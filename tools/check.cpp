@@ -8,7 +8,7 @@
 #include "common/bus/security.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/fem/assembly.hpp"
-#include "common/fem/fixation.hpp"
+#include "common/fem/boundary_conditions.hpp"
 #include "common/fem/selection.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -31,7 +31,7 @@ bool is_a(const Body& body) {
   return as<Part>(body) != nullptr;
 }
 
-void print_fixation(const SolidSpec& body, const TetMesh& mesh) {
+void print_boundary_conditions(const SolidSpec& body, const TetMesh& mesh) {
   for (const BoundaryCondition& fixed : body.fixed) {
     std::string axes;
     for (int axis = 0; axis < 3; ++axis)
@@ -89,7 +89,7 @@ void print_memory(const std::vector<MemoryPart>& parts) {
 SurfaceMap check_solid_body(const Scene& scene, const Body& body, const SolidSpec& solid) {
   const bool moves = is_a<MovingSpec>(body);
   const TetMesh mesh = load_tet_mesh(solid.mesh, solid.scale);
-  const DofMap dofs = apply_fixation(mesh, solid.fixed, fmt::format("body '{}'", solid.name));
+  const DofMap dofs = apply_boundary_conditions(mesh, solid.fixed, fmt::format("body '{}'", solid.name));
   const MaterialField materials = material_field(solid, mesh);
   SurfaceMap surface = make_surface_map(solid, mesh, dofs);
   Archive moving;
@@ -98,7 +98,7 @@ SurfaceMap check_solid_body(const Scene& scene, const Body& body, const SolidSpe
              mesh.tetrahedra.size(), dofs.size(), kind_of(body));
   fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
              surface.triangles.size(), mean_edge(surface), surface.touchable);
-  print_fixation(solid, mesh);
+  print_boundary_conditions(solid, mesh);
   print_material(solid);
   if (const auto* still = as<QuasiStaticSpec>(body)) {
     print_offline(*still, mesh);

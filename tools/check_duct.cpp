@@ -14,7 +14,7 @@
 #include "common/models/catheter/check_duct.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "common/scene/find_archive.hpp"
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 #include "tools/words.hpp"
 
 namespace palpate {
@@ -30,7 +30,7 @@ std::string form_of(std::size_t mouths) {
                      : fmt::format("a shell with {} boundary line{}", mouths, mouths == 1 ? "" : "s");
 }
 
-void print_fixation(const ShellSpec& body, const ShellMesh& mesh) {
+void print_boundary_conditions(const ShellSpec& body, const ShellMesh& mesh) {
   for (const ShellBoundaryCondition& fixed : body.fixed) {
     std::string axes;
     for (int axis = 0; axis < 3; ++axis)
@@ -103,14 +103,14 @@ SurfaceMap check_shell_body(const Scene& scene, const Body& body) {
   const ShellSpec& spec = *as<ShellSpec>(body);
   const ShellMesh mesh = load_shell_mesh(spec.mesh, spec.scale);
   check_guests(scene, spec, mesh);
-  const ShellDofs dofs = shell_fixation(mesh, spec, title_of(spec));
+  const ShellDofs dofs = apply_boundary_conditions(mesh, spec, title_of(spec));
   check_shell(spec, mesh, dofs, title_of(spec));
   const SurfaceMap surface = make_surface_map(spec, mesh, dofs);
   fmt::print("{}: {} nodes, {} triangles, {} degrees of freedom; model {}\n", title_of(spec), mesh.nodes.size(),
              mesh.triangles.size(), dofs.size(), kind_of(body));
   fmt::print("  surface: {} nodes, mean edge {:.4g} m; {} nodes touchable\n", surface.size(), mean_edge(surface),
              surface.touchable);
-  print_fixation(spec, mesh);
+  print_boundary_conditions(spec, mesh);
   fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", spec.material.young, spec.material.poisson,
              spec.material.density);
   print_wall(spec.shell, mesh);
@@ -140,7 +140,7 @@ void check_catheter(const Scene& scene, const CatheterSpec& body) {
   const double area = std::numbers::pi * catheter.radius * catheter.radius;
   fmt::print("{}: {} particles {:.4g} m apart, {:.4g} m long, {} m thick; model {}\n", title_of(body),
              catheter.particles, chain.spacing(), (catheter.tip - catheter.tail).norm(), 2 * catheter.radius,
-             CatheterSpec::kind);
+             CatheterSpec::kKind);
   if (!catheter.inside.empty()) fmt::print("  led into '{}'\n", catheter.inside);
   if (catheter.sleeve > 0) fmt::print("  sleeve: {} m from its tail\n", catheter.sleeve);
   fmt::print("  material: young {} Pa, density {} kg/m3; bending stiffness {:.4g} N m2\n", body.material.young,

@@ -60,7 +60,7 @@ void print_step(const Body& body, const Archive& archive) {
   const Tissue tissue = make_tissue(body, archive, 0);
   const double bound = tissue.model->frequency_bound();
   const Dynamic& motion = as<MovingSpec>(body)->dynamic;
-  const double largest = largest_step(integrator_of(motion), bound, motion.damping);
+  const double largest = max_step(integrator_of(motion), bound, motion.damping);
   if (motion.step > largest)
     throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
                                          name_of(body), motion.step, largest));
@@ -117,7 +117,7 @@ void print_dynamic(const Body& body, const TetMesh& mesh, const Archive& archive
     const double whole = static_cast<double>(mesh.tetrahedra.size() + (own_mesh ? moving : 0));
     fmt::print(", {:.1f} % of the tetrahedra; joined to the quasi-static part at {} nodes",
                100 * static_cast<double>(moving) / whole, archive.hybrid->connection.size());
-    if (own_mesh) fmt::print(", gap at rest {:.3g} m", archive.hybrid->largest_gap);
+    if (own_mesh) fmt::print(", gap at rest {:.3g} m", archive.hybrid->max_gap);
   }
   const MovingSpec& spec = *as<MovingSpec>(body);
   const Dynamic& d = spec.dynamic;

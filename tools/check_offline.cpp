@@ -13,7 +13,7 @@ namespace {
 /// Where the compliance of a disc whose radius is four elements comes out a tenth too small (docs/offline.md).
 constexpr double kLocking = 0.48;
 
-double largest_poisson(const SolidSpec& body) {
+double max_poisson(const SolidSpec& body) {
   double largest = body.material.poisson;
   for (const auto& region : body.materials) largest = std::max(largest, region.material.poisson);
   return largest;
@@ -38,7 +38,7 @@ void print_offline(const QuasiStaticSpec& body, const TetMesh& mesh) try {
 std::vector<std::string> locking_warnings(const Body& body) {
   const auto* solid = as<SolidSpec>(body);
   if (!solid) return {};
-  const double poisson = largest_poisson(*solid);
+  const double poisson = max_poisson(*solid);
   if (poisson < kLocking) return {};
   const auto start = fmt::format(
       "body '{}': linear elements lock at poisson = {} and are too stiff, by a tenth at {} and "

@@ -50,7 +50,7 @@ void print_end(const Tool& tool) {
     fmt::print(
         "tool '{}': forceps, jaws of {} m that open from 0 to {} rad, linkage {} N m/rad, friction {}, "
         "compliance {} m/N",
-        tool.name, jaws.length, jaws.most_open, jaws.grip_stiffness, jaws.friction, tool.compliance);
+        tool.name, jaws.length, jaws.max_open, jaws.grip_stiffness, jaws.friction, tool.compliance);
     return;
   }
   const ProbeSpec& probe = *tool.probe();
@@ -65,7 +65,7 @@ void print_end(const Tool& tool) {
 
 void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceMap>& surfaces) {
   print_end(tool);
-  fmt::print(", device {}", std::visit([](const auto& device) { return device.kind; }, tool.device));
+  fmt::print(", device {}", std::visit([](const auto& device) { return device.kKind; }, tool.device));
   const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
   if (!script) {
     const auto* log = std::get_if<LogDeviceSpec>(&tool.device);

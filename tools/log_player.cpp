@@ -13,8 +13,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t spin_ns = 100'000;
-constexpr std::int64_t progress_ns = 250'000'000;
+constexpr std::int64_t kSpinNs = 100'000;
+constexpr std::int64_t kProgressNs = 250'000'000;
 
 template <class M>
 struct Outlet {
@@ -86,7 +86,7 @@ class Player {
 };
 
 void wait_until(std::int64_t time) {
-  while (time - now_ns() > spin_ns) sleep_until_ns(std::min(time - spin_ns, now_ns() + progress_ns));
+  while (time - now_ns() > kSpinNs) sleep_until_ns(std::min(time - kSpinNs, now_ns() + kProgressNs));
   while (now_ns() < time) {
   }
 }
@@ -108,8 +108,8 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
     if (start == 0) start = now_ns(), first = event.receive_ns;
     const auto in_log = std::max<std::int64_t>(event.receive_ns - first, 0);
     const std::int64_t due = start + static_cast<std::int64_t>(static_cast<double>(in_log) / settings.speed);
-    while (go_on && due - now_ns() > progress_ns) {  // a long silence in the log must not delay Ctrl-C
-      sleep_until_ns(now_ns() + progress_ns);
+    while (go_on && due - now_ns() > kProgressNs) {  // a long silence in the log must not delay Ctrl-C
+      sleep_until_ns(now_ns() + kProgressNs);
       go_on = progress(report.seconds);
     }
     if (!go_on) break;
@@ -119,7 +119,7 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
     report.pace.record(now_ns() - due);
     report.seconds = 1e-9 * static_cast<double>(in_log);
     if (now < next_progress) continue;
-    next_progress = now + progress_ns;
+    next_progress = now + kProgressNs;
     go_on = progress(report.seconds);
   }
   report.damage = reader.damage_text();

@@ -31,7 +31,7 @@ void describe_moving_part(const Archive& archive) {
     fmt::print("  a piece of the quasi-static part has too few fixed nodes: the connection nodes hold it\n");
   if (!hybrid.gap.empty())
     fmt::print("  partial connection: {} nodes of the border are not shared, the gap is up to {:.3g} m at rest\n",
-               hybrid.gap.size(), hybrid.largest_gap);
+               hybrid.gap.size(), hybrid.max_gap);
 }
 
 void describe_modes(const Archive& archive) {

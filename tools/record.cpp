@@ -61,7 +61,7 @@ class LossNotice {
     const std::int64_t now = now_ns();
     if (status.lost == said_ || now < next_) return;
     said_ = status.lost;
-    next_ = now + ns_per_s;
+    next_ = now + kNsPerS;
     fmt::print(stderr, "palpate: {}\n", loss_text(status));
   }
 

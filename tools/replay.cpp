@@ -21,7 +21,7 @@ struct Options {
   bool verify = false, json = false;
 };
 
-constexpr int player_priority = 30;  // below a node's loop and its publisher
+constexpr int kPlayerPriority = 30;  // below a node's loop and its publisher
 
 void verify(const std::string& file) {
   const VerifyReport report = verify_log(file);
@@ -63,7 +63,7 @@ void play(const Options& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
   request_realtime(
-      {.priority = player_priority, .lock_memory = false});  // where permitted; after the bus has made its threads
+      {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const bool terminal = isatty(STDERR_FILENO);
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
     if (terminal) fmt::print(stderr, "\r{:9.2f} s", seconds);

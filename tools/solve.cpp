@@ -116,13 +116,13 @@ void correct(const Scene& scene, const Body& body, Solved& solved) {
 
 void summarise(const SolutionTable& table, const SolveArguments& arguments) {
   std::size_t furthest = 0;
-  double largest_force = 0;
+  double max_force = 0;
   for (std::size_t i = 0; i < table.node.size(); ++i) {
     if (table.displacement[i].norm() > table.displacement[furthest].norm()) furthest = i;
-    largest_force = std::max(largest_force, table.force[i].norm());
+    max_force = std::max(max_force, table.force[i].norm());
   }
   fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n", arguments.method,
-             table.node.size(), table.displacement[furthest].norm(), table.node[furthest], largest_force);
+             table.node.size(), table.displacement[furthest].norm(), table.node[furthest], max_force);
 }
 
 /// A shell's rotations are condensed into its archive, and only there.

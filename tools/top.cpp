@@ -111,7 +111,7 @@ class Board {
                           hand.last.flags & (force_limited | slew_limited | passivity_limited) ? "   limited" : "");
     }
     if (sequence_.missing() > 0) text += fmt::format("{} forces never came here\n", sequence_.missing());
-    if (!hands_.empty() && now_ns() - last_force_ns_ > ns_per_s)
+    if (!hands_.empty() && now_ns() - last_force_ns_ > kNsPerS)
       text += fmt::format("no force for {:.1f} s\n", 1e-9 * static_cast<double>(now_ns() - last_force_ns_));
     return text.empty() ? text : "\n" + text;
   }

@@ -91,7 +91,7 @@ void check_identity(const Hdf5Reader& file, const std::string& expected_hash) {
   if (version != kArchiveFormat)
     file.fail(fmt::format("format version {}, this program reads {}", version, kArchiveFormat));
   if (!expected_hash.empty() && file.text("content_hash") != expected_hash)
-    file.fail("made for another mesh, material or fixation");
+    file.fail("made for another mesh, material or boundary conditions");
 }
 
 void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart part) {

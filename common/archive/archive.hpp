@@ -42,7 +42,7 @@ struct ModalTensors {
 struct Archive {
   std::string body;
   std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid | modal_shell | catheter
-  std::string content_hash;            ///< over mesh, material, fixation, touchable set and format version
+  std::string content_hash;            ///< over mesh, material, boundary conditions, touchable set and format version
   std::string software;                ///< version that computed it
   int mesh_nodes = 0;                  ///< nodes in the mesh file
   std::vector<double> young, poisson;  ///< [Pa], [1]: the body's material, then one per material region

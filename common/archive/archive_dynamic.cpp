@@ -21,7 +21,7 @@ void write_hybrid(Hdf5Writer& file, const HybridTensors& hybrid) {
   file.attribute("hybrid_bound", hybrid.bound);
   file.attribute("held_by_connection", std::int64_t{hybrid.held_by_connection});
   file.attribute("quasi_static_triangles", std::int64_t{hybrid.quasi_static_triangles});
-  file.attribute("largest_gap", hybrid.largest_gap);
+  file.attribute("max_gap", hybrid.max_gap);
   file.dataset({"hybrid/connection", "1", "nodes that the quasi-static and the dynamic part share"},
                std::vector<std::int32_t>(hybrid.connection.begin(), hybrid.connection.end()));
   file.dataset({"hybrid/mass", "kg", "lumped mass of the quasi-static elements at each connection node"}, hybrid.mass);
@@ -48,7 +48,7 @@ HybridTensors read_hybrid(const Hdf5Reader& file, ArchivePart part) {
   hybrid.bound = file.number("hybrid_bound");
   hybrid.held_by_connection = file.integer("held_by_connection") != 0;
   hybrid.quasi_static_triangles = static_cast<int>(file.integer("quasi_static_triangles"));
-  hybrid.largest_gap = file.number("largest_gap");
+  hybrid.max_gap = file.number("max_gap");
   const auto connection = file.integers("hybrid/connection");
   hybrid.connection.assign(connection.begin(), connection.end());
   hybrid.mass = file.doubles("hybrid/mass");

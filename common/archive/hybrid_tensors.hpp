@@ -41,7 +41,7 @@ struct HybridTensors {
   /// f: face f, opposite to vertex f, of dynamic tetrahedron t) that covers it. Visible once t is gone.
   std::vector<std::array<int, 4>> interface;
   std::vector<GapPair> gap;  ///< empty at a full connection
-  double largest_gap = 0;    ///< [m] at rest, over `gap`
+  double max_gap = 0;        ///< [m] at rest, over `gap`
 
   bool operator==(const HybridTensors&) const = default;
 };

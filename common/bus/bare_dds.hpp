@@ -23,7 +23,7 @@ class BareDds {
   std::uint64_t receive(std::chrono::nanoseconds timeout);
 
   /// Bytes with which a message is as long on the wire as a ToolState, and as a ForceState.
-  static constexpr std::size_t as_tool_state = 43, as_force_state = 47;
+  static constexpr std::size_t kAsToolState = 43, kAsForceState = 47;
 
  private:
   std::unique_ptr<Bus> domain_;  ///< keeps this process in the domain

@@ -45,7 +45,7 @@ void ClockFollower::follow() {
   while (const auto answer = answers_->take())
     if (answer->node == probe_.node && answer->seq <= probe_.seq) take(*answer);
   const std::int64_t now = clock_();
-  if (asked_ns_ != 0 && now - asked_ns_ < interval_ns) return;
+  if (asked_ns_ != 0 && now - asked_ns_ < kIntervalNs) return;
   asked_ns_ = now;
   ++probe_.seq;
   probe_.publish_ns = now;

@@ -27,7 +27,7 @@ class ClockServer {
 /// Keeps the haptic node's clock in relation to this node's own. Nodes on one machine have one clock.
 class ClockFollower {
  public:
-  static constexpr std::int64_t interval_ns = 125'000'000;  ///< between two questions
+  static constexpr std::int64_t kIntervalNs = 125'000'000;  ///< between two questions
 
   ClockFollower(Bus& bus, std::string node, ClockReading clock = now_ns);
   /// Takes answers and asks again when it is time. Call whenever the bus wakes.

@@ -49,17 +49,17 @@ struct Encoder {
 
 /// Bytes that an element takes at least.
 template <class T>
-std::size_t least_size() {
+std::size_t min_size() {
   if constexpr (std::is_arithmetic_v<T>) {
     return sizeof(T);
   } else if constexpr (std::same_as<T, std::string> || is_vector<T>) {
     return sizeof(std::uint32_t);
   } else if constexpr (is_array<T>) {
-    return std::tuple_size_v<T> * least_size<typename T::value_type>();
+    return std::tuple_size_v<T> * min_size<typename T::value_type>();
   } else {
     std::size_t size = 0;
     T element;
-    fields([&]<class Field>(const char*, const Field&) { size += least_size<Field>(); }, element);
+    fields([&]<class Field>(const char*, const Field&) { size += min_size<Field>(); }, element);
     return size;
   }
 }
@@ -92,7 +92,7 @@ struct Decoder {
       raw(value.data(), value.size());
     } else if constexpr (is_vector<T> || is_array<T>) {
       using Element = typename T::value_type;
-      if constexpr (is_vector<T>) value.resize(count(least_size<Element>()));
+      if constexpr (is_vector<T>) value.resize(count(min_size<Element>()));
       if constexpr (std::is_arithmetic_v<Element>) {
         raw(value.data(), value.size() * sizeof(Element));
       } else {

@@ -63,7 +63,7 @@ QosPtr common_qos(const Qos& qos) {
 
 QosPtr writer_qos(const Qos& qos, int lease_ms) {
   QosPtr q = common_qos(qos);
-  const bool all = qos.depth == keep_all;
+  const bool all = qos.depth == kKeepAll;
   const dds_history_kind_t kind = all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
   dds_qset_history(q.get(), kind, all ? DDS_LENGTH_UNLIMITED : qos.depth);
   dds_qset_durability_service(q.get(), 0, kind, all ? DDS_LENGTH_UNLIMITED : 1, DDS_LENGTH_UNLIMITED,
@@ -78,7 +78,7 @@ QosPtr writer_qos(const Qos& qos, int lease_ms) {
 /// One that wants the latest of a stream does not ask for what was lost on the way: it would wait for old samples to be
 /// repeated, behind which newer ones queue.
 QosPtr reader_qos(const Qos& qos, Keep keep) {
-  constexpr int most_kept = 16384;
+  constexpr int max_kept = 16384;
   QosPtr q = common_qos(qos);
   if (keep == Keep::latest) {
     dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, 1);
@@ -86,7 +86,7 @@ QosPtr reader_qos(const Qos& qos, Keep keep) {
     if (stream) dds_qset_reliability(q.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
   } else {
     dds_qset_history(q.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
-    dds_qset_resource_limits(q.get(), most_kept, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+    dds_qset_resource_limits(q.get(), max_kept, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
   return q;
 }

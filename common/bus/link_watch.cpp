@@ -14,14 +14,14 @@ std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t 
     if (status.seq != heard.seq) {
       if (heard.silent) said.push_back(fmt::format("{} is back", node));
       heard = {status.role, status.seq, now_ns, false};
-    } else if (!heard.silent && now_ns - heard.last_ns > silent_after_ns) {
+    } else if (!heard.silent && now_ns - heard.last_ns > kSilentAfterNs) {
       heard.silent = true;
       said.push_back(fmt::format("nothing from {} for {:.1f} s: it has ended, or the network is cut", node,
                                  1e-9 * static_cast<double>(now_ns - heard.last_ns)));
     }
     if (!heard.silent) company_ns_ = now_ns;
   }
-  const bool alone = now_ns - company_ns_ > alone_after_ns;
+  const bool alone = now_ns - company_ns_ > kAloneAfterNs;
   if (alone && !said_alone_) said.push_back(fmt::format("alone for 5 s; listening in {}", place_));
   said_alone_ = alone;
   return said;

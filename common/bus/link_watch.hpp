@@ -12,8 +12,8 @@ namespace palpate {
 /// alone, where it listens.
 class LinkWatch {
  public:
-  static constexpr std::int64_t silent_after_ns = 2'500'000'000;  ///< each node announces itself once a second
-  static constexpr std::int64_t alone_after_ns = 5'000'000'000;
+  static constexpr std::int64_t kSilentAfterNs = 2'500'000'000;  ///< each node announces itself once a second
+  static constexpr std::int64_t kAloneAfterNs = 5'000'000'000;
 
   explicit LinkWatch(const Bus& bus) : place_(bus.place()) {}
 

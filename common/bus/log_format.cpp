@@ -65,7 +65,7 @@ std::string schema_text() {
 namespace envelope {
 namespace {
 
-constexpr char magic[4] = {'P', 'L', 'P', 'T'};
+constexpr char kMagic[4] = {'P', 'L', 'P', 'T'};
 
 std::uint32_t checksum(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload) {
   uLong crc = crc32(0, reinterpret_cast<const Bytef*>(channel.data()), static_cast<uInt>(channel.size()));
@@ -79,10 +79,10 @@ std::uint32_t checksum(const std::string& channel, std::int64_t receive_ns, std:
 
 Bytes wrap(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload) {
   Bytes data;
-  data.reserve(size + payload.size());
+  data.reserve(kSize + payload.size());
   detail::Encoder out{data};
-  out.raw(magic, sizeof magic);
-  out("", version);
+  out.raw(kMagic, sizeof kMagic);
+  out("", kVersion);
   out("", std::uint16_t{0});
   out("", checksum(channel, receive_ns, payload));
   out("", receive_ns);
@@ -92,8 +92,8 @@ Bytes wrap(const std::string& channel, std::int64_t receive_ns, std::span<const 
 
 bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std::int64_t& receive_ns,
             std::span<const std::uint8_t>& payload) {
-  if (data.size() < size || std::memcmp(data.data(), magic, sizeof magic) != 0) return false;
-  detail::Decoder in{data.subspan(sizeof magic)};
+  if (data.size() < kSize || std::memcmp(data.data(), kMagic, sizeof kMagic) != 0) return false;
+  detail::Decoder in{data.subspan(sizeof kMagic)};
   std::uint16_t found_version = 0, reserved = 0;
   std::uint32_t crc = 0;
   in("", found_version);
@@ -101,7 +101,7 @@ bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std:
   in("", crc);
   in("", receive_ns);
   payload = in.in;
-  return in.good && found_version == version && reserved == 0 && crc == checksum(channel, receive_ns, payload);
+  return in.good && found_version == kVersion && reserved == 0 && crc == checksum(channel, receive_ns, payload);
 }
 
 }  // namespace envelope

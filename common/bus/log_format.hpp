@@ -31,8 +31,8 @@ struct LogFooter {
   std::string error;          ///< last reason for that, empty if none
 };
 
-inline constexpr const char* header_channel = "palpate/log_header";
-inline constexpr const char* footer_channel = "palpate/log_footer";
+inline constexpr const char* kHeaderChannel = "palpate/log_header";
+inline constexpr const char* kFooterChannel = "palpate/log_footer";
 
 /// The encoding of every message, one line each, then "topic NAME MESSAGE" lines.
 std::string schema_text();
@@ -43,8 +43,8 @@ bool same_schema(const std::string& a, const std::string& b);
 /// Envelope of each event's data: "PLPT", u16 version, u16 0, u32 CRC-32 of channel name, receive time and
 /// payload, i64 receive time, payload.
 namespace envelope {
-inline constexpr std::size_t size = 20;
-inline constexpr std::uint16_t version = 1;
+inline constexpr std::size_t kSize = 20;
+inline constexpr std::uint16_t kVersion = 1;
 
 /// Receive time [ns] is CLOCK_MONOTONIC of the recorder's host.
 Bytes wrap(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload);

@@ -15,11 +15,11 @@ namespace {
 // The event of an LCM log, all numbers big-endian: sync word, i64 event number, i64 time [us since 1970],
 // i32 length of the channel's name, i32 length of the data, name, data. liblcm stops reading at the first
 // damage; this reader looks for the next sync word instead.
-constexpr std::uint8_t sync_word[4] = {0xED, 0xA1, 0xDA, 0x01};
-constexpr std::size_t event_head = 28;
-constexpr std::size_t longest_channel = 63;
-constexpr std::size_t longest_data = 64u << 20;
-constexpr std::size_t window_size = 1u << 20;
+constexpr std::uint8_t kSyncWord[4] = {0xED, 0xA1, 0xDA, 0x01};
+constexpr std::size_t kEventHead = 28;
+constexpr std::size_t kMaxChannel = 63;
+constexpr std::size_t kMaxData = 64u << 20;
+constexpr std::size_t kWindowSize = 1u << 20;
 
 std::uint32_t big_endian(const std::uint8_t* p) {
   return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
@@ -34,13 +34,13 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std
 
   LogEvent first;
   if (!next_raw(first)) {
-    const bool foreign = size_ >= 4 && std::equal(sync_word, sync_word + 4, fetch(0, 4));
+    const bool foreign = size_ >= 4 && std::equal(kSyncWord, kSyncWord + 4, fetch(0, 4));
     throw std::runtime_error(fmt::format("{}: {}", file.string(),
                                          size_ == 0 ? "is empty"
                                          : foreign  ? "is an LCM log without a readable topic of this simulator"
                                                     : "is not a topic log"));
   }
-  has_header_ = first.channel == header_channel && decode(first.payload, header_);
+  has_header_ = first.channel == kHeaderChannel && decode(first.payload, header_);
   if (!has_header_) {
     header_ = {};
     position_ = 0;
@@ -54,7 +54,7 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std
 const std::uint8_t* LogReader::fetch(std::uint64_t at, std::size_t size) {
   if (at > size_ || size > size_ - at) return nullptr;
   if (at < window_at_ || at + size > window_at_ + window_.size()) {
-    window_.resize(std::min<std::uint64_t>(std::max(size, window_size), size_ - at));
+    window_.resize(std::min<std::uint64_t>(std::max(size, kWindowSize), size_ - at));
     window_at_ = at;
     if (fseeko(file_.get(), static_cast<off_t>(at), SEEK_SET) != 0) window_.clear();
     window_.resize(std::fread(window_.data(), 1, window_.size(), file_.get()));
@@ -64,17 +64,17 @@ const std::uint8_t* LogReader::fetch(std::uint64_t at, std::size_t size) {
 }
 
 bool LogReader::parse(std::uint64_t at, LogEvent& event, std::uint64_t& end) {
-  const std::uint8_t* head = fetch(at, event_head);
-  if (!head || !std::equal(sync_word, sync_word + 4, head)) return false;
+  const std::uint8_t* head = fetch(at, kEventHead);
+  if (!head || !std::equal(kSyncWord, kSyncWord + 4, head)) return false;
   const std::uint32_t channel_length = big_endian(head + 20), data_length = big_endian(head + 24);
-  if (channel_length == 0 || channel_length > longest_channel || data_length > longest_data) return false;
-  const std::size_t length = event_head + channel_length + data_length;
+  if (channel_length == 0 || channel_length > kMaxChannel || data_length > kMaxData) return false;
+  const std::size_t length = kEventHead + channel_length + data_length;
   const std::uint8_t* whole = fetch(at, length);
   if (!whole) return false;
 
-  event.channel.assign(reinterpret_cast<const char*>(whole + event_head), channel_length);
+  event.channel.assign(reinterpret_cast<const char*>(whole + kEventHead), channel_length);
   std::span<const std::uint8_t> payload;
-  if (!envelope::unwrap(event.channel, {whole + event_head + channel_length, data_length}, event.receive_ns, payload))
+  if (!envelope::unwrap(event.channel, {whole + kEventHead + channel_length, data_length}, event.receive_ns, payload))
     return false;
   event.payload.assign(payload.begin(), payload.end());
   event.offset = at;
@@ -85,13 +85,13 @@ bool LogReader::parse(std::uint64_t at, LogEvent& event, std::uint64_t& end) {
 /// Position of the next sync word at or after `from`, the file's size if there is none.
 std::uint64_t LogReader::find_sync(std::uint64_t from) {
   while (from + 4 <= size_) {
-    const std::size_t chunk = std::min<std::uint64_t>(window_size, size_ - from);
+    const std::size_t chunk = std::min<std::uint64_t>(kWindowSize, size_ - from);
     const std::uint8_t* bytes = fetch(from, chunk);
     if (!bytes) break;
-    const auto* found = std::search(bytes, bytes + chunk, sync_word, sync_word + 4);
+    const auto* found = std::search(bytes, bytes + chunk, kSyncWord, kSyncWord + 4);
     if (found != bytes + chunk) return from + static_cast<std::uint64_t>(found - bytes);
     from += chunk - 3;
-    if (chunk < window_size) break;
+    if (chunk < kWindowSize) break;
   }
   return size_;
 }
@@ -107,9 +107,9 @@ bool LogReader::next_raw(LogEvent& event) {
 
 bool LogReader::next(LogEvent& event) {
   while (next_raw(event)) {
-    if (event.channel == header_channel) continue;
+    if (event.channel == kHeaderChannel) continue;
     if (header_.scene.empty()) complete_header(event);
-    if (event.channel != footer_channel) return true;
+    if (event.channel != kFooterChannel) return true;
     LogFooter footer;
     if (decode(event.payload, footer)) footer_ = footer;
   }

@@ -20,10 +20,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::chrono::milliseconds flush_period{100};
-constexpr std::int64_t retry_period_ns = ns_per_s;
-constexpr std::size_t flush_bytes = 1u << 20;
-constexpr long hand_bytes = 8 << 20;
+constexpr std::chrono::milliseconds kFlushPeriod{100};
+constexpr std::int64_t kRetryPeriodNs = kNsPerS;
+constexpr std::size_t kFlushBytes = 1u << 20;
+constexpr long kHandBytes = 8 << 20;
 
 std::string reason_for(int error) {
   if (error == ENOSPC || error == EDQUOT) return "no space left";
@@ -47,7 +47,7 @@ class LogWriter::Impl {
     const std::filesystem::path part = named_later ? file.string() + ".part" : file.string();
     log_ = lcm_eventlog_create(part.c_str(), "w");
     if (!log_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
-    std::setvbuf(log_->f, nullptr, _IOFBF, flush_bytes);
+    std::setvbuf(log_->f, nullptr, _IOFBF, kFlushBytes);
     if (header) begin(*header);
     if (named_later) give_name(part, file);
     thread_ = std::thread([this] { run(); });
@@ -64,7 +64,7 @@ class LogWriter::Impl {
     }
     queued_bytes_ += size;
     queue_.push_back(std::move(event));
-    if (queued_bytes_ > flush_bytes) work_.notify_one();
+    if (queued_bytes_ > kFlushBytes) work_.notify_one();
   }
 
   void want_footer() {
@@ -102,8 +102,8 @@ class LogWriter::Impl {
   void begin(const LogHeader& header) {
     Bytes payload;
     encode(header, payload);
-    append({header_channel, header.start_monotonic_ns,
-            envelope::wrap(header_channel, header.start_monotonic_ns, payload)});
+    append({kHeaderChannel, header.start_monotonic_ns,
+            envelope::wrap(kHeaderChannel, header.start_monotonic_ns, payload)});
     flush();
   }
 
@@ -112,7 +112,7 @@ class LogWriter::Impl {
       std::deque<Event> batch;
       {
         std::unique_lock lock(mutex_);
-        work_.wait_for(lock, flush_period, [&] { return stop_ || queued_bytes_ > flush_bytes; });
+        work_.wait_for(lock, kFlushPeriod, [&] { return stop_ || queued_bytes_ > kFlushBytes; });
         batch.swap(queue_);
         queued_bytes_ = 0;
         more = !stop_;
@@ -130,7 +130,7 @@ class LogWriter::Impl {
     Bytes payload;
     encode(footer, payload);
     append(
-        {footer_channel, footer.stop_monotonic_ns, envelope::wrap(footer_channel, footer.stop_monotonic_ns, payload)});
+        {kFooterChannel, footer.stop_monotonic_ns, envelope::wrap(kFooterChannel, footer.stop_monotonic_ns, payload)});
     flush();
   }
 
@@ -172,7 +172,7 @@ class LogWriter::Impl {
   /// Has the disk write steadily, and takes what it has out of the page cache: a log of many gigabytes would fill the
   /// memory, and then every program waits for room.
   void hand_to_disk() {
-    if (safe_end_ - handed_end_ < hand_bytes) return;
+    if (safe_end_ - handed_end_ < kHandBytes) return;
     const int file = fileno(log_->f);
     sync_file_range(file, handed_end_, safe_end_ - handed_end_, SYNC_FILE_RANGE_WRITE);
     sync_file_range(file, handed_begin_, handed_end_ - handed_begin_,
@@ -192,7 +192,7 @@ class LogWriter::Impl {
     status_.written -= unflushed_;
     lose(unflushed_ + failed, reason_for(error));
     unflushed_ = 0;
-    retry_at_ = now_ns() + retry_period_ns;
+    retry_at_ = now_ns() + kRetryPeriodNs;
   }
 
   void lose(std::uint64_t events, const std::string& why) {
@@ -222,7 +222,7 @@ class LogWriter::Impl {
 LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
     : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr)) {}
 LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header)
-    : impl_(std::make_unique<Impl>(file, queue_limit, &header)) {}
+    : impl_(std::make_unique<Impl>(file, kQueueLimit, &header)) {}
 LogWriter::~LogWriter() = default;
 
 void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {

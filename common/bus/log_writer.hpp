@@ -20,10 +20,10 @@ struct LogStatus {
 /// readable.
 class LogWriter {
  public:
-  static constexpr std::size_t queue_limit = 64u << 20;  ///< [bytes] that wait for the disk at most
+  static constexpr std::size_t kQueueLimit = 64u << 20;  ///< [bytes] that wait for the disk at most
 
   /// Creates the file. Throws std::runtime_error if that fails.
-  explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = queue_limit);
+  explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = kQueueLimit);
   /// The same with the header in it before the file has its name: at no moment is there a file that cannot be read.
   LogWriter(const std::filesystem::path& file, const LogHeader& header);
   ~LogWriter();  ///< finish() without a footer if it was not called

@@ -89,7 +89,7 @@ class Outlet {
     if (!qos_.transient_local) return;
     auto& kept = channel_.kept[{this, sample.key}];
     kept.push_back(sample);
-    if (qos_.depth != keep_all && kept.size() > 1) kept.pop_front();
+    if (qos_.depth != kKeepAll && kept.size() > 1) kept.pop_front();
   }
 
   int readers() const {

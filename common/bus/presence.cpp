@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t forgotten_after_ns = 600 * ns_per_s;
+constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
 
 std::string node_name(const std::string& role) {
   char host[256] = "localhost";
@@ -65,7 +65,8 @@ std::string Presence::meet(const NodeStatus& peer) const {
   };
   if (peer.scene_hash != status_.scene_hash)
     return differs("it runs another scene", peer.scene_hash, status_.scene_hash);
-  return differs("its archive is of another mesh, material or fixation", peer.archive_hash, status_.archive_hash);
+  return differs("its archive is of another mesh, material or boundary conditions", peer.archive_hash,
+                 status_.archive_hash);
 }
 
 std::vector<std::string> Presence::watch() {
@@ -84,7 +85,7 @@ std::vector<std::string> Presence::watch() {
     peer.accepted = same_scene(peer.status);
     said.push_back(meet(peer.status));
   }
-  std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.heard_ns > forgotten_after_ns; });
+  std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.heard_ns > kForgottenAfterNs; });
   return said;
 }
 

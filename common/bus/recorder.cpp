@@ -107,7 +107,7 @@ class Recorder::Impl {
   }
 
   void publish_status(std::int64_t now) {
-    next_status_ns_ = now + ns_per_s;
+    next_status_ns_ = now + kNsPerS;
     ++status_.seq;
     status_.stamp_ns = now;
     std::apply([&](const auto&... track) { status_.ticks = (track.samples + ...); }, tracks_);

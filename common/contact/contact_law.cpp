@@ -6,12 +6,12 @@
 namespace palpate {
 namespace {
 
-constexpr double gap_tolerance = 1e-9;    // [m] deeper than this an open contact closes
-constexpr double force_tolerance = 1e-9;  // share of the largest contact force that counts as tension
-constexpr int sweep_budget = 800;         // points relaxed in a step, in 5 to 40 sweeps
-constexpr int pass_budget = 400;          // points times passes of the active set under friction, 4 to 16 passes
-constexpr double sweep_tolerance = 1e-4;  // change of a force in a sweep, as a share of the largest, that ends it
-constexpr double friction_lag = 1e-3;     // share of the normal force by which lagged friction may be stale
+constexpr double kGapTolerance = 1e-9;    // [m] deeper than this an open contact closes
+constexpr double kForceTolerance = 1e-9;  // share of the largest contact force that counts as tension
+constexpr int kSweepBudget = 800;         // points relaxed in a step, in 5 to 40 sweeps
+constexpr int kPassBudget = 400;          // points times passes of the active set under friction, 4 to 16 passes
+constexpr double kSweepTolerance = 1e-4;  // change of a force in a sweep, as a share of the largest, that ends it
+constexpr double kFrictionLag = 1e-3;     // share of the normal force by which lagged friction may be stale
 
 using ConstVec = Eigen::Map<const Eigen::Vector3d>;
 
@@ -164,23 +164,23 @@ int ContactLaw::solve_held() {
       contact.force += expansions_[c].gain[k] * ConstVec(forces_.data() + 3 * p);
     if (contact.touch != Touch::sliding || contact.slip.isZero(0)) continue;
     const double now = contact.force.dot(contact.normal);
-    worst_lag_ = std::max(worst_lag_, std::abs(now - before) - friction_lag * std::abs(now));
+    worst_lag_ = std::max(worst_lag_, std::abs(now - before) - kFrictionLag * std::abs(now));
   }
   return raised;
 }
 
-bool ContactLaw::change_state(int c, double smallest_force) {
+bool ContactLaw::change_state(int c, double min_force) {
   TouchContact& contact = contacts_[c];
   place(c);
   if (contact.grasped) return false;
   if (contact.touch == Touch::open) {
-    if (contact.normal.dot(contact.position) - contact.plane >= -gap_tolerance) return false;
+    if (contact.normal.dot(contact.position) - contact.plane >= -kGapTolerance) return false;
     contact.touch = friction_ > 0 ? Touch::sticking : Touch::sliding;
     contact.slip.setZero();
     return true;
   }
   const double pressing = contact.force.dot(contact.normal);
-  if (pressing < -smallest_force) {
+  if (pressing < -min_force) {
     contact.touch = Touch::open;
     contact.force.setZero();
     return true;
@@ -189,7 +189,7 @@ bool ContactLaw::change_state(int c, double smallest_force) {
   if (contact.touch == Touch::sticking) {
     const Eigen::Vector3d tangential = contact.force - pressing * contact.normal;
     const double size = tangential.norm();
-    if (size <= friction_ * pressing + smallest_force) return false;
+    if (size <= friction_ * pressing + min_force) return false;
     contact.touch = Touch::sliding;
     contact.slip = tangential / size;
     return true;
@@ -198,16 +198,16 @@ bool ContactLaw::change_state(int c, double smallest_force) {
   // round the contact sticks again, once in a step.
   Eigen::Vector3d slip = contact.target - contact.held_at();
   slip -= slip.dot(contact.normal) * contact.normal;
-  if (restuck_[c] || slip.dot(contact.slip) >= -gap_tolerance) return false;
+  if (restuck_[c] || slip.dot(contact.slip) >= -kGapTolerance) return false;
   restuck_[c] = true;
   contact.touch = Touch::sticking;
   return true;
 }
 
-bool ContactLaw::change_states(bool one_only, double smallest_force) {
+bool ContactLaw::change_states(bool one_only, double min_force) {
   bool changed = false;
   for (int c = 0; c < static_cast<int>(contacts_.size()); ++c) {
-    changed |= change_state(c, smallest_force);
+    changed |= change_state(c, min_force);
     if (changed && one_only) return true;
   }
   return changed;
@@ -218,9 +218,9 @@ bool ContactLaw::change_states(bool one_only, double smallest_force) {
 // every force it leaves lies in its cone.
 void ContactLaw::relax() {
   held_.displacements(forces_.data(), displacements_.data());
-  const int most_sweeps = std::clamp(sweep_budget / held_.size(), 5, 40);
+  const int max_sweeps = std::clamp(kSweepBudget / held_.size(), 5, 40);
   double change = 1, largest = 0;
-  for (int sweep = 0; sweep < most_sweeps && change > sweep_tolerance * largest; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps && change > kSweepTolerance * largest; ++sweep) {
     change = largest = 0;
     int p = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
@@ -282,8 +282,8 @@ LawOutcome ContactLaw::solve() {
   if (contacts_.empty()) return outcome;
   std::fill(restuck_.begin(), restuck_.end(), false);
   bool changed = true;
-  const int most_passes = friction_ > 0 ? std::clamp(pass_budget / held_.size(), 4, 16) : max_passes;
-  while (changed && outcome.passes < most_passes) {
+  const int pass_limit = friction_ > 0 ? std::clamp(kPassBudget / held_.size(), 4, 16) : kMaxPasses;
+  while (changed && outcome.passes < pass_limit) {
     outcome.raised = solve_held();
     ++outcome.passes;
     double largest = 0;
@@ -296,7 +296,7 @@ LawOutcome ContactLaw::solve() {
     }
     // All at once while that makes quick progress, then one at a time in the order of the list, which cannot cycle
     // for a fixed set of normals (least-index pivoting of a positive definite complementarity problem).
-    changed = change_states(outcome.passes > most_passes / 2, force_tolerance * largest);
+    changed = change_states(outcome.passes > pass_limit / 2, kForceTolerance * largest);
     changed |= worst_lag_ > 0;
   }
   outcome.converged = !changed;

@@ -54,7 +54,7 @@ struct LawOutcome {
 /// there.
 class ContactLaw {
  public:
-  static constexpr int max_passes = 32;
+  static constexpr int kMaxPasses = 32;
 
   /// Each contact holds its anchor itself (barycentric rule, exact) or the triangle's three vertices by alpha_v
   /// (TVCG99 sec. 5 with the sign mended; stiffer).
@@ -108,8 +108,8 @@ class ContactLaw {
   int solve_held();
   Eigen::Vector3d displacement(int contact) const;
   void place(int contact);
-  bool change_states(bool one_only, double smallest_force);
-  bool change_state(int contact, double smallest_force);
+  bool change_states(bool one_only, double min_force);
+  bool change_state(int contact, double min_force);
   void relax();
   double relax_point(const TouchContact& contact, double gain, int point);
 

@@ -41,7 +41,7 @@ HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
 }
 
 double HeldPoints::floor_of(double own) const {
-  return pivot_share * std::max(own, typical_);
+  return kPivotShare * std::max(own, typical_);
 }
 
 Eigen::Matrix3d HeldPoints::block(int i, int j) const {

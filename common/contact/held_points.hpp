@@ -29,7 +29,7 @@ class HeldPoints {
   /// Pivots below this share of the point's own compliance (or of a typical node's) are raised to it: coincident
   /// or nearly dependent points become soft by 2 % of a node's compliance in place of singular, and the force
   /// between contradictory ones stays bounded by 50 times a single point's.
-  static constexpr double pivot_share = 0.02;
+  static constexpr double kPivotShare = 0.02;
 
   HeldPoints(const Compliance<double>& compliance, int capacity);
 

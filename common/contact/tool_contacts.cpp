@@ -9,9 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr double least_facing =
+constexpr double kMinFacing =
     0.1;  // cosine between a sticking contact's normal and the surface's, below which it slides
-constexpr double margin_share =
+constexpr double kMarginShare =
     0.1;  // of a part's radius or a mean edge: what is this near is watched before it is touched
 
 }  // namespace
@@ -46,11 +46,11 @@ ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw
   near_.reserve(parts * map.triangles.size());
   near_end_.reserve(parts);
   candidates_.reserve(map.triangles.size());
-  crossings_.resize(most_swept + 1);
+  crossings_.resize(kMaxSwept + 1);
 }
 
 double ToolContacts::margin(double radius) const {
-  return margin_share * std::min(radius, body_edge_);
+  return kMarginShare * std::min(radius, body_edge_);
 }
 
 double ToolContacts::reach(const MovingTool& moving, int part) const {
@@ -99,7 +99,7 @@ void ToolContacts::aim(TouchContact& c, const MovingTool& moving) const {
   c.target = moving.to_world(c.part, c.offset);
   Touching touch{nearest_point(axis, c.target), Eigen::Vector3d::Zero()};
   touch.normal = (c.target - touch.centre).normalized();
-  if (c.touch != Touch::sticking || touch.normal.dot(into) <= least_facing) {
+  if (c.touch != Touch::sticking || touch.normal.dot(into) <= kMinFacing) {
     if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
     touch = touch_of(c, moving, axis, into);
     if (c.touch == Touch::open) c.target = touch.centre + size * touch.normal;

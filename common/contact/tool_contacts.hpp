@@ -78,7 +78,7 @@ class ToolContacts : public Stateful<ToolContacts> {
   void state(State& s, std::span<const MovingTool> tools = {});
 
  private:
-  static constexpr int most_swept = 512;  ///< points of a segment, less one, that are swept
+  static constexpr int kMaxSwept = 512;  ///< points of a segment, less one, that are swept
 
   struct Candidate {
     int triangle;

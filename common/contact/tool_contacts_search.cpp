@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double side_within =
+constexpr double kSideWithin =
     2;  // radii along a segment within which a contact says on which side of the tissue it is
 
 }  // namespace
@@ -113,7 +113,7 @@ void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, st
       Eigen::Vector3d normal = length > 0 ? came_from(node, moving.axis_before(part), -out) : Eigen::Vector3d(-out);
       const bool in_front = away.dot(out) > 0 && (length == 0 || away.dot(surface_.rest_normal(node)) > 0);
       if (!in_front) {  // behind the surface: pushed through it from the side of the part's other contacts
-        const TouchContact* held = held_near(moving, tool, part, share * length, side_within * size);
+        const TouchContact* held = held_near(moving, tool, part, share * length, kSideWithin * size);
         if (!held || (length > 0 ? !pushed_through(node, *held, size) : out.dot(held->normal) >= 0)) continue;
         normal = held->normal;
       }

@@ -7,17 +7,17 @@
 namespace palpate {
 namespace {
 
-constexpr double least_agreement =
+constexpr double kMinAgreement =
     0.2;  // cosine between a normal now and at rest, below which the surface counts as folded
-constexpr double most_inside_out =
+constexpr double kMaxInsideOut =
     0.1;  // cosine between a contact's normal and the wall's outer side at rest, above which it is given up
-constexpr double same_wall =
+constexpr double kSameWall =
     0.5;  // cosine between normals at rest, below which two nodes are of different sides of a tube
-constexpr double apart_share =
+constexpr double kApartShare =
     1.0 / 3;  // of a triangle's mean edge: contacts of one segment nearer than that depend on one another
 
 Eigen::Vector3d unless_folded(const Eigen::Vector3d& now, const Eigen::Vector3d& rest) {
-  return now.dot(rest) > least_agreement ? now : rest;
+  return now.dot(rest) > kMinAgreement ? now : rest;
 }
 
 /// Which of the points 0 ... last, spread evenly along a segment, lie within a box grown by `motion` [m]: from ... to.
@@ -58,7 +58,7 @@ Eigen::Vector3d ToolContacts::rest_outward(const TouchContact& c) const {
 // What has slid round a part until it would be pushed outward is above it, not under it: a fold, which it does not
 // press.
 bool ToolContacts::inside_out(const TouchContact& c) const {
-  return c.normal.dot(rest_outward(c)) > most_inside_out;
+  return c.normal.dot(rest_outward(c)) > kMaxInsideOut;
 }
 
 // The direction from a segment to a node one step ago: the side from which the segment comes. If it was not in front
@@ -74,11 +74,11 @@ Eigen::Vector3d ToolContacts::came_from(int node, const Segment& before, const E
 bool ToolContacts::pushed_through(int node, const TouchContact& by, double size) const {
   const Eigen::Vector3d anchor = anchor_position(by.anchor, surface_.rest());
   const double within = 2 * (size + body_edge_);
-  return by.normal.dot(outward(node)) < 0 && rest_outward(by).dot(surface_.rest_normal(node)) > same_wall &&
+  return by.normal.dot(outward(node)) < 0 && rest_outward(by).dot(surface_.rest_normal(node)) > kSameWall &&
          (surface_.rest()[node] - anchor).squaredNorm() < within * within;
 }
 
-// The points of the axis that are swept lie no farther apart than the radius (up to most_swept of them). What passes
+// The points of the axis that are swept lie no farther apart than the radius (up to kMaxSwept of them). What passes
 // between two of them unseen is narrower than that, and lies within the radius of both as it passes: the search among
 // what is near meets it.
 bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
@@ -86,7 +86,7 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   const std::span<const int> found = surface_.find(before, now, 0);
   if (found.empty()) return false;
   const double length = moving.parts[part].length;
-  const int last = std::min(most_swept, static_cast<int>(std::ceil(length / moving.radius(part))));
+  const int last = std::min(kMaxSwept, static_cast<int>(std::ceil(length / moving.radius(part))));
   std::fill_n(crossings_.begin(), last + 1, Crossing{});
   const double motion =
       std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
@@ -131,7 +131,7 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
     const Triangle corners = surface_.corners(candidate.triangle);
     const bool touches = candidate.squared_distance < size * size;  // what is only near stays open, wherever it is
     const double share = touches ? level_share(axis, corners, candidate.share, margin(size)) : candidate.share;
-    if (place_taken(moving, tool, part, share * length, std::max(size, apart_share * mean_edge_[candidate.triangle])))
+    if (place_taken(moving, tool, part, share * length, std::max(size, kApartShare * mean_edge_[candidate.triangle])))
       continue;
     TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
     c.anchor = {surface_.triangle(candidate.triangle), closest_point(axis.at(share), corners).weights};

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t max_obstacles = 512;
+constexpr std::size_t kMaxObstacles = 512;
 
 double bucket_size(const SurfaceMap& map, const ContactSpec& contact) {
   return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
@@ -24,10 +24,10 @@ TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const
     : map_(map),
       compliance_(std::move(compliance)),
       unloaded_(map_.position),
-      law_(compliance_, unloaded_, rule_of(settings.contact), settings.contact.friction, max_contacts),
+      law_(compliance_, unloaded_, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
       contacts_(map_, bucket_size(map_, settings.contact), law_, parts_of(settings.tools), std::move(options)),
       own_(settings.tools.size()) {
-  obstacles_.reserve(max_obstacles);
+  obstacles_.reserve(kMaxObstacles);
 }
 
 LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
@@ -65,7 +65,7 @@ BetweenJaws TouchBody::between(const OpenJaws& jaws) {
     const std::array<Eigen::Vector3d, 3> p{to_tip * corners[0], to_tip * corners[1], to_tip * corners[2]};
     for (int v = 0; v < 3; ++v) {
       const Eigen::Vector3d &a = p[v], &b = p[(v + 1) % 3];
-      if ((a.x() < 0) == (b.x() < 0) || obstacles_.size() == max_obstacles) continue;
+      if ((a.x() < 0) == (b.x() < 0) || obstacles_.size() == kMaxObstacles) continue;
       const Eigen::Vector3d cut = a + a.x() / (a.x() - b.x()) * (b - a);
       if (cut.z() <= 0 || cut.z() > jaws.shape.jaw_length) continue;
       obstacles_.push_back({cut, radius});

@@ -15,7 +15,7 @@ namespace palpate {
 /// contacts. What moves the surface is the derived class's.
 class TouchBody : public BodyPart {
  public:
-  static constexpr int max_contacts = 96;
+  static constexpr int kMaxContacts = 96;
 
   /// collide: finds what the tools touch.
   void collide(std::span<const MovingTool> tools) { contacts_.collide(tools); }

@@ -127,7 +127,7 @@ void TouchSurface::begin_update() {
   ++clock_;
   last_marked_.swap(marked_);
   marked_.clear();
-  for (int i = 0; i < refreshed_in_turn && i < movable_; ++i) {
+  for (int i = 0; i < kRefreshedInTurn && i < movable_; ++i) {
     mark_node(turn_);
     turn_ = (turn_ + 1) % movable_;
   }

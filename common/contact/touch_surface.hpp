@@ -16,7 +16,7 @@ namespace palpate {
 /// construction.
 class TouchSurface {
  public:
-  static constexpr int refreshed_in_turn = 16;  ///< far nodes brought up to date per step
+  static constexpr int kRefreshedInTurn = 16;  ///< far nodes brought up to date per step
 
   TouchSurface(const SurfaceMap& map, double bucket_size);
 

@@ -177,7 +177,7 @@ void Description::named_tables(const Key& key, std::string_view noun, std::vecto
 
 template <class... Spec>
 void Description::variant(const Key& key, std::variant<Spec...>& value) {
-  static constexpr std::array<std::string_view, sizeof...(Spec)> kinds{Spec::kind...};
+  static constexpr std::array<std::string_view, sizeof...(Spec)> kinds{Spec::kKind...};
   const auto describe_one = [](Description& description, std::size_t index) {
     std::variant<Spec...> fresh;
     detail::hold(fresh, index);

@@ -58,6 +58,6 @@ class DynamicModel {
 
 /// Largest stable step [s] for angular frequencies up to `bound` [rad/s] and mass-proportional damping a [1/s].
 /// Undamped: 2 sqrt(2)/bound (RK4), 2/bound (semi-implicit); forward Euler is only stable with damping.
-double largest_step(Integrator integrator, double bound, double damping);
+double max_step(Integrator integrator, double bound, double damping);
 
 }  // namespace palpate

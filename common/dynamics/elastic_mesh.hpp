@@ -10,8 +10,8 @@ namespace palpate {
 
 struct Archive;
 
-/// What every dynamic model is built from: rest shape, tetrahedra, materials and fixation. Nodes are numbered
-/// as in the body's archive (its SurfaceMap), tetrahedra by their place here; both stay valid through cuts.
+/// What every dynamic model is built from: rest shape, tetrahedra, materials and boundary conditions. Nodes are
+/// numbered as in the body's archive (its SurfaceMap), tetrahedra by their place here; both stay valid through cuts.
 struct ElasticMesh {
   std::vector<Eigen::Vector3d> rest;           ///< [m] per node
   std::vector<std::array<int, 4>> tetrahedra;  ///< positively oriented

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 using Vector = Eigen::Map<Eigen::VectorXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-constexpr std::ptrdiff_t kStride = kernels::leading_dimension(3 * HybridPart::max_contacts);
+constexpr std::ptrdiff_t kStride = kernels::leading_dimension(3 * HybridPart::kMaxContacts);
 
 }  // namespace
 
@@ -102,7 +102,7 @@ void HybridPart::factorise() {
         constant_[r] -= rows_[r].axis.dot(block * friction_force_[b]);
       }
     }
-  for (int r = 0; r < count; ++r) floor_[r] = HeldPoints::pivot_share * std::max(factor_[kStride * r + r], typical_);
+  for (int r = 0; r < count; ++r) floor_[r] = HeldPoints::kPivotShare * std::max(factor_[kStride * r + r], typical_);
   kernels::active().cholesky(factor_.data(), count, kStride, floor_.data());
 }
 

@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-constexpr int kRows = 3 * HybridPart::max_contacts;
+constexpr int kRows = 3 * HybridPart::kMaxContacts;
 
 double dot(const double* a, const double* b, int size) {
   return ConstVector(a, size).dot(ConstVector(b, size));
@@ -59,7 +59,7 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
       picture_(archive, Compliance<float>::Rows::surface),
       free_(rest_),
       position_(rest_),
-      law_(compliance_, free_, ContactLaw::Rule::barycentric, friction, max_contacts),
+      law_(compliance_, free_, ContactLaw::Rule::barycentric, friction, kMaxContacts),
       factor_(kernels::leading_dimension(kRows) * kRows, 0.0),
       floor_(kRows, 0.0),
       held_(static_cast<std::size_t>(size_) * kRows, 0.0),
@@ -67,8 +67,8 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
       multiplier_(kernels::leading_dimension(kRows), 0.0),
       constant_(kernels::leading_dimension(kRows), 0.0),
       shares_(connection_.size(), 0),
-      friction_force_(max_contacts, Vector3d::Zero()),
-      contact_force_(max_contacts, Vector3d::Zero()),
+      friction_force_(kMaxContacts, Vector3d::Zero()),
+      contact_force_(kMaxContacts, Vector3d::Zero()),
       u_(size_, 0.0),
       added_(size_, 0.0),
       u_f_(size_, 0.0f),
@@ -78,10 +78,10 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
   fill_follow(archive);
   load_ = reaction_;
   rows_.reserve(kRows);
-  row_begin_.reserve(max_contacts + 1);
+  row_begin_.reserve(kMaxContacts + 1);
   for (int r = 0; r < kRows; ++r) held_rows_.push_back(held_.data() + static_cast<std::size_t>(size_) * r);
   dead_.reserve(archive.surface.touchable);
-  node_forces_.reserve(dead_.capacity() + 3 * max_contacts);
+  node_forces_.reserve(dead_.capacity() + 3 * kMaxContacts);
   const std::size_t columns = size_ + 3 * node_forces_.capacity();
   columns_.reserve(columns);
   coefficients_.reserve(columns);

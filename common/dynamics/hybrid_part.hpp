@@ -30,7 +30,7 @@ namespace palpate {
 /// Nodes are those of the archive. Nothing is allocated after construction.
 class HybridPart final : public Coupling {
  public:
-  static constexpr int max_contacts = 32;
+  static constexpr int kMaxContacts = 32;
 
   /// The archive read with ArchivePart::surface. `single`: S u in single precision, for a model in single
   /// precision. Throws std::runtime_error if the archive is not that of a hybrid body or was read in part.

@@ -36,14 +36,14 @@ inline void describe(Description& d, Dynamic& m) {
 
 /// When dynamic tissue tears by itself (RR3510 sec. 4.4).
 struct Tearing {
-  std::string criterion = "volume";  ///< volume | mean_elongation | largest_elongation
+  std::string criterion = "volume";  ///< volume | mean_elongation | max_elongation
   double threshold = 0;              ///< [1] > 0, relative change
 };
 
 inline void describe(Description& d, Tearing& t) {
   d.choice({"criterion", "",
             "relative change of a tetrahedron's volume, or of its six edges' length, their mean or the largest"},
-           t.criterion, {"volume", "mean_elongation", "largest_elongation"});
+           t.criterion, {"volume", "mean_elongation", "max_elongation"});
   d.number(
       {"threshold", "1", "a tetrahedron above it is removed, the worst first; 0.5 is a change by half", Need::required},
       t.threshold, above(0));

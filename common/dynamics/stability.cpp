@@ -20,7 +20,7 @@ double growth_rk4(std::complex<double> z) {
 
 /// The largest factor up to which a left-half-plane eigenvalue may be scaled: the region is star-shaped
 /// there.
-double largest_scale_rk4(std::complex<double> eigenvalue) {
+double max_scale_rk4(std::complex<double> eigenvalue) {
   double stable = 0, unstable = kRk4Radius / std::abs(eigenvalue);
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (stable + unstable);
@@ -30,19 +30,19 @@ double largest_scale_rk4(std::complex<double> eigenvalue) {
 }
 
 /// Eigenvalues of the modes: real ones down to -a, and complex pairs with real part -a/2 up to the bound.
-double largest_step_rk4(double bound, double damping) {
+double max_step_rk4(double bound, double damping) {
   if (damping == 0) return 2 * std::sqrt(2.0) / bound;
   const double slow = kRk4RealLimit / damping, square = bound * bound - 0.25 * damping * damping;
   if (square <= 0) return slow;
-  return std::min(slow, largest_scale_rk4({-0.5 * damping, std::sqrt(square)}));
+  return std::min(slow, max_scale_rk4({-0.5 * damping, std::sqrt(square)}));
 }
 
 }  // namespace
 
-double largest_step(Integrator integrator, double bound, double damping) {
+double max_step(Integrator integrator, double bound, double damping) {
   switch (integrator) {
     case Integrator::rk4:
-      return largest_step_rk4(bound, damping);
+      return max_step_rk4(bound, damping);
     case Integrator::semi_implicit:
       return 4 / (damping + std::hypot(damping, 2 * bound));
     case Integrator::forward_euler:

@@ -29,10 +29,10 @@ double measure_of(TearCriterion criterion, const Corners& rest, const Corners& p
       return volume_change(rest, present);
     case TearCriterion::mean_elongation:
       return mean_elongation(rest, present);
-    case TearCriterion::largest_elongation:
+    case TearCriterion::max_elongation:
       break;
   }
-  return largest_elongation(rest, present);
+  return max_elongation(rest, present);
 }
 
 Corners corners_at(const std::array<int, 4>& nodes, std::span<const Eigen::Vector3d> position) {
@@ -52,7 +52,7 @@ double mean_elongation(const Corners& rest, const Corners& present) {
   return sum / 6;
 }
 
-double largest_elongation(const Corners& rest, const Corners& present) {
+double max_elongation(const Corners& rest, const Corners& present) {
   double largest = -1;
   each_elongation(rest, present, [&](double elongation) { largest = std::max(largest, elongation); });
   return largest;
@@ -61,9 +61,9 @@ double largest_elongation(const Corners& rest, const Corners& present) {
 TearCriterion tear_criterion(std::string_view name) {
   if (name == "volume") return TearCriterion::volume;
   if (name == "mean_elongation") return TearCriterion::mean_elongation;
-  if (name == "largest_elongation") return TearCriterion::largest_elongation;
+  if (name == "max_elongation") return TearCriterion::max_elongation;
   throw std::runtime_error(
-      fmt::format("no tearing criterion '{}': there are volume, mean_elongation and largest_elongation", name));
+      fmt::format("no tearing criterion '{}': there are volume, mean_elongation and max_elongation", name));
 }
 
 TearSearch::TearSearch(const ElasticMesh& mesh, TearCriterion criterion, double threshold, int limit)

@@ -11,7 +11,7 @@ namespace palpate {
 
 /// The three measures of RR3510 sec. 5.5 of how far a tetrahedron is deformed. A motion without deformation
 /// gives zero, and none depends on the size of the tetrahedron.
-enum class TearCriterion { volume, mean_elongation, largest_elongation };
+enum class TearCriterion { volume, mean_elongation, max_elongation };
 
 using Corners = std::array<Eigen::Vector3d, 4>;  ///< [m]
 
@@ -20,9 +20,9 @@ double volume_change(const Corners& rest, const Corners& present);
 /// Mean of (l - l0) / l0 over the six edges; shortened edges count negative.
 double mean_elongation(const Corners& rest, const Corners& present);
 /// Largest (l - l0) / l0 of the six edges; negative if all are shorter.
-double largest_elongation(const Corners& rest, const Corners& present);
+double max_elongation(const Corners& rest, const Corners& present);
 
-/// "volume", "mean_elongation" or "largest_elongation". Throws std::runtime_error for another name.
+/// "volume", "mean_elongation" or "max_elongation". Throws std::runtime_error for another name.
 TearCriterion tear_criterion(std::string_view name);
 
 /// Looks for tetrahedra that are deformed beyond a threshold.

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/fem/boundary_conditions.hpp"
 #include "common/fem/elasticity.hpp"
-#include "common/fem/fixation.hpp"
 
 namespace palpate {
 

@@ -76,7 +76,7 @@ void impose_conditions(const Reduced& reduced, const Factorisation& factor, std:
 
 StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh) {
   auto materials = material_field(body, mesh);
-  auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
+  auto dofs = apply_boundary_conditions(mesh, body.fixed, "body '" + body.name + "'");
   return {std::move(mesh), std::move(materials), std::move(dofs)};
 }
 

@@ -16,7 +16,7 @@ struct StaticProblem {
   DofMap dofs;
 };
 
-/// Applies a scene's body to its mesh. Throws std::runtime_error as apply_fixation and material_field do.
+/// Applies a scene's body to its mesh. Throws std::runtime_error as apply_boundary_conditions and material_field do.
 StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh);
 
 struct StaticSolution {

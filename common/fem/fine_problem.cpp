@@ -67,7 +67,7 @@ FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, Mater
 
 FineProblem make_fine_problem(const SolidSpec& body, const TetMesh& mesh, const Offline& offline) {
   auto materials = material_field(body, mesh);
-  auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
+  auto dofs = apply_boundary_conditions(mesh, body.fixed, "body '" + body.name + "'");
   return make_fine_problem(mesh, offline, std::move(materials), std::move(dofs), body.name);
 }
 

@@ -25,9 +25,9 @@ struct FineProblem {
   std::string body;   ///< for error sentences
 };
 
-/// Throws std::runtime_error as make_fine_space(), apply_fixation() and material_field() do.
+/// Throws std::runtime_error as make_fine_space(), apply_boundary_conditions() and material_field() do.
 FineProblem make_fine_problem(const SolidSpec& body, const TetMesh& mesh, const Offline& offline);
-/// The same with materials and fixation of the run-time mesh given.
+/// The same with materials and boundary conditions of the run-time mesh given.
 FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, MaterialField materials, DofMap dofs,
                               const std::string& body);
 

@@ -18,11 +18,11 @@ struct Material {
 };
 
 /// Positive definite elasticity that is not incompressible.
-inline constexpr Range poisson_range = strictly_within(-1, 0.5);
+inline constexpr Range kPoissonRange = strictly_within(-1, 0.5);
 
 inline void describe(Description& d, Material& m) {
   d.number({"young", "Pa", "Young's modulus", Need::required, Use::stored}, m.young, above(0));
-  d.number({"poisson", "1", "Poisson's ratio", Need::required, Use::stored}, m.poisson, poisson_range);
+  d.number({"poisson", "1", "Poisson's ratio", Need::required, Use::stored}, m.poisson, kPoissonRange);
   d.number({"density", "kg/m³", "mass per volume", Need::optional, Use::inertia}, m.density, above(0));
 }
 
@@ -38,7 +38,7 @@ inline void describe(Description& d, MaterialRegion& r) {
             "[[body.material]] needs at least one of 'young', 'poisson' and 'density'");
   d.number({"young", "Pa", "Young's modulus", Need::optional, Use::stored, "the body's"}, r.material.young, above(0));
   d.number({"poisson", "1", "Poisson's ratio", Need::optional, Use::stored, "the body's"}, r.material.poisson,
-           poisson_range);
+           kPoissonRange);
   d.number({"density", "kg/m³", "mass per volume", Need::optional, Use::inertia, "the body's"}, r.material.density,
            above(0));
 }

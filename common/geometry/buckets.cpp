@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostCells = 1 << 24;
+constexpr double kMaxCells = 1 << 24;
 constexpr double kRounding = 1e-9;  // of a query's reach: nothing on its border is lost to rounding
 
 }  // namespace
@@ -26,7 +26,7 @@ Buckets::Buckets(std::span<const Vector3d> positions, std::span<const std::array
   for (const auto& t : triangles) {
     const Vector3d &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
     boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
-    needed += std::min(range_of(boxes.back()[0], boxes.back()[1]).count(), kMostBuckets);
+    needed += std::min(range_of(boxes.back()[0], boxes.back()[1]).count(), kMaxBuckets);
   }
   take_entries(4 * needed + 9 * triangles.size());
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) move(t, boxes[t][0], boxes[t][1]);
@@ -45,7 +45,7 @@ void Buckets::lay_grid(std::span<const Vector3d> positions, double size) {
   const double margin = 0.5 * (high - low).norm();
   origin_ = low.array() - margin;
   const Vector3d counts = ((high - low).array() + 2 * margin) / size;
-  if (!(size > 0) || !(counts.array().ceil().cwiseMax(1).prod() <= kMostCells))
+  if (!(size > 0) || !(counts.array().ceil().cwiseMax(1).prod() <= kMaxCells))
     throw std::runtime_error(
         fmt::format("a bucket size of {} m does not suit a surface {:.4g} m across", size, (high - low).norm()));
   size_ = size;
@@ -125,7 +125,7 @@ void Buckets::enter(int triangle) {
   const int count = range.count();
   // Each triangle keeps one entry in reserve, so that the overflow itself always has room.
   const int reserve = static_cast<int>(range_.size());
-  if (count > kMostBuckets || free_count_ - count < reserve) return link(triangle, first_overflow_);
+  if (count > kMaxBuckets || free_count_ - count < reserve) return link(triangle, first_overflow_);
   for_each_bucket(range, [&](int bucket) { link(triangle, bucket); });
 }
 

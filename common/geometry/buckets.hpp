@@ -12,11 +12,11 @@ namespace palpate {
 /// swept bounding box (from the previous to the present node positions) meets, so that no crossing is missed.
 /// All memory is taken in the constructor; move() and query() allocate nothing. One thread at a time.
 ///
-/// A triangle whose box meets more than `kMostBuckets` buckets, or for which no entries are left, goes on a
+/// A triangle whose box meets more than `kMaxBuckets` buckets, or for which no entries are left, goes on a
 /// list that every query reads as a whole: slower, but nothing is lost.
 class Buckets {
  public:
-  static constexpr int kMostBuckets = 64;
+  static constexpr int kMaxBuckets = 64;
 
   /// `size` [m] is the edge of a bucket. The grid covers the surface's box grown by half its diagonal on all
   /// sides; what lies beyond is entered in the outermost buckets.

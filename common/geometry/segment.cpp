@@ -8,10 +8,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double parallel = 1e-12;  // squared sine of the angle between segments, below which they count as parallel
-constexpr double least_across =
-    0.1;                      // sine between an axis and a side, below which the side says nothing across the axis
-constexpr int halvings = 10;  // of a segment, in the search for an end of its level part
+constexpr double kParallel = 1e-12;  // squared sine of the angle between segments, below which they count as parallel
+constexpr double kMinAcross =
+    0.1;                       // sine between an axis and a side, below which the side says nothing across the axis
+constexpr int kHalvings = 10;  // of a segment, in the search for an end of its level part
 
 double distance(const Segment& s, double share, const Triangle& t) {
   return std::sqrt(closest_point(s.at(share), t).squared_distance);
@@ -38,7 +38,7 @@ Exit leave(const Segment& axis, double radius, const Vector3d& point, const Vect
   const Vector3d lateral = from_start - place * along, across = side - advance * along;
   const double square = across.squaredNorm();
   const auto through = [&](const Vector3d& end) { return Exit{led_out(end, radius, point, side), true}; };
-  if (square < parallel) return through(advance > 0 ? axis.end : axis.start);
+  if (square < kParallel) return through(advance > 0 ? axis.end : axis.start);
   const double half = lateral.dot(across), left = half * half - square * (lateral.squaredNorm() - radius * radius);
   const double way = (-half + std::sqrt(std::max(left, 0.0))) / square, at = place + way * advance;
   if (at < 0 || at > length) return through(at < 0 ? axis.start : axis.end);
@@ -52,7 +52,7 @@ Exit leave(const Segment& axis, double radius, const Vector3d& point, const Vect
 Touching led_out_across(const Segment& axis, double radius, const Vector3d& point, const Vector3d& side) {
   const Vector3d along = (axis.end - axis.start).normalized(), centre = nearest_point(axis, point);
   const Vector3d across = side - side.dot(along) * along, d = point - centre;
-  if (across.norm() > least_across) return led_out(centre, radius, point, across.normalized());
+  if (across.norm() > kMinAcross) return led_out(centre, radius, point, across.normalized());
   return {centre, d.isZero(0) ? along.unitOrthogonal() : Vector3d(d.normalized())};
 }
 
@@ -66,7 +66,7 @@ ClosestOfSegments closest_points(const Segment& a, const Segment& b) {
   };
   if (uu == 0) return at(0, nearest_share(b, a.start));
   if (vv == 0) return at(nearest_share(a, b.start), 0);
-  if (uu * vv - uv * uv <= parallel * uu * vv) {
+  if (uu * vv - uv * uv <= kParallel * uu * vv) {
     // The middle of what of a lies beside b; apart, two ends are nearest.
     double low = (b.start - a.start).dot(u) / uu, high = (b.end - a.start).dot(u) / uu;
     if (low > high) std::swap(low, high);
@@ -118,7 +118,7 @@ double level_share(const Segment& segment, const Triangle& triangle, double near
   const auto end_of_level = [&](double outside) {
     if (distance(segment, outside, triangle) <= most) return outside;
     double inside = nearest;
-    for (int i = 0; i < halvings; ++i) {
+    for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (inside + outside);
       (distance(segment, middle, triangle) <= most ? inside : outside) = middle;
     }

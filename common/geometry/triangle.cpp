@@ -38,7 +38,7 @@ double slope(const Cubic& b, double t) {
   return 3 * (s * s * (b[1] - b[0]) + 2 * s * t * (b[2] - b[1]) + t * t * (b[3] - b[2]));
 }
 
-double largest_curvature(const Cubic& b) {
+double max_curvature(const Cubic& b) {
   return 6 * std::max(std::abs(b[2] - 2 * b[1] + b[0]), std::abs(b[3] - 2 * b[2] + b[1]));
 }
 
@@ -124,15 +124,15 @@ struct Relative {
   double speed = 0;  ///< [m] per step, largest coordinate
 };
 
-constexpr double kTolerance = 1e-9;     ///< of the reach: how far beside the triangle a crossing still counts
-constexpr double kRounding = 4e-15;     ///< of the reach cubed: bound of the error of a computed volume
-constexpr double kLargestShare = 1e-4;  ///< of the reach: no tolerance is larger
+constexpr double kTolerance = 1e-9;  ///< of the reach: how far beside the triangle a crossing still counts
+constexpr double kRounding = 4e-15;  ///< of the reach cubed: bound of the error of a computed volume
+constexpr double kMaxShare = 1e-4;   ///< of the reach: no tolerance is larger
 
 double lateral_tolerance(const Relative& relative, const Cubic& volume, double t) {
   const double error = kRounding * relative.reach * relative.reach * relative.reach;
-  const double late = std::min(error / std::abs(slope(volume, t)), std::sqrt(2 * error / largest_curvature(volume)));
+  const double late = std::min(error / std::abs(slope(volume, t)), std::sqrt(2 * error / max_curvature(volume)));
   const double sideways = std::isfinite(late) ? late * relative.speed : 0.0;
-  return std::min(kTolerance * relative.reach + sideways, kLargestShare * relative.reach);
+  return std::min(kTolerance * relative.reach + sideways, kMaxShare * relative.reach);
 }
 
 std::optional<SweptHit> crossing_at(const Relative& relative, const Cubic& volume, double t, bool from_outside) {
@@ -168,7 +168,7 @@ ClosestPoint closest_point(const Vector3d& p, const Triangle& triangle) {
 std::optional<SweptHit> sweep_point(const Vector3d& p0, const Vector3d& p1, const Triangle& triangle0,
                                     const Triangle& triangle1) {
   const Relative relative(p0, p1, triangle0, triangle1);
-  if (!relative.near(kLargestShare * relative.reach)) return std::nullopt;
+  if (!relative.near(kMaxShare * relative.reach)) return std::nullopt;
   const bool still = triangle0 == triangle1;
   const Cubic volume = relative.volume(still);
   const auto [least, largest] = std::minmax_element(volume.begin(), volume.end());

@@ -9,11 +9,11 @@ namespace {
 /// them.
 template <class T, int N>
 struct Lanes {
-  static constexpr int fitting = kBytes / static_cast<int>(sizeof(T));
-  static constexpr int width = fitting < 4 ? 4 : fitting < N ? fitting : N;
-  static constexpr int parts = N / width;
-  typedef T Vector __attribute__((vector_size(width * sizeof(T))));
-  typedef T Memory __attribute__((vector_size(width * sizeof(T)), aligned(alignof(T)), may_alias));
+  static constexpr int kFitting = kBytes / static_cast<int>(sizeof(T));
+  static constexpr int kWidth = kFitting < 4 ? 4 : kFitting < N ? kFitting : N;
+  static constexpr int kParts = N / kWidth;
+  typedef T Vector __attribute__((vector_size(kWidth * sizeof(T))));
+  typedef T Memory __attribute__((vector_size(kWidth * sizeof(T)), aligned(alignof(T)), may_alias));
 };
 
 template <class T>
@@ -91,9 +91,9 @@ class Row {
  public:
   /// x and y of the row's own node; y holds what others have added.
   Row(const T* x, T* y) : y_(y) {
-    for (int p = 0; p < L::parts; ++p) {
-      here_[p] = load_as<V, M>(x + p * L::width);
-      sum_[p][0] = load_as<V, M>(y + p * L::width);
+    for (int p = 0; p < L::kParts; ++p) {
+      here_[p] = load_as<V, M>(x + p * L::kWidth);
+      sum_[p][0] = load_as<V, M>(y + p * L::kWidth);
       sum_[p][1] = sum_[p][2] = V{};
     }
   }
@@ -103,23 +103,23 @@ class Row {
     V column[3], row[3];
     for (int a = 0; a < 3; ++a) column[a] = repeat<V>(load_quad(block + 3 * a));
     transpose<Quad<T>>(column, row);
-    for (int p = 0; p < L::parts; ++p) {
-      const V d = load_as<V, M>(xj + p * L::width) - here_[p];
+    for (int p = 0; p < L::kParts; ++p) {
+      const V d = load_as<V, M>(xj + p * L::kWidth) - here_[p];
       const V d0 = spread<0, Quad<T>>(d), d1 = spread<1, Quad<T>>(d), d2 = spread<2, Quad<T>>(d);
       sum_[p][0] += column[0] * d0;
       sum_[p][1] += column[1] * d1;
       sum_[p][2] += column[2] * d2;
-      M& other = *reinterpret_cast<M*>(yj + p * L::width);
+      M& other = *reinterpret_cast<M*>(yj + p * L::kWidth);
       other = other - row[0] * d0 - row[1] * d1 - row[2] * d2;
     }
   }
 
   /// Hands out the sum and leaves zero in y.
   void take(Quad<T> (&quads)[N / 4]) {
-    for (int p = 0; p < L::parts; ++p) {
+    for (int p = 0; p < L::kParts; ++p) {
       const V total = sum_[p][0] + (sum_[p][1] + sum_[p][2]);
-      *reinterpret_cast<M*>(y_ + p * L::width) = V{};
-      if constexpr (L::width == 4) {
+      *reinterpret_cast<M*>(y_ + p * L::kWidth) = V{};
+      if constexpr (L::kWidth == 4) {
         quads[p] = total;
       } else {
         quads[0] = __builtin_shufflevector(total, total, 0, 1, 2, 3);
@@ -130,7 +130,7 @@ class Row {
 
  private:
   T* y_;
-  V here_[L::parts], sum_[L::parts][3];
+  V here_[L::kParts], sum_[L::kParts][3];
 };
 
 /// The same number by number, where no register holds a quad.

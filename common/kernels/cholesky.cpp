@@ -4,7 +4,7 @@ namespace palpate::kernels::PALPATE_LEVEL {
 namespace {
 
 using Vd = Pack<double>;
-constexpr int kWidth = Vector<double>::width;
+constexpr int kWidth = Vector<double>::kWidth;
 /// Register block: kColumns columns by kVectors vectors of rows fill the registers of the code path.
 constexpr int kColumns = kWidth == 8 ? 8 : 4;
 constexpr int kVectors = kWidth == 2 ? 2 : 3;

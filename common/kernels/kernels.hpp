@@ -21,8 +21,8 @@ namespace palpate::kernels {
 constexpr int kMaxBlock = 9;
 
 /// Leading dimension for factors up to the given order: room for whole vectors, lines that do not alias.
-constexpr std::ptrdiff_t leading_dimension(int largest_order) {
-  const std::ptrdiff_t rounded = (largest_order + 16 + 7) / 8 * 8;
+constexpr std::ptrdiff_t leading_dimension(int max_order) {
+  const std::ptrdiff_t rounded = (max_order + 16 + 7) / 8 * 8;
   return rounded % 64 == 0 ? rounded + 8 : rounded;
 }
 

@@ -4,7 +4,7 @@ namespace palpate::kernels::PALPATE_LEVEL {
 namespace {
 
 using Vd = Pack<double>;
-constexpr int kWidth = Vector<double>::width;
+constexpr int kWidth = Vector<double>::kWidth;
 
 /// One reflection that turns a row [y, z] so that the pivot's row [l, w] becomes [d, 0], d = sqrt(l^2 + w.w):
 /// y' = (l y + w.z) / d and z' = z - w (y + y') / (l + d). No difference of close numbers occurs.

@@ -4,7 +4,7 @@ namespace palpate::kernels::PALPATE_LEVEL {
 namespace {
 
 using Vd = Pack<double>;
-constexpr int kWidth = Vector<double>::width;
+constexpr int kWidth = Vector<double>::kWidth;
 /// Columns per step of a substitution.
 constexpr int kBlock = 8;
 /// Most rows appended at once, as in kernels.hpp.

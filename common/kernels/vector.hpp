@@ -21,7 +21,7 @@ template <class T>
 struct Vector {
   typedef T Type __attribute__((vector_size(kBytes)));
   typedef T Memory __attribute__((vector_size(kBytes), aligned(alignof(T)), may_alias));
-  static constexpr int width = kBytes / static_cast<int>(sizeof(T));
+  static constexpr int kWidth = kBytes / static_cast<int>(sizeof(T));
 };
 
 template <class T>
@@ -47,12 +47,12 @@ inline V in_register(V v) {
 /// out[i] += sum over c < N of weight[c] * column[c][i] for begin <= i < end; overwrites out where First.
 template <class T, int N, bool First>
 inline void accumulate(const T* const* column, const T* weight, std::ptrdiff_t begin, std::ptrdiff_t end, T* out) {
-  constexpr int width = Vector<T>::width;
+  constexpr int kWidth = Vector<T>::kWidth;
   const T* p[N];
   T w[N];
   for (int c = 0; c < N; ++c) p[c] = column[c], w[c] = weight[c];
   std::ptrdiff_t i = begin;
-  for (; i + width <= end; i += width) {
+  for (; i + kWidth <= end; i += kWidth) {
     Pack<T> sum = w[0] * load(p[0] + i);
     for (int c = 1; c < N; ++c) sum += w[c] * load(p[c] + i);
     store(out + i, First ? sum : load(out + i) + sum);

@@ -36,8 +36,8 @@ CutMesh::CutMesh(std::span<const std::array<int, 4>> tetrahedra, int nodes)
     for (int n : tetrahedra_[t]) around_[next[n]++] = t;
   join_faces();
 
-  const int most_around = nodes > 0 ? *std::max_element(alive_around_.begin(), alive_around_.end()) : 0;
-  for (auto* list : {&star_, &queue_, &group_size_}) list->reserve(most_around);
+  const int max_around = nodes > 0 ? *std::max_element(alive_around_.begin(), alive_around_.end()) : 0;
+  for (auto* list : {&star_, &queue_, &group_size_}) list->reserve(max_around);
   for (auto* list : {&visible_, &appeared_, &vanished_}) list->reserve(4 * tetrahedra.size());
   killed_.reserve(tetrahedra.size());
   pending_.reserve(nodes);

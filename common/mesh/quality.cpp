@@ -171,7 +171,7 @@ double tet_shape(const TetMesh& mesh, const std::array<int, 4>& t) {
   return length > 0 ? 6 * std::numbers::sqrt2 * tet_volume(mesh, t) / (length * length * length) : 0;
 }
 
-double smallest_dihedral_angle(const TetMesh& mesh, const std::array<int, 4>& t) {
+double min_dihedral_angle(const TetMesh& mesh, const std::array<int, 4>& t) {
   std::array<Eigen::Vector3d, 4> normal;  // of the face opposite to vertex i, all to one side
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d &a = mesh.nodes[t[(i + 1) % 4]], &b = mesh.nodes[t[(i + 2) % 4]],

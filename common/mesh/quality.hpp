@@ -19,7 +19,7 @@ double tet_volume(const TetMesh& mesh, const std::array<int, 4>& t);
 double tet_shape(const TetMesh& mesh, const std::array<int, 4>& t);
 
 /// Smallest angle [rad] between two faces of a tetrahedron.
-double smallest_dihedral_angle(const TetMesh& mesh, const std::array<int, 4>& t);
+double min_dihedral_angle(const TetMesh& mesh, const std::array<int, 4>& t);
 
 /// Refuses a mesh that cannot be computed with. Checked: node numbers in range, coordinates finite, no
 /// tetrahedron degenerate, inverted or present twice, no face shared by more than two tetrahedra, one

@@ -39,7 +39,7 @@ inline const std::string& name_of(const Body& body) {
 
 /// As a scene file writes it: `quasi_static`.
 inline std::string_view kind_of(const Body& body) {
-  return std::visit([](const auto& spec) { return std::remove_cvref_t<decltype(spec)>::kind; }, body);
+  return std::visit([](const auto& spec) { return std::remove_cvref_t<decltype(spec)>::kKind; }, body);
 }
 
 inline void describe(Description& d, Body& body) {

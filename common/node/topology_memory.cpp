@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t interval_ns = 50'000'000;
+constexpr std::int64_t kIntervalNs = 50'000'000;
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void TopologyMemory::take_changes(std::vector<int>& changed) {
 
 void TopologyMemory::tell(std::int64_t now) {
   for (auto& [index, body] : bodies_) {
-    if (!body.news || now - body.told_ns < interval_ns) continue;
+    if (!body.news || now - body.told_ns < kIntervalNs) continue;
     HeldTopology& m = body.told;
     m.seq = m.run == body.run ? m.seq + 1 : 1;
     m.run = body.run;

@@ -40,7 +40,7 @@ void ClockOffset::add(const ClockExchange& e) {
   if (round_trip_ < 0 || e.returned < e.sent) return;  // not of this pair of clocks
   upper_.push_back({e.sent, e.received - e.sent});
   lower_.push_back({e.returned, e.answered - e.returned});
-  while (static_cast<int>(upper_.size()) > kept || (upper_.size() > 1 && !consistent())) {
+  while (static_cast<int>(upper_.size()) > kKept || (upper_.size() > 1 && !consistent())) {
     upper_.pop_front();
     lower_.pop_front();
   }
@@ -52,7 +52,7 @@ ClockOffset::Range ClockOffset::at_drift(double drift, std::int64_t time) const 
   const auto moved = [&](const Bound& b) {
     return static_cast<double>(b.value) + drift * static_cast<double>(time - b.time);
   };
-  const auto slack = [&](const Bound& b) { return wander * std::abs(static_cast<double>(time - b.time)); };
+  const auto slack = [&](const Bound& b) { return kWander * std::abs(static_cast<double>(time - b.time)); };
   for (const Bound& b : upper_) range.high = std::min(range.high, moved(b) + slack(b));
   for (const Bound& b : lower_) range.low = std::max(range.low, moved(b) - slack(b));
   return range;
@@ -64,7 +64,7 @@ bool ClockOffset::consistent() const {
     const Range r = at_drift(drift, time);
     return r.high - r.low;
   };
-  return width(summit(-most_drift, most_drift, width)) >= 0;
+  return width(summit(-kMaxDrift, kMaxDrift, width)) >= 0;
 }
 
 std::optional<ClockOffset::Estimate> ClockOffset::at(std::int64_t own_ns) const {
@@ -73,8 +73,8 @@ std::optional<ClockOffset::Estimate> ClockOffset::at(std::int64_t own_ns) const 
     const Range r = at_drift(drift, own_ns);
     return r.high - r.low;
   };
-  const double middle = summit(-most_drift, most_drift, width);
-  const double slowest = border(middle, -most_drift, width), fastest = border(middle, most_drift, width);
+  const double middle = summit(-kMaxDrift, kMaxDrift, width);
+  const double slowest = border(middle, -kMaxDrift, width), fastest = border(middle, kMaxDrift, width);
   const auto highest = [&](double drift) { return at_drift(drift, own_ns).high; };
   const auto lowest = [&](double drift) { return -at_drift(drift, own_ns).low; };
   const double high = highest(summit(slowest, fastest, highest)), low = -lowest(summit(slowest, fastest, lowest));

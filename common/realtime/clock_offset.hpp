@@ -21,9 +21,9 @@ struct ClockExchange {
 /// clock was set anew, drop the older ones.
 class ClockOffset {
  public:
-  static constexpr int kept = 240;            ///< exchanges
-  static constexpr double most_drift = 1e-3;  ///< [1] between two clocks
-  static constexpr double wander = 1e-6;      ///< [1] by which a bound is loosened with its age
+  static constexpr int kKept = 240;          ///< exchanges
+  static constexpr double kMaxDrift = 1e-3;  ///< [1] between two clocks
+  static constexpr double kWander = 1e-6;    ///< [1] by which a bound is loosened with its age
 
   struct Estimate {
     std::int64_t offset_ns = 0;               ///< other minus own

@@ -20,15 +20,15 @@ class Histogram {
   /// The value [ns] below which the given share (0..1) of the samples lies: middle of its bin, at most max().
   std::int64_t percentile(double share) const;
 
-  static constexpr int sub_bits = 5;
-  static constexpr int octaves = 42 - sub_bits;
-  static constexpr std::size_t bins = (octaves + 1) << sub_bits;
+  static constexpr int kSubBits = 5;
+  static constexpr int kOctaves = 42 - kSubBits;
+  static constexpr std::size_t kBins = (kOctaves + 1) << kSubBits;
   /// Number of samples in a bin, and the bin's lowest value [ns]: for plots.
   std::uint64_t in_bin(std::size_t bin) const { return bins_[bin]; }
   static std::int64_t bin_start(std::size_t bin);
 
  private:
-  std::array<std::uint64_t, bins> bins_{};
+  std::array<std::uint64_t, kBins> bins_{};
   std::uint64_t count_ = 0;
   double sum_ = 0;
   std::int64_t min_ = INT64_MAX, max_ = 0;

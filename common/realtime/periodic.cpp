@@ -10,14 +10,14 @@
 
 namespace palpate {
 namespace {
-constexpr std::int64_t longest_spin_ns = 150'000;
+constexpr std::int64_t kMaxSpinNs = 150'000;
 }
 
 PeriodicTimer::PeriodicTimer(double rate_hz, std::int64_t spin_ns) {
   if (!(rate_hz > 0) || rate_hz > 1e5)
     throw std::runtime_error(fmt::format("a loop rate of {} Hz is outside 0..100000 Hz", rate_hz));
   period_ns_ = std::llround(1e9 / rate_hz);
-  spin_ns_ = std::clamp<std::int64_t>(spin_ns, 0, std::min(longest_spin_ns, period_ns_));
+  spin_ns_ = std::clamp<std::int64_t>(spin_ns, 0, std::min(kMaxSpinNs, period_ns_));
 }
 
 void PeriodicTimer::start() {

@@ -12,7 +12,7 @@ using SlopeMap = Eigen::Matrix<double, 2, 9>;      // (dw/dx, dw/dy) from the do
 using CurvatureMap = Eigen::Matrix<double, 3, 9>;  // (w_xx, w_yy, 2 w_xy) from the dofs
 
 /// Least x3 + 2 y3 - y2 over the longest side. The stiffness grows with its inverse squared.
-constexpr double kLeastFactor = 1e-3;
+constexpr double kMinFactor = 1e-3;
 
 /// Integrates B^T D B, B being linear over the triangle, by its values at the middles of the sides: exact.
 template <class CurvatureAt>
@@ -71,7 +71,7 @@ struct PolynomialTerms {
 void check_polynomial(const FlatTriangle& triangle) {
   // The nine terms do not change when x and y change places: the paper's x3, y3 and y2 are these.
   const double x3 = triangle.corner(1, 2), y3 = triangle.corner(0, 2), y2 = triangle.corner(0, 1);
-  if (std::abs(x3 + 2 * y3 - y2) < kLeastFactor * triangle.longest_side())
+  if (std::abs(x3 + 2 * y3 - y2) < kMinFactor * triangle.longest_side())
     throw std::runtime_error(
         "the polynomial bending element is singular here, because x3 + 2 y3 = y2 with y along its side 1-2 "
         "(as in every "

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "common/mesh/shell_quality.hpp"
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 
 constexpr double kSideBending = 1.5;  // alpha_b: rotations bend the sides as a beam's ends would
-constexpr double kLeastHigherOrder = 0.01;
+constexpr double kMinHigherOrder = 0.01;
 
 /// L / t [m]: nodal forces of a constant stress, 9 x 3 (Felippa 2003 eq. 21).
 Eigen::Matrix<double, 9, 3> force_lumping(const FlatTriangle& triangle) {
@@ -84,7 +84,7 @@ Eigen::Matrix3d plane_stress(double young, double poisson) {
 Matrix9d membrane_stiffness(const FlatTriangle& triangle, const Eigen::Matrix3d& elasticity, double poisson) {
   const auto lumping = force_lumping(triangle);
   const auto deviation = rotation_deviation(triangle);
-  const double higher_order = 0.75 * std::max(0.5 * (1 - 4 * poisson * poisson), kLeastHigherOrder);
+  const double higher_order = 0.75 * std::max(0.5 * (1 - 4 * poisson * poisson), kMinHigherOrder);
   return lumping * elasticity * lumping.transpose() / triangle.area +
          higher_order * deviation.transpose() * deviation_stiffness(triangle, elasticity) * deviation;
 }

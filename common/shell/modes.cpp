@@ -135,7 +135,7 @@ bool add_missed(InverseOperator& op, const VectorXd& start, Eigenpairs& pairs) {
   return true;
 }
 
-Eigenpairs largest_pairs(InverseOperator& op, Index count) {
+Eigenpairs max_pairs(InverseOperator& op, Index count) {
   const VectorXd start = start_vector(op.rows());
   const Index enough = count + kGuard;
   auto pairs = refined(op, lanczos(op, start, enough, kTolerance).vector);
@@ -159,7 +159,7 @@ Eigenpairs all_pairs(const InverseOperator& op) {
 }
 
 /// Largest K_ii / m_i [1/s^2]: the size of the highest omega^2.
-double highest_square(const SparseMatrix& stiffness, const VectorXd& mass) {
+double max_square(const SparseMatrix& stiffness, const VectorXd& mass) {
   double highest = 0;
   for (Index i = 0; i < mass.size(); ++i) highest = std::max(highest, stiffness.coeff(i, i) / mass[i]);
   return highest;
@@ -183,10 +183,10 @@ Modes lowest_modes(const SparseMatrix& stiffness, const VectorXd& mass, int coun
         fmt::format("{} modes are asked for, but there are {} free translational degrees of freedom", count, n));
   if (!(mass.minCoeff() > 0)) throw std::runtime_error("a node without mass has no modes of vibration");
   InverseOperator op(shifted(stiffness, mass, shift), mass);
-  auto pairs = 3 * (count + kGuard) < n ? largest_pairs(op, count) : all_pairs(op);
+  auto pairs = 3 * (count + kGuard) < n ? max_pairs(op, count) : all_pairs(op);
   shorten(pairs, count);
   const VectorXd square = pairs.value.cwiseInverse().array() - shift;
-  if (shift == 0 && !(square[0] > kSingular * highest_square(stiffness, mass)))
+  if (shift == 0 && !(square[0] > kSingular * max_square(stiffness, mass)))
     throw std::runtime_error("the stiffness matrix is singular: part of the body is not held");
   Modes modes{square.cwiseMax(0).cwiseSqrt(), mass.cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vector};
   choose_signs(modes.shape);

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double gone_after = 120;  // [s] of silence, as the network forgets a participant
+constexpr double kGoneAfter = 120;  // [s] of silence, as the network forgets a participant
 
 ToolDofs dofs_of(const ToolState& s) {
   return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
@@ -59,7 +59,7 @@ void DynamicWorld::leave(int tool) {
 }
 
 void DynamicWorld::drop_absent() {
-  const auto patience = static_cast<std::uint64_t>(gone_after / dt_);
+  const auto patience = static_cast<std::uint64_t>(kGoneAfter / dt_);
   for (int t = 0; t < tools(); ++t) {
     left_[t] = std::exchange(leaving_[t], 0);
     const bool silent = !waiting_[t] && heard_[t] + patience < ticks_;
@@ -68,7 +68,7 @@ void DynamicWorld::drop_absent() {
 }
 
 void DynamicWorld::turn_jaws(int t) {
-  if (forceps_[t]) set_opening(std::clamp(tools_[t].dofs.grip, 0.0, forceps_[t]->most_open), parts_[t]);
+  if (forceps_[t]) set_opening(std::clamp(tools_[t].dofs.grip, 0.0, forceps_[t]->max_open), parts_[t]);
 }
 
 void DynamicWorld::tick() {

@@ -10,7 +10,7 @@ namespace palpate {
 ForcepsHand::ForcepsHand(int tool, const Tool& settings, double dt)
     : tool_(tool),
       shape_(*forceps_shape(settings)),
-      law_{.most_open = settings.forceps()->jaws.most_open,
+      law_{.max_open = settings.forceps()->jaws.max_open,
            .stiffness = settings.forceps()->jaws.grip_stiffness,
            .friction = settings.forceps()->jaws.friction},
       dt_(dt),
@@ -33,8 +33,8 @@ GripEvent ForcepsHand::grip(double commanded, const Eigen::Isometry3d& pose, Bod
     for (const auto& body : bodies) load += body->grasp_load(tool_);
   GripEvent event = work_grip(grip, law_, commanded, found.opening, found.distance, load, dt_);
   state_.tightest = held ? std::min(state_.tightest, grip.commanded) : grip.commanded;
-  if (event == GripEvent::dropped && grip.commanded > state_.tightest + jaw_slack) event = GripEvent::released;
-  if (found.opening == 0 || grip.commanded > found.opening + jaw_slack) state_.slipped = false;
+  if (event == GripEvent::dropped && grip.commanded > state_.tightest + kJawSlack) event = GripEvent::released;
+  if (found.opening == 0 || grip.commanded > found.opening + kJawSlack) state_.slipped = false;
   if (event == GripEvent::taken && state_.slipped) {
     grip.holding = false;
     event = GripEvent::none;

@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-constexpr double softening =
+constexpr double kSoftening =
     0.02;                      // of a contact's own compliance: contacts that nearly depend on one another stay finite
-constexpr int asked_each = 8;  // ticks from one look at what stiffness is wanted to the next
-constexpr int condensed_for = 16;  // ticks for which the contacts' stiffness holds while they stay the same
+constexpr int kAskedEach = 8;  // ticks from one look at what stiffness is wanted to the next
+constexpr int kCondensedFor = 16;  // ticks for which the contacts' stiffness holds while they stay the same
 
 void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
   std::copy_n(from.data(), 3, to.begin());
@@ -66,7 +66,7 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
 }
 
 void LocalModels::refresh() {
-  if (++ticks_ % asked_each != 0) return;
+  if (++ticks_ % kAskedEach != 0) return;
   for (int i = 0; i < world_.organs(); ++i) {
     OfOrgan& own = organs_[i];
     const DynamicOrgan& organ = world_.organ(i);
@@ -98,7 +98,7 @@ void LocalModels::refresh() {
     std::sort(by_distance_.begin(), by_distance_.end());
     own.wanted.clear();
     for (const auto& [distance, node] : by_distance_) {
-      if (static_cast<int>(own.wanted.size()) == LocalStiffness::most_nodes) break;
+      if (static_cast<int>(own.wanted.size()) == LocalStiffness::kMaxNodes) break;
       if (std::find(own.wanted.begin(), own.wanted.end(), node) == own.wanted.end()) own.wanted.push_back(node);
     }
     std::sort(own.wanted.begin(), own.wanted.end());
@@ -113,14 +113,14 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   std::vector<std::array<int, 5>> shape;
   for (const TissueContact& c : contacts)
     shape.push_back({c.tool, c.sticking, c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
-  if (shape == own.shape && ++own.age < condensed_for) return;
+  if (shape == own.shape && ++own.age < kCondensedFor) return;
   own.shape = std::move(shape);
   own.age = 0;
   own.contact.assign(contacts.size(), Eigen::Matrix3d::Zero());
 
   std::vector<int> first;
   int rows = 0;
-  const auto is_whole = [](const TissueContact& c) { return c.sticking != 0 || c.sample == TissueContact::in_jaws; };
+  const auto is_whole = [](const TissueContact& c) { return c.sticking != 0 || c.sample == TissueContact::kInJaws; };
   for (const TissueContact& c : contacts) {
     first.push_back(rows);
     rows += is_whole(c) ? 3 : 1;
@@ -137,7 +137,7 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
     }
   const double typical = rows > 0 ? a.trace() / rows : 0;
   if (!(typical > 0)) return;
-  a.diagonal().array() += softening * typical;
+  a.diagonal().array() += kSoftening * typical;
   const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(rows, rows));
   for (std::size_t i = 0; i < contacts.size(); ++i)
     for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -168,8 +168,8 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
   condense(own, world_.organ(i));
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const TissueContact& c = contacts[k];
-    const bool grasped = c.sample == TissueContact::in_jaws;
-    if (c.tool != tool || (!grasped && c.force.dot(c.normal) <= 0) || model.contacts.size() == most_contacts) continue;
+    const bool grasped = c.sample == TissueContact::kInJaws;
+    if (c.tool != tool || (!grasped && c.force.dot(c.normal) <= 0) || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = grasped;
@@ -225,8 +225,8 @@ void LocalModels::add_triangles(int i, Corners&& corners, Fill&& fill, LocalCont
   };
   seen_.clear();
   for (const auto& [distance, triangle] : by_distance_) {
-    if (static_cast<int>(model.triangles.size()) == most_triangles ||
-        static_cast<int>(model.nodes.size()) + 3 > most_nodes)
+    if (static_cast<int>(model.triangles.size()) == kMaxTriangles ||
+        static_cast<int>(model.nodes.size()) + 3 > kMaxNodes)
       break;
     if (std::find(seen_.begin(), seen_.end(), triangle) != seen_.end()) continue;
     seen_.push_back(triangle);
@@ -240,7 +240,7 @@ void LocalModels::add_still_contacts(int tool, int i, LocalContactModel& model) 
   const HybridTouch& still = *world_.organ(i).still_part();
   for (std::size_t k = 0; k < still.contacts().size(); ++k) {
     const TouchContact& c = still.contacts()[k];
-    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == most_contacts) continue;
+    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;

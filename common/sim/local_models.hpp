@@ -14,7 +14,7 @@ namespace palpate {
 /// stiffness, which a thread of its own keeps working out unless the caller is to.
 class LocalModels {
  public:
-  static constexpr int most_contacts = 32, most_nodes = 40, most_triangles = 32;  ///< a message of 5 kB a millisecond
+  static constexpr int kMaxContacts = 32, kMaxNodes = 40, kMaxTriangles = 32;  ///< a message of 5 kB a millisecond
 
   /// One archive per body of the scene.
   LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives,

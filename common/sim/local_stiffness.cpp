@@ -8,21 +8,21 @@
 #include <stdexcept>
 
 #include "common/fem/assembly.hpp"
+#include "common/fem/boundary_conditions.hpp"
 #include "common/fem/factorisation.hpp"
-#include "common/fem/fixation.hpp"
 #include "common/realtime/settings.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr double floating_hz = 0.2;  // far below an organ's lowest frequency
+constexpr double kFloatingHz = 0.2;  // far below an organ's lowest frequency
 
 // K + w^2 M over the free dofs of the remaining tetrahedra, with what is joined to it.
 SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
                            const CondensedPart& joined) {
   SparseMatrix k = assemble_stiffness(mesh, materials, dofs);
   std::vector<Eigen::Triplet<double, std::int64_t>> extra;
-  const double w = 2 * std::numbers::pi * floating_hz;
+  const double w = 2 * std::numbers::pi * kFloatingHz;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const auto& tet = mesh.tetrahedra[t];
     const double volume =
@@ -61,7 +61,7 @@ LocalStiffness::LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Wo
 bool LocalStiffness::ask(std::span<const int> nodes, std::span<const int> removed) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || asked_) return false;
-  question_.nodes.assign(nodes.begin(), nodes.begin() + std::min<std::size_t>(nodes.size(), most_nodes));
+  question_.nodes.assign(nodes.begin(), nodes.begin() + std::min<std::size_t>(nodes.size(), kMaxNodes));
   question_.removed.assign(removed.begin(), removed.end());
   if (worker_) {
     asked_ = true;

@@ -25,7 +25,7 @@ struct CondensedPart {
 /// with the last answer meanwhile. A part that floats is held by its inertia at a fifth of a hertz.
 class LocalStiffness {
  public:
-  static constexpr int most_nodes = 64;
+  static constexpr int kMaxNodes = 64;
 
   /// Who solves: a thread, so that ask() returns at once; or ask() itself, so that what is known when does not depend
   /// on how fast a thread is.
@@ -41,7 +41,7 @@ class LocalStiffness {
 
   LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Worker worker);
 
-  /// Wants these nodes (ascending, the first most_nodes count) after the removal of all of `removed` so far. The newest
+  /// Wants these nodes (ascending, the first max_nodes count) after the removal of all of `removed` so far. The newest
   /// question is answered; false if the worker is at it, so that it was not taken.
   bool ask(std::span<const int> nodes, std::span<const int> removed);
   /// True if a newer answer has come; it is then current().

@@ -9,12 +9,12 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::uint64_t run = 1;  // a simulator is one start of a haptic loop and of the tissue
+constexpr std::uint64_t kRun = 1;  // a simulator is one start of a haptic loop and of the tissue
 
 const Scene& checked(const Scene& scene) {
-  if (scene.tools.size() > StepRecord::max_tools)
+  if (scene.tools.size() > StepRecord::kMaxTools)
     throw std::runtime_error(
-        fmt::format("{} tools; at most {} run in one scene", scene.tools.size(), StepRecord::max_tools));
+        fmt::format("{} tools; at most {} run in one scene", scene.tools.size(), StepRecord::kMaxTools));
   return scene;
 }
 
@@ -27,9 +27,9 @@ Simulator::Simulator(const Scene& scene, const std::vector<Archive>& archives)
       local_models_(world_, archives, LocalStiffness::Worker::caller),
       deformer_(scene_, archives),
       dofs_(scene_.tools.size()),
-      contacts_(scene_.tools.size(), ContactState{.run = run}),
-      modal_(modal_states(haptic_, run)),
-      catheters_(catheter_states(haptic_, run)) {
+      contacts_(scene_.tools.size(), ContactState{.run = kRun}),
+      modal_(modal_states(haptic_, kRun)),
+      catheters_(catheter_states(haptic_, kRun)) {
   prepare_record(haptic_, record_);
 }
 
@@ -66,7 +66,7 @@ void Simulator::show() {
 void Simulator::move_tissue() {
   for (int t = 0; t < tools(); ++t) {
     ToolState state = tool_state(record_, t);
-    state.run = run;
+    state.run = kRun;
     state.seq = steps_ + 1;
     world_.take(state);
   }
@@ -74,7 +74,7 @@ void Simulator::move_tissue() {
   local_models_.refresh();
   for (int t = 0; t < tools(); ++t) {
     local_models_.describe(t, model_);
-    model_.run = run;
+    model_.run = kRun;
     model_.seq = steps_ + 1;
     haptic_.consume(model_);
   }

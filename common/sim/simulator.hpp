@@ -70,7 +70,7 @@ class Simulator {
   const Task& task(int i) const { return haptic_.task(i); }  ///< of haptic().catheters()[i]
   std::vector<ChangeView> changes() const;
   /// Rebuilt when it is asked for, and valid until the next call or step. Walls and catheters are shown
-  /// as they were in the newest of every StepRecord::shape_interval steps.
+  /// as they were in the newest of every StepRecord::kShapeInterval steps.
   SurfaceView surface(int body);
 
   // Its parts, to look at.

@@ -8,7 +8,7 @@ void describe(const Task& task, TaskRecord& record) {
   record.inserted = task.inserted;
   record.deepest = task.deepest;
   record.inserting_s = task.inserting_s();
-  record.largest_force = task.largest_force;
+  record.max_force = task.max_force;
   record.wall_contacts = task.wall_contacts;
   record.grasps = task.grasps;
   record.drops = task.drops;

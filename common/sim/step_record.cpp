@@ -18,7 +18,7 @@ void prepare_record(const HapticStep& haptic, StepRecord& r) {
   r.coordinates.resize(modes);
   r.particles.resize(3 * particles);
   r.tasks.resize(haptic.catheters().size());
-  if (modes > 0) r.on_shell.reserve(StepRecord::max_shell_forces);
+  if (modes > 0) r.on_shell.reserve(StepRecord::kMaxShellForces);
 }
 
 namespace {
@@ -67,7 +67,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
     const ContactLaw* law = part->held();
     if (!law) continue;
     for (const TouchContact& c : law->contacts()) {
-      if (c.touch == Touch::open || r.contacts == StepRecord::max_contacts) continue;
+      if (c.touch == Touch::open || r.contacts == StepRecord::kMaxContacts) continue;
       HeldContact& to = r.contact[r.contacts];
       to.body = static_cast<std::uint32_t>(b);
       for (int v = 0; v < 3; ++v) to.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
@@ -81,14 +81,14 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
     }
     if (!part->superposed()) continue;  // its shape follows from its own state
     law->for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
-      if (r.forces == StepRecord::max_forces) return;
+      if (r.forces == StepRecord::kMaxForces) return;
       r.nodal[r.forces] = {static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(node), plain(f)};
       r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool);
     });
   }
   for (std::size_t i = 0; i < r.tasks.size(); ++i) r.tasks[i] = haptic.task(static_cast<int>(i));
   r.has_shapes = !haptic.modal_bodies().empty() || !haptic.catheters().empty();
-  r.has_shapes &= step % StepRecord::shape_interval == 0;
+  r.has_shapes &= step % StepRecord::kShapeInterval == 0;
   if (r.has_shapes) fill_shapes(haptic, r);
 }
 

@@ -11,9 +11,9 @@ namespace palpate {
 
 /// What one haptic step hands to the publisher: filled in place in the ring, in memory that prepare_record() took.
 struct StepRecord {
-  static constexpr int max_tools = 8;
-  static constexpr int max_contacts = TouchBody::max_contacts;
-  static constexpr int max_forces = 3 * max_contacts;
+  static constexpr int kMaxTools = 8;
+  static constexpr int kMaxContacts = TouchBody::kMaxContacts;
+  static constexpr int kMaxForces = 3 * kMaxContacts;
 
   struct OfTool {
     ToolDofs dofs;
@@ -30,15 +30,15 @@ struct StepRecord {
   std::int64_t pushed_ns;  ///< when it was put into the ring
   double energy;           ///< [J] put in by all tools
   int tools, contacts, forces;
-  std::array<OfTool, max_tools> of_tool;
-  std::array<HeldContact, max_contacts> contact;
-  std::array<std::uint8_t, max_contacts> contact_tool;
-  std::array<NodalForce, max_forces> nodal;
-  std::array<std::uint8_t, max_forces> nodal_tool;
+  std::array<OfTool, kMaxTools> of_tool;
+  std::array<HeldContact, kMaxContacts> contact;
+  std::array<std::uint8_t, kMaxContacts> contact_tool;
+  std::array<NodalForce, kMaxForces> nodal;
+  std::array<std::uint8_t, kMaxForces> nodal_tool;
 
   // Bodies whose state this node owns, in the order of ReducedBodies. Shapes every shape_interval steps.
-  static constexpr std::uint64_t shape_interval = 4;
-  static constexpr int max_shell_forces = 3 * (max_contacts + ModalBody::max_wall_forces);
+  static constexpr std::uint64_t kShapeInterval = 4;
+  static constexpr int kMaxShellForces = 3 * (kMaxContacts + ModalBody::kMaxWallForces);
   struct OnShell {
     std::uint32_t body;
     ShellForce force;

@@ -16,7 +16,7 @@ class ProbeEnd : public ToolEnd {
   void work(double grip, const Eigen::Isometry3d& pose, BodyParts bodies) override {
     if (!jaws_) return;
     const bool closes = !closed_ && grip < jaws_->closed_below;
-    const bool opens = closed_ && grip > jaws_->closed_below + jaw_slack;
+    const bool opens = closed_ && grip > jaws_->closed_below + kJawSlack;
     if (!closes && !opens) return;
     closed_ = closes;
     for (const auto& body : bodies) closes ? body->pinch(index_, pose, *jaws_) : body->let_go(index_);

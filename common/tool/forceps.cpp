@@ -12,8 +12,8 @@ Eigen::Matrix3d tilted(double angle) {
 
 }  // namespace
 
-std::array<ToolPart, forceps_part_count> forceps_parts(const ForcepsShape& shape, double opening) {
-  std::array<ToolPart, forceps_part_count> parts;
+std::array<ToolPart, kForcepsPartCount> forceps_parts(const ForcepsShape& shape, double opening) {
+  std::array<ToolPart, kForcepsPartCount> parts;
   parts[forceps_shaft] = {.length = shape.shaft_length, .radius = shape.shaft_radius};
   parts[forceps_shaft].pose.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
   parts[forceps_jaw_a] = parts[forceps_jaw_b] = {.length = shape.jaw_length, .radius = shape.jaw_radius};

@@ -15,11 +15,11 @@ struct ForcepsShape {
 
 /// Places of the parts.
 enum ForcepsPart : int { forceps_shaft = 0, forceps_jaw_a = 1, forceps_jaw_b = 2 };
-inline constexpr int forceps_part_count = 3;
+inline constexpr int kForcepsPartCount = 3;
 
 /// Parts for an opening [rad] between the jaws: from J the shaft along -z, jaw A along (0, sin(opening/2),
 /// cos(opening/2)), jaw B along (0, -sin(opening/2), cos(opening/2)).
-std::array<ToolPart, forceps_part_count> forceps_parts(const ForcepsShape& shape, double opening);
+std::array<ToolPart, kForcepsPartCount> forceps_parts(const ForcepsShape& shape, double opening);
 
 /// Turns the jaws of existing parts; allocates nothing.
 void set_opening(double opening, std::span<ToolPart> parts);

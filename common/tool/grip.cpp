@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-constexpr double nearest_grip = 1e-3;  // [m] from J: what is held nearer bears no more force than there
-constexpr double touch_slack = 1e-9;   // [rad] within which the jaws count as being at the touch
+constexpr double kNearestGrip = 1e-3;  // [m] from J: what is held nearer bears no more force than there
+constexpr double kTouchSlack = 1e-9;   // [rad] within which the jaws count as being at the touch
 
 /// Half openings at which jaw A and jaw B touch a ball; 0 where a jaw does not meet it.
 struct JawTouch {
@@ -59,23 +59,23 @@ double opening_at_contact(const ForcepsShape& shape, std::span<const GripObstacl
 }
 
 Grip grip_at(const GripLaw& law, double commanded) {
-  const double wanted = std::isfinite(commanded) ? std::clamp(commanded, 0.0, law.most_open) : 0.0;
+  const double wanted = std::isfinite(commanded) ? std::clamp(commanded, 0.0, law.max_open) : 0.0;
   return {.opening = wanted, .commanded = wanted};
 }
 
 GripEvent work_grip(Grip& grip, const GripLaw& law, double commanded, double touch, double distance, double load,
                     double dt) {
-  if (std::isfinite(commanded)) grip.commanded = std::clamp(commanded, 0.0, law.most_open);
+  if (std::isfinite(commanded)) grip.commanded = std::clamp(commanded, 0.0, law.max_open);
   const double bound = grip_capacity(grip, law), most = law.rate * dt;
-  grip.touch = std::min(touch, law.most_open);
+  grip.touch = std::min(touch, law.max_open);
   grip.distance = touch > 0 ? distance : 0.0;
   const double wanted = std::max(grip.commanded, grip.touch);
   grip.opening += std::clamp(wanted - grip.opening, -most, most);
-  grip.stopped = touch > 0 && grip.commanded <= grip.touch && grip.opening <= grip.touch + touch_slack;
-  const bool open = touch <= 0 || grip.commanded > grip.touch + jaw_slack;  // past the touch, or there is none
+  grip.stopped = touch > 0 && grip.commanded <= grip.touch && grip.opening <= grip.touch + kTouchSlack;
+  const bool open = touch <= 0 || grip.commanded > grip.touch + kJawSlack;  // past the touch, or there is none
   grip.slipped = grip.slipped && !open;
   if (!grip.holding) {
-    grip.holding = !grip.slipped && grip_force(grip, law) >= least_grip_force;
+    grip.holding = !grip.slipped && grip_force(grip, law) >= kMinGripForce;
     return grip.holding ? GripEvent::taken : GripEvent::none;
   }
   if (!open && !(load > bound)) return GripEvent::none;
@@ -89,7 +89,7 @@ double grip_torque(const Grip& grip, const GripLaw& law) {
 }
 
 double grip_force(const Grip& grip, const GripLaw& law) {
-  return grip_torque(grip, law) / std::max(grip.distance, nearest_grip);
+  return grip_torque(grip, law) / std::max(grip.distance, kNearestGrip);
 }
 
 double grip_capacity(const Grip& grip, const GripLaw& law) {

@@ -25,7 +25,7 @@ double opening_at_contact(const ForcepsShape& shape, std::span<const GripObstacl
 
 /// What the grip of one forceps is like.
 struct GripLaw {
-  double most_open = 1.0;  ///< [rad]
+  double max_open = 1.0;   ///< [rad]
   double stiffness = 0.5;  ///< [N m/rad] of the handle's linkage
   double friction = 0.8;   ///< [1] between jaws and what they hold
   double rate = 20;        ///< [rad/s] at most, opening and closing: a jaw of 15 mm then moves 0.15 mm in a millisecond
@@ -37,7 +37,7 @@ enum class GripEvent { none, taken, released, dropped };
 ///
 /// The jaws follow the handle until an object between them stops both. The handle, which goes on closing, then feels a
 /// torque; each jaw presses the object with that torque over the object's distance from J. A hold begins once they
-/// press with least_grip_force. It lasts until the handle has opened past the touch, by jaw_slack, or until the load on
+/// press with min_grip_force. It lasts until the handle has opened past the touch, by jaw_slack, or until the load on
 /// it exceeds what friction on both jaws can bear: then the object slips, and the jaws must open before they hold it
 /// again.
 struct Grip {
@@ -51,12 +51,12 @@ struct Grip {
 };
 static_assert(std::is_trivially_copyable_v<Grip>);
 
-inline constexpr double least_grip_force = 0.1;  ///< [N] of each jaw
+inline constexpr double kMinGripForce = 0.1;  ///< [N] of each jaw
 
 /// A grip whose jaws stand where the handle wants them, at the start of a run.
 Grip grip_at(const GripLaw& law, double commanded);
 
-/// One step of dt [s]. `commanded` [rad] is taken within [0, most_open]; a value that is not a number leaves the handle
+/// One step of dt [s]. `commanded` [rad] is taken within [0, max_open]; a value that is not a number leaves the handle
 /// where it is. `touch` [rad] and `distance` [m]: opening_at_contact() of what is between the jaws, 0 for nothing, and
 /// how far from J it is. `load` [N]: what pulls at the object that is held, as of the last step. Says whether a hold
 /// began or ended.

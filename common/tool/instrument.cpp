@@ -5,7 +5,7 @@ namespace palpate {
 std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length) {
   std::vector<ToolPart> samples{{.radius = tip_radius}};
   const double step = 1.5 * shaft_radius;
-  for (int i = 0; i < max_shaft_samples; ++i) {
+  for (int i = 0; i < kMaxShaftSamples; ++i) {
     const double behind = tip_radius + i * step;
     if (behind > shaft_length) break;
     ToolPart& sphere = samples.emplace_back(ToolPart{.radius = shaft_radius});

@@ -10,7 +10,7 @@ namespace palpate {
 
 /// Spheres of a probe: the tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of
 /// them.
-inline constexpr int max_shaft_samples = 47;
+inline constexpr int kMaxShaftSamples = 47;
 std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length);
 
 /// The shape of a tool of kind forceps; none for other kinds.

@@ -11,6 +11,6 @@ inline bool between_jaws(const Eigen::Vector3d& p, double length, double width) 
 }
 
 /// Jaws that have closed stay closed until they open this much further [rad].
-inline constexpr double jaw_slack = 0.03;
+inline constexpr double kJawSlack = 0.03;
 
 }  // namespace palpate

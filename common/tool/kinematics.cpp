@@ -61,7 +61,7 @@ LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double s
   const Eigen::Vector3d moment = torque + dofs.depth * along.cross(force);  // about the pivot
   const double handle = shaft_length - dofs.depth;                          // [m] behind the pivot
   LeverForces lever;
-  const Eigen::Vector3d across = -along.cross(moment) / std::max(handle, least_lever);
+  const Eigen::Vector3d across = -along.cross(moment) / std::max(handle, kMinLever);
   lever.hand = across - along.dot(force) * along;
   lever.trocar = -(force - along.dot(force) * along) - across;
   lever.twist = handle * along.cross(across) - moment;

@@ -43,10 +43,10 @@ struct LeverForces {
 };
 
 /// The hand's lever is at least this long [m]: a handle that has come to the trocar could not bear a moment.
-inline constexpr double least_lever = 0.01;
+inline constexpr double kMinLever = 0.01;
 
 /// The reaction to force and torque [N, N m] on the tool at its tip (about the tip's origin): all forces and all
-/// moments sum to zero. The handle's end lies shaft_length [m] behind the tip; nearer to the trocar than least_lever,
+/// moments sum to zero. The handle's end lies shaft_length [m] behind the tip; nearer to the trocar than min_lever,
 /// the hand's force is that of this lever and `twist` takes the rest of the moment.
 LeverForces trocar_reaction(const Trocar& trocar, const ToolDofs& dofs, double shaft_length,
                             const Eigen::Vector3d& force, const Eigen::Vector3d& torque);

@@ -13,10 +13,10 @@ bool finite(const PortForce& f) {
 
 // Work [J] of one part of a port on the hand; 0 for a motion too small to have a direction.
 double work(const Eigen::Vector3d& force, const Eigen::Vector3d& motion) {
-  return motion.norm() > PassivityGuard::still ? force.dot(motion) : 0;
+  return motion.norm() > PassivityGuard::kStill ? force.dot(motion) : 0;
 }
 double work(double torque, double motion) {
-  return std::abs(motion) > PassivityGuard::still ? torque * motion : 0;
+  return std::abs(motion) > PassivityGuard::kStill ? torque * motion : 0;
 }
 
 double work(const PortForce& f, const PortMotion& m) {
@@ -39,8 +39,8 @@ void damp(Eigen::Vector3d& force, const Eigen::Vector3d& motion, double share) {
 // A reach after a change of motion was seen. So large a change that no hand makes it is a tool set elsewhere: nothing
 // to expect again.
 double grown(double reach, double fade, double least, double change) {
-  constexpr double most_steps = 30;
-  return std::max({least, fade * reach, change < most_steps * least ? change : 0.0});
+  constexpr double max_steps = 30;
+  return std::max({least, fade * reach, change < max_steps * least ? change : 0.0});
 }
 
 }  // namespace
@@ -52,20 +52,19 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
   return {now.translation() - before.translation(), 0.5 * twice, opening};
 }
 
-PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double most_force, double slew, double dt)
+PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double max_force, double slew, double dt)
     : controller_(settings.controller),
       reserve_(settings.reserve),
       slew_(slew * dt),
-      most_per_shift_(most_damping / (dt * dt)),
-      fade_(std::exp(-dt / memory)),
+      max_per_shift_(kMaxDamping / (dt * dt)),
+      fade_(std::exp(-dt / kMemory)),
       held_(tools),
       motion_(tools),
       resisting_(tools, 0.0),
       limited_(tools, 0) {
-  const double shift =
-      std::min(most_acceleration * dt * dt, most_force > 0 ? settings.reserve / (2 * most_force) : 0.0);
-  least_reach_ = {shift, shift / lever, shift / lever};
-  reach_.assign(tools, least_reach_);
+  const double shift = std::min(kMaxAcceleration * dt * dt, max_force > 0 ? settings.reserve / (2 * max_force) : 0.0);
+  min_reach_ = {shift, shift / kLever, shift / kLever};
+  reach_.assign(tools, min_reach_);
 }
 
 void PassivityGuard::observe(std::span<const PortMotion> motion) {
@@ -76,11 +75,11 @@ void PassivityGuard::observe(std::span<const PortMotion> motion) {
     const PortMotion &m = motion[t], &before = motion_[t];
     energy_ -= f.force.dot(m.shift) + f.torque.dot(m.turn) + f.grip * m.opening;
     Reach& r = reach_[t];
-    r.shift = grown(r.shift, fade, least_reach_.shift, (m.shift - before.shift).norm());
-    r.turn = grown(r.turn, fade, least_reach_.turn, (m.turn - before.turn).norm());
-    r.opening = grown(r.opening, fade, least_reach_.opening, std::abs(m.opening - before.opening));
+    r.shift = grown(r.shift, fade, min_reach_.shift, (m.shift - before.shift).norm());
+    r.turn = grown(r.turn, fade, min_reach_.turn, (m.turn - before.turn).norm());
+    r.opening = grown(r.opening, fade, min_reach_.opening, std::abs(m.opening - before.opening));
     // What goes to and fro from tick to tick is no motion to resist: the next one would come back along it.
-    resisting_[t] = m.shift.dot(before.shift) > 0 ? most_per_shift_ * m.shift.norm() : 0.0;
+    resisting_[t] = m.shift.dot(before.shift) > 0 ? max_per_shift_ * m.shift.norm() : 0.0;
     motion_[t] = m;
   }
 }
@@ -105,7 +104,7 @@ PassivityGuard::Outlook PassivityGuard::outlook(std::span<const PortForce> asked
 void PassivityGuard::control(std::span<PortForce> asked) {
   std::ranges::fill(limited_, 0);
   if (!controller_) return;
-  const double left = energy_ + reserve_, spare = left - for_resisting * reserve_;
+  const double left = energy_ + reserve_, spare = left - kForResisting * reserve_;
   const Outlook before = outlook(asked);
   if (before.risk <= spare + before.income) return;
   const double affordable = affordable_resistance(left);
@@ -129,8 +128,8 @@ double PassivityGuard::affordable_resistance(double left) const {
   if (left < 0) return 1;
   double worst = 0;
   for (const Reach& r : reach_)
-    worst += most_per_shift_ * r.shift * r.shift / 4 * (1 + most_per_shift_ * r.shift / (2 * slew_));
-  const double kept = std::min(left, for_resisting * reserve_);
+    worst += max_per_shift_ * r.shift * r.shift / 4 * (1 + max_per_shift_ * r.shift / (2 * slew_));
+  const double kept = std::min(left, kForResisting * reserve_);
   return worst > kept ? kept / worst : 1;
 }
 

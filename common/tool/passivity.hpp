@@ -36,25 +36,25 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
 /// from the last one by no more than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks
 /// that the slew limit needs to let it fall. If that could bring the energy below -reserve, first the parts that push
 /// along their motion are damped, then the whole force is made smaller. A force that resists is left at least as large
-/// as a sampled damper of most_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
+/// as a sampled damper of max_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
 /// that was taken away earns its return. The energy falls below -reserve only where a motion changes by more than the
 /// reach, by that jump times the force. Never allocates after construction.
 class PassivityGuard : public Stateful<PassivityGuard> {
  public:
-  static constexpr double most_damping =
+  static constexpr double kMaxDamping =
       0.02;  ///< [kg] damping times tick: well below twice the mass of a hand on a device
-  static constexpr double most_acceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
-  static constexpr double memory =
+  static constexpr double kMaxAcceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
+  static constexpr double kMemory =
       0.1;  ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
-  static constexpr double lever = 0.3;  ///< [m] from reach to angular reach
-  static constexpr double for_resisting =
-      0.05;                               ///< share of the reserve that is kept for resisting while all else is gone
-  static constexpr double still = 1e-12;  ///< [m, rad] less is no motion
+  static constexpr double kLever = 0.3;  ///< [m] from reach to angular reach
+  static constexpr double kForResisting =
+      0.05;                                ///< share of the reserve that is kept for resisting while all else is gone
+  static constexpr double kStill = 1e-12;  ///< [m, rad] less is no motion
 
   /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is
-  /// most_acceleration dt^2, or less where that times most_force were over half the reserve, or the largest change seen
+  /// max_acceleration dt^2, or less where that times max_force were over half the reserve, or the largest change seen
   /// lately.
-  PassivityGuard(const Passivity& settings, int tools, double most_force, double slew, double dt);
+  PassivityGuard(const Passivity& settings, int tools, double max_force, double slew, double dt);
 
   /// A tick begins: counts the energy of what hold() gave over this motion, one entry per tool.
   void observe(std::span<const PortMotion> motion);
@@ -88,9 +88,9 @@ class PassivityGuard : public Stateful<PassivityGuard> {
   void resist(std::span<PortForce> asked);
 
   bool controller_;
-  double reserve_, slew_, most_per_shift_, fade_,
-      energy_ = 0;  ///< slew_ [N] per tick; most_per_shift_ [N/m] on the motion of a tick
-  Reach least_reach_;
+  double reserve_, slew_, max_per_shift_, fade_,
+      energy_ = 0;  ///< slew_ [N] per tick; max_per_shift_ [N/m] on the motion of a tick
+  Reach min_reach_;
   std::vector<PortForce> held_;
   std::vector<PortMotion> motion_;
   std::vector<Reach> reach_;

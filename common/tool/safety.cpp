@@ -11,7 +11,7 @@ SafetyChain::SafetyChain(double max_force, double max_force_rate, double dt)
     : max_force_(max_force), max_change_(max_force_rate * dt), dt_(dt) {}
 
 std::uint32_t SafetyChain::limit(Eigen::Vector3d& force, Eigen::Vector3d& torque) const {
-  const double size = std::max(force.norm(), torque.norm() / longest_lever);
+  const double size = std::max(force.norm(), torque.norm() / kMaxLever);
   if (!(size > max_force_) || !std::isfinite(size)) return 0;
   force *= max_force_ / size;
   torque *= max_force_ / size;
@@ -27,7 +27,7 @@ std::uint32_t SafetyChain::apply(Eigen::Vector3d& force, Eigen::Vector3d& torque
       state_.ramp_force = last.norm();
       state_.ramp_torque = last_torque.norm();
     }
-    const double share = dt_ / ramp_seconds;
+    const double share = dt_ / kRampSeconds;
     const auto shrink = [](Eigen::Map<Eigen::Vector3d>& v, double by) {
       const double size = v.norm();
       if (size <= by)
@@ -42,7 +42,7 @@ std::uint32_t SafetyChain::apply(Eigen::Vector3d& force, Eigen::Vector3d& torque
     return fault;
   }
   flags |= limit(force, torque);
-  const double change = std::max((force - last).norm(), (torque - last_torque).norm() / longest_lever);
+  const double change = std::max((force - last).norm(), (torque - last_torque).norm() / kMaxLever);
   if (change > max_change_) {
     const double share = max_change_ / change;
     force = last + share * (force - last);

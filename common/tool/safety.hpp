@@ -8,10 +8,10 @@ namespace palpate {
 /// to zero within ramp_seconds and stays there.
 class SafetyChain {
  public:
-  static constexpr double ramp_seconds = 0.005;
+  static constexpr double kRampSeconds = 0.005;
   /// [m] at which the largest force makes the largest torque: a long instrument's shaft. Contacts that pull against
   /// one another make torque without force.
-  static constexpr double longest_lever = 0.3;
+  static constexpr double kMaxLever = 0.3;
 
   /// Limits: force [N], rate of change of the force [N/s]; dt [s] is the step.
   SafetyChain(double max_force, double max_force_rate, double dt);

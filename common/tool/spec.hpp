@@ -41,7 +41,7 @@ inline void describe(Description& d, ProbeJaws& j) {
 struct ForcepsJaws {
   double length = 0.012;        ///< [m] of each
   double radius = 0.001;        ///< [m] of each about its segment
-  double most_open = 1.0;       ///< [rad] between the jaws
+  double max_open = 1.0;        ///< [rad] between the jaws
   double grip_stiffness = 0.5;  ///< [N m/rad] of the handle's linkage: closing torque per angle beyond the touch
   double friction = 0.8;        ///< [1] between jaws and what they hold; beyond it the hold slips
 };
@@ -51,8 +51,8 @@ inline void describe(Description& d, ForcepsJaws& j) {
       {"length", "m", "of what they hold, from the tip's centre onwards along the shaft; of a forceps of each jaw"},
       j.length, above(0));
   d.number({"radius", "m", "of each jaw about its segment; of a forceps alone, like the rest"}, j.radius, above(0));
-  d.number({"most_open", "rad", "between the jaws; a trajectory whose grip is larger or negative is refused"},
-           j.most_open, above_up_to(0, 2.5));
+  d.number({"max_open", "rad", "between the jaws; a trajectory whose grip is larger or negative is refused"},
+           j.max_open, above_up_to(0, 2.5));
   d.number({"grip_stiffness", "N m/rad",
             "of the linkage: torque that closes the jaws per angle that the handle goes beyond the touch"},
            j.grip_stiffness, above(0));
@@ -62,7 +62,7 @@ inline void describe(Description& d, ForcepsJaws& j) {
 
 /// Spheres along tip and shaft.
 struct ProbeSpec {
-  static constexpr std::string_view kind = "probe";
+  static constexpr std::string_view kKind = "probe";
   double radius = 0.004;  ///< [m] of the spherical tip
   std::optional<Cautery> cautery;
   std::optional<ProbeJaws> jaws;
@@ -79,7 +79,7 @@ inline void describe(Description& d, ProbeSpec& p) {
 
 /// Segments of the shaft and of two jaws that open by the grip.
 struct ForcepsSpec {
-  static constexpr std::string_view kind = "forceps";
+  static constexpr std::string_view kKind = "forceps";
   ForcepsJaws jaws;
 };
 
@@ -89,7 +89,7 @@ inline void describe(Description& d, ForcepsSpec& f) {
 
 /// Moves a tool by a trajectory file.
 struct ScriptedDeviceSpec {
-  static constexpr std::string_view kind = "scripted";
+  static constexpr std::string_view kKind = "scripted";
   std::filesystem::path trajectory;  ///< CSV
 };
 
@@ -100,7 +100,7 @@ inline void describe(Description& d, ScriptedDeviceSpec& s) {
 
 /// Moves a tool as it moved in a recorded log.
 struct LogDeviceSpec {
-  static constexpr std::string_view kind = "log";
+  static constexpr std::string_view kKind = "log";
   std::filesystem::path trajectory;  ///< LCM event log
 };
 
@@ -111,7 +111,7 @@ inline void describe(Description& d, LogDeviceSpec& l) {
 
 /// A driver elsewhere publishes the tool's motion.
 struct BusDeviceSpec {
-  static constexpr std::string_view kind = "bus";
+  static constexpr std::string_view kKind = "bus";
 };
 
 inline void describe(Description&, BusDeviceSpec&) {}

@@ -79,10 +79,10 @@ void check_grip(const Trajectory& trajectory, const std::filesystem::path& file,
   if (!forceps) return;
   for (double time : trajectory.times()) {  // between the rows nothing overshoots
     const double grip = trajectory.at(time).grip;
-    if (grip >= 0 && grip <= forceps->jaws.most_open) continue;
+    if (grip >= 0 && grip <= forceps->jaws.max_open) continue;
     throw std::runtime_error(
         fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
-                    file.string(), grip, time, tool.name, forceps->jaws.most_open));
+                    file.string(), grip, time, tool.name, forceps->jaws.max_open));
   }
 }
 

@@ -158,7 +158,7 @@ TEST_P(BusContract, ReducedStatesAndTaskRecordsThatCannotBeAreRefused) {
   EXPECT_FALSE(catheter([](auto& m) { m.position.resize(3 * 1024); }));
 
   const auto task = [&](auto&& change) { return refused(topics::task_record, task_sample(), change); };
-  EXPECT_TRUE(task([&](auto& m) { m.largest_force = nan; }));
+  EXPECT_TRUE(task([&](auto& m) { m.max_force = nan; }));
   EXPECT_TRUE(task([](auto& m) { m.inserted = m.deepest + 0.001; }));
   EXPECT_TRUE(task([](auto& m) { m.held_s = -1; }));
   EXPECT_FALSE(task([](auto& m) { m.inserted = 0; }));

@@ -48,7 +48,7 @@ TEST(ClockLink, ATimeOfAnotherMachineIsToldOnTheOwnClock) {
                     .publish_ns = theirs});
     time += 30'000'000;
     follower.follow();
-    time += ClockFollower::interval_ns;
+    time += ClockFollower::kIntervalNs;
   }
   ASSERT_TRUE(follower.known());
   const auto estimate = follower.estimate();

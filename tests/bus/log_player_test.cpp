@@ -15,7 +15,7 @@ namespace {
 using namespace palpate::testing;
 namespace fs = std::filesystem;
 
-constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t kMs = 1'000'000;
 
 /// 200 steps at 1 kHz, sensed 0.3 ms before they were received, one of them missing; and a scene.
 class PlayedLog : public ::testing::Test {
@@ -25,11 +25,11 @@ class PlayedLog : public ::testing::Test {
     LogHeader header;
     header.schema = schema_text();
     header.scene = "title = \"a plate\"\nx = 1\n";
-    writer.write(header_channel, 10 * ms, header);
-    writer.write(topics::scene.name, 10 * ms, scene_sample());
+    writer.write(kHeaderChannel, 10 * kMs, header);
+    writer.write(topics::scene.name, 10 * kMs, scene_sample());
     for (std::uint64_t step = 0; step < 200; ++step) {
       if (step == 100) continue;
-      const std::int64_t time = (10 + static_cast<std::int64_t>(step)) * ms;
+      const std::int64_t time = (10 + static_cast<std::int64_t>(step)) * kMs;
       ToolState tool = tool_sample(step);
       tool.sense_ns = time - 300'000;
       writer.write(topics::tool_state.name, time, tool);
@@ -48,14 +48,14 @@ TEST_F(PlayedLog, ComesBackInOrderAtItsOwnPace) {
   const auto scenes = bus_->reader(topics::scene, Keep::all);
   const std::int64_t start = now_ns();
   const PlayReport report = play_log(file_, *bus_, {}, [](double) { return true; });
-  EXPECT_GE(now_ns() - start, 199 * ms);
+  EXPECT_GE(now_ns() - start, 199 * kMs);
   EXPECT_TRUE(report.complete);
   EXPECT_EQ(report.played, 200u);
   EXPECT_EQ(report.skipped, 0u);
   EXPECT_NEAR(report.seconds, 0.199, 1e-9);
-  EXPECT_LT(report.pace.percentile(0.5), ms);
+  EXPECT_LT(report.pace.percentile(0.5), kMs);
   SceneText scene = *scenes->take();
-  EXPECT_GT(scene.publish_ns, start - 50 * ms);  // moved to the time of the replay
+  EXPECT_GT(scene.publish_ns, start - 50 * kMs);  // moved to the time of the replay
   scene.publish_ns = scene_sample().publish_ns;
   EXPECT_TRUE(scene == scene_sample());
   std::int64_t last = 0;
@@ -64,7 +64,7 @@ TEST_F(PlayedLog, ComesBackInOrderAtItsOwnPace) {
     const auto tool = tools->take();
     ASSERT_TRUE(tool);
     EXPECT_EQ(tool->seq, step);
-    EXPECT_GT(tool->sense_ns, start - ms);  // moved to the time of the replay
+    EXPECT_GT(tool->sense_ns, start - kMs);  // moved to the time of the replay
     EXPECT_GT(tool->sense_ns, last);
     last = tool->sense_ns;
   }
@@ -75,8 +75,8 @@ TEST_F(PlayedLog, PlaysAtOtherSpeedsAndStopsWhenAsked) {
   std::int64_t start = now_ns();
   play_log(file_, *bus_, {.speed = 4, .topics = {}, .patience = {}}, [](double) { return true; });
   const std::int64_t fast = now_ns() - start;
-  EXPECT_GE(fast, 49 * ms);
-  EXPECT_LT(fast, 190 * ms);
+  EXPECT_GE(fast, 49 * kMs);
+  EXPECT_LT(fast, 190 * kMs);
 
   const PlayReport stopped =
       play_log(file_, *bus_, {.speed = 1, .topics = {}, .patience = {}}, [](double) { return false; });
@@ -121,7 +121,7 @@ TEST_F(PlayedLog, TheSummaryHasTheLastTaskRecordOfEachCatheterAndRun) {
     LogWriter writer(file);
     LogHeader header;
     header.schema = schema_text();
-    writer.write(header_channel, 1, header);
+    writer.write(kHeaderChannel, 1, header);
     for (const std::uint64_t seq : {1u, 3u, 2u}) {  // the second came late
       TaskRecord task = task_sample();
       task.seq = seq;

@@ -41,7 +41,7 @@ class Log : public ::testing::Test {
   /// A log with `count` tool samples, seq 1..count, and a contact sample after every tenth.
   LogStatus write_log(int count) {
     LogWriter writer(file_);
-    writer.write(header_channel, 1, header());
+    writer.write(kHeaderChannel, 1, header());
     for (int i = 1; i <= count; ++i) {
       writer.write(topics::tool_state.name, 1000 * i, tool_sample(static_cast<std::uint64_t>(i)));
       if (i % 10 == 0) writer.write(topics::contact_state.name, 1000 * i + 1, contact_sample(i / 10 % 4));
@@ -236,7 +236,7 @@ TEST_F(Log, FilesThatAreNoLogAreRefusedInWords) {
     LogHeader other = header();
     other.schema += "Later: x u8\n";
     other.version = "9.9";
-    writer.write(header_channel, 1, other);
+    writer.write(kHeaderChannel, 1, other);
   }
   EXPECT_EQ(message(), file_.string() + ": was recorded by version 9.9 with other messages than this program reads");
   EXPECT_THROW(LogWriter(folder_ / "no" / "such" / "folder"), std::runtime_error);
@@ -248,7 +248,7 @@ TEST_F(Log, IsReadWhateverTheOrderOfItsSchema) {
     LogHeader other = header();
     const std::size_t first = other.schema.find('\n') + 1;
     other.schema = other.schema.substr(first) + other.schema.substr(0, first);
-    writer.write(header_channel, 1, other);
+    writer.write(kHeaderChannel, 1, other);
   }
   EXPECT_NO_THROW(LogReader{file_});
 }
@@ -290,7 +290,7 @@ TEST_F(Log, WhatWasWrittenBeforeAndAfterALackOfSpaceIsReadable) {
   tight.rlim_cur = 100'000;
 
   LogWriter writer(file_);
-  writer.write(header_channel, 1, header());
+  writer.write(kHeaderChannel, 1, header());
   std::uint64_t seq = 0;
   const auto write_some = [&](int count) {
     for (int i = 0; i < count; ++i) writer.write(topics::tool_state.name, 1, tool_sample(++seq));

@@ -30,7 +30,7 @@ TEST(Topics, EachRowNamesItsMessageType) {
   topics::for_each([]<class M>(const Topic<M>& t) {
     EXPECT_STREQ(t.message, name_of(static_cast<const M*>(nullptr)));
     EXPECT_EQ(std::string(t.name).substr(0, 8), "palpate/");
-    EXPECT_TRUE(t.qos.depth >= 1 || (t.qos.depth == keep_all && t.qos.transient_local)) << t.name;
+    EXPECT_TRUE(t.qos.depth >= 1 || (t.qos.depth == kKeepAll && t.qos.transient_local)) << t.name;
   });
 }
 

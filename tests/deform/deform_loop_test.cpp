@@ -69,8 +69,8 @@ TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
   });
   std::map<std::uint32_t, int> count;
   for (const SurfaceState& s : all) ++count[s.body];
-  EXPECT_GE(count[duct_body], 20);
-  EXPECT_LE(count[catheter_body], 10 * l.report.seconds + 2);
+  EXPECT_GE(count[kDuctBody], 20);
+  EXPECT_LE(count[kCatheterBody], 10 * l.report.seconds + 2);
   EXPECT_EQ(all.back().run, 5u);
   EXPECT_EQ(all.back().step, 20u);
   EXPECT_EQ(l.report.latency.count(), 20u);
@@ -96,7 +96,7 @@ TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
   for (const SurfaceState& s : all) {
     if (s.run != 6) continue;
     const auto& rest = l.s.archives[s.body].surface.position;
-    const double moved = s.body == catheter_body ? 0.02 : 0;
+    const double moved = s.body == kCatheterBody ? 0.02 : 0;
     for (std::size_t n = 0; n < rest.size(); ++n) EXPECT_NEAR(s.position[3 * n + 2] - rest[n].z(), moved, 1e-6);
   }
 }

@@ -13,7 +13,7 @@ using testing::Bench;
 using testing::block_of;
 using testing::block_scene;
 
-constexpr double top = 0.03, radius = 0.006;
+constexpr double kTop = 0.03, kRadius = 0.006;
 
 double from_above(int tick, int ticks, double from, double to) {
   return from + (to - from) * std::min(1.0, static_cast<double>(tick) / ticks);
@@ -21,7 +21,7 @@ double from_above(int tick, int ticks, double from, double to) {
 
 TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
   Bench bench(block_scene());
-  for (int i = 0; i < 100; ++i) bench.tick(top + 0.02);
+  for (int i = 0; i < 100; ++i) bench.tick(kTop + 0.02);
   EXPECT_TRUE(bench.force().isZero(0));
   for (int n = 0; n < bench.organ().mesh().nodes(); ++n)
     EXPECT_TRUE(bench.organ().model().displacement(n).isZero(1e-12));
@@ -32,7 +32,7 @@ TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   block_of(scene).dynamic.precision = "double";
   scene.contact.friction = 10;
   Bench bench(scene);
-  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, top + radius + 0.001, top + radius - 0.004));
+  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   const auto contacts = bench.organ().contacts();
   ASSERT_FALSE(contacts.empty());
   const TetMesh mesh = testing::block_mesh();
@@ -57,10 +57,10 @@ TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
 
 TEST(DynamicOrgan, LetsATipGoWithoutPullingAtIt) {
   Bench bench(block_scene());
-  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, top + radius + 0.001, top + radius - 0.004));
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   EXPECT_LT(bench.force().z(), -0.01);
   for (int i = 0; i < 400; ++i) {
-    bench.tick(from_above(i, 200, top + radius - 0.004, top + 0.03));
+    bench.tick(from_above(i, 200, kTop + kRadius - 0.004, kTop + 0.03));
     for (const TissueContact& c : bench.organ().contacts()) EXPECT_GE(c.force.dot(c.normal), 0);
   }
   EXPECT_TRUE(bench.force().isZero(0));
@@ -69,10 +69,10 @@ TEST(DynamicOrgan, LetsATipGoWithoutPullingAtIt) {
 TEST(DynamicOrgan, ATipNeverTunnelsAtAnySpeed) {
   for (const double speed : {0.01, 0.1, 1.0, 5.0}) {
     Bench bench(block_scene());
-    double z = top + 0.02;
+    double z = kTop + 0.02;
     for (int i = 0; i < 20; ++i) bench.tick(z);
-    for (; z > top - 0.01; z -= 1e-3 * speed) bench.tick(z);
-    for (int i = 0; i < 20; ++i) bench.tick(top - 0.01);
+    for (; z > kTop - 0.01; z -= 1e-3 * speed) bench.tick(z);
+    for (int i = 0; i < 20; ++i) bench.tick(kTop - 0.01);
     EXPECT_LT(bench.force().z(), -0.01) << speed << " m/s";
     EXPECT_TRUE(bench.finite());
   }
@@ -82,13 +82,13 @@ TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
   Scene scene = block_scene();
   scene.tools[0].probe()->cautery = Cautery{0.0065};
   Bench bench(scene);
-  for (int i = 0; i < 100; ++i) bench.tick(from_above(i, 50, top + 0.01, top + radius - 0.002));
+  for (int i = 0; i < 100; ++i) bench.tick(from_above(i, 50, kTop + 0.01, kTop + kRadius - 0.002));
   EXPECT_TRUE(bench.organ().removed().empty());
-  for (int i = 0; i < 200; ++i) bench.tick(top + radius - 0.002 - 4e-5 * i, 0, 1);
+  for (int i = 0; i < 200; ++i) bench.tick(kTop + kRadius - 0.002 - 4e-5 * i, 0, 1);
   EXPECT_GT(bench.organ().removed().size(), 20u);
   EXPECT_TRUE(bench.finite());
   const std::size_t cut = bench.organ().removed().size();
-  for (int i = 0; i < 100; ++i) bench.tick(top + radius);
+  for (int i = 0; i < 100; ++i) bench.tick(kTop + kRadius);
   EXPECT_EQ(bench.organ().removed().size(), cut);
   EXPECT_EQ(bench.organ().topology().alive_count() + static_cast<int>(cut), bench.organ().topology().size());
 }
@@ -136,17 +136,17 @@ TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
   Scene scene = block_scene();
   scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
   Bench bench(scene);
-  const double low = top + radius - 0.001;
-  for (int i = 0; i < 50; ++i) bench.tick(from_above(i, 40, top + 0.012, low), 0, 0, 0.6);
+  const double low = kTop + kRadius - 0.001;
+  for (int i = 0; i < 50; ++i) bench.tick(from_above(i, 40, kTop + 0.012, low), 0, 0, 0.6);
   for (int i = 0; i < 20; ++i) bench.tick(low, 0, 0, 0.05);
   for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 250, low, low + 0.008), 0, 0, 0.05);
   EXPECT_GT(bench.force().z(), 0.02) << "the tissue is pulled up";
   double highest = 0;
   for (const Vector3d& x : bench.organ().surface().positions()) highest = std::max(highest, x.z());
-  EXPECT_NEAR(highest, top + 0.008, 0.0015);
+  EXPECT_NEAR(highest, kTop + 0.008, 0.0015);
   for (int i = 0; i < 500; ++i) bench.tick(low + 0.02, 0, 0, 0.6);
   EXPECT_TRUE(bench.force().isZero(0));
-  for (const Vector3d& x : bench.organ().surface().positions()) EXPECT_LT(x.z(), top + 0.001);
+  for (const Vector3d& x : bench.organ().surface().positions()) EXPECT_LT(x.z(), kTop + 0.001);
 }
 
 TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
@@ -154,7 +154,7 @@ TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
   scene.tools[0].probe()->cautery = Cautery{0.0065};
   block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
-  const auto z = [](int i) { return top + radius + 0.002 - 1.5e-5 * i; };
+  const auto z = [](int i) { return kTop + kRadius + 0.002 - 1.5e-5 * i; };
   for (int i = 0; i < 300; ++i) first.tick(z(i), 1e-5 * i, i > 200);
   second.world().restore(first.world().save());
   EXPECT_EQ(first.world().hash(), second.world().hash());
@@ -174,7 +174,7 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto move = [](Bench& bench, int i) {
-    bench.tick(top + radius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i);
+    bench.tick(kTop + kRadius + 0.002 - 5e-6 * std::min(i, 1000), 0.01 - 5e-6 * i);
   };
   const int keyframe = static_cast<int>(first.world().keyframe_interval());
   for (int i = 0; i < keyframe; ++i) move(first, i);
@@ -198,7 +198,7 @@ TEST(DynamicOrgan, AStateOfAnotherSceneIsRefused) {
 
 TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
   Bench bench(block_scene());
-  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, top + radius + 0.001, top + radius - 0.004));
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   const std::vector<std::uint8_t> state = bench.world().save();
   const TissueContact& first = bench.organ().contacts()[0];
   const auto* pattern = reinterpret_cast<const std::uint8_t*>(&first.anchor);
@@ -214,9 +214,9 @@ TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
 TEST(DynamicOrgan, TearsBeyondItsThreshold) {
   Scene scene = block_scene();
   scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
-  block_of(scene).tearing = Tearing{"largest_elongation", 0.5};
+  block_of(scene).tearing = Tearing{"max_elongation", 0.5};
   Bench bench(scene);
-  const double low = top + radius - 0.001;
+  const double low = kTop + kRadius - 0.001;
   for (int i = 0; i < 40; ++i) bench.tick(low, 0, 0, 0.6);
   for (int i = 0; i < 20; ++i) bench.tick(low, 0, 0, 0.05);
   EXPECT_TRUE(bench.organ().removed().empty());
@@ -230,7 +230,7 @@ TEST(DynamicOrgan, TearsBeyondItsThreshold) {
 /// Force of a settled press of 3 mm at x, on all parts of the organ.
 Vector3d settled_press(const Scene& scene, double x, const TetMesh& mesh = testing::block_mesh()) {
   Bench bench(scene, mesh);
-  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 800, top + radius + 0.001, top + radius - 0.003), x);
+  for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 800, kTop + kRadius + 0.001, kTop + kRadius - 0.003), x);
   EXPECT_TRUE(bench.finite());
   Vector3d sum = bench.force();
   if (const HybridTouch* still = bench.organ().still_part())
@@ -268,7 +268,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   const TetMesh coarse = make_block({-0.03, -0.03, 0.015}, {0.03, 0.03, 0.03}, {6, 6, 2});
   Bench bench(scene, fine, &coarse);
   EXPECT_EQ(bench.organ().still_part()->part().connection().size(), 49u);
-  for (int i = 0; i < 2000; ++i) bench.tick(from_above(i, 600, top + radius + 0.001, top + radius - 0.003));
+  for (int i = 0; i < 2000; ++i) bench.tick(from_above(i, 600, kTop + kRadius + 0.001, kTop + kRadius - 0.003));
   ASSERT_TRUE(bench.finite());
   Scene alike = block_scene();
   alike.contact.friction = 0;
@@ -276,7 +276,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   EXPECT_NEAR(bench.force().z(), whole, 0.25 * std::abs(whole))
       << "the part below is finer and joined at fewer nodes, so softer";
   EXPECT_GT(bench.force().z(), whole);
-  for (int i = 0; i < 1500; ++i) bench.tick(top + 0.03);
+  for (int i = 0; i < 1500; ++i) bench.tick(kTop + 0.03);
   EXPECT_LT(bench.organ().still_part()->part().gap(bench.organ().model()), 1e-5)
       << "at rest both sides lie on one another again";
 }
@@ -300,10 +300,10 @@ TEST(DynamicOrgan, RandomManipulationStaysFinite) {
     Bench bench(scene);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0, 1);
-    double z = top + 0.02, x = 0, pedal = 0, grip = 1;
+    double z = kTop + 0.02, x = 0, pedal = 0, grip = 1;
     for (int i = 0; i < 2500; ++i) {
       if (i % 50 == 0) pedal = unit(random) > 0.8, grip = unit(random) > 0.5 ? 1 : 0;
-      z += 1e-3 * (unit(random) - 0.5 - 4 * (z - top));
+      z += 1e-3 * (unit(random) - 0.5 - 4 * (z - kTop));
       x += 1e-3 * (unit(random) - 0.5 - 4 * x);
       bench.tick(z, x, pedal, grip);
       ASSERT_TRUE(bench.finite()) << kind_of(scene.bodies[0]) << " at tick " << i;

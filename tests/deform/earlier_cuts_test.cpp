@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t kMs = 1'000'000;
 
 class EarlierCutsTest : public ::testing::Test {
  protected:
@@ -34,11 +34,11 @@ TEST_F(EarlierCutsTest, AreCompleteOnceEveryNodeOfTheSceneHasToldOfAllBodies) {
   EXPECT_FALSE(complete(0));
   tell(haptic_.node(), 0, {});
   tell(haptic_.node(), 2, {1, 2, 3});
-  EXPECT_FALSE(complete(10 * ms)) << "the render node has not told";
+  EXPECT_FALSE(complete(10 * kMs)) << "the render node has not told";
   tell(render_.node(), 0, {5});
-  EXPECT_FALSE(complete(20 * ms));
+  EXPECT_FALSE(complete(20 * kMs));
   tell(render_.node(), 2, {1, 2});
-  EXPECT_TRUE(complete(30 * ms));
+  EXPECT_TRUE(complete(30 * kMs));
   EXPECT_TRUE(cuts_.in_time());
   EXPECT_EQ(cuts_.of(2)->removed, (std::vector<std::uint32_t>{1, 2, 3})) << "who knows of most is right";
   EXPECT_EQ(cuts_.of(0)->removed, std::vector<std::uint32_t>{5});
@@ -47,9 +47,9 @@ TEST_F(EarlierCutsTest, AreCompleteOnceEveryNodeOfTheSceneHasToldOfAllBodies) {
 
 TEST_F(EarlierCutsTest, AreNotWaitedForLongerThanTwoSeconds) {
   tell(render_.node(), 0, {5});
-  EXPECT_FALSE(complete(100 * ms));
-  EXPECT_FALSE(complete(2099 * ms));
-  EXPECT_TRUE(complete(2100 * ms));
+  EXPECT_FALSE(complete(100 * kMs));
+  EXPECT_FALSE(complete(2099 * kMs));
+  EXPECT_TRUE(complete(2100 * kMs));
   EXPECT_FALSE(cuts_.in_time());
   EXPECT_EQ(cuts_.of(0)->removed, std::vector<std::uint32_t>{5});
 }

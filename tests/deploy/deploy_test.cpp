@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr int domain = 5;
+constexpr int kDomain = 5;
 
 /// The loopback tests' block under a tool that presses for a minute.
 class PressedBlock : public LoopbackScene {
@@ -53,13 +53,13 @@ class Deploy : public ::testing::Test {
     return run_in(hosts_->a(), line(arguments, ssh.empty() ? far_->ssh() : ssh), said_);
   }
   /// The scene, and that a node which a failing test leaves there ends by itself.
-  std::string scene() const { return fmt::format("{} --domain {} ", block_.scene(), domain); }
+  std::string scene() const { return fmt::format("{} --domain {} ", block_.scene(), kDomain); }
   bool said(const std::string& words) const { return said_.find(words) != std::string::npos; }
 
   /// Waits on host A for a surface that a haptic node on the same host caused.
   bool surface_comes(const fs::path& keys = {}) const {
     const Inside here(hosts_->a());
-    const auto bus = make_dds_bus({.domain = domain,
+    const auto bus = make_dds_bus({.domain = kDomain,
                                    .interface = TwoHosts::device,
                                    .peers = {TwoHosts::address_b},
                                    .keys = keys,
@@ -89,7 +89,7 @@ TEST_F(Deploy, ADeformNodeIsBroughtAndItsSurfacesComeBack) {
 
   const std::string near =
       fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"),
-                  block_.scene(), domain, TwoHosts::device, TwoHosts::address_b);
+                  block_.scene(), kDomain, TwoHosts::device, TwoHosts::address_b);
   const Inside here(hosts_->a());
   ChildProcess haptic("haptic_node", {"/bin/sh", "-c", near});
   EXPECT_TRUE(surface_comes());
@@ -145,7 +145,7 @@ TEST_F(Deploy, OfTheKeysAHostGetsThoseOfItsNodesAlone) {
                                    "deform/governance.p7s 600", "deform/key.pem 600", "deform/permissions.p7s 600"}));
   const std::string near =
       fmt::format("exec {} {} --domain {} --interface {} --peer {} --seconds 20 2>/dev/null", program("haptic_node"),
-                  block_.scene(), domain, TwoHosts::device, TwoHosts::address_b);
+                  block_.scene(), kDomain, TwoHosts::device, TwoHosts::address_b);
   const Inside here(hosts_->a());
   ChildProcess haptic("haptic_node", {"/bin/sh", "-c", near});
   EXPECT_TRUE(surface_comes(keys));

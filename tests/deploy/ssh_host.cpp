@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr int port = 2222;
-constexpr const char* sshd = "/usr/sbin/sshd";
+constexpr int kPort = 2222;
+constexpr const char* kSshd = "/usr/sbin/sshd";
 
 fs::path new_folder() {
-  if (access(sshd, X_OK) != 0)
-    throw std::runtime_error(fmt::format("{} is not there: openssh-server is not installed", sshd));
+  if (access(kSshd, X_OK) != 0)
+    throw std::runtime_error(fmt::format("{} is not there: openssh-server is not installed", kSshd));
   std::string name = fs::temp_directory_path() / "palpate-ssh-XXXXXX";
   if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
   return name;
@@ -42,7 +42,7 @@ std::string text_of(const fs::path& file) {
 
 bool answers(const std::string& address) {
   const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in to{.sin_family = AF_INET, .sin_port = htons(port), .sin_addr = {}, .sin_zero = {}};
+  sockaddr_in to{.sin_family = AF_INET, .sin_port = htons(kPort), .sin_addr = {}, .sin_zero = {}};
   inet_pton(AF_INET, address.c_str(), &to.sin_addr);
   const bool connected = connect(descriptor, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
   close(descriptor);
@@ -57,7 +57,7 @@ bool make_run_folder() {
 
 ChildProcess start(const NetworkNamespace& space, const fs::path& folder) {
   const Inside here(space);
-  return ChildProcess("sshd", {sshd, "-D", "-f", folder / "config", "-E", folder / "log"});
+  return ChildProcess("sshd", {kSshd, "-D", "-f", folder / "config", "-E", folder / "log"});
 }
 
 }  // namespace
@@ -67,11 +67,11 @@ SshHost::SshHost(const NetworkNamespace& space, const std::string& address)
         fs::create_directory(home());
         make_key(folder_ / "host_key");
         make_key(folder_ / "user_key");
-        write("known_hosts", fmt::format("[{}]:{} {}", address, port, text_of(folder_ / "host_key.pub")));
+        write("known_hosts", fmt::format("[{}]:{} {}", address, kPort, text_of(folder_ / "host_key.pub")));
         write("config",
               fmt::format("Port {}\nListenAddress {}\nHostKey {}\nAuthorizedKeysFile {}\nPidFile none\nStrictModes no\n"
                           "UsePAM no\nPasswordAuthentication no\nPermitRootLogin prohibit-password\nSetEnv HOME={}\n",
-                          port, address, (folder_ / "host_key").string(), (folder_ / "user_key.pub").string(),
+                          kPort, address, (folder_ / "host_key").string(), (folder_ / "user_key.pub").string(),
                           home().string()));
         return start(space, folder_);
       }()) {
@@ -92,8 +92,8 @@ SshHost::~SshHost() {
 }
 
 std::string SshHost::ssh() const {
-  return fmt::format("ssh -q -F none -p {} -i {} -o IdentitiesOnly=yes -o BatchMode=yes -o UserKnownHostsFile={}", port,
-                     (folder_ / "user_key").string(), (folder_ / "known_hosts").string());
+  return fmt::format("ssh -q -F none -p {} -i {} -o IdentitiesOnly=yes -o BatchMode=yes -o UserKnownHostsFile={}",
+                     kPort, (folder_ / "user_key").string(), (folder_ / "known_hosts").string());
 }
 
 std::string SshHost::listing() const {

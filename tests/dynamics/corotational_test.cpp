@@ -136,7 +136,7 @@ TEST(Corotational, InvertedElementsArePushedBack) {
   Matrix3d mirror = Matrix3d::Identity();
   mirror(2, 2) = -0.3;
   set_field(model, affine_field(mesh, mirror));
-  const double dt = 0.5 * largest_step(Integrator::rk4, model.frequency_bound(), 30);
+  const double dt = 0.5 * max_step(Integrator::rk4, model.frequency_bound(), 30);
   const double begin = model.energy();
   for (int i = 0; i < 20000; ++i) model.step(dt);
   EXPECT_LT(model.energy(), 1e-3 * begin);
@@ -166,7 +166,7 @@ std::vector<Vector3d> settled_beam(const DynamicBody& body, const std::vector<Ve
   const double damping = 12;
   Corotational<double> model(body.mesh, Integrator::rk4, damping);
   for (int n = 0; n < model.nodes(); ++n) model.set_load(n, load[n]);
-  settle(model, 0.95 * largest_step(Integrator::rk4, model.frequency_bound(), damping), 9000);
+  settle(model, 0.95 * max_step(Integrator::rk4, model.frequency_bound(), damping), 9000);
   return displacement_field(model);
 }
 
@@ -216,7 +216,7 @@ TEST(Corotational, TumblingFreePartKeepsEnergyAndMomentumForTenSeconds) {
   };
   const double energy = model.energy();
   const Vector3d begin = momentum();
-  const double dt = 0.4 * largest_step(Integrator::rk4, model.frequency_bound(), 0);
+  const double dt = 0.4 * max_step(Integrator::rk4, model.frequency_bound(), 0);
   double turned = 0;
   for (double time = 0; time < 10; time += dt) {
     model.step(dt);

@@ -64,7 +64,7 @@ struct HybridRun {
     part.hold();
     part.add_loads(model);
   }
-  double step_size() const { return 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 0); }
+  double step_size() const { return 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 0); }
   void run(double time) {
     const double dt = step_size();
     for (int i = 0; i < time / dt; ++i) model.step(dt);

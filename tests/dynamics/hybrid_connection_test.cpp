@@ -44,7 +44,7 @@ TEST(PartialConnection, JoinsTheNodesThatCoincide) {
   EXPECT_EQ(archive.mesh_nodes, static_cast<int>(stack.fine.nodes.size() + stack.coarse.nodes.size()) - 9);
   EXPECT_TRUE(hybrid.interface.empty());  // no face of one is a face of the other
   EXPECT_EQ(hybrid.gap.size(), 16u);      // the fine interface nodes that are not shared
-  EXPECT_NEAR(hybrid.largest_gap, 0, 1e-12);
+  EXPECT_NEAR(hybrid.max_gap, 0, 1e-12);
 }
 
 TEST(PartialConnection, NodesCoincideWithinATolerance) {
@@ -62,14 +62,14 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
     if (node.z() > 0.0199 && !shared) node.z() -= 7e-4;
   }
   const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
-  EXPECT_NEAR(archive.hybrid->largest_gap, 7e-4, 1e-5);
+  EXPECT_NEAR(archive.hybrid->max_gap, 7e-4, 1e-5);
   stack.body.dynamic.gravity.setZero();
   const HybridRun<double> weightless(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, Vector3d::Zero());
-  EXPECT_NEAR(weightless.part.gap(weightless.model), archive.hybrid->largest_gap, 1e-12);
+  EXPECT_NEAR(weightless.part.gap(weightless.model), archive.hybrid->max_gap, 1e-12);
   HybridRun<double> run(archive, 0, 60, kGravity);
   run.run(1.0);
   const double opened = run.part.gap(run.model);
-  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->largest_gap, 1e3 * opened);
+  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->max_gap, 1e3 * opened);
   EXPECT_GT(opened, 0);
   EXPECT_LT(opened, 5e-3);
 }

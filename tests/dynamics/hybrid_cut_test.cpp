@@ -48,7 +48,7 @@ double difference_after(const std::vector<int>& removed) {
     }
   problem.mesh = left;
   problem.materials = materials;
-  problem.dofs = apply_fixation(left, body.fixed, "what is left");
+  problem.dofs = apply_boundary_conditions(left, body.fixed, "what is left");
   const auto direct = solve_loads(problem, weights(problem, kGravity));
   std::vector<Vector3d> ours, theirs;
   for (int i = 0; i < run.archive.surface.size(); ++i) {

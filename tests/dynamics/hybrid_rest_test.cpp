@@ -75,10 +75,10 @@ TEST(HybridRest, IsTheQuasiStaticStateForEveryBorderAndLoadInSingle) {
 template <class Scalar>
 double difference_from_tensor_mass() {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
-  const auto whole = precompute_moving(hybrid_body({}, kGravity), TensorMassSpec::kind, mesh);
+  const auto whole = precompute_moving(hybrid_body({}, kGravity), TensorMassSpec::kKind, mesh);
   TensorMass<Scalar> model(elastic_mesh(whole), Integrator::rk4, kDamping);
   model.set_gravity(kGravity);
-  const double dt = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 0);
+  const double dt = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 0);
   for (int i = 0; i < kTime / dt; ++i) model.step(dt);
   std::vector<Vector3d> of_node(mesh.nodes.size(), Vector3d::Zero());
   for (int i = 0; i < whole.surface.size(); ++i) of_node[whole.surface.node_number[i]] = model.displacement(i);
@@ -108,7 +108,7 @@ TEST(HybridMotion, KeepsOrLosesEnergyAtTheLargestStepWhereverTheBorderIs) {
     for (int node = 0; node < run.model.nodes(); ++node)
       if (run.model.mass(node) > 0)
         run.model.set_motion(node, Vector3d::Zero(), {uniform(random), uniform(random), uniform(random)});
-    const double dt = 0.999 * largest_step(Integrator::rk4, run.model.frequency_bound(), 0);
+    const double dt = 0.999 * max_step(Integrator::rk4, run.model.frequency_bound(), 0);
     const auto connection = run.part.connection();
     std::vector<double> u(3 * connection.size()), force(u.size());
     const auto energy = [&] {

@@ -133,7 +133,7 @@ TEST(TensorRemoval, APartCutFreeFallsAsABody) {
   }
   model.remove(slice);
   model.set_gravity({0, 0, -9.81});
-  const double h = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 0), time = 500 * h;
+  const double h = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 0), time = 500 * h;
   for (int i = 0; i < 500; ++i) model.step(h);
   const double fall = 0.5 * 9.81 * time * time;
   for (int n = 0; n < model.nodes(); ++n) {

@@ -27,7 +27,7 @@ double error_at_rest(const testing::DynamicBody& body, double damping, double se
   const auto load = loads(body, model, gravity, 1e-3);
   model.set_gravity(gravity);
   for (int n = 0; n < model.nodes(); ++n) model.set_load(n, load[n] - model.mass(n) * gravity);
-  const double h = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), damping);
+  const double h = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), damping);
   for (int i = 0; i * h < seconds; ++i) model.step(h);
   std::vector<Vector3d> u;
   for (int n = 0; n < model.nodes(); ++n) u.push_back(model.displacement(n));

@@ -99,7 +99,7 @@ TEST(SpringMass, StableAtTheLargestStepAndUnstableBeyondIt) {
     double size[2];
     for (const int beyond : {0, 1}) {
       SpringMass<double> model(mesh, integrator, 0);
-      const double dt = (beyond ? 1.05 : 0.98) * largest_step(integrator, model.frequency_bound(), 0);
+      const double dt = (beyond ? 1.05 : 0.98) * max_step(integrator, model.frequency_bound(), 0);
       for (int n = 0; n < 4; ++n) model.set_motion(n, 1e-6 * mesh.rest[n], Vector3d::Zero());
       double largest = 0;
       for (int i = 0; i < 200; ++i) {
@@ -212,7 +212,7 @@ TEST(SpringMass, CoupledNodesFeelTheOthersForceInEveryStage) {
   EXPECT_DOUBLE_EQ(model.mass(node), own + mass);
   EXPECT_DOUBLE_EQ(model.frequency_bound(), std::max(alone, std::sqrt(stiffness / mass)));
   model.set_load(node, {0.01, 0, -0.02});
-  settle(model, 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 60), 3000);
+  settle(model, 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 60), 3000);
   const Vector3d residual = model.load(node) + model.elastic_force(node) - stiffness * model.displacement(node);
   EXPECT_LT(residual.norm(), 1e-6 * model.load(node).norm());
   EXPECT_GT(model.displacement(node).norm(), 1e-5);

@@ -38,15 +38,15 @@ double worst_growth(Integrator integrator, double bound, double a, double h) {
 constexpr std::array kIntegrators{Integrator::rk4, Integrator::semi_implicit, Integrator::forward_euler};
 
 TEST(LargestStep, IsTheKnownOneWithoutDamping) {
-  EXPECT_DOUBLE_EQ(largest_step(Integrator::rk4, 500, 0), 2 * std::sqrt(2.0) / 500);
-  EXPECT_DOUBLE_EQ(largest_step(Integrator::semi_implicit, 500, 0), 2.0 / 500);
-  EXPECT_EQ(largest_step(Integrator::forward_euler, 500, 0), 0);
+  EXPECT_DOUBLE_EQ(max_step(Integrator::rk4, 500, 0), 2 * std::sqrt(2.0) / 500);
+  EXPECT_DOUBLE_EQ(max_step(Integrator::semi_implicit, 500, 0), 2.0 / 500);
+  EXPECT_EQ(max_step(Integrator::forward_euler, 500, 0), 0);
 }
 
 TEST(LargestStep, KeepsEveryFrequencyUpToTheBoundFromGrowing) {
   for (Integrator integrator : kIntegrators)
     for (double damping : {0.01, 1.0, 30.0, 200.0, 999.0, 1000.0, 1001.0, 1999.0, 2001.0, 5000.0, 1e5}) {
-      const double h = largest_step(integrator, 1000, damping);
+      const double h = max_step(integrator, 1000, damping);
       for (double share : {0.05, 0.3, 0.6, 0.8, 0.9, 0.97, 0.999999})
         EXPECT_LE(worst_growth(integrator, 1000, damping, share * h), 1 + 1e-12)
             << "integrator " << static_cast<int>(integrator) << ", damping " << damping << ", share " << share;
@@ -56,7 +56,7 @@ TEST(LargestStep, KeepsEveryFrequencyUpToTheBoundFromGrowing) {
 TEST(LargestStep, IsTheLargest) {
   for (Integrator integrator : kIntegrators)
     for (double damping : {1.0, 30.0, 200.0, 999.0, 1001.0, 1999.0, 2001.0, 5000.0, 1e5}) {
-      const double h = largest_step(integrator, 1000, damping);
+      const double h = max_step(integrator, 1000, damping);
       EXPECT_GT(worst_growth(integrator, 1000, damping, 1.001 * h), 1 + 1e-10)
           << "integrator " << static_cast<int>(integrator) << ", damping " << damping;
     }

@@ -68,7 +68,7 @@ TEST(Vibration, LowestFrequenciesAreThoseOfTheEigenproblem) {
     for (int k : {0, 1, 2, 3, 4}) {
       TensorMass<double> model(body.mesh, integrator, 0);
       set_displacement(model, modes.shape[k]);
-      const double h = 0.1 * largest_step(integrator, model.frequency_bound(), 0);
+      const double h = 0.1 * max_step(integrator, model.frequency_bound(), 0);
       const double period = measured_period(model, modes.shape[k], h);
       EXPECT_NEAR(period * modes.frequency[k] / (2 * std::numbers::pi), 1, 1e-4) << "mode " << k;
     }
@@ -86,7 +86,7 @@ TEST(Vibration, ABarSwingsAtItsClosedFormFrequency) {
   for (const Vector3d& x : body.mesh.rest) shape.emplace_back(0, 0, 1e-3 * std::sin(wave * x.z()));
   set_displacement(model, shape);
   const double frequency = wave * std::sqrt(4e3 / 1000);
-  const double period = measured_period(model, shape, 0.1 * largest_step(Integrator::rk4, model.frequency_bound(), 0));
+  const double period = measured_period(model, shape, 0.1 * max_step(Integrator::rk4, model.frequency_bound(), 0));
   EXPECT_NEAR(period * frequency / (2 * std::numbers::pi), 1, 1e-3);
 }
 
@@ -109,7 +109,7 @@ TEST(Vibration, Rk4LosesEnergyAtTheFifthPowerOfTheStep) {
   const auto body = testing::dynamic_block({3, 3, 3});
   const auto start = testing::random_field(body.mesh.rest.size(), 1e-4, 4);
   const double h =
-      largest_step(Integrator::rk4, TensorMass<double>(body.mesh, Integrator::rk4, 0).frequency_bound(), 0) / 8;
+      max_step(Integrator::rk4, TensorMass<double>(body.mesh, Integrator::rk4, 0).frequency_bound(), 0) / 8;
   const double coarse = energy_change(body, start, Integrator::rk4, h, 256 * h);
   const double fine = energy_change(body, start, Integrator::rk4, h / 2, 256 * h);
   EXPECT_LT(coarse, 2e-3);
@@ -120,7 +120,7 @@ TEST(Vibration, SemiImplicitEnergySwingsWithTheStepAndDoesNotDrift) {
   const auto body = testing::dynamic_block({3, 3, 3});
   const auto start = testing::random_field(body.mesh.rest.size(), 1e-4, 4);
   const double bound = TensorMass<double>(body.mesh, Integrator::rk4, 0).frequency_bound();
-  const double h = largest_step(Integrator::semi_implicit, bound, 0) / 16;
+  const double h = max_step(Integrator::semi_implicit, bound, 0) / 16;
   const double coarse = energy_change(body, start, Integrator::semi_implicit, h, 512 * h);
   const double fine = energy_change(body, start, Integrator::semi_implicit, h / 2, 512 * h);
   const double longer = energy_change(body, start, Integrator::semi_implicit, h, 4096 * h);
@@ -142,7 +142,7 @@ TEST(Vibration, TheLargestStepOfTheTrueFrequencyDividesBoundedFromGrowingMotion)
   const double highest = Modes(body).highest();
   for (double damping : {0.0, 300.0, 0.5 * highest})
     for (Integrator integrator : {Integrator::rk4, Integrator::semi_implicit, Integrator::forward_euler}) {
-      const double h = largest_step(integrator, highest, damping);
+      const double h = max_step(integrator, highest, damping);
       if (h == 0) continue;
       EXPECT_LT(growth(body, integrator, damping, 0.99 * h), 20) << static_cast<int>(integrator) << ", " << damping;
       // Forward Euler with a small step grows slowly.
@@ -168,7 +168,7 @@ TEST(Vibration, TheBoundedStepKeepsTheBodyStable) {
   const auto body = testing::dynamic_block({3, 3, 3});
   const double bound = TensorMass<float>(body.mesh, Integrator::rk4, 0).frequency_bound();
   for (Integrator integrator : {Integrator::rk4, Integrator::semi_implicit})
-    EXPECT_LT(growth(body, integrator, 0, 0.99 * largest_step(integrator, bound, 0)), 20);
+    EXPECT_LT(growth(body, integrator, 0, 0.99 * max_step(integrator, bound, 0)), 20);
 }
 
 }  // namespace

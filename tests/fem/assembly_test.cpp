@@ -34,7 +34,7 @@ TEST(Assembly, EqualsTheSumOfDenseElementMatrices) {
 
 TEST(Assembly, LeavesFixedDofsOut) {
   const auto mesh = testing::make_organ({2, 2, 2});
-  const auto dofs = apply_fixation(mesh, testing::make_body().fixed, "body");
+  const auto dofs = apply_boundary_conditions(mesh, testing::make_body().fixed, "body");
   const auto whole = full(assemble_stiffness(mesh, uniform(), DofMap(mesh)));
   const auto reduced = full(assemble_stiffness(mesh, uniform(), dofs));
   ASSERT_EQ(reduced.rows(), dofs.size());

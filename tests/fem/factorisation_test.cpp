@@ -16,7 +16,7 @@ namespace {
 
 struct Problem {
   TetMesh mesh = testing::make_organ({4, 3, 3});
-  DofMap dofs = apply_fixation(mesh, testing::make_body().fixed, "body");
+  DofMap dofs = apply_boundary_conditions(mesh, testing::make_body().fixed, "body");
   MaterialField materials{{{1000, 0.3, 1000}}, {}};
   SparseMatrix stiffness = assemble_stiffness(mesh, materials, dofs);
   Eigen::MatrixXd dense = Eigen::MatrixXd(stiffness).selfadjointView<Eigen::Lower>();
@@ -101,7 +101,7 @@ TEST(Condensation, EqualsTheDenseInverseByRightHandSides) {
 TEST(Condensation, WorksWithoutInteriorNodes) {
   Problem p;
   p.mesh = make_block({0, 0, 0}, {1, 1, 0.1}, {6, 6, 1});
-  p.dofs = apply_fixation(p.mesh, {testing::fix_group("x0")}, "body");
+  p.dofs = apply_boundary_conditions(p.mesh, {testing::fix_group("x0")}, "body");
   p.stiffness = assemble_stiffness(p.mesh, p.materials, p.dofs);
   p.dense = Eigen::MatrixXd(p.stiffness).selfadjointView<Eigen::Lower>();
   expect_compliance(p, 1, Route::condense);
@@ -111,7 +111,7 @@ TEST(Condensation, WorksWithoutInteriorNodes) {
 TEST(Condensation, SolvesWhereFewNodesAreTouchable) {
   Problem p;
   p.mesh = testing::make_organ({12, 12, 10});
-  p.dofs = apply_fixation(p.mesh, testing::make_body().fixed, "body");
+  p.dofs = apply_boundary_conditions(p.mesh, testing::make_body().fixed, "body");
   const auto surface = extract_surface(p.mesh).nodes;
   const std::vector<int> one{surface.back()}, rest(surface.begin(), surface.end() - 1);
   EXPECT_FALSE(surface_compliance(p.mesh, p.materials, p.dofs, one, rest).condensed);

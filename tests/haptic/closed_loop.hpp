@@ -48,7 +48,7 @@ class TouchedBlock {
     }
     mesh_.materials = {body.material};
     model_ = std::make_unique<TensorMass<double>>(mesh_, Integrator::rk4, damping);
-    largest_ = largest_step(Integrator::rk4, model_->frequency_bound(), damping);
+    largest_ = max_step(Integrator::rk4, model_->frequency_bound(), damping);
   }
 
   /// Moves the tissue on by `dt` while the tip's centre goes from a to b.

@@ -13,28 +13,28 @@ namespace {
 /// what the loop gives it in the same tick.
 class MassOnATip : public Device {
  public:
-  static constexpr double mass = 0.5, tick = 1e-3;  ///< [kg], [s]
-  static constexpr std::size_t max_ticks = 300;
+  static constexpr double kMass = 0.5, kTick = 1e-3;  ///< [kg], [s]
+  static constexpr std::size_t kMaxTicks = 300;
 
   struct Log {
-    std::array<double, max_ticks> height{}, force{};  ///< [m] of the tip's centre above the tissue, [N] upwards
+    std::array<double, kMaxTicks> height{}, force{};  ///< [m] of the tip's centre above the tissue, [N] upwards
     std::size_t reads = 0, renders = 0;
   };
   explicit MassOnATip(Log& log) : log_(log) {}
 
   DeviceSample read(double) override {
-    if (log_.reads < max_ticks) log_.height[log_.reads] = height_;
+    if (log_.reads < kMaxTicks) log_.height[log_.reads] = height_;
     ++log_.reads;
     return {{.depth = 0.2 - height_}, log_.reads};
   }
   void render(const Wrench& wrench, double) override {
-    if (log_.renders < max_ticks) log_.force[log_.renders] = wrench.force.z();
+    if (log_.renders < kMaxTicks) log_.force[log_.renders] = wrench.force.z();
     ++log_.renders;
     // It comes down by itself at first, then the force alone has it.
-    speed_ = log_.renders < 40 ? -0.1 : speed_ + wrench.force.z() / mass * tick;
-    height_ += speed_ * tick;
+    speed_ = log_.renders < 40 ? -0.1 : speed_ + wrench.force.z() / kMass * kTick;
+    height_ += speed_ * kTick;
   }
-  bool finished(double) const override { return log_.reads >= max_ticks; }
+  bool finished(double) const override { return log_.reads >= kMaxTicks; }
 
  private:
   Log& log_;
@@ -53,17 +53,17 @@ TEST(HapticLoop, ADeviceInTheProcessGetsItsForceInTheSameTickAndIsPushedOut) {
   haptic.start(start);
   HapticLoop loop(haptic, devices, *bus, presence, 1, "a test");
   loop.run(0);
-  ASSERT_GE(log.reads, MassOnATip::max_ticks);
+  ASSERT_GE(log.reads, MassOnATip::kMaxTicks);
   EXPECT_EQ(log.renders, log.reads);
   double deepest = 1, largest = 0;
-  for (std::size_t i = 0; i < MassOnATip::max_ticks; ++i) {
+  for (std::size_t i = 0; i < MassOnATip::kMaxTicks; ++i) {
     deepest = std::min(deepest, log.height[i]);
     largest = std::max(largest, log.force[i]);
     if (log.height[i] > 0.0081) EXPECT_EQ(log.force[i], 0) << "in free air, tick " << i;
   }
   EXPECT_LT(deepest, 0.006);
   EXPECT_GT(largest, 0.05);
-  EXPECT_GT(log.height[MassOnATip::max_ticks - 1], 0.008) << "the tissue pushes the hand out";
+  EXPECT_GT(log.height[MassOnATip::kMaxTicks - 1], 0.008) << "the tissue pushes the hand out";
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ class DeviceTest : public ::testing::Test {
 TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
   {
     LogWriter log(file_);
-    log.write(header_channel, 1, LogHeader{.schema = schema_text()});
+    log.write(kHeaderChannel, 1, LogHeader{.schema = schema_text()});
     for (std::uint64_t step = 40; step < 60; ++step) {
       if (step == 45) continue;  // lost
       log.write(topics::tool_state.name, 2,
@@ -52,7 +52,7 @@ TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
 TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
   {
     LogWriter log(file_);
-    log.write(header_channel, 1, LogHeader{.schema = schema_text()});
+    log.write(kHeaderChannel, 1, LogHeader{.schema = schema_text()});
     log.write(topics::tool_state.name, 2, ToolState{.tool = 3, .run = 7, .seq = 1, .step = 0});
   }
   try {

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using testing::duct_tip_at;
 using testing::DuctScene;
 
-constexpr double wide_open = 0.8;
+constexpr double kWideOpen = 0.8;
 
 /// The wall as the deformation node shows it: all nodes, those too that the haptic step has no need of.
 class ShownWall {
@@ -90,9 +90,9 @@ struct Theatre {
     duct.add_forceps().pivot = {0, 0.15, -0.03};
     ForcepsJaws& long_jaws = duct.add_forceps().forceps()->jaws;
     long_jaws.length = 0.02;
-    long_jaws.most_open = 1.6;
+    long_jaws.max_open = 1.6;
     haptic = std::make_unique<HapticStep>(duct.scene, duct.archives);
-    dofs = {at(0, {0, 0.03, -0.02}, wide_open), at(1, {0, 0.03, 0.02}, wide_open)};
+    dofs = {at(0, {0, 0.03, -0.02}, kWideOpen), at(1, {0, 0.03, 0.02}, kWideOpen)};
     haptic->start(dofs);
   }
   ToolDofs at(int tool, const Vector3d& joint, double grip) const {
@@ -120,8 +120,8 @@ struct Theatre {
   /// The feeding stroke: comes down on the catheter 20 mm before the mouth, takes it, and leads it in by 15 mm.
   void feed() {
     const Vector3d above{0, 0.03, -0.02}, on{0, 0.008, -0.02}, ahead{0, 0.008, -0.005};
-    move(0, above, on, wide_open, 200);
-    close(0, on, wide_open, 0.1, 200);
+    move(0, above, on, kWideOpen, 200);
+    close(0, on, kWideOpen, 0.1, 200);
     move(0, on, ahead, 0.1, 300);
     hold_still(100);
   }
@@ -130,9 +130,9 @@ struct Theatre {
 TEST(DuctManipulation, JawsStopAtTheCatheterTakeItAndFeelIt) {
   Theatre t;
   const Vector3d above{0, 0.03, -0.02}, on{0, 0.008, -0.02};
-  t.move(0, above, on, wide_open, 200);
+  t.move(0, above, on, kWideOpen, 200);
   EXPECT_FALSE(t.catheter().holds(0));
-  t.close(0, on, wide_open, 0.1, 200);
+  t.close(0, on, kWideOpen, 0.1, 200);
   EXPECT_TRUE(t.catheter().holds(0));
   EXPECT_EQ(t.task().grasps, 1u);
   // 1.25 mm of catheter and 1 mm of jaw on either side, about 8 mm ahead of the joint.
@@ -156,7 +156,7 @@ TEST(DuctManipulation, AGraspedCatheterIsLedInAndPushesBack) {
 TEST(DuctManipulation, OpenedJawsLetGo) {
   Theatre t;
   t.feed();
-  t.close(0, {0, 0.008, -0.005}, 0.1, wide_open, 100);
+  t.close(0, {0, 0.008, -0.005}, 0.1, kWideOpen, 100);
   EXPECT_FALSE(t.catheter().holds(0));
   EXPECT_EQ(t.task().drops, 0u);
   EXPECT_EQ(t.haptic->grip_torque(0), 0);
@@ -177,7 +177,7 @@ TEST(DuctManipulation, TheDuctIsTakenPulledAndLetGo) {
   Theatre t;
   constexpr double wide = 1.5;
   const Vector3d above{0, 0.03, 0.02}, on{0, 0.014, 0.02}, lifted{0, 0.016, 0.02};
-  t.close(1, above, wide_open, wide, 100);
+  t.close(1, above, kWideOpen, wide, 100);
   t.move(1, above, on, wide, 200);
   EXPECT_EQ(t.haptic->force(1).norm(), 0);  // astride of it
   t.close(1, on, wide, 0.1, 300);
@@ -213,7 +213,7 @@ TEST(DuctManipulation, TheStepAllocatesNothing) {
   t.feed();
   const long before = allocations();
   t.move(0, {0, 0.008, -0.005}, {0.003, 0.009, -0.012}, 0.1, 200);
-  t.close(0, {0.003, 0.009, -0.012}, 0.1, wide_open, 50);
+  t.close(0, {0.003, 0.009, -0.012}, 0.1, kWideOpen, 50);
   EXPECT_EQ(allocations() - before, 0);
 }
 
@@ -243,8 +243,8 @@ class RandomHands {
       Hand& h = hands_[tool];
       if (h.left-- <= 0) tool == 0 ? lead(h, t) : wander(h);
       h.goal += (h.to - h.goal) * h.rate;
-      h.velocity += dt / mass * (stiffness * (h.goal - h.at) - damping * h.velocity + t.haptic->force(tool));
-      h.at += dt * h.velocity;
+      h.velocity += kDt / kMass * (kStiffness * (h.goal - h.at) - kDamping * h.velocity + t.haptic->force(tool));
+      h.at += kDt * h.velocity;
       h.grip += (h.grip_to - h.grip) * h.rate;
       t.dofs[tool] = t.at(tool, h.at, h.grip);
     }
@@ -252,10 +252,10 @@ class RandomHands {
   }
 
  private:
-  static constexpr double dt = 1e-3, mass = 0.2, damping = 15, stiffness = 400;  ///< [s], [kg], [N s/m], [N/m]
+  static constexpr double kDt = 1e-3, kMass = 0.2, kDamping = 15, kStiffness = 400;  ///< [s], [kg], [N s/m], [N/m]
   struct Hand {
     Vector3d at, to, goal = at, velocity = Vector3d::Zero();
-    double grip = wide_open, grip_to = wide_open, rate = 0.01;
+    double grip = kWideOpen, grip_to = kWideOpen, rate = 0.01;
     int left = 0, phase = 0;
   };
   double within(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
@@ -268,7 +268,7 @@ class RandomHands {
     at_any_rate(h);
     switch (h.phase++ % 4) {
       case 0:  // to some place of the catheter that lies before the duct, with open jaws
-        h.grip_to = wide_open;
+        h.grip_to = kWideOpen;
         h.to = t.catheter().positions()[static_cast<std::size_t>(within(8, 26))] + Vector3d(0, 0.008, 0);
         h.to.z() = std::min(h.to.z(), -0.004);
         break;
@@ -281,12 +281,12 @@ class RandomHands {
         h.to = h.to.cwiseMax(Vector3d(-0.02, 0.004, -0.05)).cwiseMin(Vector3d(0.02, 0.03, -0.004));  // before the duct
         break;
       default:
-        h.grip_to = wide_open;
+        h.grip_to = kWideOpen;
     }
   }
   void wander(Hand& h) {
     at_any_rate(h);
-    h.grip_to = within(0, 1) < 0.5 ? 0.05 : wide_open;
+    h.grip_to = within(0, 1) < 0.5 ? 0.05 : kWideOpen;
     h.to = {within(-0.012, 0.012), within(0.022, 0.04), within(0.002, 0.035)};
   }
 
@@ -308,14 +308,14 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   t.feed();
   ShownWall wall(t.duct.archives[0]);
   RandomHands hands(7);
-  double largest_energy = 0, largest_force = 0;
+  double max_energy = 0, max_force = 0;
   int looks = 0, inside_checks = 0, outside = 0, strayed = 0;  // led in and outside the wall; not led in and within it
   for (int i = 0; i < steps; ++i) {
     hands.step(t);
     ASSERT_TRUE(t.haptic->force(0).allFinite() && t.haptic->force(1).allFinite()) << "step " << i;
     ASSERT_EQ((t.haptic->flags(0) | t.haptic->flags(1)) & fault, 0u) << "step " << i;
-    largest_energy = std::max(largest_energy, t.catheter().energy() + t.wall().energy());
-    largest_force = std::max({largest_force, t.haptic->force(0).norm(), t.haptic->force(1).norm()});
+    max_energy = std::max(max_energy, t.catheter().energy() + t.wall().energy());
+    max_force = std::max({max_force, t.haptic->force(0).norm(), t.haptic->force(1).norm()});
     if (i % 50 != 0) continue;
     const std::vector<Vector3d>& nodes = wall.of(t.wall());
     for (int p = 0; p < t.catheter().size(); ++p) {
@@ -329,16 +329,16 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
       strayed += inside && !led_in;
     }
   }
-  RecordProperty("largest_energy_J", std::to_string(largest_energy));
-  RecordProperty("largest_force_N", std::to_string(largest_force));
+  RecordProperty("largest_energy_J", std::to_string(max_energy));
+  RecordProperty("largest_force_N", std::to_string(max_force));
   std::printf(
       "%d s: largest energy %.3g J, largest force %.3g N, %d grasps, %d drops; of %d looks at a particle %d find it "
       "inside, %d outside "
       "the wall that it was led into, %d within the wall that it was not led into\n",
-      steps / 1000, largest_energy, largest_force, static_cast<int>(t.task().grasps), static_cast<int>(t.task().drops),
-      looks, inside_checks, outside, strayed);
-  EXPECT_LT(largest_energy, 0.1);
-  EXPECT_LT(largest_force, 60);
+      steps / 1000, max_energy, max_force, static_cast<int>(t.task().grasps), static_cast<int>(t.task().drops), looks,
+      inside_checks, outside, strayed);
+  EXPECT_LT(max_energy, 0.1);
+  EXPECT_LT(max_force, 60);
   EXPECT_GT(t.task().grasps, static_cast<std::uint64_t>(steps / 10000));
   EXPECT_GT(t.task().drops, 0u);
   EXPECT_GT(inside_checks, 0);

@@ -33,14 +33,14 @@ class HapticStepTest : public ::testing::Test {
   static void sweep(HapticStep& haptic, const Tool& tool, const Vector3d& a, const Vector3d& b, int steps) {
     for (int i = 1; i <= steps; ++i) haptic.step(std::array{tip_at(tool, a + (b - a) * i / steps)});
   }
-  static constexpr double radius = 0.008;
+  static constexpr double kRadius = 0.008;
 };
 
 TEST_F(HapticStepTest, ATipAboveTheSurfaceFeelsNothing) {
   const BlockScene& s = one_tool();
   HapticStep haptic(s.scene, s.archives);
   haptic.start(std::array{tip_at(s.scene.tools[0], {0, 0, 0.05})});
-  sweep(haptic, s.scene.tools[0], {0, 0, 0.05}, {0.01, 0, radius + 1e-4}, 200);
+  sweep(haptic, s.scene.tools[0], {0, 0, 0.05}, {0.01, 0, kRadius + 1e-4}, 200);
   EXPECT_EQ(haptic.force(0).norm(), 0);
 }
 
@@ -48,7 +48,7 @@ TEST_F(HapticStepTest, APressPushesTheToolBackAndReleasesWithoutAdhesion) {
   const BlockScene& s = one_tool();
   const Tool& tool = s.scene.tools[0];
   HapticStep haptic(s.scene, s.archives);
-  const Vector3d above{0, 0, 0.02}, pressed{0, 0, radius - 0.005};
+  const Vector3d above{0, 0, 0.02}, pressed{0, 0, kRadius - 0.005};
   haptic.start(std::array{tip_at(tool, above)});
   sweep(haptic, tool, above, pressed, 300);
   const double force = haptic.force(0).z();
@@ -69,14 +69,14 @@ TEST_F(HapticStepTest, TheTouchedSurfaceLiesOnTheTip) {
   const Tool& tool = s.scene.tools[0];
   HapticStep haptic(s.scene, s.archives);
   haptic.start(std::array{tip_at(tool, {0.003, 0.004, 0.02})});
-  const Vector3d end{0.003, 0.004, radius - 0.004};
+  const Vector3d end{0.003, 0.004, kRadius - 0.004};
   sweep(haptic, tool, {0.003, 0.004, 0.02}, end, 200);
   for (int i = 0; i < 5; ++i) haptic.step(std::array{tip_at(tool, end)});
   int touching = 0;
   for (const TouchContact& c : haptic.body(0).law().contacts())
     if (c.touch != Touch::open) {
       ++touching;
-      EXPECT_NEAR((c.position - end).norm(), radius, 2e-5);
+      EXPECT_NEAR((c.position - end).norm(), kRadius, 2e-5);
     }
   EXPECT_GT(touching, 0);
 }
@@ -117,7 +117,7 @@ TEST_F(HapticStepTest, FrictionHoldsASidewaysPushAndWithoutItTheTipSlides) {
     s.scene.contact.friction = friction;
     const Tool& tool = s.scene.tools[0];
     HapticStep haptic(s.scene, s.archives);
-    const Vector3d above{-0.01, 0, 0.02}, pressed{-0.01, 0, radius - 0.004}, aside{0.01, 0, radius - 0.004};
+    const Vector3d above{-0.01, 0, 0.02}, pressed{-0.01, 0, kRadius - 0.004}, aside{0.01, 0, kRadius - 0.004};
     haptic.start(std::array{tip_at(tool, above)});
     sweep(haptic, tool, above, pressed, 200);
     sweep(haptic, tool, pressed, aside, 1000);
@@ -193,7 +193,7 @@ TEST_F(HapticStepTest, RestoredStateGoesOnBitForBit) {
 TEST_F(HapticStepTest, TwoToolsAtOnePlaceStayFiniteAndBounded) {
   BlockScene s = two_tools();
   HapticStep haptic(s.scene, s.archives);
-  const Vector3d above{0.01, 0, 0.02}, pressed{0.01, 0, radius - 0.004};
+  const Vector3d above{0.01, 0, 0.02}, pressed{0.01, 0, kRadius - 0.004};
   haptic.start(std::array{tip_at(s.scene.tools[0], above), tip_at(s.scene.tools[1], above)});
   for (int i = 1; i <= 200; ++i) {
     const Vector3d p = above + (pressed - above) * i / 200;
@@ -208,7 +208,7 @@ TEST_F(HapticStepTest, ANonFinitePoseRampsTheForceToZeroWithinFiveMilliseconds) 
   const BlockScene& s = one_tool();
   const Tool& tool = s.scene.tools[0];
   HapticStep haptic(s.scene, s.archives);
-  const Vector3d above{0, 0, 0.02}, pressed{0, 0, radius - 0.005};
+  const Vector3d above{0, 0, 0.02}, pressed{0, 0, kRadius - 0.005};
   haptic.start(std::array{tip_at(tool, above)});
   sweep(haptic, tool, above, pressed, 300);
   const double force = haptic.force(0).norm();

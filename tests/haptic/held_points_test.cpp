@@ -121,7 +121,7 @@ TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces)
   VectorXd alone = VectorXd::Zero(3);
   single.solve(std::span(hold).first(1), std::span(normal).first(1), std::span(target).first(1), alone.data());
   EXPECT_TRUE(f.allFinite());
-  EXPECT_LT(f.cwiseAbs().maxCoeff(), 2.1 / HeldPoints::pivot_share * alone.cwiseAbs().maxCoeff());
+  EXPECT_LT(f.cwiseAbs().maxCoeff(), 2.1 / HeldPoints::kPivotShare * alone.cwiseAbs().maxCoeff());
 }
 
 TEST_F(HeldPointsTest, ASoftHoldGivesThePointsTargetLessSoftnessTimesForce) {

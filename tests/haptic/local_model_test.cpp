@@ -13,14 +13,14 @@ using testing::LoopTrace;
 using testing::tip_at;
 using testing::TouchedBlock;
 
-constexpr double dt = 1e-3, radius = 0.008;
+constexpr double kDt = 1e-3, kRadius = 0.008;
 
 /// Path of the tip that the hand intends.
 Vector3d intended(double t) {
   const auto ramp = [](double x) { return x <= 0 ? 0.0 : x >= 1 ? 1.0 : 0.5 - 0.5 * std::cos(std::numbers::pi * x); };
   double depth = 0.012 * ramp((t - 0.1) / 0.4) - 0.014 * ramp((t - 4.5) / 0.2);
   if (t > 2 && t < 3) depth += 0.003 * std::sin(2 * std::numbers::pi * 4 * (t - 2));
-  return {0, 0, radius + 0.002 - depth};
+  return {0, 0, kRadius + 0.002 - depth};
 }
 
 /// Five seconds of the loop: the hand comes down, presses, holds still, shakes for a second, holds still and leaves.
@@ -28,7 +28,7 @@ Vector3d intended(double t) {
 /// than it could, claims `stiffer` times the stiffness, and comes no more from step `silent_from` on.
 LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step, double stiffer = 1,
               std::uint64_t silent_from = 5000, bool controller = true) {
-  Scene scene = testing::moving_block_scene(radius);
+  Scene scene = testing::moving_block_scene(kRadius);
   scene.passivity.controller = controller;
   const Tool& tool = scene.tools[0];
   HapticStep haptic(scene, std::vector<Archive>(1));
@@ -45,13 +45,13 @@ LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step
     }
     const ToolDofs dofs = tip_at(tool, hand.at);
     haptic.step(std::array{dofs});
-    block.tick(before, hand.at, radius, dt);
+    block.tick(before, hand.at, kRadius, kDt);
     if (k < silent_from) on_the_way.push_back(block.describe(dofs, k, stiffer));
     trace.at.push_back(hand.at);
     trace.felt.push_back(lock_step ? Vector3d(-block.force()) : haptic.force(0));
     trace.full.push_back(-block.force());
     before = hand.at;
-    hand.move(intended(dt * static_cast<double>(k)), trace.felt.back(), dt);
+    hand.move(intended(kDt * static_cast<double>(k)), trace.felt.back(), kDt);
   }
   return trace;
 }
@@ -59,7 +59,7 @@ LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step
 /// Largest and smallest height of the tip [m] between two times, subtracted.
 double swing(const LoopTrace& trace, double from, double to) {
   double least = 1, most = -1;
-  for (int k = static_cast<int>(from / dt); k < static_cast<int>(to / dt); ++k) {
+  for (int k = static_cast<int>(from / kDt); k < static_cast<int>(to / kDt); ++k) {
     least = std::min(least, trace.at[k].z());
     most = std::max(most, trace.at[k].z());
   }
@@ -100,15 +100,15 @@ struct Setting {
 const Setting settings[] = {{"loose hand, 5 kPa", {0.1, 2, 100}, 5e3},   {"usual hand, 5 kPa", {0.2, 4, 400}, 5e3},
                             {"firm hand, 5 kPa", {0.3, 10, 1000}, 5e3},  {"loose hand, 20 kPa", {0.1, 2, 100}, 20e3},
                             {"usual hand, 20 kPa", {0.2, 4, 400}, 20e3}, {"firm hand, 20 kPa", {0.3, 10, 1000}, 20e3}};
-constexpr double tissue_damping = 5;  // [1/s]: the block swings for a second by itself
+constexpr double kTissueDamping = 5;  // [1/s]: the block swings for a second by itself
 
 TEST(LocalModelInTheLoop, ItsForceFollowsTheFullModelAndNoSwingGrowsAtAnyDelay) {
   const std::pair<int, double> bounds[] = {
       {0, 0.005}, {1, 0.005}, {5, 0.006}, {20, 0.01}, {50, 0.02}};  // rms, of the peak
   for (const Setting& s : settings) {
-    const LoopTrace reference = run(s.hand, s.young, tissue_damping, 0, true);
+    const LoopTrace reference = run(s.hand, s.young, kTissueDamping, 0, true);
     for (const auto& [delay, bound] : bounds) {
-      const LoopTrace trace = run(s.hand, s.young, tissue_damping, delay, false);
+      const LoopTrace trace = run(s.hand, s.young, kTissueDamping, delay, false);
       const ForceError e = error_of(trace, reference);
       fmt::print("| {} | {} | {:.3f} | {:.4f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", s.name, delay, e.peak, e.rms,
                  100 * e.rms / e.peak, e.pressed, e.largest, 1e3 * e.path);
@@ -133,7 +133,7 @@ TEST(LocalModelInTheLoop, AStiffnessTwiceTooLargeOrTooSmallIsStableUpToFiveMilli
   for (const Setting& s : settings)
     for (const double factor : {0.5, 2.0})
       for (const int delay : {0, 1, 5}) {
-        const LoopTrace trace = run(s.hand, s.young, tissue_damping, delay, false, factor);
+        const LoopTrace trace = run(s.hand, s.young, kTissueDamping, delay, false, factor);
         SCOPED_TRACE(fmt::format("{}, {} ms, stiffness times {}", s.name, delay, factor));
         for (const double from : {0.8, 3.0}) {
           const double early = swing(trace, from, from + 0.6), late = swing(trace, from + 0.6, from + 1.2);
@@ -145,16 +145,16 @@ TEST(LocalModelInTheLoop, AStiffnessTwiceTooLargeOrTooSmallIsStableUpToFiveMilli
 // What makes the test above mean something: without the stiffness the delayed force alone drives the loop.
 TEST(LocalModelInTheLoop, WithoutItsStiffnessTheDelayedForceMakesTheHandShake) {
   const Setting& s = settings[4];
-  const double alone = swing(run(s.hand, s.young, tissue_damping, 20, false, 0, 5000, false), 1.4, 2);
-  const double controlled = swing(run(s.hand, s.young, tissue_damping, 20, false, 0), 1.4, 2);
+  const double alone = swing(run(s.hand, s.young, kTissueDamping, 20, false, 0, 5000, false), 1.4, 2);
+  const double controlled = swing(run(s.hand, s.young, kTissueDamping, 20, false, 0), 1.4, 2);
   EXPECT_GT(alone, 1e-3);
   EXPECT_LT(controlled, 0.5 * alone) << "the passivity controller takes most of it away, the stiffness all";
-  EXPECT_LT(swing(run(s.hand, s.young, tissue_damping, 20, false, 1), 1.4, 2), 1e-5);
+  EXPECT_LT(swing(run(s.hand, s.young, kTissueDamping, 20, false, 1), 1.4, 2), 1e-5);
 }
 
 TEST(LocalModelInTheLoop, WhenTheModelsStopTheForceFadesAndTheToolComesToRest) {
   const Setting& s = settings[1];
-  const LoopTrace trace = run(s.hand, s.young, tissue_damping, 1, false, 1, 1500);
+  const LoopTrace trace = run(s.hand, s.young, kTissueDamping, 1, false, 1, 1500);
   const int fades = 1500 + 150;
   EXPECT_GT(trace.felt[fades - 5].norm(), 0.5);
   EXPECT_LT(trace.felt[fades + 10].norm(), 1e-12);

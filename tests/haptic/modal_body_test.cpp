@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using testing::duct_tip_at;
 using testing::DuctScene;
 
-constexpr double top = DuctScene::radius + DuctScene::thickness / 2;  // [m] of the duct's outer side above its axis
+constexpr double kTop = DuctScene::kRadius + DuctScene::kThickness / 2;  // [m] of the duct's outer side above its axis
 
 /// A duct under one probe that comes down on the middle of it.
 struct Pressed {
@@ -29,7 +29,7 @@ struct Pressed {
     haptic->start(std::array{at(0.002)});
   }
   ToolDofs at(double above) const {
-    return duct_tip_at(duct.scene.tools[0], {0, top + 0.003 + above, DuctScene::length / 2});
+    return duct_tip_at(duct.scene.tools[0], {0, kTop + 0.003 + above, DuctScene::kLength / 2});
   }
   void move(double from, double to, int steps) {
     for (int i = 1; i <= steps; ++i) haptic->step(std::array{at(from + (to - from) * i / steps)});
@@ -53,7 +53,7 @@ TEST(ModalBody, AtRestUnderATipItPushesAsAQuasiStaticBodyDoes) {
   // The same compliance without inertia. Its tools touch the middle surface: they are thicker by half the wall.
   DuctScene still(30);
   Tool& tool = still.add_probe();
-  tool.probe()->radius += DuctScene::thickness / 2;
+  tool.probe()->radius += DuctScene::kThickness / 2;
   QuasiStaticSpec body;
   static_cast<MeshedSpec&>(body) = *as<MeshedSpec>(still.scene.bodies[0]);
   still.scene.bodies[0] = body;

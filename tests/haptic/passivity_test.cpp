@@ -19,12 +19,12 @@ using Eigen::Vector3d;
 using testing::BlockScene;
 using testing::tip_at;
 
-constexpr double dt = 1e-3;
+constexpr double kDt = 1e-3;
 
 /// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
 struct Port {
   explicit Port(bool controller = true, double reserve = 0.01)
-      : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, dt) {}
+      : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, kDt) {}
 
   PortForce tick(const Vector3d& to, const PortForce& asked) {
     const PortMotion motion{.shift = to - at};
@@ -68,7 +68,7 @@ TEST(Passivity, EnergyCountsTheForceThatWasHeldOverTheMotion) {
 }
 
 TEST(Passivity, TorqueAndGripCount) {
-  PassivityGuard guard({}, 1, 10, 1e5, dt);
+  PassivityGuard guard({}, 1, 10, 1e5, kDt);
   guard.hold(0, {.torque = {0, 0.1, 0}, .grip = 0.2});
   const Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d now = before;
@@ -90,12 +90,12 @@ TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
         Vector3d force = Vector3d::Zero(), before = hand.at;
         port.at = hand.at;
         for (int i = 0; i < 4000; ++i) {
-          hand.move(Vector3d::Zero(), force, dt);
+          hand.move(Vector3d::Zero(), force, kDt);
           const Vector3d motion = hand.at - before;
           before = hand.at;
           force = port.tick(hand.at, Vector3d(strength * motion.stableNormalized()));
           ASSERT_TRUE(force.allFinite());
-          ASSERT_LE(force.norm(), strength + PassivityGuard::most_damping / dt * hand.speed.norm() * 1.1 + 1e-12);
+          ASSERT_LE(force.norm(), strength + PassivityGuard::kMaxDamping / kDt * hand.speed.norm() * 1.1 + 1e-12);
         }
         if (controller) {
           EXPECT_GE(port.least, -reserve) << reserve << " J, " << strength << " N";
@@ -139,8 +139,8 @@ TEST(Passivity, AForceThatWasTakenAwayEarnsItsReturn) {
     Port port;
     for (int i = 0; i < 1000; ++i) port.tick({i % 2 ? 2e-5 : 0, 0, 0}, Vector3d(i % 2 ? -10 : 10, 0, 0));
     double travelled = 0;
-    for (Vector3d given = Vector3d::Zero(); given.x() > -5 + 1e-12; travelled += speed * dt) {
-      given = port.tick({port.at.x() + speed * dt, 0, 0}, Vector3d(-5, 0, 0));
+    for (Vector3d given = Vector3d::Zero(); given.x() > -5 + 1e-12; travelled += speed * kDt) {
+      given = port.tick({port.at.x() + speed * kDt, 0, 0}, Vector3d(-5, 0, 0));
       ASSERT_LE(given.x(), 0);
       ASSERT_LT(travelled, 0.01) << speed << " m/s: locked out at " << given.x() << " N";
     }
@@ -154,11 +154,11 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
   const auto vector = [&] { return Vector3d(any(random), any(random), any(random)); };
-  constexpr double turn = PassivityGuard::most_acceleration * dt * dt;
+  constexpr double turn = PassivityGuard::kMaxAcceleration * kDt * kDt;
   for (const double slew : {1e5, 2e4})
     for (int run = 0; run < 60; ++run) {
-      PassivityGuard guard({.controller = true, .reserve = 0.01}, 1, 20, slew, dt);
-      SafetyChain chain(20, slew, dt);
+      PassivityGuard guard({.controller = true, .reserve = 0.01}, 1, 20, slew, kDt);
+      SafetyChain chain(20, slew, kDt);
       Vector3d motion = Vector3d::Zero(), given = Vector3d::Zero(), asked = Vector3d::Zero();
       double least = 0;
       const double malice = 0.25 * (run % 5);
@@ -182,7 +182,7 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
 }
 
 TEST(Passivity, OneToolMayTakeOutWhatAnotherPutIn) {
-  PassivityGuard guard({.controller = true, .reserve = 1e-3}, 2, 20, 1e5, dt);
+  PassivityGuard guard({.controller = true, .reserve = 1e-3}, 2, 20, 1e5, kDt);
   for (int i = 0; i < 1000; ++i) {
     const std::array motion{PortMotion{.shift = {1e-4, 0, 0}}, PortMotion{.shift = {1e-4, 0, 0}}};
     guard.observe(motion);
@@ -233,7 +233,7 @@ struct DelayedWall {
     Vector3d force = Vector3d::Zero();
     double low = 1, high = -1, largest = 0;
     for (int i = 0; i < 6000; ++i) {
-      hand.move({0, 0, -0.01}, force, dt);
+      hand.move({0, 0, -0.01}, force, kDt);
       late[i % late.size()] = std::clamp(-stiffness * hand.at.z(), 0.0, 20.0);
       force = port.tick(hand.at, Vector3d(0, 0, late[(i + 1) % late.size()]));
       largest = std::max(largest, force.norm());

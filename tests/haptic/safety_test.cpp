@@ -21,14 +21,14 @@ TEST(Safety, TheForceNeverExceedsItsLimitAndTorqueShrinksWithIt) {
 }
 
 TEST(Safety, ATorqueWithoutForceIsLimitedToo) {
-  const double most = 5 * SafetyChain::longest_lever;
+  const double most = 5 * SafetyChain::kMaxLever;
   SafetyChain chain(5.0, 1000, 1e-3);
   Vector3d last = Vector3d::Zero();
   for (int i = 0; i < 20; ++i) {
     Vector3d force(1e-3, 0, 0), torque(0, 5e8, 0);
     EXPECT_TRUE(chain.apply(force, torque, true) & force_limited);
     EXPECT_LE(torque.norm(), most + 1e-12);
-    EXPECT_LE((torque - last).norm(), 1000 * 1e-3 * SafetyChain::longest_lever + 1e-12);
+    EXPECT_LE((torque - last).norm(), 1000 * 1e-3 * SafetyChain::kMaxLever + 1e-12);
     last = torque;
   }
   EXPECT_NEAR(last.norm(), most, 1e-9);

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using testing::tip_at;
 
-constexpr std::uint64_t run_id = 5;
-constexpr int steps = 2500;
+constexpr std::uint64_t kRunId = 5;
+constexpr int kSteps = 2500;
 
 Scene moving_scene(const fs::path& folder) {
   std::string tools;
@@ -61,9 +61,9 @@ class VerifyMoving : public ::testing::Test {
     Recorder recorder(*recorders, {.file = log(), .version = "test"});
     const auto models = bus->writer(topics::local_contact_model);
     const auto text = bus->writer(topics::scene);
-    text->write({.run = run_id, .seq = 1, .scene_hash = "hash", .text = to_toml(scene), .code_path = code_path()});
+    text->write({.run = kRunId, .seq = 1, .scene_hash = "hash", .text = to_toml(scene), .code_path = code_path()});
     HapticStep haptic(scene, std::vector<Archive>(1));
-    Publisher publisher(*bus, haptic, run_id);
+    Publisher publisher(*bus, haptic, kRunId);
     const auto tip = [](int tool, int i) {
       return Vector3d(0.02 * tool, 0, 0.008 - 0.003 * std::sin(0.01 * i + tool));
     };
@@ -73,7 +73,7 @@ class VerifyMoving : public ::testing::Test {
     haptic.start(dofs_at(0));
     auto record = std::make_unique<StepRecord>();
     std::uint64_t seq = 0;
-    for (int i = 0; i < steps; ++i) {
+    for (int i = 0; i < kSteps; ++i) {
       if (i % 1000 == 0) {
         HapticKeyframe keyframe{.step = static_cast<std::uint64_t>(i), .dt = haptic.dt(), .code_path = code_path()};
         keyframe.state.resize(haptic.state_size());
@@ -105,7 +105,7 @@ class VerifyMoving : public ::testing::Test {
   void rewrite(const std::function<bool(LogEvent&)>& keep) {
     LogReader reader(log());
     LogWriter writer(changed(), std::size_t{1} << 30);
-    writer.write(header_channel, reader.header().start_monotonic_ns, reader.header());
+    writer.write(kHeaderChannel, reader.header().start_monotonic_ns, reader.header());
     for (LogEvent event; reader.next(event);)
       if (keep(event)) writer.write_payload(event.channel, event.receive_ns, event.payload);
     ASSERT_EQ(writer.finish().lost, 0u);
@@ -119,7 +119,7 @@ class VerifyMoving : public ::testing::Test {
 TEST_F(VerifyMoving, EveryForceIsFoundAgainBitForBitOverARestartOfTheDeformNode) {
   const VerifyReport report = verify_log(log());
   EXPECT_TRUE(report.verified()) << report.mismatch << (report.gaps.empty() ? "" : report.gaps[0]);
-  EXPECT_EQ(report.forces, 2u * steps);
+  EXPECT_EQ(report.forces, 2u * kSteps);
 }
 
 TEST_F(VerifyMoving, OneBitOfOneModelIsFound) {
@@ -149,7 +149,7 @@ TEST_F(VerifyMoving, AModelThatTheLogLacksIsAGapUpToTheNextKeyframe) {
   ASSERT_EQ(report.gaps.size(), 1u);
   EXPECT_EQ(report.gaps[0],
             "cannot verify steps 1201 to 1999: the local contact model 1201 of tool 0 of step 1201 is not in the log");
-  EXPECT_EQ(report.forces, 2u * (steps - 799));
+  EXPECT_EQ(report.forces, 2u * (kSteps - 799));
 }
 
 TEST_F(VerifyMoving, ModelsThatNoStepUsedMayBeMissing) {

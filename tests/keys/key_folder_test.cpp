@@ -160,8 +160,8 @@ TEST_F(KeyFolder, FurtherKeysComeFromTheSameAuthority) {
 
 TEST_F(KeyFolder, KeysEndWithTheirAuthorityAtTheLatest) {
   const std::time_t now = std::time(nullptr), authority = keys::end_of(text_of(keys_ / "authority/certificate.pem"));
-  EXPECT_GT(authority, now + 7000 * day);
-  EXPECT_EQ(keys::add_keys(keys_, "render", "late", {now, authority + 100 * day}), authority);
+  EXPECT_GT(authority, now + 7000 * kDay);
+  EXPECT_EQ(keys::add_keys(keys_, "render", "late", {now, authority + 100 * kDay}), authority);
 }
 
 }  // namespace

@@ -29,10 +29,10 @@ inline std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-constexpr std::time_t day = 24 * 60 * 60;
+constexpr std::time_t kDay = 24 * 60 * 60;
 /// From yesterday for a month.
 inline keys::Period now_and_on() {
-  return {std::time(nullptr) - day, std::time(nullptr) + 30 * day};
+  return {std::time(nullptr) - kDay, std::time(nullptr) + 30 * kDay};
 }
 
 }  // namespace palpate::testing

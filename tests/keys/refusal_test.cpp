@@ -63,7 +63,7 @@ TEST_F(KeyRefusal, GoodKeysJoin) {
 
 TEST_F(KeyRefusal, AnAuthorityThatHasExpired) {
   const std::time_t now = std::time(nullptr);
-  const keys::Identity old = keys::make_authority("palpate old", {now - 3 * day, now - day}),
+  const keys::Identity old = keys::make_authority("palpate old", {now - 3 * kDay, now - kDay}),
                        member = keys::make_member(old, "haptic", now_and_on());
   std::ofstream(haptic_.authority) << old.certificate;
   std::ofstream(haptic_.certificate) << member.certificate;
@@ -108,25 +108,25 @@ TEST_F(KeyRefusal, AKeyThatIsNotTheCertificates) {
 
 TEST_F(KeyRefusal, ACertificateThatHasExpired) {
   const std::time_t now = std::time(nullptr);
-  renew({now - 3 * day, now - day}, now_and_on());
+  renew({now - 3 * kDay, now - kDay}, now_and_on());
   expect(".*/haptic/certificate.pem or the authority's has expired; `palpate keys` makes new ones");
 }
 
 TEST_F(KeyRefusal, ACertificateFromTheFuture) {
   const std::time_t now = std::time(nullptr);
-  renew({now + day, now + 2 * day}, now_and_on());
+  renew({now + kDay, now + 2 * kDay}, now_and_on());
   expect(".*/haptic/certificate.pem is not valid yet: is this host's clock right\\?");
 }
 
 TEST_F(KeyRefusal, PermissionsThatHaveExpired) {
   const std::time_t now = std::time(nullptr);
-  renew(now_and_on(), {now - 3 * day, now - day});
+  renew(now_and_on(), {now - 3 * kDay, now - kDay});
   expect(".*/haptic/permissions.p7s has expired; `palpate keys` makes new ones");
 }
 
 TEST_F(KeyRefusal, PermissionsFromTheFuture) {
   const std::time_t now = std::time(nullptr);
-  renew(now_and_on(), {now + day, now + 2 * day});
+  renew(now_and_on(), {now + kDay, now + 2 * kDay});
   expect(".*/haptic/permissions.p7s is not valid yet: is this host's clock right\\?");
 }
 

@@ -24,13 +24,13 @@ TEST(Quality, ShapeIsOneForARegularTetrahedronAtAnySize) {
     for (auto& x : mesh.nodes) x *= size;
     EXPECT_NEAR(std::abs(tet_shape(mesh, mesh.tetrahedra[0])), 1, 1e-12);
     EXPECT_NEAR(tet_shape(mesh, {0, 2, 1, 3}), -tet_shape(mesh, {0, 1, 2, 3}), 1e-12);
-    EXPECT_NEAR(smallest_dihedral_angle(mesh, mesh.tetrahedra[0]), std::acos(1.0 / 3), 1e-12);
+    EXPECT_NEAR(min_dihedral_angle(mesh, mesh.tetrahedra[0]), std::acos(1.0 / 3), 1e-12);
   }
 }
 
 TEST(Quality, DihedralAngleOfARightCornerIsThatOfItsSlantedFace) {
   const TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {}};
-  EXPECT_NEAR(smallest_dihedral_angle(mesh, mesh.tetrahedra[0]), std::atan(std::numbers::sqrt2), 1e-12);
+  EXPECT_NEAR(min_dihedral_angle(mesh, mesh.tetrahedra[0]), std::atan(std::numbers::sqrt2), 1e-12);
 }
 
 TEST(Quality, AGoodMeshPasses) {

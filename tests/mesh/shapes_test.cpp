@@ -44,7 +44,7 @@ TEST(Liver, HasThePapersSizeAHumansExtentAndGoodElements) {
   EXPECT_LT((high - low - Eigen::Vector3d(0.26, 0.165, 0.125)).cwiseAbs().maxCoeff(), 0.006);
   EXPECT_LT((0.5 * (high + low)).cwiseAbs().maxCoeff(), 0.006);
   EXPECT_NEAR(volume_of(liver), 1.9e-3, 0.1e-3);
-  for (const auto& t : liver.tetrahedra) EXPECT_GT(smallest_dihedral_angle(liver, t), 18 * std::numbers::pi / 180);
+  for (const auto& t : liver.tetrahedra) EXPECT_GT(min_dihedral_angle(liver, t), 18 * std::numbers::pi / 180);
 }
 
 TEST(Liver, SurfaceNodesLieOnTheShapeAndTrianglesAreEven) {
@@ -88,9 +88,9 @@ TEST(Cylinder, FileHasTheSizeOfTheBrainSpecimen) {
   expect_same(make_cylinder(0.015, 0.013, 6, 6), cylinder);
 }
 
-double least_angle(const TetMesh& mesh) {
+double min_angle(const TetMesh& mesh) {
   double angle = std::numbers::pi;
-  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, smallest_dihedral_angle(mesh, t));
+  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, min_dihedral_angle(mesh, t));
   return angle * 180 / std::numbers::pi;
 }
 
@@ -130,7 +130,7 @@ TEST(PlateCut, IsWhatItsGeneratorMakesWithThePapersCounts) {
   EXPECT_EQ(plate.tetrahedra.size(), 2212u);
   EXPECT_EQ(plate.groups.at("corners").nodes.size(), 4u * 4 * 3);
   EXPECT_NEAR(volume_of(plate), 0.05 * 0.11 * 0.01, 1e-16);
-  EXPECT_GT(least_angle(plate), 35);
+  EXPECT_GT(min_angle(plate), 35);
 }
 
 TEST(CylinderTear, IsWhatItsGeneratorMakesWithThePapersCounts) {
@@ -142,7 +142,7 @@ TEST(CylinderTear, IsWhatItsGeneratorMakesWithThePapersCounts) {
   EXPECT_EQ(cylinder.groups.at("bottom").nodes.size(), 31u);
   EXPECT_EQ(cylinder.groups.at("side").nodes.size(), 18u * 8);
   EXPECT_NEAR(volume_of(cylinder), 0.05 * 9 * std::sin(std::numbers::pi / 9) * 0.015 * 0.015, 1e-11);
-  EXPECT_GT(least_angle(cylinder), 13.9);
+  EXPECT_GT(min_angle(cylinder), 13.9);
 }
 
 TEST(CylinderHybrid, IsWhatItsGeneratorMakesInTwoEqualHalves) {
@@ -164,7 +164,7 @@ TEST(Hepatectomy, IsWhatItsGeneratorMakesOfThePapersSize) {
   EXPECT_NEAR(liver.nodes.size(), 1537, 0.02 * 1537);
   EXPECT_NEAR(liver.tetrahedra.size(), 7039, 0.02 * 7039);
   EXPECT_NEAR(liver.groups.at("segment").tetrahedra.size() / double(liver.tetrahedra.size()), 0.18, 0.005);
-  EXPECT_GT(least_angle(liver), 20);
+  EXPECT_GT(min_angle(liver), 20);
 }
 
 TEST(Hepatectomy, PartsAreSoundAndMakeUpTheWhole) {

@@ -36,19 +36,19 @@ bool at_rest(const Deformer& deformer, int body) {
 TEST(Deformer, RebuildsAModalShellLikeDoublePrecision) {
   const DuctScene s;
   Deformer deformer(s.scene, s.archives);
-  EXPECT_TRUE(at_rest(deformer, duct_body));
+  EXPECT_TRUE(at_rest(deformer, kDuctBody));
   const ModalState state = s.modal_state();
   ASSERT_TRUE(deformer.take(state));
   EXPECT_TRUE(deformer.fresh());
   deformer.deform();
   EXPECT_FALSE(deformer.fresh());
-  const std::vector<Eigen::Vector3d> expected = reference(s.archives[duct_body], state);
+  const std::vector<Eigen::Vector3d> expected = reference(s.archives[kDuctBody], state);
   double largest = 0, error = 0;
   for (std::size_t n = 0; n < expected.size(); ++n) {
     largest = std::max(largest, expected[n].norm());
-    error = std::max(error, (deformer.surface(duct_body).displacement[n].cast<double>() - expected[n]).norm());
-    EXPECT_EQ(deformer.surface(duct_body).position[n],
-              s.archives[duct_body].surface.position[n].cast<float>() + deformer.surface(duct_body).displacement[n]);
+    error = std::max(error, (deformer.surface(kDuctBody).displacement[n].cast<double>() - expected[n]).norm());
+    EXPECT_EQ(deformer.surface(kDuctBody).position[n],
+              s.archives[kDuctBody].surface.position[n].cast<float>() + deformer.surface(kDuctBody).displacement[n]);
   }
   EXPECT_GT(largest, 1e-4);
   EXPECT_LT(error, 1e-5 * largest);
@@ -66,17 +66,17 @@ TEST(Deformer, WithoutForcesOnlyTheModesShow) {
   state.coordinates[3] = 1e-4;
   ASSERT_TRUE(deformer.take(state));
   deformer.deform();
-  const auto& shape = s.archives[duct_body].modal->shape;
-  const std::size_t rows = 3 * s.archives[duct_body].surface.position.size();
+  const auto& shape = s.archives[kDuctBody].modal->shape;
+  const std::size_t rows = 3 * s.archives[kDuctBody].surface.position.size();
   for (std::size_t row = 0; row < rows; ++row)
-    EXPECT_NEAR(deformer.surface(duct_body).displacement[row / 3][static_cast<int>(row % 3)],
+    EXPECT_NEAR(deformer.surface(kDuctBody).displacement[row / 3][static_cast<int>(row % 3)],
                 1e-4 * shape[3 * rows + row], 1e-9);
 }
 
 TEST(Deformer, DrawsACatheterAsATubeAboutItsParticles) {
   const DuctScene s;
   Deformer deformer(s.scene, s.archives);
-  EXPECT_TRUE(at_rest(deformer, catheter_body));
+  EXPECT_TRUE(at_rest(deformer, kCatheterBody));
   const CatheterState state = s.catheter_state(0.01, 5e-5);
   ASSERT_TRUE(deformer.take(state));
   deformer.deform();
@@ -94,12 +94,12 @@ TEST(Deformer, DrawsACatheterAsATubeAboutItsParticles) {
     return least;
   };
   int on_wall = 0;
-  for (const Eigen::Vector3f& p : deformer.surface(catheter_body).position) {
+  for (const Eigen::Vector3f& p : deformer.surface(kCatheterBody).position) {
     EXPECT_LT(distance(p), 0.00125f * 1.1f);
     on_wall += distance(p) > 0.00125f * 0.9f;
   }
-  EXPECT_GT(on_wall, 10 * DuctScene::particles);
-  for (const Eigen::Vector3f& n : deformer.surface(catheter_body).normal) EXPECT_NEAR(n.norm(), 1, 1e-4);
+  EXPECT_GT(on_wall, 10 * DuctScene::kParticles);
+  for (const Eigen::Vector3f& n : deformer.surface(kCatheterBody).normal) EXPECT_NEAR(n.norm(), 1, 1e-4);
 }
 
 TEST(Deformer, RefusesWhatDoesNotFitAndKeepsNothingOfIt) {
@@ -110,10 +110,10 @@ TEST(Deformer, RefusesWhatDoesNotFitAndKeepsNothingOfIt) {
     change(state);
     return deformer.take(state);
   };
-  const auto surface = static_cast<std::uint32_t>(s.archives[duct_body].surface.size());
+  const auto surface = static_cast<std::uint32_t>(s.archives[kDuctBody].surface.size());
   EXPECT_FALSE(modal([](ModalState& m) { m.body = 3; }));
-  EXPECT_FALSE(modal([](ModalState& m) { m.body = organ_body; }));
-  EXPECT_FALSE(modal([](ModalState& m) { m.body = catheter_body; }));
+  EXPECT_FALSE(modal([](ModalState& m) { m.body = kOrganBody; }));
+  EXPECT_FALSE(modal([](ModalState& m) { m.body = kCatheterBody; }));
   EXPECT_FALSE(modal([](ModalState& m) { m.coordinates.pop_back(); }));
   EXPECT_FALSE(modal([](ModalState& m) { m.coordinates.push_back(0); }));
   EXPECT_FALSE(modal([&](ModalState& m) { m.forces[2].node = surface; }));
@@ -122,11 +122,11 @@ TEST(Deformer, RefusesWhatDoesNotFitAndKeepsNothingOfIt) {
     change(state);
     return deformer.take(state);
   };
-  EXPECT_FALSE(catheter([](CatheterState& m) { m.body = duct_body; }));
+  EXPECT_FALSE(catheter([](CatheterState& m) { m.body = kDuctBody; }));
   EXPECT_FALSE(catheter([](CatheterState& m) { m.body = 9; }));
   EXPECT_FALSE(catheter([](CatheterState& m) { m.position.resize(m.position.size() - 3); }));
   ContactState contacts{.run = 5};
-  contacts.forces.push_back({duct_body, surface, {1, 0, 0}});
+  contacts.forces.push_back({kDuctBody, surface, {1, 0, 0}});
   EXPECT_FALSE(deformer.take(contacts));
   EXPECT_EQ(deformer.run(), 0u);
   EXPECT_FALSE(deformer.fresh());
@@ -137,12 +137,12 @@ TEST(Deformer, NodalForcesOfContactsShapeQuasiStaticBodiesAlone) {
   const DuctScene s;
   Deformer deformer(s.scene, s.archives);
   ContactState contacts{.run = 5, .seq = 1, .step = 9, .sense_ns = 1100, .press = {0, 0, 1}};
-  contacts.forces.push_back({organ_body, 1, {0, 0, 2}});
-  contacts.forces.push_back({duct_body, 4, {0, 0, 2}});
+  contacts.forces.push_back({kOrganBody, 1, {0, 0, 2}});
+  contacts.forces.push_back({kDuctBody, 4, {0, 0, 2}});
   ASSERT_TRUE(deformer.take(contacts));
   deformer.deform();
-  EXPECT_FALSE(at_rest(deformer, organ_body));
-  EXPECT_TRUE(at_rest(deformer, duct_body));
+  EXPECT_FALSE(at_rest(deformer, kOrganBody));
+  EXPECT_TRUE(at_rest(deformer, kDuctBody));
   EXPECT_EQ(deformer.contacts().size(), 1u);
 }
 
@@ -167,10 +167,10 @@ TEST(Deformer, OnlyWhatNewsCameOfIsRebuilt) {
   deformer.deform();
   ASSERT_TRUE(deformer.take(s.catheter_state(0.01)));
   deformer.deform();
-  EXPECT_FALSE(deformer.changed(organ_body));
-  EXPECT_FALSE(deformer.changed(duct_body));
-  EXPECT_TRUE(deformer.changed(catheter_body));
-  EXPECT_FALSE(at_rest(deformer, duct_body));
+  EXPECT_FALSE(deformer.changed(kOrganBody));
+  EXPECT_FALSE(deformer.changed(kDuctBody));
+  EXPECT_TRUE(deformer.changed(kCatheterBody));
+  EXPECT_FALSE(at_rest(deformer, kDuctBody));
 }
 
 TEST(Deformer, ShapesFollowTheNewestRun) {
@@ -185,8 +185,8 @@ TEST(Deformer, ShapesFollowTheNewestRun) {
   second.sense_ns = 2000;
   ASSERT_TRUE(deformer.take(second));
   deformer.deform();
-  EXPECT_TRUE(at_rest(deformer, duct_body));  // the new run has not said anything of it
-  EXPECT_FALSE(at_rest(deformer, catheter_body));
+  EXPECT_TRUE(at_rest(deformer, kDuctBody));  // the new run has not said anything of it
+  EXPECT_FALSE(at_rest(deformer, kCatheterBody));
   EXPECT_EQ(deformer.run(), 6u);
   EXPECT_EQ(deformer.step(), 1u);
 
@@ -196,8 +196,8 @@ TEST(Deformer, ShapesFollowTheNewestRun) {
   first.sense_ns = 3000;  // played again
   EXPECT_TRUE(deformer.take(first));
   deformer.deform();
-  EXPECT_FALSE(at_rest(deformer, duct_body));
-  EXPECT_TRUE(at_rest(deformer, catheter_body));
+  EXPECT_FALSE(at_rest(deformer, kDuctBody));
+  EXPECT_TRUE(at_rest(deformer, kCatheterBody));
 }
 
 /// A haptic node with run 5, and a node that rebuilds.
@@ -221,8 +221,8 @@ TEST(ContactFeed, TakesReducedStatesOfTheSameScene) {
   ASSERT_TRUE(f.catheters->write(f.s.catheter_state(0.01)));
   EXPECT_TRUE(feed.take());
   deformer.deform();
-  EXPECT_FALSE(at_rest(deformer, duct_body));
-  EXPECT_FALSE(at_rest(deformer, catheter_body));
+  EXPECT_FALSE(at_rest(deformer, kDuctBody));
+  EXPECT_FALSE(at_rest(deformer, kCatheterBody));
   EXPECT_FALSE(feed.take());
 
   ModalState foreign = f.s.modal_state();
@@ -254,12 +254,12 @@ TEST(ContactFeed, ANodeThatComesBackShowsTheShapeAgainWithTheNextMessage) {
     Deformer deformer(f.s.scene, f.s.archives);
     ContactFeed feed(*f.bus, f.presence, deformer);
     EXPECT_FALSE(feed.take());
-    EXPECT_TRUE(at_rest(deformer, duct_body));
+    EXPECT_TRUE(at_rest(deformer, kDuctBody));
     EXPECT_EQ(deformer.run(), 0u);
     ASSERT_TRUE(f.modes->write(f.s.modal_state()));
     EXPECT_TRUE(feed.take());
     deformer.deform();
-    EXPECT_FALSE(at_rest(deformer, duct_body));
+    EXPECT_FALSE(at_rest(deformer, kDuctBody));
   }
 }
 

@@ -5,15 +5,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double reserve = 0.01;  ///< [J] of the scene's passivity section
+constexpr double kReserve = 0.01;  ///< [J] of the scene's passivity section
 
 struct Condition {
   const char* line;
   double there_and_back;  ///< [s] that a surface's age owes to it at most
   std::size_t surfaces;   ///< that come in the time of a measurement, at least
 };
-constexpr Condition good{"both clear", 0, 20};
-constexpr Condition conditions[]{
+constexpr Condition kGood{"both clear", 0, 20};
+constexpr Condition kConditions[]{
     {"both delay 0.2", 0.4, 20},  {"both jitter 0.05", 0.1, 20},
     {"both loss 0.3", 0, 3},      {"both duplicate 0.3 reorder 0.2", 0.02, 10},
     {"both rate 20e6", 0.06, 10}, {"both delay 0.1 jitter 0.05 loss 0.2 duplicate 0.1 reorder 0.1", 0.32, 2}};
@@ -32,7 +32,7 @@ class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
   void TearDown() override {
     if (observer_) {
       EXPECT_TRUE(observer_->finite);
-      EXPECT_GE(observer_->least_energy, -reserve);
+      EXPECT_GE(observer_->min_energy, -kReserve);
       EXPECT_EQ(observer_->forces.missing(), 0u);
       EXPECT_TRUE(never_go_back(observer_->surfaces));
       EXPECT_TRUE(never_go_back(observer_->pictures));
@@ -65,11 +65,11 @@ class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
 };
 
 TEST_F(OverRelay, TheForceStaysAndTheNewestStateIsShownThroughAllThatItDoes) {
-  const Measured undisturbed = measure(good);
-  EXPECT_GE(undisturbed.surfaces.size(), good.surfaces);
+  const Measured undisturbed = measure(kGood);
+  EXPECT_GE(undisturbed.surfaces.size(), kGood.surfaces);
   // A tenth of a second, and what this machine's load takes without any fault.
   const double load = 0.1 + at_share(undisturbed.surfaces, 0.99) + at_share(undisturbed.pictures, 0.99);
-  for (const Condition& c : conditions) {
+  for (const Condition& c : kConditions) {
     const Measured s = measure(c);
     EXPECT_GE(s.haptic_hz, 0.9 * undisturbed.haptic_hz) << c.line;
     EXPECT_GE(s.surfaces.size(), c.surfaces) << c.line;
@@ -82,7 +82,7 @@ TEST_F(OverRelay, TheForceStaysAndTheNewestStateIsShownThroughAllThatItDoes) {
 TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
   std::vector<std::chrono::milliseconds> cuts{1s, 5s};
   if (long_tests()) cuts.insert(cuts.end(), {10s, 90s});
-  const Measured undisturbed = measure(good);
+  const Measured undisturbed = measure(kGood);
   for (const auto cut : cuts) {
     const std::uint64_t step = observer_->tool.step;
     hosts_->impair("both cut 1");

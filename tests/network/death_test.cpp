@@ -15,7 +15,7 @@ struct RestingScene : NetworkScene {
           "197,0,0\n");
   }
 };
-constexpr std::uint64_t at_rest = 1000;  ///< a step after that
+constexpr std::uint64_t kAtRest = 1000;  ///< a step after that
 
 class Death : public NodesTest<RestingScene, TwoHosts::Link::veth> {
  protected:
@@ -54,7 +54,7 @@ class Death : public NodesTest<RestingScene, TwoHosts::Link::veth> {
   bool settled() {
     return observer_->listen(20s, [&] {
       return observer_->surface.run != 0 && observer_->surface.run == observer_->tool.run &&
-             observer_->surface.step > at_rest;
+             observer_->surface.step > kAtRest;
     });
   }
   bool comes_after(const Observer::Frames& frames, std::int64_t moment) {
@@ -107,14 +107,14 @@ TEST_F(Death, OfAnyNodeAtAnyMomentIsFollowedByTheUndisturbedState) {
 
 TEST_F(Death, ANodeThatIsStoppedAndGoesOnDoesNotJumpTheForce) {
   for (const Node* node : {&deform_, &render_, &haptic_}) {
-    observer_->largest_jump = 0;
+    observer_->max_jump = 0;
     kill((*node)->pid(), SIGSTOP);
     observer_->listen(400ms);
     const std::int64_t goes_on = now_ns();
     kill((*node)->pid(), SIGCONT);
     EXPECT_TRUE(comes_after(observer_->surfaces, goes_on)) << (*node)->name();
     EXPECT_TRUE(comes_after(observer_->pictures, goes_on)) << (*node)->name();
-    EXPECT_LT(observer_->largest_jump, 0.01 * force_) << (*node)->name();
+    EXPECT_LT(observer_->max_jump, 0.01 * force_) << (*node)->name();
     EXPECT_NEAR(observer_->force.force[2], force_, 0.01 * force_) << (*node)->name();
     EXPECT_LT(error(), 1e-5) << (*node)->name();
   }

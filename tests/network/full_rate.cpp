@@ -18,7 +18,7 @@
 namespace palpate::testing {
 namespace {
 
-constexpr std::int64_t patience_ns = 20 * ns_per_s;
+constexpr std::int64_t kPatienceNs = 20 * kNsPerS;
 
 template <class M>
 struct Stream {
@@ -47,7 +47,7 @@ auto make_streams(Bus& bus, const std::tuple<Topic<M>...>& all) {
 
 template <class Condition>
 bool wait_for(const Condition& condition) {
-  const std::int64_t end = now_ns() + patience_ns;
+  const std::int64_t end = now_ns() + kPatienceNs;
   while (!condition() && now_ns() < end && !shutdown_requested()) sleep_until_ns(now_ns() + 5'000'000);
   return condition();
 }
@@ -61,7 +61,7 @@ int run(double rate_hz, double seconds, const BusSettings& settings) {
   };
   const bool heard = wait_for([&] { return every([](const auto& s) { return s.writer->readers() > 0; }); });
 
-  sleep_until_ns(now_ns() + ns_per_s);  // the readers find their writers a moment later than these find them
+  sleep_until_ns(now_ns() + kNsPerS);  // the readers find their writers a moment later than these find them
   request_realtime({.priority = 40, .lock_memory = false});
   PeriodicTimer timer(rate_hz);
   const auto most = static_cast<std::uint64_t>(rate_hz * seconds);

@@ -58,7 +58,7 @@ bool kept_for_late_joiners(const std::string& topic) {
   return kept;
 }
 
-constexpr double rate_hz = sanitized ? 50 : 1000;
+constexpr double kRateHz = kSanitized ? 50 : 1000;
 
 enum class Way { loopback, veth };
 
@@ -74,7 +74,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
     const std::string domain = std::to_string(own_domain());
     return hosts_ ? fmt::format("{} {} {}", domain, TwoHosts::device, peer) : domain;
   }
-  ChildProcess publisher(double seconds, double rate = rate_hz) const {
+  ChildProcess publisher(double seconds, double rate = kRateHz) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->a()) : nullptr;
     return start("full_rate",
                  fmt::format("{} {} {} {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
@@ -105,7 +105,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
     EXPECT_EQ(summary["lost"], 0) << summary;
 
     const Counted recorded = count(log());
-    const auto expected = static_cast<std::uint64_t>(rate_hz * seconds);
+    const auto expected = static_cast<std::uint64_t>(kRateHz * seconds);
     std::uint64_t bytes = 0;
     topics::for_each([&](const auto& topic) {
       const json& of = written["topics"][topic.name];
@@ -121,7 +121,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
     });
     fmt::print(
         "{} topics at {} Hz for {} s, {:.1f} MB/s: {} messages recorded, {} missing; the publisher skipped {} ticks\n",
-        recorded.samples.size(), rate_hz, seconds, 1e-6 * rate_hz * static_cast<double>(bytes),
+        recorded.samples.size(), kRateHz, seconds, 1e-6 * kRateHz * static_cast<double>(bytes),
         summary["messages"].dump(), summary["missing"].dump(), written["skipped"].dump());
   }
 
@@ -199,7 +199,7 @@ TEST_P(KilledRecorder, LeavesALogThatOpensWhateverTheMoment) {
     most = std::max(most, forces);
   }
   EXPECT_GE(opened, 5);
-  EXPECT_GT(most, sanitized ? 10u : 200u);
+  EXPECT_GT(most, kSanitized ? 10u : 200u);
 }
 
 // Where little comes, no buffer fills: it is the clock that brings it to the disk.

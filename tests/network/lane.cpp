@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-constexpr std::int64_t overtaken_ns = 5'000'000;
+constexpr std::int64_t kOvertakenNs = 5'000'000;
 
 std::int64_t ns(double seconds) {
   return static_cast<std::int64_t>(1e9 * seconds);
@@ -78,7 +78,7 @@ void Lane::send(std::span<const std::uint8_t> packet, std::int64_t now_ns) {
   if (!sent) return;
   std::int64_t due = *sent + ns(impairment_.delay + impairment_.jitter * uniform());
   if (chance(impairment_.reorder))
-    due = std::max(due, last_due_) + overtaken_ns;
+    due = std::max(due, last_due_) + kOvertakenNs;
   else
     due = last_due_ = std::max(due, last_due_);
   waiting_.emplace(due, Packet(packet.begin(), packet.end()));

@@ -30,7 +30,7 @@ bool change(Impairment& impairment, std::istream& words);
 class Lane {
  public:
   using Packet = std::vector<std::uint8_t>;
-  static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
   explicit Lane(std::uint64_t seed) : random_(seed) {}
   void set(const Impairment& impairment);
@@ -38,7 +38,7 @@ class Lane {
 
   void put(std::span<const std::uint8_t> packet, std::int64_t now_ns);
   std::optional<Packet> take(std::int64_t now_ns);  ///< the next that is due, if any
-  std::int64_t next_due() const { return waiting_.empty() ? never : waiting_.begin()->first; }
+  std::int64_t next_due() const { return waiting_.empty() ? kNever : waiting_.begin()->first; }
 
  private:
   bool chance(double share) { return share > 0 && uniform() < share; }

@@ -7,20 +7,20 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t kSecond = 1'000'000'000;
 
 class LinkWatchTest : public ::testing::Test {
  protected:
   /// What the node is told at a time [s] after its start.
   std::vector<std::string> at(double time) {
     own_.watch();
-    return link_.look(own_, start_ + static_cast<std::int64_t>(time * second));
+    return link_.look(own_, kStart + static_cast<std::int64_t>(time * kSecond));
   }
   std::string silence(double time) {
-    return link_.silence("haptic", start_ + static_cast<std::int64_t>(time * second));
+    return link_.silence("haptic", kStart + static_cast<std::int64_t>(time * kSecond));
   }
 
-  static constexpr std::int64_t start_ = 1000 * second;
+  static constexpr std::int64_t kStart = 1000 * kSecond;
   std::shared_ptr<MemoryNetwork> network_ = make_memory_network();
   std::unique_ptr<Bus> bus_ = make_memory_bus(network_), other_bus_ = make_memory_bus(network_);
   Presence own_{*bus_, "render", 0, "scene", "archive"};

@@ -53,7 +53,7 @@ class LogOf : public NodesTest<Scene, TwoHosts::Link::veth> {
   void copy_without(const Drop& drop) const {
     LogReader reader(log());
     LogWriter writer(changed(), std::size_t{1} << 30);
-    writer.write(header_channel, reader.header().start_monotonic_ns, reader.header());
+    writer.write(kHeaderChannel, reader.header().start_monotonic_ns, reader.header());
     for (LogEvent event; reader.next(event);)
       if (!drop(event)) writer.write_payload(event.channel, event.receive_ns, event.payload);
     ASSERT_EQ(writer.finish().lost, 0u);
@@ -108,7 +108,7 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
   const json report = json::parse(said);
   EXPECT_TRUE(report["complete"].get<bool>());
   EXPECT_EQ(report["skipped"], 0);
-  constexpr double bound_us = sanitized ? 1000 : 100;
+  constexpr double bound_us = kSanitized ? 1000 : 100;
   EXPECT_LT(report["pace_us"]["p50"].get<double>(), bound_us) << said;
   EXPECT_GT(report["pace_us"]["p50"].get<double>(), 0) << said;
 

@@ -46,7 +46,7 @@ ChildProcess Nodes::recorder_on_b(const std::string& file) const {
 ChildProcess Nodes::launch(const NetworkNamespace& host, const char* peer, const std::string& name,
                            const std::string& command) const {
   const Inside here(host);
-  const std::string network = fmt::format("--domain {} --interface {} --peer {}", domain, TwoHosts::device, peer);
+  const std::string network = fmt::format("--domain {} --interface {} --peer {}", kDomain, TwoHosts::device, peer);
   return ChildProcess(
       name, {"/bin/sh", "-c",
              fmt::format("exec {} {} 2>>{}", command, network, (scene_.folder() / (name + ".said")).string())});

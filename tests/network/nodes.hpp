@@ -26,7 +26,7 @@ void precompute(const LoopbackScene& scene);
 /// Starts the programs of one simulation on two hosts. What each says on standard error is kept.
 class Nodes {
  public:
-  static constexpr int domain = 3;
+  static constexpr int kDomain = 3;
 
   Nodes(const TwoHosts& hosts, const LoopbackScene& scene) : hosts_(hosts), scene_(scene) {}
 

@@ -18,7 +18,7 @@ bool all_finite(const ForceState& f) {
 
 Observer::Observer(const TwoHosts& hosts, const std::filesystem::path& keys) {
   const Inside here(hosts.a());
-  bus_ = make_dds_bus({.domain = Nodes::domain,
+  bus_ = make_dds_bus({.domain = Nodes::kDomain,
                        .interface = TwoHosts::device,
                        .peers = {TwoHosts::address_b},
                        .keys = keys,
@@ -56,10 +56,10 @@ void Observer::take() {
 void Observer::take(const ForceState& next) {
   forces.add(next);
   finite = finite && all_finite(next);
-  least_energy = std::min(least_energy, next.energy);
+  min_energy = std::min(min_energy, next.energy);
   if (next.run == force.run)
-    largest_jump = std::max(largest_jump, std::hypot(next.force[0] - force.force[0], next.force[1] - force.force[1],
-                                                     next.force[2] - force.force[2]));
+    max_jump = std::max(max_jump, std::hypot(next.force[0] - force.force[0], next.force[1] - force.force[1],
+                                             next.force[2] - force.force[2]));
   force = next;
 }
 

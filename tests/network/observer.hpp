@@ -39,10 +39,10 @@ class Observer {
   SurfaceState surface;  ///< newest
   Frames surfaces, pictures;
   std::vector<TopologyChange> changes;
-  SequenceCheck forces;     ///< every force sample
-  bool finite = true;       ///< all forces so far
-  double least_energy = 0;  ///< [J]
-  double largest_jump = 0;  ///< [N] between forces of successive steps of one run; set it back as needed
+  SequenceCheck forces;   ///< every force sample
+  bool finite = true;     ///< all forces so far
+  double min_energy = 0;  ///< [J]
+  double max_jump = 0;    ///< [N] between forces of successive steps of one run; set it back as needed
 
  private:
   void take();

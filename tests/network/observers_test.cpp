@@ -18,7 +18,7 @@ class Observed : public NodesTest<NetworkScene, TwoHosts::Link::veth> {
   /// A listener or recorder on host B.
   ChildProcess watcher(const std::string& command) const {
     const Inside here(hosts_->b());
-    return start("watcher", fmt::format("{} --domain {} --interface {} --peer {}", command, Nodes::domain,
+    return start("watcher", fmt::format("{} --domain {} --interface {} --peer {}", command, Nodes::kDomain,
                                         TwoHosts::device, TwoHosts::address_a));
   }
   static json end(ChildProcess& process) {
@@ -61,7 +61,7 @@ TEST_F(Observed, ObserversAndARecorderHearEverySampleWhileOneDraws) {
 /// A publisher of all topics on host A, and listeners on host B.
 class Listened : public ::testing::Test {
  protected:
-  static constexpr int rate_hz = sanitized ? 50 : 200;
+  static constexpr int kRateHz = kSanitized ? 50 : 200;
 
   void SetUp() override {
     PALPATE_TWO_HOSTS_OR_SKIP(hosts_, TwoHosts::Link::veth)
@@ -95,7 +95,7 @@ class Listened : public ::testing::Test {
     {
       const Inside here(hosts_->a());
       ChildProcess writing =
-          start("full_rate", fmt::format("{} {} 1 {} {} {}", program("full_rate"), rate_hz, own_domain(),
+          start("full_rate", fmt::format("{} {} 1 {} {} {}", program("full_rate"), kRateHz, own_domain(),
                                          TwoHosts::device, multicast ? "" : TwoHosts::address_b));
       EXPECT_TRUE(writing.wait(40s));
       EXPECT_EQ(writing.status(), 0) << last_line(writing);
@@ -107,7 +107,7 @@ class Listened : public ::testing::Test {
       const json heard = last_line(listener);
       EXPECT_EQ(heard["missing"], 0) << heard;
       EXPECT_EQ(heard["topics"].size(), std::tuple_size_v<decltype(topics::all)>) << heard;
-      EXPECT_EQ(heard["messages"], rate_hz * std::tuple_size_v<decltype(topics::all)>) << heard;
+      EXPECT_EQ(heard["messages"], kRateHz * std::tuple_size_v<decltype(topics::all)>) << heard;
     }
     return sent;
   }
@@ -119,7 +119,7 @@ TEST_F(Listened, WithMulticastOneDatagramServesAllListeners) {
   const double one = datagrams_for(1, true), four = datagrams_for(4, true), one_by_one = datagrams_for(4, false);
   fmt::print("datagrams by multicast for 1 listener: {:.0f}, for 4: {:.0f}; to 4 peers: {:.0f}\n", one, four,
              one_by_one);
-  EXPECT_GT(one, rate_hz * 20);
+  EXPECT_GT(one, kRateHz * 20);
   EXPECT_LT(four, 1.5 * one);
   EXPECT_GT(one_by_one, 2.5 * one);
 }

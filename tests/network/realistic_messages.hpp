@@ -8,8 +8,8 @@
 /// tools. Keyframes are those of a small scene, since here they come a thousand times as often as otherwise.
 namespace palpate::testing {
 
-inline constexpr std::size_t surface_nodes = 640;
-inline constexpr std::size_t keyframe_bytes = 4096;
+inline constexpr std::size_t kSurfaceNodes = 640;
+inline constexpr std::size_t kKeyframeBytes = 4096;
 
 template <class M>
 M realistic() {
@@ -22,7 +22,7 @@ M realistic() {
   else if constexpr (std::same_as<M, ForceState>)
     return force_sample();
   else if constexpr (std::same_as<M, SurfaceState>)
-    return surface_sample(surface_nodes);
+    return surface_sample(kSurfaceNodes);
   else if constexpr (std::same_as<M, NodeStatus>)
     return status_sample("render 7@there");
   else if constexpr (std::same_as<M, ClockProbe>)
@@ -49,11 +49,11 @@ M realistic() {
     return m;
   } else if constexpr (std::same_as<M, HapticKeyframe>) {
     HapticKeyframe m = keyframe_sample();
-    m.state.resize(keyframe_bytes, 7);
+    m.state.resize(kKeyframeBytes, 7);
     return m;
   } else if constexpr (std::same_as<M, DeformKeyframe>) {
     DeformKeyframe m = deform_keyframe_sample();
-    m.state.resize(keyframe_bytes, 7);
+    m.state.resize(kKeyframeBytes, 7);
     return m;
   } else if constexpr (std::same_as<M, HeldTopology>) {
     return held_topology_sample();

@@ -67,8 +67,8 @@ void carry(std::array<Way, 2>& ways) {
   std::string partial;
   for (;;) {
     const std::int64_t due = std::min(ways[0].lane.next_due(), ways[1].lane.next_due());
-    const std::int64_t rest = std::clamp<std::int64_t>(due == Lane::never ? ns_per_s : due - now_ns(), 0, ns_per_s);
-    const timespec timeout{rest / ns_per_s, rest % ns_per_s};
+    const std::int64_t rest = std::clamp<std::int64_t>(due == Lane::kNever ? kNsPerS : due - now_ns(), 0, kNsPerS);
+    const timespec timeout{rest / kNsPerS, rest % kNsPerS};
     std::array<pollfd, 3> ready{{{ways[0].from, POLLIN, 0}, {ways[1].from, POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}}};
     ppoll(ready.data(), ready.size(), &timeout, nullptr);
     if (ready[2].revents != 0 && !take_lines(partial, ways)) return;
@@ -76,7 +76,7 @@ void carry(std::array<Way, 2>& ways) {
       if (ready[w].revents & POLLIN)
         ways[w].take_in();
       else if (ready[w].revents != 0)
-        sleep_until_ns(now_ns() + ns_per_s / 100);  // the device is down or gone
+        sleep_until_ns(now_ns() + kNsPerS / 100);  // the device is down or gone
       ways[w].give_out();
     }
   }

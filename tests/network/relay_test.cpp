@@ -20,7 +20,7 @@
 namespace palpate::testing {
 namespace {
 
-constexpr int port = 5077, size = 1000;
+constexpr int kPort = 5077, kSize = 1000;
 
 class Socket {
  public:
@@ -34,7 +34,7 @@ class Socket {
   ~Socket() { close(descriptor_); }
   Socket(const Socket&) = delete;
 
-  void send(const char* to, std::int64_t number, int bytes = size) {
+  void send(const char* to, std::int64_t number, int bytes = kSize) {
     std::vector<std::int64_t> packet(bytes / 8);
     packet[0] = number;
     packet[1] = now_ns();
@@ -45,13 +45,13 @@ class Socket {
     std::int64_t number, sent, came;
   };
   void take(std::vector<Arrival>& arrivals) {
-    std::int64_t packet[size / 8];
+    std::int64_t packet[kSize / 8];
     while (recv(descriptor_, packet, sizeof packet, 0) > 0) arrivals.push_back({packet[0], packet[1], now_ns()});
   }
 
  private:
   static sockaddr_in of(const char* address) {
-    sockaddr_in a{.sin_family = AF_INET, .sin_port = htons(port)};
+    sockaddr_in a{.sin_family = AF_INET, .sin_port = htons(kPort)};
     inet_pton(AF_INET, address, &a.sin_addr);
     return a;
   }

@@ -76,16 +76,16 @@ TEST_F(TissueOverRelay, ItsForceFadesInACutAndComesBackWithoutAJump) {
   observer_->listen(500ms);
 
   const double before = observer_->force.force[2];
-  observer_->largest_jump = 0;
+  observer_->max_jump = 0;
   kill(deform.pid(), SIGSTOP);
   EXPECT_TRUE(observer_->listen(2s, [&] { return stale() && observer_->force.force[2] == 0; }));
   kill(deform.pid(), SIGCONT);
   EXPECT_TRUE(fresh_within(5s));
   observer_->listen(500ms);
   EXPECT_NEAR(observer_->force.force[2], before, 0.1 * before);
-  EXPECT_LT(observer_->largest_jump, 0.5 * before) << "it fades over several steps";
+  EXPECT_LT(observer_->max_jump, 0.5 * before) << "it fades over several steps";
   EXPECT_TRUE(observer_->finite);
-  EXPECT_GE(observer_->least_energy, -0.01);
+  EXPECT_GE(observer_->min_energy, -0.01);
 }
 
 TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
@@ -102,10 +102,10 @@ TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
   kill(haptic.pid(), SIGSTOP);
   observer_->listen(2s);
   EXPECT_NEAR(deepest(rest), depth, 0.01 * depth) << "its tool is where it was";
-  observer_->largest_jump = 0;
+  observer_->max_jump = 0;
   kill(haptic.pid(), SIGCONT);
   observer_->listen(1s);
-  EXPECT_LT(observer_->largest_jump, 0.05 * force);
+  EXPECT_LT(observer_->max_jump, 0.05 * force);
   EXPECT_NEAR(observer_->force.force[2], force, 0.02 * force);
 
   haptic.interrupt();

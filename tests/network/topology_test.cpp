@@ -32,7 +32,7 @@ class LateNode {
     const Inside here(hosts.a());
     const Scene loaded = load_scene(scene.scene());
     archives_.push_back(find_archive(loaded, loaded.bodies[0], ArchivePart::header));
-    bus_ = make_dds_bus({.domain = Nodes::domain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}});
+    bus_ = make_dds_bus({.domain = Nodes::kDomain, .interface = TwoHosts::device, .peers = {TwoHosts::address_b}});
     presence_ = std::make_unique<Presence>(*bus_, "render", 0, scene_hash(loaded), archives_[0].content_hash);
     feed_ = std::make_unique<TopologyFeed>(*bus_, *presence_, archives_);
   }

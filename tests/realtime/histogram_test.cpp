@@ -11,7 +11,7 @@ namespace palpate {
 namespace {
 
 TEST(Histogram, BinsCoverAllValuesWithoutOverlap) {
-  for (std::size_t bin = 1; bin < Histogram::bins; ++bin)
+  for (std::size_t bin = 1; bin < Histogram::kBins; ++bin)
     ASSERT_GT(Histogram::bin_start(bin), Histogram::bin_start(bin - 1)) << bin;
   for (std::int64_t value : {0L, 1L, 31L, 32L, 33L, 63L, 64L, 1000L, 123456789L, (1L << 42) - 1}) {
     Histogram h;
@@ -19,7 +19,7 @@ TEST(Histogram, BinsCoverAllValuesWithoutOverlap) {
     std::size_t bin = 0;
     while (h.in_bin(bin) == 0) ++bin;
     EXPECT_LE(Histogram::bin_start(bin), value);
-    if (bin + 1 < Histogram::bins) {
+    if (bin + 1 < Histogram::kBins) {
       EXPECT_GT(Histogram::bin_start(bin + 1), value);
     }
     EXPECT_EQ(h.percentile(0.5), value);

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tip_radius = 0.01, young = 5000, poisson = 0.3;
-constexpr std::array<std::array<double, 2>, 4> places{{{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
+constexpr double kTipRadius = 0.01, kYoung = 5000, kPoisson = 0.3;
+constexpr std::array<std::array<double, 2>, 4> kPlaces{{{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
 
 /// Grid coordinates from 0 outwards: steps of h to `fine`, then growing by 1.5 to exactly `end`.
 std::vector<double> graded(double h, double fine, double end) {
@@ -31,7 +31,7 @@ std::vector<double> graded(double h, double fine, double end) {
 }
 
 TetMesh block(double h, double extent) {
-  const auto half = graded(h, 1.25 * tip_radius, extent);
+  const auto half = graded(h, 1.25 * kTipRadius, extent);
   std::vector<double> across, down;
   for (auto x = half.rbegin(); x != half.rend(); ++x) down.push_back(-*x);
   across = down;
@@ -43,12 +43,12 @@ TetMesh block(double h, double extent) {
 /// height and half-width.
 class Block {
  public:
-  Block(double h, const std::optional<Offline>& offline, double extent = 8 * tip_radius) : h_(h) {
+  Block(double h, const std::optional<Offline>& offline, double extent = 8 * kTipRadius) : h_(h) {
     QuasiStaticSpec body;
     body.name = "block";
-    body.material = {.young = young, .poisson = poisson, .density = 1000};
+    body.material = {.young = kYoung, .poisson = kPoisson, .density = 1000};
     body.fixed.push_back({.where = {.group = "bottom"}});
-    const double reach = 1.2 * tip_radius;
+    const double reach = 1.2 * kTipRadius;
     body.touchable = NodeSelector{{.box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1e-6}}}};
     body.offline = offline;
     archives_.push_back(precompute(body, block(h, extent)));
@@ -61,7 +61,7 @@ class Block {
     Tool tool;
     tool.name = "ball";
     tool.pivot = Vector3d(h_ * place[0], h_ * place[1], 0.2);
-    tool.probe()->radius = tip_radius;
+    tool.probe()->radius = kTipRadius;
     tool.max_force = 1e3;
     tool.max_force_rate = 1e9;
     scene_.tools = {tool};
@@ -70,10 +70,10 @@ class Block {
       return std::array{dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), centre, 0)};
     };
     HapticStep haptic(scene_, archives_);
-    haptic.start(tip(1.05 * tip_radius));
+    haptic.start(tip(1.05 * kTipRadius));
     constexpr int steps = 200;
     for (int i = 0; i <= steps + 20; ++i)
-      haptic.step(tip(1.05 * tip_radius - (depth + 0.05 * tip_radius) * std::min(1.0, double(i) / steps)));
+      haptic.step(tip(1.05 * kTipRadius - (depth + 0.05 * kTipRadius) * std::min(1.0, double(i) / steps)));
     return haptic.force(0).z();
   }
 
@@ -84,12 +84,12 @@ class Block {
 };
 
 double hertz(double depth) {
-  return 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(tip_radius) * std::pow(depth, 1.5);
+  return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kTipRadius) * std::pow(depth, 1.5);
 }
 
 /// F / Hertz at every place.
 struct Pressed {
-  std::array<double, places.size()> ratio{};
+  std::array<double, kPlaces.size()> ratio{};
 
   double mean() const {
     double sum = 0;
@@ -107,8 +107,8 @@ struct Pressed {
 Pressed press_everywhere(Block& block, double depth, const std::string& name) {
   Pressed pressed;
   std::string text;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    pressed.ratio[i] = block.press(places[i], depth) / hertz(depth);
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    pressed.ratio[i] = block.press(kPlaces[i], depth) / hertz(depth);
     text += fmt::format("{:.4f} ", pressed.ratio[i]);
   }
   ::testing::Test::RecordProperty(name, text);
@@ -124,21 +124,21 @@ TEST(HertzReference, ATipFollowsHertzWithinTenPercentFromTwoElementsToItsRadius)
   Pressed last;
   for (int per_radius : {2, 4, 8}) {
     if (per_radius == 8 && !long_form()) continue;
-    Block block(tip_radius / per_radius, std::nullopt);
-    const auto pressed = press_everywhere(block, 0.5 * tip_radius, fmt::format("p1_h{}", per_radius));
+    Block block(kTipRadius / per_radius, std::nullopt);
+    const auto pressed = press_everywhere(block, 0.5 * kTipRadius, fmt::format("p1_h{}", per_radius));
     EXPECT_LT(pressed.worst(), 0.1) << "R = " << per_radius << " h";
     if (per_radius > 2) {
       EXPECT_NEAR(pressed.mean(), last.mean(), 0.05) << "halving h to R / " << per_radius;
     }
     last = pressed;
-    const auto shallow = press_everywhere(block, 0.25 * tip_radius, fmt::format("p1_shallow_h{}", per_radius));
+    const auto shallow = press_everywhere(block, 0.25 * kTipRadius, fmt::format("p1_shallow_h{}", per_radius));
     EXPECT_LT(shallow.worst(), per_radius == 2 ? 0.25 : 0.12) << "R = " << per_radius << " h";
   }
 }
 
 TEST(HertzReference, ABlockOfTwiceTheSizeIsALittleSofter) {
-  Block usual(tip_radius / 2, std::nullopt), large(tip_radius / 2, std::nullopt, 16 * tip_radius);
-  const double depth = 0.5 * tip_radius, mean = press_everywhere(usual, depth, "usual_block").mean();
+  Block usual(kTipRadius / 2, std::nullopt), large(kTipRadius / 2, std::nullopt, 16 * kTipRadius);
+  const double depth = 0.5 * kTipRadius, mean = press_everywhere(usual, depth, "usual_block").mean();
   const double far = press_everywhere(large, depth, "large_block").mean();
   EXPECT_LT(far, mean);
   EXPECT_GT(far, 0.95 * mean);
@@ -147,15 +147,15 @@ TEST(HertzReference, ABlockOfTwiceTheSizeIsALittleSofter) {
 // A refinement offline leaves the nodes that carry the contact as few as they are: at R = 2h the mean is no
 // better, and the places differ as much as on the mesh itself.
 TEST(HertzReference, ARefinementOfflineDoesNotCureTheDependenceOnThePlace) {
-  Block coarse(tip_radius / 2, Offline{1, "p1", "displacement"});
-  const auto pressed = press_everywhere(coarse, 0.5 * tip_radius, "refined_h2");
+  Block coarse(kTipRadius / 2, Offline{1, "p1", "displacement"});
+  const auto pressed = press_everywhere(coarse, 0.5 * kTipRadius, "refined_h2");
   EXPECT_GT(*std::max_element(pressed.ratio.begin(), pressed.ratio.end()) -
                 *std::min_element(pressed.ratio.begin(), pressed.ratio.end()),
             0.08);
   EXPECT_LT(pressed.worst(), 0.15);
   if (!long_form()) return;
-  Block fine(tip_radius / 4, Offline{1, "p1", "displacement"});
-  EXPECT_LT(press_everywhere(fine, 0.5 * tip_radius, "refined_h4").worst(), 0.05);
+  Block fine(kTipRadius / 4, Offline{1, "p1", "displacement"});
+  EXPECT_LT(press_everywhere(fine, 0.5 * kTipRadius, "refined_h4").worst(), 0.05);
 }
 
 }  // namespace

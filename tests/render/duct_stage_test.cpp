@@ -15,7 +15,7 @@ using namespace testing;
 struct DuctStage {
   DuctScene s;
   DuctStage() {
-    s.scene.bodies[organ_body] = Body{};
+    s.scene.bodies[kOrganBody] = Body{};
     s.scene.render = Render{.width = 320, .height = 240};
     s.scene.render->overlay = false;
     look_from({0.02, -0.07, 0.025}, {0, 0, 0.025});
@@ -33,7 +33,7 @@ struct DuctStage {
   Stage stage() const {
     std::vector<SurfaceMap> surfaces;
     for (const Archive& archive : s.archives) surfaces.push_back(archive.surface);
-    surfaces[organ_body] = {};
+    surfaces[kOrganBody] = {};
     return Stage(s.scene, surfaces, {});
   }
 };
@@ -61,7 +61,7 @@ TEST(DuctStage, ADuctHasTwoSidesAndACatheterIsOneTube) {
   float least = 1;
   for (const auto& p : inner.position) least = std::min(least, radius(p));
   EXPECT_NEAR(least, 0.004, 0.0002);
-  EXPECT_EQ(tube.triangles.size(), d.s.archives[catheter_body].surface.triangles.size());
+  EXPECT_EQ(tube.triangles.size(), d.s.archives[kCatheterBody].surface.triangles.size());
 }
 
 TEST(DuctStage, WallTubeAndTissueAreToldApartInThePicture) {
@@ -124,13 +124,13 @@ TEST(DuctStage, FollowsShapesAndDrawsThem) {
   Deformer deformer(d.s.scene, d.s.archives);
   ASSERT_TRUE(deformer.take(d.s.catheter_state(-0.02, 3e-5)));
   deformer.deform();
-  stage.set_surface(catheter_body, deformer.surface(catheter_body).position, deformer.surface(catheter_body).normal);
+  stage.set_surface(kCatheterBody, deformer.surface(kCatheterBody).position, deformer.surface(kCatheterBody).normal);
   const Image moved = picture(stage.frame());
   EXPECT_GT(difference(rest, moved, 8), 0.01);
 
-  std::vector<Eigen::Vector3f> position = deformer.surface(duct_body).position;
+  std::vector<Eigen::Vector3f> position = deformer.surface(kDuctBody).position;
   for (auto& p : position) p.x() += 0.004f;
-  stage.set_surface(duct_body, position, deformer.surface(duct_body).normal);
+  stage.set_surface(kDuctBody, position, deformer.surface(kDuctBody).normal);
   const Frame frame = stage.frame();
   EXPECT_GT(difference(moved, picture(frame), 8), 0.01);
   for (const auto& p : mesh_of(frame, Finish::duct).position)
@@ -142,9 +142,9 @@ TEST(DuctStage, ColourByDisplacementCoversBothSidesButNotTheCatheter) {
   d.s.scene.render->colour = "displacement";
   Stage stage = d.stage();
   Deformer deformer(d.s.scene, d.s.archives);
-  std::vector<Eigen::Vector3f> position = deformer.surface(duct_body).position;
+  std::vector<Eigen::Vector3f> position = deformer.surface(kDuctBody).position;
   for (auto& p : position) p.x() += 0.002f;
-  stage.set_surface(duct_body, position, deformer.surface(duct_body).normal);
+  stage.set_surface(kDuctBody, position, deformer.surface(kDuctBody).normal);
   const Frame frame = stage.frame();
   for (const Finish side : {Finish::duct, Finish::mucosa}) {
     const MeshView& mesh = mesh_of(frame, side);
@@ -201,12 +201,12 @@ struct TaskWorld {
 
 TEST(DuctStage, TheOverlayTellsHowTheTaskGoes) {
   TaskWorld world;
-  const TaskRecord task{.body = catheter_body,
+  const TaskRecord task{.body = kCatheterBody,
                         .run = 5,
                         .inserted = 0.0221,
                         .deepest = 0.0243,
                         .inserting_s = 8.24,
-                        .largest_force = 0.612,
+                        .max_force = 0.612,
                         .wall_contacts = 5,
                         .grasps = 2,
                         .drops = 1};
@@ -218,7 +218,7 @@ TEST(DuctStage, TheOverlayTellsHowTheTaskGoes) {
 }
 
 TEST(DuctStage, TaskRecordsOfOtherRunsAndBodiesAreNotShown) {
-  for (const TaskRecord& task : {TaskRecord{.body = catheter_body, .run = 8}, TaskRecord{.body = duct_body, .run = 5},
+  for (const TaskRecord& task : {TaskRecord{.body = kCatheterBody, .run = 8}, TaskRecord{.body = kDuctBody, .run = 5},
                                  TaskRecord{.body = 7, .run = 5}}) {
     TaskWorld world;
     for (const std::string& line : world.lines(task)) EXPECT_EQ(line.find("inserted"), std::string::npos);

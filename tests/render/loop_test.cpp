@@ -191,7 +191,7 @@ TEST(RenderLoop, DrawsAtTheVisualRateAndFilmsInRealTime) {
   EXPECT_LE(report.frames, 52u);
   EXPECT_NEAR(static_cast<double>(film.frames()), 25, 2);
   EXPECT_EQ(report.latency.count(), 1u);
-  EXPECT_DOUBLE_EQ(report.greatest_force, 5);
+  EXPECT_DOUBLE_EQ(report.peak_force, 5);
   EXPECT_EQ(report.refused, 0u);
   const Frame best = loop.best_moment().frame();
   EXPECT_EQ(best.instruments.size(), 1u);

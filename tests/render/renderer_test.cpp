@@ -7,7 +7,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int centre_x = 160, centre_y = 120;
+constexpr int kCentreX = 160, kCentreY = 120;
 
 TEST(Renderer, OrganCoversTheAreaOfItsSilhouette) {
   const Ball ball = make_ball(0.06f, 48);
@@ -29,17 +29,17 @@ TEST(Renderer, TissueIsRedAndLitFromTheCamera) {
   frame.meshes.push_back(ball.view(1));
   const Image image = picture(frame);
   double red = 0, green = 0, blue = 0, middle = 0, edge = 0;
-  for (int y = centre_y + 10; y < centre_y + 40; ++y)
-    for (int x = centre_x - 30; x < centre_x - 10; ++x) {
+  for (int y = kCentreY + 10; y < kCentreY + 40; ++y)
+    for (int x = kCentreX - 30; x < kCentreX - 10; ++x) {
       red += image.pixel(x, y)[0];
       green += image.pixel(x, y)[1];
       blue += image.pixel(x, y)[2];
     }
   EXPECT_GT(red, 1.5 * green);
   EXPECT_GT(red, 1.5 * blue);
-  for (int x = centre_x - 10; x < centre_x + 10; ++x) {
-    middle += brightness(image, x, centre_y + 15);
-    edge += brightness(image, x, centre_y + 49);
+  for (int x = kCentreX - 10; x < kCentreX + 10; ++x) {
+    middle += brightness(image, x, kCentreY + 15);
+    edge += brightness(image, x, kCentreY + 49);
   }
   EXPECT_GT(middle, 1.3 * edge);
 }
@@ -71,9 +71,9 @@ TEST(Renderer, NearerThingsHideFartherOnes) {
   alone.meshes.push_back(organ.view(1));
   both.meshes = {organ.view(1), wall.view(2, Finish::bone)};
   const Image a = picture(alone), b = picture(both);
-  EXPECT_EQ(brightness(a, centre_x, centre_y), brightness(b, centre_x, centre_y));
+  EXPECT_EQ(brightness(a, kCentreX, kCentreY), brightness(b, kCentreX, kCentreY));
   EXPECT_GT(difference(a, b), 0.01);  // the part that looks out behind the organ
-  const std::uint8_t* bone = b.pixel(centre_x + 52, centre_y);
+  const std::uint8_t* bone = b.pixel(kCentreX + 52, kCentreY);
   EXPECT_GT(bone[0], 60);
   EXPECT_GT(bone[1], bone[0] / 3);  // paler than tissue
 }
@@ -94,13 +94,13 @@ TEST(Renderer, InstrumentIsGreyAndShadesTheTissue) {
   frame.instruments.push_back(instrument_at({0, -0.066, 0}));
   const Image with = picture(frame);
   const auto grey = [](const std::uint8_t* p) { return std::abs(p[0] - p[2]) < 30; };
-  EXPECT_TRUE(grey(with.pixel(centre_x, centre_y)));
-  EXPECT_FALSE(grey(without.pixel(centre_x + 20, centre_y + 20)));
+  EXPECT_TRUE(grey(with.pixel(kCentreX, kCentreY)));
+  EXPECT_FALSE(grey(without.pixel(kCentreX + 20, kCentreY + 20)));
   // Just below the tip the tissue lies in its shade.
-  EXPECT_LT(brightness(with, centre_x, centre_y + 7), 0.9 * brightness(without, centre_x, centre_y + 7));
+  EXPECT_LT(brightness(with, kCentreX, kCentreY + 7), 0.9 * brightness(without, kCentreX, kCentreY + 7));
   // The shaft leaves the picture at the upper right.
   EXPECT_GT(
-      std::abs(brightness(with, centre_x + 40, centre_y - 30) - brightness(without, centre_x + 40, centre_y - 30)), 5);
+      std::abs(brightness(with, kCentreX + 40, kCentreY - 30) - brightness(without, kCentreX + 40, kCentreY - 30)), 5);
 }
 
 TEST(Renderer, OpenJawsLetTheBackgroundThrough) {
@@ -108,10 +108,10 @@ TEST(Renderer, OpenJawsLetTheBackgroundThrough) {
   const Image background = picture(frame);
   frame.instruments.push_back(instrument_at({0, -0.1, 0}));
   frame.instruments[0].tip.rotate(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()));
-  EXPECT_NE(brightness(picture(frame), centre_x, centre_y), brightness(background, centre_x, centre_y));
+  EXPECT_NE(brightness(picture(frame), kCentreX, kCentreY), brightness(background, kCentreX, kCentreY));
   frame.instruments[0].jaw_opening = 1.0;
   const Image open = picture(frame);
-  EXPECT_EQ(brightness(open, centre_x, centre_y), brightness(background, centre_x, centre_y));
+  EXPECT_EQ(brightness(open, kCentreX, kCentreY), brightness(background, kCentreX, kCentreY));
   EXPECT_GT(difference(open, background), 0.01);
 }
 
@@ -158,8 +158,8 @@ TEST(Renderer, TextureSticksToRestPositions) {
   const Image moved = picture(frame);
   const auto patch = [](const Image& a, const Image& b) {
     long changed = 0;
-    for (int y = centre_y - 30; y < centre_y + 30; ++y)
-      for (int x = centre_x - 30; x < centre_x + 30; ++x)
+    for (int y = kCentreY - 30; y < kCentreY + 30; ++y)
+      for (int x = kCentreX - 30; x < kCentreX + 30; ++x)
         changed += std::abs(brightness(a, x, y) - brightness(b, x, y)) > 3;
     return static_cast<double>(changed) / 3600;
   };

@@ -226,7 +226,7 @@ compliance = 0.0002
 [tool.jaws]
 length = 0.015
 radius = 0.0012
-most_open = 0.9
+max_open = 0.9
 grip_stiffness = 0.4
 friction = 0.6
 
@@ -271,7 +271,7 @@ field_of_view = 60
 )";
 
 /// The least that is a scene.
-inline const std::string kLeastScene = R"([[body]]
+inline const std::string kMinimalScene = R"([[body]]
 name = "liver"
 mesh = "liver.msh"
 young = 6000

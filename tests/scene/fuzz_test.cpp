@@ -94,7 +94,7 @@ TEST(SceneFuzz, AMutatedSceneIsReadOrRefusedInWordsWithAPlace) {
   Mutator mutator(20250607);
   int read = 0, refused = 0;
   for (int i = 0; i < 10000; ++i) {
-    const std::string text = mutator.mutate(i % 3 ? kFullScene : kLeastScene);
+    const std::string text = mutator.mutate(i % 3 ? kFullScene : kMinimalScene);
     try {
       const Scene scene = parse_scene(text, file);
       ASSERT_EQ(to_toml(parse_scene(to_toml(scene), file)), to_toml(scene)) << text;

@@ -135,7 +135,7 @@ TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
   EXPECT_EQ(tool.compliance, 0.0002);
   EXPECT_EQ(tool.forceps()->jaws.length, 0.015);
   EXPECT_EQ(tool.forceps()->jaws.radius, 0.0012);
-  EXPECT_EQ(tool.forceps()->jaws.most_open, 0.9);
+  EXPECT_EQ(tool.forceps()->jaws.max_open, 0.9);
   EXPECT_EQ(tool.forceps()->jaws.grip_stiffness, 0.4);
   EXPECT_EQ(tool.forceps()->jaws.friction, 0.6);
   EXPECT_TRUE(scene.tools[0].probe());
@@ -158,12 +158,12 @@ TEST_F(SceneFile, AShellHasOneLawOfDampingAndIsClampedWhereItIsFixed) {
 
 TEST_F(SceneFile, ACauteryCutsWithTheTipUnlessItsRadiusIsGiven) {
   const std::string tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\nradius = 0.003\n";
-  EXPECT_EQ(parse(kLeastScene + tool + "cautery = {}\n").tools[0].probe()->cautery->radius, 0.003);
-  EXPECT_EQ(parse(kLeastScene + tool + "cautery = { radius = 0.001 }\n").tools[0].probe()->cautery->radius, 0.001);
+  EXPECT_EQ(parse(kMinimalScene + tool + "cautery = {}\n").tools[0].probe()->cautery->radius, 0.003);
+  EXPECT_EQ(parse(kMinimalScene + tool + "cautery = { radius = 0.001 }\n").tools[0].probe()->cautery->radius, 0.001);
 }
 
 TEST_F(SceneFile, AbsentSectionsStayEmpty) {
-  const Scene scene = parse(kLeastScene);
+  const Scene scene = parse(kMinimalScene);
   EXPECT_TRUE(scene.title.empty());
   EXPECT_TRUE(scene.tools.empty());
   EXPECT_FALSE(scene.record || scene.render);
@@ -175,7 +175,7 @@ TEST_F(SceneFile, AbsentSectionsStayEmpty) {
 }
 
 TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
-  for (const std::string& text : {kFullScene, kLeastScene}) {
+  for (const std::string& text : {kFullScene, kMinimalScene}) {
     const std::string resolved = to_toml(parse(text));
     EXPECT_EQ(to_toml(parse(resolved)), resolved);
     EXPECT_EQ(scene_hash(parse(resolved)), scene_hash(parse(text)));
@@ -183,7 +183,7 @@ TEST_F(SceneFile, ResolvedSceneReadsBackTheSame) {
 }
 
 TEST_F(SceneFile, DoublesRoundTripBitForBit) {
-  Scene scene = parse(kLeastScene);
+  Scene scene = parse(kMinimalScene);
   for (double young : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 6000.0, 1e22, 123456789.123456789, 1e16}) {
     as<MeshedSpec>(scene.bodies[0])->material.young = young;
     EXPECT_EQ(as<MeshedSpec>(parse(to_toml(scene)).bodies[0])->material.young, young);
@@ -202,7 +202,7 @@ TEST_F(SceneFile, DoublesRoundTripBitForBit) {
 }
 
 TEST_F(SceneFile, TextWithEscapesRoundTrips) {
-  Scene scene = parse(kLeastScene);
+  Scene scene = parse(kMinimalScene);
   scene.title = "tab\t quote\" backslash\\ newline\n bell\x07 delete\x7f umlaut \xc3\xa4";
   EXPECT_EQ(parse(to_toml(scene)).title, scene.title);
 }

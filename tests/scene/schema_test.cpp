@@ -8,7 +8,7 @@ namespace {
 /// Every key is read: a date, which no key takes, is refused at each, and the sentence names the key.
 TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
   const SceneFolder folder;
-  const std::string body = kLeastScene, tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
+  const std::string body = kMinimalScene, tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n";
   int tried = 0;
   for (const DescribedTable& described : scene_keys().tables()) {
     const std::string table = described.path.name();

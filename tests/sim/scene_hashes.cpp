@@ -19,7 +19,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::uint64_t surface_interval = 16;  // steps: the visual rate, about
+constexpr std::uint64_t kSurfaceInterval = 16;  // steps: the visual rate, about
 
 /// One column each.
 struct Hashes {
@@ -36,8 +36,8 @@ struct Hashes {
 
 /// What happened, for people.
 struct Course {
-  double largest_force = 0, largest_grip = 0;  ///< [N], [N m]
-  std::size_t removed = 0;                     ///< tetrahedra
+  double max_force = 0, max_grip = 0;  ///< [N], [N m]
+  std::size_t removed = 0;             ///< tetrahedra
 };
 
 void add_tools(const Simulator& simulator, Hashes& h, Course& course) {
@@ -55,8 +55,8 @@ void add_tools(const Simulator& simulator, Hashes& h, Course& course) {
       h.contacts.add(std::span<const double>(c.force));
       h.contacts.add(c.sticking);
     }
-    course.largest_force = std::max(course.largest_force, tool.force.norm());
-    course.largest_grip = std::max(course.largest_grip, std::abs(tool.grip_torque));
+    course.max_force = std::max(course.max_force, tool.force.norm());
+    course.max_grip = std::max(course.max_grip, std::abs(tool.grip_torque));
   }
 }
 
@@ -67,7 +67,7 @@ void add_bodies(Simulator& simulator, Hashes& h, Course& course) {
   for (const auto& m : haptic.modal_bodies()) h.modes.add(m.part->coordinates());
   for (const auto& c : haptic.catheters()) h.particles.add(c.part->body().positions());
   for (const ChangeView& change : simulator.changes()) course.removed += change.removed.size();
-  if (simulator.steps() % surface_interval != 0) return;
+  if (simulator.steps() % kSurfaceInterval != 0) return;
   for (int b = 0; b < simulator.bodies(); ++b) {
     const SurfaceView surface = simulator.surface(b);
     h.surfaces.add(surface.position);
@@ -78,8 +78,8 @@ void add_bodies(Simulator& simulator, Hashes& h, Course& course) {
 void print_second(int second, const Hashes& h, const Course& course) {
   fmt::print("{:3}", second);
   for (const auto& [name, digest] : h.named()) fmt::print(" {} {:016x}", name, digest->value());
-  fmt::print(" max_force {:a} ({:.4f} N) max_grip {:.5f} Nm removed {}\n", course.largest_force, course.largest_force,
-             course.largest_grip, course.removed);
+  fmt::print(" max_force {:a} ({:.4f} N) max_grip {:.5f} Nm removed {}\n", course.max_force, course.max_force,
+             course.max_grip, course.removed);
 }
 
 void run(const std::string& file, double seconds) {

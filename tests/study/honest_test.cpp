@@ -14,7 +14,7 @@ namespace palpate::study {
 namespace {
 
 using namespace testing;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 PressErrors two_nodes() {
   return {{1, 3}, Presses{.radius = 0.01, .radius_from = {}, .depths = {0.001, 0.002}, .patches = {}}};
@@ -41,12 +41,12 @@ TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
   Result result;
   const PressAnswers good{{answer(1, 1), answer(2, 2)}};
   EXPECT_NO_THROW(two_nodes().add({}, good, good, "r", result));
-  EXPECT_THROW(two_nodes().add({}, {{answer(1, 1), answer(nan, 2)}}, good, "r", result), std::runtime_error);
-  EXPECT_THROW(two_nodes().add({}, {{answer(1, nan), answer(2, 2)}}, good, "r", result), std::runtime_error);
-  EXPECT_THROW(two_nodes().add({}, {{answer(nan, 1), answer(2, 2)}}, {{answer(0, 0), answer(2, 2)}}, "r", result),
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, 1), answer(kNan, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, kNan), answer(2, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(kNan, 1), answer(2, 2)}}, {{answer(0, 0), answer(2, 2)}}, "r", result),
                std::runtime_error);
-  EXPECT_THROW(add_course({}, {{1, 2}, {nan, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
-  EXPECT_THROW(add_course({}, {{1, 2}, {3, nan}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {kNan, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {3, kNan}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
 }
 
 TEST(Budget, BuysNothingWhoseForceOrTimeCourseHasNoFigure) {
@@ -66,8 +66,8 @@ TEST(Budget, BuysNothingWhoseForceOrTimeCourseHasNoFigure) {
     return choose(methods, 1, result, 50e-6).has_value();
   };
   EXPECT_TRUE(buys(0.1, 0.1, 10, 10));
-  EXPECT_FALSE(buys(nan, 0.1, 10, 10));
-  EXPECT_FALSE(buys(0.1, nan, 10, 10));
+  EXPECT_FALSE(buys(kNan, 0.1, 10, 10));
+  EXPECT_FALSE(buys(0.1, kNan, 10, 10));
   EXPECT_FALSE(buys(0.1, 0.1, 10, 60)) << "the slower of its steps counts";
   EXPECT_FALSE(buys(0.1, 0.1, 60, 10));
 }

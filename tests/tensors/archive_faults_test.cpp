@@ -125,7 +125,7 @@ TEST(ArchiveFaults, StaleArchiveIsRefused) {
   const TemporaryFolder folder;
   write_archive(make_archive(5, 2), folder / "a.h5");
   EXPECT_EQ(refusal(folder / "a.h5", ArchivePart::header, "another hash"),
-            (folder / "a.h5").string() + ": made for another mesh, material or fixation");
+            (folder / "a.h5").string() + ": made for another mesh, material or boundary conditions");
 }
 
 TEST(ArchiveFaults, FolderThatCannotBeMadeIsNamed) {

@@ -95,7 +95,7 @@ inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1)
   hybrid.quasi_static_triangles = 3;
   hybrid.interface = {{1, 2, 4, 7}};
   hybrid.gap = {{5, {1, 2, 4}, {0.5, 0.25, 0.25}}, {6, {4, 2, 1}, {1, 0, 0}}};
-  hybrid.largest_gap = 2e-4;
+  hybrid.max_gap = 2e-4;
   const std::size_t c = hybrid.dofs.size(), i = archive.touchable_dofs.size() + archive.other_dofs.size();
   hybrid.stiffness.resize(c * (c + 1) / 2);
   hybrid.reaction.resize(c);

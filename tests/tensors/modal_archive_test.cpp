@@ -12,7 +12,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/shell/assembly.hpp"
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {
@@ -105,7 +105,7 @@ TEST(ModalArchive, HoldsTheComplianceOfTheTranslationsAndTheModesOfTheShell) {
   const auto body = duct_body();
   const auto mesh = duct_mesh();
   const auto archive = precompute(body, mesh);
-  const auto dofs = shell_fixation(mesh, body, "test");
+  const auto dofs = apply_boundary_conditions(mesh, body, "test");
   const MatrixXd expected = dense_compliance(body, mesh, dofs);
   const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
   const auto& surface = archive.surface;

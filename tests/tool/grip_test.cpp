@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 const ForcepsShape shape{.shaft_radius = 0.0025, .shaft_length = 0.3, .jaw_length = 0.015, .jaw_radius = 0.001};
 const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-constexpr double dt = 1e-3;
+constexpr double kDt = 1e-3;
 
 /// [m] between a jaw's axis and a point.
 double away(double opening, ForcepsPart jaw, const Vector3d& p) {
@@ -70,7 +70,7 @@ TEST(OpeningAtContact, EachJawStopsAtItsOwnWallOfATube) {
 class GripTest : public ::testing::Test {
  protected:
   GripEvent step(double commanded, double load = 0) {
-    return work_grip(grip_, law_, commanded, touch_, distance_, load, dt);
+    return work_grip(grip_, law_, commanded, touch_, distance_, load, kDt);
   }
   /// Steps until the jaws come to rest; the last event other than none.
   GripEvent settle(double commanded, double load = 0) {
@@ -81,7 +81,7 @@ class GripTest : public ::testing::Test {
     }
     return last;
   }
-  GripLaw law_{.most_open = 1.0, .stiffness = 0.5, .friction = 0.8};
+  GripLaw law_{.max_open = 1.0, .stiffness = 0.5, .friction = 0.8};
   Grip grip_ = grip_at(law_, 0.8);
   double touch_ = 0, distance_ = 0;
 };
@@ -90,7 +90,7 @@ TEST_F(GripTest, EmptyJawsFollowTheHandleAtABoundedRateAndWithoutTorque) {
   double before = grip_.opening;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(step(i < 50 ? 0.0 : 2.0), GripEvent::none);
-    ASSERT_LE(std::abs(grip_.opening - before), law_.rate * dt * (1 + 1e-12));
+    ASSERT_LE(std::abs(grip_.opening - before), law_.rate * kDt * (1 + 1e-12));
     ASSERT_EQ(grip_torque(grip_, law_), 0);
     before = grip_.opening;
   }
@@ -110,9 +110,9 @@ TEST_F(GripTest, AnObjectStopsTheJawsAndTheHandleFeelsItsStiffness) {
 TEST_F(GripTest, AHoldEndsWhenTheHandleOpensPastTheTouchAndNotBefore) {
   touch_ = 0.3, distance_ = 0.01;
   settle(0.1);
-  EXPECT_EQ(settle(0.3 + 0.9 * jaw_slack), GripEvent::none);
+  EXPECT_EQ(settle(0.3 + 0.9 * kJawSlack), GripEvent::none);
   EXPECT_TRUE(grip_.holding);
-  EXPECT_EQ(settle(0.3 + 1.1 * jaw_slack), GripEvent::released);
+  EXPECT_EQ(settle(0.3 + 1.1 * kJawSlack), GripEvent::released);
   EXPECT_FALSE(grip_.holding);
   EXPECT_EQ(settle(0.1), GripEvent::taken);
 }
@@ -163,7 +163,7 @@ TEST_F(GripTest, ARestoredGripGoesOnAlike) {
   std::memcpy(static_cast<void*>(&copy), &grip_, sizeof copy);
   for (int i = 0; i < 50; ++i) {
     const double commanded = 0.1 + 0.01 * i, load = 0.3 * i;
-    ASSERT_EQ(step(commanded, load), work_grip(copy, law_, commanded, touch_, distance_, load, dt));
+    ASSERT_EQ(step(commanded, load), work_grip(copy, law_, commanded, touch_, distance_, load, kDt));
     ASSERT_EQ(copy.opening, grip_.opening);
     ASSERT_EQ(copy.holding, grip_.holding);
   }

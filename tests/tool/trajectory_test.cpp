@@ -130,7 +130,7 @@ TEST(Trajectory, RefusesRowsThatAreNotOne) {
 TEST_F(TrajectoryFile, AForcepsGripsWithinTheRangeOfItsJaws) {
   Tool tool;
   tool.name = "hand";
-  tool.end = ForcepsSpec{{.most_open = 0.8}};
+  tool.end = ForcepsSpec{{.max_open = 0.8}};
   const std::filesystem::path good = file(kHeader + "0,0,0,0.1,0,0\n1,0,0,0.1,0,0.8\n2,0,0,0.1,0,0.1\n");
   EXPECT_NO_THROW(check_grip(load_trajectory(good), good, tool));
   const auto refusal_of = [&](const std::string& text) -> std::string {

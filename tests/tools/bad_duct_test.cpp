@@ -58,7 +58,7 @@ trajectory = "motion.csv"
 
 [tool.jaws]
 length = 0.012
-most_open = 1.0
+max_open = 1.0
 
 [render]
 width = 320
@@ -151,8 +151,8 @@ TEST_F(ToolsBadDuct, AGripThatTheJawsCannotReachIsRefused) {
   expect_refusal(program("haptic_node") + " " + scene(), sentence);
   write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.10,0,-0.1\n");
   expect_refusal(palpate_on("check"), {"motion.csv: the grip of -0.1 rad at 0 s is out of range"});
-  replace("most_open = 1.0", "most_open = 2.7");
-  expect_refusal(palpate_on("check"), {"scene.toml:", "most_open must be greater than 0 and at most 2.5, and is 2.7"});
+  replace("max_open = 1.0", "max_open = 2.7");
+  expect_refusal(palpate_on("check"), {"scene.toml:", "max_open must be greater than 0 and at most 2.5, and is 2.7"});
 }
 
 TEST_F(ToolsBadDuct, AToolThatStartsOnTheWallOrTheCatheterIsRefused) {

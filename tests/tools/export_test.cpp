@@ -16,7 +16,7 @@ class Export : public ::testing::Test {
     LogWriter writer(log_);
     LogHeader header;
     header.schema = schema_text();
-    writer.write(header_channel, 1, header);
+    writer.write(kHeaderChannel, 1, header);
     for (const std::uint64_t seq : {1u, 2u, 3u})
       writer.write(topics::force_state.name, static_cast<std::int64_t>(100 * seq),
                    ForceState{.tool = 0, .run = 9, .seq = seq, .force = {0.5, -1.0 / 3, 1e-9}, .publish_ns = 4});

@@ -16,7 +16,7 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
     LogWriter writer(log);
     LogHeader header;
     header.schema = schema_text();
-    writer.write(header_channel, 1, header);
+    writer.write(kHeaderChannel, 1, header);
     for (const std::uint64_t seq : {1u, 2u})
       writer.write(topics::task_record.name, static_cast<std::int64_t>(100'000'000 * seq),
                    TaskRecord{.body = 1,
@@ -25,7 +25,7 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
                               .inserted = 0.01,
                               .deepest = 0.011 * static_cast<double>(seq),
                               .inserting_s = 6.5,
-                              .largest_force = 0.75,
+                              .max_force = 0.75,
                               .wall_contacts = 3,
                               .grasps = 2,
                               .drops = 1,

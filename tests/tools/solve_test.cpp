@@ -63,20 +63,20 @@ class ToolsSolve : public ::testing::Test {
     const Table direct = solve(scene, "direct", holds), tensors = solve(scene, "tensors", holds);
     ASSERT_GT(tensors.size(), 50u);
     ASSERT_GT(direct.size(), tensors.size());
-    double largest_u = 0, largest_f = 0, error_u = 0, error_f = 0;
+    double max_u = 0, max_f = 0, error_u = 0, error_f = 0;
     for (const auto& [node, t] : tensors) {
       ASSERT_TRUE(direct.contains(node));
       const Row& d = direct.at(node);
       EXPECT_EQ(t.position, d.position) << node;
-      largest_u = std::max(largest_u, d.displacement.norm());
-      largest_f = std::max(largest_f, d.force.norm());
+      max_u = std::max(max_u, d.displacement.norm());
+      max_f = std::max(max_f, d.force.norm());
       error_u = std::max(error_u, (t.displacement - d.displacement).norm());
       error_f = std::max(error_f, (t.force - d.force).norm());
     }
-    ASSERT_GT(largest_u, 0.9e-3);
-    ASSERT_GT(largest_f, 0);
-    EXPECT_LT(error_u, 1e-8 * largest_u) << holds.size() << " holds";
-    EXPECT_LT(error_f, 1e-8 * largest_f) << holds.size() << " holds";
+    ASSERT_GT(max_u, 0.9e-3);
+    ASSERT_GT(max_f, 0);
+    EXPECT_LT(error_u, 1e-8 * max_u) << holds.size() << " holds";
+    EXPECT_LT(error_f, 1e-8 * max_f) << holds.size() << " holds";
   }
 
   static fs::path plate() { return fs::path(PALPATE_SOURCE) / "scenes/plate.toml"; }

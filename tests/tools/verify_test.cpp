@@ -27,7 +27,7 @@ void rewrite(
   LogWriter writer(to, std::size_t{1} << 30);
   LogHeader header = reader.header();
   change_header(header);
-  writer.write(header_channel, header.start_monotonic_ns, header);
+  writer.write(kHeaderChannel, header.start_monotonic_ns, header);
   for (LogEvent event; reader.next(event);) {
     change(event);
     writer.write_payload(event.channel, event.receive_ns, event.payload);

@@ -54,7 +54,7 @@ std::vector<Flip> possible_flips(const TetMesh& mesh) {
       Tet& turned = flip.after[k++] = tet;  // the apex takes the place of one node of the face
       turned[corner] = apex;
       positive = positive && tet_shape(mesh, turned) > kDegenerateShape;
-      if (positive) flip.angle = std::min(flip.angle, smallest_dihedral_angle(mesh, turned));
+      if (positive) flip.angle = std::min(flip.angle, min_dihedral_angle(mesh, turned));
     }
     if (positive) flips.push_back(flip);
   }

@@ -38,13 +38,13 @@ Eigen::Vector3d gradient(const ImplicitShape& shape, const Eigen::Vector3d& p) {
 }
 
 Eigen::Vector3d project(const ImplicitShape& shape, Eigen::Vector3d p) {
-  constexpr double kLongestStep = 0.01;  // [m]
+  constexpr double kMaxStep = 0.01;  // [m]
   for (int step = 0; step < 20; ++step) {
     const double value = shape(p);
     if (std::abs(value) < 1e-9) break;
     const Eigen::Vector3d g = gradient(shape, p);
     const Eigen::Vector3d move = -value / std::max(g.squaredNorm(), 1e-3) * g;
-    p += move * std::min(1.0, kLongestStep / move.norm());
+    p += move * std::min(1.0, kMaxStep / move.norm());
   }
   return p;
 }

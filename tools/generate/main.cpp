@@ -58,7 +58,7 @@ void save(const TetMesh& mesh, const std::filesystem::path& file) {
   check_tet_mesh(mesh, file.string());
   write_tet_mesh(mesh, file);
   double angle = std::numbers::pi;
-  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, smallest_dihedral_angle(mesh, t));
+  for (const auto& t : mesh.tetrahedra) angle = std::min(angle, min_dihedral_angle(mesh, t));
   std::printf("%s: %zu nodes, %zu tetrahedra, smallest dihedral angle %.1f degrees\n", file.c_str(), mesh.nodes.size(),
               mesh.tetrahedra.size(), angle * 180 / std::numbers::pi);
 }

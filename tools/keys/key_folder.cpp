@@ -18,7 +18,7 @@ namespace palpate::keys {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::time_t day = 24 * 60 * 60, life_of_authority = 7300 * day;
+constexpr std::time_t kDay = 24 * 60 * 60, kLifeOfAuthority = 7300 * kDay;
 
 /// Writes a file that is not there yet; nobody else ever sees what is private.
 void write(const fs::path& file, const std::string& text, int mode) {
@@ -87,7 +87,7 @@ void make_folder(const fs::path& folder, const Period& period) {
         fmt::format("keys: {} is there already; nothing was written, --add makes further keys from it",
                     authority_in(folder).string()));
   const Identity authority =
-      make_authority(new_name(), {period.from, std::max(period.to, period.from + life_of_authority)});
+      make_authority(new_name(), {period.from, std::max(period.to, period.from + kLifeOfAuthority)});
   make(authority_in(folder), fs::perms::owner_all);
   write(authority_in(folder) / "key.pem", authority.key, 0600);
   write(authority_in(folder) / "certificate.pem", authority.certificate, 0644);

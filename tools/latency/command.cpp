@@ -34,8 +34,8 @@ struct Options {
   bool answer = false, attach = false, json = false;
 };
 
-constexpr std::array names{"round_trip", "bare_dds", "bare_udp"};
-using Ways = std::array<std::unique_ptr<Echo>, names.size()>;
+constexpr std::array kNames{"round_trip", "bare_dds", "bare_udp"};
+using Ways = std::array<std::unique_ptr<Echo>, kNames.size()>;
 
 Ways open_ways(const Options& o, Side side) {
   const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
@@ -81,12 +81,12 @@ std::vector<std::string> run_command(const Options& o) {
   return command;
 }
 
-void find_other_side(std::array<std::unique_ptr<RoundTrips>, names.size()>& ways, const Options& o) {
-  const std::int64_t limit = now_ns() + 10 * ns_per_s;
+void find_other_side(std::array<std::unique_ptr<RoundTrips>, kNames.size()>& ways, const Options& o) {
+  const std::int64_t limit = now_ns() + 10 * kNsPerS;
   const auto silent = [&]() -> std::string {
     std::string text;
     for (std::size_t i = 0; i < ways.size(); ++i)
-      if (ways[i]->back() == 0) text += (text.empty() ? "" : ", ") + std::string(names[i]);
+      if (ways[i]->back() == 0) text += (text.empty() ? "" : ", ") + std::string(kNames[i]);
     return text;
   };
   while (!silent().empty() && !shutdown_requested()) {
@@ -103,7 +103,7 @@ void find_other_side(std::array<std::unique_ptr<RoundTrips>, names.size()>& ways
 }
 
 struct Result {
-  std::array<latency::RoundTripReport, names.size()> trips;
+  std::array<latency::RoundTripReport, kNames.size()> trips;
   HopTimes hops;
   bool observed = false;
 };
@@ -111,7 +111,7 @@ struct Result {
 /// The ways take turns within each period, so that a change of the host's load meets all three.
 Result measure(const Options& o) {
   const auto other = answerer_here(o);
-  std::array<std::unique_ptr<RoundTrips>, names.size()> ways;
+  std::array<std::unique_ptr<RoundTrips>, kNames.size()> ways;
   Ways echoes = open_ways(o, Side::asks);
   for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = std::make_unique<RoundTrips>(std::move(echoes[i]));
   find_other_side(ways, o);
@@ -122,7 +122,7 @@ Result measure(const Options& o) {
   if (o.attach || !o.scene.empty()) observer.emplace(*bus);
   if (!o.scene.empty() && !o.attach) simulation.emplace("run", run_command(o));
   if (observer) {
-    for (const std::int64_t limit = now_ns() + 30 * ns_per_s;
+    for (const std::int64_t limit = now_ns() + 30 * kNsPerS;
          observer->times().force().count() < 100 && !shutdown_requested();) {
       observer->take();
       if (simulation && !simulation->running())
@@ -134,9 +134,9 @@ Result measure(const Options& o) {
     observer.emplace(*bus);
   }
 
-  PeriodicTimer timer(static_cast<double>(names.size()) * o.rate, 0);
-  const auto warm_up = static_cast<std::uint64_t>(names.size() * o.rate * 0.3),
-             end = warm_up + static_cast<std::uint64_t>(names.size() * o.rate * o.seconds);
+  PeriodicTimer timer(static_cast<double>(kNames.size()) * o.rate, 0);
+  const auto warm_up = static_cast<std::uint64_t>(kNames.size() * o.rate * 0.3),
+             end = warm_up + static_cast<std::uint64_t>(kNames.size() * o.rate * o.seconds);
   bool begun = false;
   for (std::uint64_t i = timer.wait(); i < end && !shutdown_requested(); i = timer.wait()) {
     if (i >= warm_up && !begun) {
@@ -162,14 +162,14 @@ Json json_of(const Histogram& h) {
 /// Bins with samples: lowest value [us] and count.
 Json bins_of(const Histogram& h) {
   Json bins = Json::array();
-  for (std::size_t b = 0; b < Histogram::bins; ++b)
+  for (std::size_t b = 0; b < Histogram::kBins; ++b)
     if (h.in_bin(b) > 0) bins.push_back({1e-3 * static_cast<double>(Histogram::bin_start(b)), h.in_bin(b)});
   return bins;
 }
 
 Json json_of(const Options& o, const Result& r) {
   Json json;
-  for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i]) + "_us"] = json_of(r.trips[i].time);
+  for (std::size_t i = 0; i < kNames.size(); ++i) json[std::string(kNames[i]) + "_us"] = json_of(r.trips[i].time);
   json["ratio_to_bare_dds"] =
       json["round_trip_us"].is_null() || json["bare_dds_us"].is_null()
           ? Json(nullptr)
@@ -187,13 +187,13 @@ Json json_of(const Options& o, const Result& r) {
   json["keys"] = !o.network.keys.empty();
   json["rate_hz"] = o.rate;
   json["seconds"] = o.seconds;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    json["ways"][names[i]] = {{"sent", r.trips[i].sent},
-                              {"lost", r.trips[i].lost},
-                              {"reordered", r.trips[i].reordered},
-                              {"repeated", r.trips[i].repeated},
-                              {"jitter_us", 1e-3 * r.trips[i].jitter_ns},
-                              {"histogram_us", bins_of(r.trips[i].time)}};
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    json["ways"][kNames[i]] = {{"sent", r.trips[i].sent},
+                               {"lost", r.trips[i].lost},
+                               {"reordered", r.trips[i].reordered},
+                               {"repeated", r.trips[i].repeated},
+                               {"jitter_us", 1e-3 * r.trips[i].jitter_ns},
+                               {"histogram_us", bins_of(r.trips[i].time)}};
   if (r.observed)
     json["hop_histograms_us"] = {{"tool_to_force", bins_of(r.hops.force())},
                                  {"tool_to_surface", bins_of(r.hops.surface())},
@@ -214,7 +214,7 @@ void print_text(const Result& r) {
   fmt::print("{:18} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>7} {:>10} {:>10}\n", "there and back [us]", "p50",
              "p90", "p99", "p99.9", "max", "sent", "lost", "reordered", "jitter");
   constexpr std::array titles{"palpate's bus", "bare Cyclone DDS", "bare UDP"};
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
     const auto& t = r.trips[i];
     print_row(titles[i], t.time,
               fmt::format(" {:9} {:7} {:10} {:10.1f}", t.sent, t.lost, t.reordered, 1e-3 * t.jitter_ns));

@@ -4,8 +4,8 @@
 namespace palpate::latency {
 namespace {
 
-constexpr Topic<ToolState> question{"palpate/latency_question", "ToolState", topics::tool_state.qos};
-constexpr Topic<ForceState> answer{"palpate/latency_answer", "ForceState", topics::force_state.qos};
+constexpr Topic<ToolState> kQuestion{"palpate/latency_question", "ToolState", topics::tool_state.qos};
+constexpr Topic<ForceState> kAnswer{"palpate/latency_answer", "ForceState", topics::force_state.qos};
 
 template <class Out, class In>
 class BusEcho : public Echo {
@@ -47,14 +47,14 @@ class DdsEcho : public Echo {
 }  // namespace
 
 std::unique_ptr<Echo> bus_echo(const BusSettings& settings, Side side) {
-  if (side == Side::asks) return std::make_unique<BusEcho<ToolState, ForceState>>(settings, question, answer);
-  return std::make_unique<BusEcho<ForceState, ToolState>>(settings, answer, question);
+  if (side == Side::asks) return std::make_unique<BusEcho<ToolState, ForceState>>(settings, kQuestion, kAnswer);
+  return std::make_unique<BusEcho<ForceState, ToolState>>(settings, kAnswer, kQuestion);
 }
 
 std::unique_ptr<Echo> dds_echo(const BusSettings& settings, Side side) {
   const char *there = "palpate/latency_bare_question", *back = "palpate/latency_bare_answer";
-  if (side == Side::asks) return std::make_unique<DdsEcho>(settings, there, back, BareDds::as_tool_state);
-  return std::make_unique<DdsEcho>(settings, back, there, BareDds::as_force_state);
+  if (side == Side::asks) return std::make_unique<DdsEcho>(settings, there, back, BareDds::kAsToolState);
+  return std::make_unique<DdsEcho>(settings, back, there, BareDds::kAsForceState);
 }
 
 }  // namespace palpate::latency

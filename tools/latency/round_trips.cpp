@@ -62,7 +62,7 @@ void RoundTrips::receive(const std::stop_token& stop) {
 
 RoundTripReport RoundTrips::finish() {
   const std::uint64_t sent = next_.load() - first_.load();
-  for (const std::int64_t limit = now_ns() + ns_per_s; back_.load() < sent && now_ns() < limit;)
+  for (const std::int64_t limit = now_ns() + kNsPerS; back_.load() < sent && now_ns() < limit;)
     sleep_until_ns(now_ns() + 5'000'000);
   thread_.request_stop();
   thread_.join();

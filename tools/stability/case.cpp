@@ -65,8 +65,8 @@ bool unpack(const std::string& text, Row& row) {
 }  // namespace
 
 const char* word_of(Outcome outcome) {
-  static constexpr const char* words[] = {"stable", "regularised", "refused", "failed"};
-  return words[static_cast<int>(outcome)];
+  static constexpr const char* kWords[] = {"stable", "regularised", "refused", "failed"};
+  return kWords[static_cast<int>(outcome)];
 }
 
 Row run_guarded(const Point& point) {

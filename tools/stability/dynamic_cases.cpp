@@ -10,13 +10,13 @@ namespace palpate::stability {
 namespace {
 
 const Body kinds[] = {TensorMassSpec{}, SpringMassSpec{}};
-constexpr const char* precisions[] = {"single", "double"};
+constexpr const char* kPrecisions[] = {"single", "double"};
 
 double bound_of(const Scene& scene, const Archive& archive) {
   const Body& body = scene.bodies[0];
   const Dynamic& motion = motion_of(body);
   const auto model = model_maker(body)(elastic_mesh(archive), motion);
-  return largest_step(integrator_of(motion), model->frequency_bound(), motion.damping);
+  return max_step(integrator_of(motion), model->frequency_bound(), motion.damping);
 }
 
 /// Free motion from a pluck at one step size: the energy of the undamped tissue may not grow.
@@ -81,7 +81,7 @@ std::vector<Point> dynamic_points(const Extent& extent) {
                           return press_organ(scene, organ_mesh(), 0.004, extent.quick ? 100 : 1000);
                         }});
   for (double e : extent.quick ? std::vector{1.0} : std::vector{1.0, 1e3, 1e6, 1e8})
-    for (const char* precision : precisions)
+    for (const char* precision : kPrecisions)
       points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e),
                         [=] {
                           Scene scene = organ_scene();
@@ -100,30 +100,29 @@ std::vector<Point> cut_points(const Extent& extent) {
   std::vector<Point> points;
   for (const Body& kind : kinds) {
     if (extent.quick && !as<TensorMassSpec>(kind)) continue;
-    points.push_back({fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
-                        Scene scene = organ_scene(kind);
-                        const TetMesh mesh = organ_mesh(2);
-                        const Archive archive = precompute_tissue(scene.bodies[0], mesh);
-                        const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
-                        const double step =
-                            0.5 * largest_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
-                        const int count = elastic_mesh(archive).tetrahedra.size();
-                        Result r{.note = {}};
-                        for (int t = count - 1; t >= 0; --t) {
-                          tissue->remove(std::array{t});
-                          for (int i = 0; i < 20; ++i) tissue->step(step);
-                          for (int n = 0; n < tissue->nodes(); ++n) {
-                            if (tissue->mass(n) > 0)
-                              tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2),
-                                                 Eigen::Vector3d::Zero());
-                            r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
-                            if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
-                          }
-                          if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
-                        }
-                        r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
-                        return r;
-                      }});
+    points.push_back(
+        {fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
+           Scene scene = organ_scene(kind);
+           const TetMesh mesh = organ_mesh(2);
+           const Archive archive = precompute_tissue(scene.bodies[0], mesh);
+           const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
+           const double step = 0.5 * max_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
+           const int count = elastic_mesh(archive).tetrahedra.size();
+           Result r{.note = {}};
+           for (int t = count - 1; t >= 0; --t) {
+             tissue->remove(std::array{t});
+             for (int i = 0; i < 20; ++i) tissue->step(step);
+             for (int n = 0; n < tissue->nodes(); ++n) {
+               if (tissue->mass(n) > 0)
+                 tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
+               r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
+               if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
+             }
+             if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
+           }
+           r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
+           return r;
+         }});
     points.push_back(
         {fmt::format("cut away {}", kind_of(kind)), "by", "cautery through the whole block", [=] {
            Scene scene = organ_scene(kind);

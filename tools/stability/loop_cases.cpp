@@ -83,7 +83,7 @@ class Swing {
   double last_ = 0;
 };
 
-constexpr double tip_radius = 0.008, push = 0.01;
+constexpr double kTipRadius = 0.008, kPush = 0.01;
 
 Scene wall_scene(const Link& link) {
   Scene scene = block_scene();
@@ -104,7 +104,7 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
   HapticStep haptic(scene, std::vector<Archive>(1));
   const double dt = haptic.dt();
   Hand hand{.at = 0.002};
-  const auto dofs_of = [&](double at) { return tip_at(tool, {0, 0, tip_radius + quantised(at, link.quantum)}); };
+  const auto dofs_of = [&](double at) { return tip_at(tool, {0, 0, kTipRadius + quantised(at, link.quantum)}); };
   haptic.start(std::array{dofs_of(hand.at)});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(0, 1);
@@ -114,7 +114,7 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
   std::uint64_t newest = 0;
   const auto steps = static_cast<std::uint64_t>(3 / dt);
   for (std::uint64_t i = 0; i < steps; ++i) {
-    hand.move(-push, i > 0 ? haptic.force(0).z() : 0, dt);
+    hand.move(-kPush, i > 0 ? haptic.force(0).z() : 0, dt);
     const ToolDofs dofs = dofs_of(hand.at);
     const double depth = -quantised(hand.at, link.quantum);
     LocalContactModel m;
@@ -142,7 +142,7 @@ LoopEnd touch_wall(double stiffness, const Link& link) {
 /// it.
 bool settles(double stiffness, const Link& link) {
   const LoopEnd end = touch_wall(stiffness, link);
-  const double rest = push * Hand{}.stiffness / (Hand{}.stiffness + stiffness);
+  const double rest = kPush * Hand{}.stiffness / (Hand{}.stiffness + stiffness);
   return (end.swing < 1e-4 + 3 * link.quantum || end.swing < 0.9 * end.before) && -end.last < rest + 0.003;
 }
 
@@ -151,7 +151,7 @@ double bound_of(const Link& link) {
 }
 
 /// The largest stiffness at which the hand comes to rest, by bisection of its logarithm.
-Result largest_stiffness(const Link& link) {
+Result max_stiffness(const Link& link) {
   double low = 10, high = 1e6;
   if (settles(high, link)) low = high;
   for (int i = 0; i < 14 && high / low > 1.02; ++i) {
@@ -222,12 +222,12 @@ LoopEnd touch_block(double young, double rate, bool controller) {
   scene.tools[0].max_force_rate = 1e5;
   HapticStep haptic(scene, {precompute(block_of(scene), block_mesh())});
   Hand hand{.at = 0.002};
-  const auto dofs_of = [&] { return std::array{tip_at(scene.tools[0], {0, 0, tip_radius + hand.at})}; };
+  const auto dofs_of = [&] { return std::array{tip_at(scene.tools[0], {0, 0, kTipRadius + hand.at})}; };
   haptic.start(dofs_of());
   Watch watch;
   Swing swing;
   for (int i = 0; i < 3 * rate; ++i) {
-    hand.move(-push, i > 0 ? haptic.force(0).z() : 0, 1 / rate);
+    hand.move(-kPush, i > 0 ? haptic.force(0).z() : 0, 1 / rate);
     haptic.step(dofs_of());
     watch.look(haptic);
     swing.add(i / rate, hand.at);
@@ -249,8 +249,7 @@ std::vector<Point> loop_points(const Extent& extent) {
     const char* with = controller ? "controller" : "observer only";
     const auto wall = [&](const char* parameter, const std::string& value, Link link) {
       link.controller = controller;
-      points.push_back(
-          {fmt::format("loop {}", with), parameter, value, [link] { return largest_stiffness(link); }, 300});
+      points.push_back({fmt::format("loop {}", with), parameter, value, [link] { return max_stiffness(link); }, 300});
     };
     for (int d : extent.quick ? std::vector{0, 20} : std::vector{0, 1, 2, 5, 10, 20, 50, 100})
       wall("delay [ms]", std::to_string(d), {.delay = d});

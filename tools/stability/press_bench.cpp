@@ -18,7 +18,7 @@ void Watch::look(const HapticStep& haptic) {
     finite_ &= std::isfinite(haptic.grip_torque(t));
     largest_ = larger(largest_, haptic.force(t).norm());
   }
-  most_lost_ = larger(most_lost_, -haptic.energy());
+  max_lost_ = larger(max_lost_, -haptic.energy());
   regularised_ += (flags & regularised) != 0;
   limited_ += (flags & force_limited) != 0;
   slewed_ += (flags & slew_limited) != 0;
@@ -28,7 +28,7 @@ void Watch::look(const HapticStep& haptic) {
 }
 
 Result Watch::result() const {
-  Result r{.max_force = largest_, .energy_growth = most_lost_, .note = {}};
+  Result r{.max_force = largest_, .energy_growth = max_lost_, .note = {}};
   const auto say = [&](int count, const char* what) {
     if (count == 0) return;
     r.outcome = Outcome::regularised;
@@ -40,7 +40,7 @@ Result Watch::result() const {
   say(damped_, "damped for passivity");
   say(stale_, "faded for want of a model");
   say(faults_, "fault, force ramped to zero,");
-  if (torque_ > most_torque) {
+  if (torque_ > kMaxTorque) {
     r.outcome = Outcome::failed;
     r.note += fmt::format("{}torque up to {:.3g} N m", r.note.empty() ? "" : ", ", torque_);
   }

@@ -13,7 +13,7 @@ class Watch {
  public:
   /// [N m] to a hand, beyond which it counts as unbounded: contacts that pull against one another add up to little
   /// force.
-  static constexpr double most_torque = 100;
+  static constexpr double kMaxTorque = 100;
 
   /// Looks at the step that has just been made.
   void look(const HapticStep& haptic);
@@ -22,7 +22,7 @@ class Watch {
   double largest() const { return largest_; }
 
  private:
-  double largest_ = 0, torque_ = 0, most_lost_ = 0;
+  double largest_ = 0, torque_ = 0, max_lost_ = 0;
   bool finite_ = true;
   int steps_ = 0, regularised_ = 0, limited_ = 0, slewed_ = 0, faults_ = 0, stale_ = 0, damped_ = 0;
 };

@@ -132,7 +132,7 @@ void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>
           {"held nodes", fmt::format("number, of body '{}'", name_of(scene.bodies[b])), std::to_string(count),
            [=] {
              const Archive archive = load_or_precompute(scene, ArchivePart::touchable)[b];
-             return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface), TouchBody::max_contacts);
+             return hold_nodes(archive, "spread", count, 0.01 * extent_of(archive.surface), TouchBody::kMaxContacts);
            },
            600});
   }
@@ -148,8 +148,7 @@ Result play_at_step(Scene scene, double share) {
     body->dynamic.step = 0;
     const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
     const DynamicOrgan organ(archives[b], *body, settings, model_maker(scene.bodies[b]));
-    const double bound =
-        largest_step(integrator_of(body->dynamic), organ.model().frequency_bound(), body->dynamic.damping);
+    const double bound = max_step(integrator_of(body->dynamic), organ.model().frequency_bound(), body->dynamic.damping);
     body->dynamic.step = share * bound;
     bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, name_of(scene.bodies[b]));
   }

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double radius = 0.0045, length = 0.04;
+constexpr double kRadius = 0.0045, kLength = 0.04;
 
 Scene duct_scene(double thickness) {
   Scene scene = block_scene();
@@ -20,10 +20,10 @@ Scene duct_scene(double thickness) {
   duct.name = "duct";
   duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
   duct.shell = {.thickness = thickness, .modes = 20};
-  duct.fixed.push_back({{.where = {.indices = {}, .box = Box{{-1, -1, length - 1e-6}, {1, 1, 1}}, .group = {}}}});
+  duct.fixed.push_back({{.where = {.indices = {}, .box = Box{{-1, -1, kLength - 1e-6}, {1, 1, 1}}, .group = {}}}});
   scene.bodies[0] = duct;
   Tool& tool = scene.tools[0];
-  tool.pivot = {0, 0.15, length / 2};
+  tool.pivot = {0, 0.15, kLength / 2};
   tool.axis = -Vector3d::UnitY();
   tool.up = Vector3d::UnitZ();
   tool.probe()->radius = 0.003;
@@ -38,7 +38,7 @@ ModalShellSpec& duct_of(Scene& scene) {
 Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
   HapticStep haptic(scene, {precompute(std::get<ModalShellSpec>(scene.bodies[0]), mesh)});
   const auto at = [&](double above) {
-    return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, length / 2})};
+    return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, kLength / 2})};
   };
   haptic.start(at(0.002));
   Watch watch;
@@ -61,11 +61,11 @@ Result tap_wall(double young, double rate, double speed) {
   scene.passivity.controller = false;
   scene.tools[0].max_force = 1e6;
   scene.tools[0].max_force_rate = 1e12;
-  HapticStep haptic(scene, {precompute(duct_of(scene), make_tube(radius, length, 12, 12))});
+  HapticStep haptic(scene, {precompute(duct_of(scene), make_tube(kRadius, kLength, 12, 12))});
   constexpr double reach = 0.0003;  // [m] to both sides of the wall
   const auto at = [&](double time) {
     return std::array{
-        tip_at(scene.tools[0], {0, radius + 0.0035 + reach * std::cos(speed / reach * time), length / 2})};
+        tip_at(scene.tools[0], {0, kRadius + 0.0035 + reach * std::cos(speed / reach * time), kLength / 2})};
   };
   haptic.start(at(0));
   Watch watch;
@@ -86,9 +86,9 @@ Result tap_wall(double young, double rate, double speed) {
 /// A plate in the plane y = 0: every triangle is coplanar with its neighbours.
 ShellMesh plate_mesh(int cells) {
   ShellMesh mesh;
-  const double h = length / cells;
+  const double h = kLength / cells;
   for (int k = 0; k <= cells; ++k)
-    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({h * i - length / 2, 0, h * k});
+    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({h * i - kLength / 2, 0, h * k});
   for (int k = 0; k < cells; ++k)
     for (int i = 0; i < cells; ++i) {
       const int a = k * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
@@ -106,8 +106,8 @@ std::vector<Point> shell_points(const Extent& extent) {
   for (double t : extent.quick ? std::vector{1e-5, 0.3} : std::vector{1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.2, 0.3})
     points.push_back({"shell thickness", "t/R [1]", fmt::format("{:g}", t),
                       [t] {
-                        return press_wall(duct_scene(t * radius), make_tube(radius, length, 12, 12),
-                                          radius * (1 + t / 2), 0.001);
+                        return press_wall(duct_scene(t * kRadius), make_tube(kRadius, kLength, 12, 12),
+                                          kRadius * (1 + t / 2), 0.001);
                       },
                       120});
   for (const char* bending : {"polynomial", "discrete_kirchhoff"})
@@ -123,7 +123,7 @@ std::vector<Point> shell_points(const Extent& extent) {
                       [e] {
                         Scene scene = duct_scene(0.001);
                         duct_of(scene).material.young = e;
-                        return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
+                        return press_wall(scene, make_tube(kRadius, kLength, 12, 12), kRadius + 0.0005, 0.001);
                       },
                       120});
   for (double e : extent.quick ? std::vector{1e5} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8})
@@ -140,7 +140,7 @@ std::vector<Point> shell_points(const Extent& extent) {
                       [z] {
                         Scene scene = duct_scene(0.001);
                         duct_of(scene).shell.damping_ratio = z;
-                        return press_wall(scene, make_tube(radius, length, 12, 12), radius + 0.0005, 0.001);
+                        return press_wall(scene, make_tube(kRadius, kLength, 12, 12), kRadius + 0.0005, 0.001);
                       },
                       120});
   return points;

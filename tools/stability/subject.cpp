@@ -18,11 +18,11 @@ std::string digest_of(const std::filesystem::path& file) {
 }
 
 std::string text_of(const BusDeviceSpec& device) {
-  return std::string(device.kind);
+  return std::string(device.kKind);
 }
 template <class Recorded>
 std::string text_of(const Recorded& device) {
-  return std::string(device.kind) + (device.trajectory.empty() ? "" : digest_of(device.trajectory));
+  return std::string(device.kKind) + (device.trajectory.empty() ? "" : digest_of(device.trajectory));
 }
 
 std::string digest_of(const Scene& scene) {

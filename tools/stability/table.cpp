@@ -15,7 +15,7 @@
 namespace palpate::stability {
 namespace {
 
-constexpr const char* heading = "case,parameter,value,outcome,max_force,energy_growth,note";
+constexpr const char* kHeading = "case,parameter,value,outcome,max_force,energy_growth,note";
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -46,7 +46,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 void write_rows(const std::vector<std::optional<Row>>& rows, const std::filesystem::path& file) {
   const std::filesystem::path beside = file.string() + ".part";
   std::ofstream out(beside);
-  out << heading << "\n";
+  out << kHeading << "\n";
   for (const auto& row : rows)
     if (row) out << line_of(*row);
   if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", beside.string()));
@@ -85,7 +85,7 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
   if (std::ranges::none_of(points, [&](const Point& p) { return p.name.find(only) != std::string::npos; }))
     throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", only));
   const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
-  prepare_folder(folder, csv.filename(), heading);
+  prepare_folder(folder, csv.filename(), kHeading);
   std::vector<Row> before;
   if (text_of(mark) == subject) before = read_rows(csv);
   std::ofstream(mark) << subject << "\n";

@@ -14,12 +14,12 @@
 namespace palpate::study {
 namespace {
 
-constexpr double pulled = 0.1;  // of its length, the tip aside
-constexpr double ramp_seconds = 0.1, course_seconds = 0.3, rest_seconds = 3, rest_damping = 40;
-constexpr double clamp = 0.02;                          // of its length, held at the tail by three points
-constexpr double stiff = 1e-6;                          // [m/N] of the grasps
-constexpr int places = 60;                              // along its length, where shapes are compared
-constexpr const char* insertion_suffix = " insertion";  // of the method in course.csv
+constexpr double kPulled = 0.1;  // of its length, the tip aside
+constexpr double kRampSeconds = 0.1, kCourseSeconds = 0.3, kRestSeconds = 3, kRestDamping = 40;
+constexpr double kClamp = 0.02;                         // of its length, held at the tail by three points
+constexpr double kStiff = 1e-6;                         // [m/N] of the grasps
+constexpr int kPlaces = 60;                             // along its length, where shapes are compared
+constexpr const char* kInsertionSuffix = " insertion";  // of the method in course.csv
 
 Catheter& shape_of(Scene& scene, int body) {
   return std::get<CatheterSpec>(scene.bodies[body]).catheter;
@@ -46,9 +46,9 @@ class Rig {
     length_ = (shape.tip - shape.tail).norm();
     tick_ = tick;
     rest_.assign(body_.positions().begin(), body_.positions().end());
-    const double held = clamp * length_;
-    body_.grasp(0, Eigen::Isometry3d::Identity(), at(held), 2 * held, stiff);
-    body_.grasp(1, Eigen::Isometry3d::Identity(), at(length_), 0, stiff);
+    const double held = kClamp * length_;
+    body_.grasp(0, Eigen::Isometry3d::Identity(), at(held), 2 * held, kStiff);
+    body_.grasp(1, Eigen::Isometry3d::Identity(), at(length_), 0, kStiff);
   }
 
   /// One tick, at whose end the tip is `aside` [m]; force there [N].
@@ -60,9 +60,9 @@ class Rig {
 
   Pulled rest() {
     Pulled answer;
-    for (double t = 0; t < rest_seconds; t += tick_)
-      answer.force = step(std::min(1.0, t / ramp_seconds) * pulled * length_);
-    for (int i = 1; i <= places; ++i) answer.shape.push_back(displacement(length_ * i / places));
+    for (double t = 0; t < kRestSeconds; t += tick_)
+      answer.force = step(std::min(1.0, t / kRampSeconds) * kPulled * length_);
+    for (int i = 1; i <= kPlaces; ++i) answer.shape.push_back(displacement(length_ * i / kPlaces));
     return answer;
   }
 
@@ -70,15 +70,15 @@ class Rig {
   std::vector<std::array<double, 2>> course(double interval) {
     std::vector<std::array<double, 2>> path;
     const int ticks = static_cast<int>(std::lround(interval / tick_));
-    for (int i = 1; i * tick_ < course_seconds + 1e-12; ++i) {
-      const double force = step(std::min(1.0, i * tick_ / ramp_seconds) * pulled * length_);
+    for (int i = 1; i * tick_ < kCourseSeconds + 1e-12; ++i) {
+      const double force = step(std::min(1.0, i * tick_ / kRampSeconds) * kPulled * length_);
       if (i % ticks == 0) path.push_back({force, displacement(length_ / 2).dot(side_)});
     }
     return path;
   }
 
   std::vector<double> time(int count) {
-    return time_steps(200, count, [&](int i) { step(pulled * length_ * (1 + 1e-3 * std::sin(0.05 * i))); });
+    return time_steps(200, count, [&](int i) { step(kPulled * length_ * (1 + 1e-3 * std::sin(0.05 * i))); });
   }
   std::size_t bytes() const { return bytes_; }
 
@@ -152,7 +152,7 @@ class CatheterMethod : public Method {
     point.apply(scene);
     Row row{scene_.file.stem().string(), point.method, point.knob, point.value};
     const double tick = 1 / scene.rates.haptic_hz;
-    Rig rig(scene, body_, tick, rest_damping);
+    Rig rig(scene, body_, tick, kRestDamping);
     row.memory_bytes = static_cast<double>(rig.bytes());
     row.offline_s = 0;
     const Pulled ours = rig.rest();
@@ -163,7 +163,7 @@ class CatheterMethod : public Method {
     Result result;
     Row still = row;
     double difference = 0, size = 0;
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < kPlaces; ++i) {
       difference += (ours.shape[i] - reference_->shape[i]).squaredNorm();
       size += reference_->shape[i].squaredNorm();
     }
@@ -188,7 +188,7 @@ class CatheterMethod : public Method {
     fine.integrator = "implicit";
     const double tick = interval() / 8;
     course_ = Rig(scene, body_, tick, fine.damping).course(interval());
-    reference_ = Rig(scene, body_, 4 * tick, rest_damping).rest();
+    reference_ = Rig(scene, body_, 4 * tick, kRestDamping).rest();
   }
 
   /// Depth and force on the wall over time; the step's time is then that of the catheter in the duct.
@@ -201,7 +201,7 @@ class CatheterMethod : public Method {
     row.reference = "finest_insertion";
     const auto first = result.courses.size();
     add_course(row, course, insertion_course(), interval(), result);
-    for (auto i = first; i < result.courses.size(); ++i) result.courses[i].method += insertion_suffix;
+    for (auto i = first; i < result.courses.size(); ++i) result.courses[i].method += kInsertionSuffix;
   }
 
   const std::vector<std::array<double, 2>>& insertion_course() {

@@ -18,8 +18,8 @@
 namespace palpate::study {
 namespace {
 
-constexpr double rest_damping = 60;  // [1/s] where a rest state is wanted, which does not depend on it
-constexpr double course_seconds = 0.25, ramp_seconds = 0.1;
+constexpr double kRestDamping = 60;  // [1/s] where a rest state is wanted, which does not depend on it
+constexpr double kCourseSeconds = 0.25, kRampSeconds = 0.1;
 
 /// A body's model on its mesh, ready to be pressed.
 struct Ready {
@@ -107,8 +107,8 @@ class Dynamic : public Method {
   }
 
   void become(Body& body) const {
-    if (model_ == TensorMassSpec::kind) body = moving<TensorMassSpec>(body);
-    if (model_ == SpringMassSpec::kind) body = moving<SpringMassSpec>(body);
+    if (model_ == TensorMassSpec::kKind) body = moving<TensorMassSpec>(body);
+    if (model_ == SpringMassSpec::kKind) body = moving<SpringMassSpec>(body);
   }
 
   Ready prepare(const Scene& scene) const { return prepare(scene.bodies[body()], solid_->mesh()); }
@@ -141,7 +141,7 @@ class Dynamic : public Method {
       const Scene alone = solid_->press_scene(scene, 0);
       bound_ = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
                    .organ()
-                   .largest_step() /
+                   .max_step() /
                0.9;
     }
     return *bound_;
@@ -159,7 +159,7 @@ class Dynamic : public Method {
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
       Scene alone = solid_->press_scene(scene, static_cast<int>(p));
       auto& motion = motion_of(alone.bodies[0]);
-      motion.damping = std::max(rest_damping, motion.damping);
+      motion.damping = std::max(kRestDamping, motion.damping);
       if (motion.step > 0) motion.step *= 0.98;  // the bound falls a little with the damping
       OrganPress press(alone, ready.archive, presses.patches[p], presses.radius, tick());
       row.memory_bytes = static_cast<double>(press.bytes());
@@ -213,8 +213,8 @@ class Dynamic : public Method {
     std::array<int, 3> nodes;
     for (int v = 0; v < 3; ++v) nodes[v] = ready.node[solid_->surface().triangles[presses.patches[0].triangle][v]];
     std::vector<std::array<double, 2>> path;
-    for (double t = tick(); t < course_seconds; t += tick()) {
-      const double force = press.tick(course_depth(t, ramp_seconds, presses.radius));
+    for (double t = tick(); t < kCourseSeconds; t += tick()) {
+      const double force = press.tick(course_depth(t, kRampSeconds, presses.radius));
       path.push_back({force, press.at(nodes)});
     }
     return path;
@@ -235,7 +235,7 @@ class Dynamic : public Method {
       const Scene alone = solid_->press_scene(scene, 0);
       motion.step = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
                         .organ()
-                        .largest_step() /
+                        .max_step() /
                     16;
       small_step_[key] = course(scene, ready);
     }

@@ -106,7 +106,7 @@ void over_edges(Growth& growth) {
     const ElementTensors tensors(elastic);
     TensorMass<float> model(elastic, Integrator::rk4, 5);
     model.set_gravity({0, 0, -9.81});
-    const double dt = 0.9 * largest_step(Integrator::rk4, model.frequency_bound(), 5);
+    const double dt = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 5);
     growth.add("tensor-mass step (RK4)", "edges", static_cast<double>(tensors.edges().size()),
                time_steps(20, growth.samples() / 3, [&](int) { model.step(dt); }));
   }

@@ -12,10 +12,10 @@
 namespace palpate::study {
 namespace {
 
-constexpr double held_at = 1.5;     // of the way that it is led in, behind the tip
-constexpr double share_led = 0.15;  // of the catheter's length that is led in
-constexpr double aside_radii = 4;
-constexpr double softness = 1e-4;  // [m/N] of the hold
+constexpr double kHeldAt = 1.5;     // of the way that it is led in, behind the tip
+constexpr double kShareLed = 0.15;  // of the catheter's length that is led in
+constexpr double kAsideRadii = 4;
+constexpr double kSoftness = 1e-4;  // [m/N] of the hold
 
 double smooth(double s) {
   s = std::min(1.0, s);
@@ -45,7 +45,7 @@ Insertion::Insertion(const Scene& scene, int catheter) : catheter_(catheter) {
   duct_ = static_cast<int>(std::ranges::find(scene.bodies, shape.inside, name) - scene.bodies.begin());
   const auto& duct = std::get<ModalShellSpec>(scene.bodies[duct_]);
   archive_ = precompute(duct, load_shell_mesh(duct.mesh, duct.scale));
-  feed_ = share_led * (shape.tip - shape.tail).norm();
+  feed_ = kShareLed * (shape.tip - shape.tail).norm();
 }
 
 std::vector<std::array<double, 2>> Insertion::course(const Scene& scene, double tick, double interval,
@@ -56,14 +56,14 @@ std::vector<std::array<double, 2>> Insertion::course(const Scene& scene, double 
   const Catheter& shape = std::get<CatheterSpec>(scene.bodies[catheter_]).catheter;
   const Eigen::Vector3d along = (shape.tip - shape.tail).normalized(), side = along.unitOrthogonal();
   std::array jaw{Eigen::Isometry3d::Identity()};
-  const Eigen::Vector3d held = shape.tip - held_at * feed_ * along;
+  const Eigen::Vector3d held = shape.tip - kHeldAt * feed_ * along;
   jaw[0].translation() = held;
-  catheter.grasp(0, jaw[0], catheter.nearest(held), 0, softness);
+  catheter.grasp(0, jaw[0], catheter.nearest(held), 0, kSoftness);
   std::vector<std::array<double, 2>> path;
   const auto each = std::lround(interval / tick);
-  for (long i = 1; static_cast<double>(i) * tick < seconds + 1e-9; ++i) {
-    const double share = smooth(static_cast<double>(i) * tick / feed_seconds);
-    jaw[0].translation() = held + share * (feed_ * along + aside_radii * shape.radius * side);
+  for (long i = 1; static_cast<double>(i) * tick < kSeconds + 1e-9; ++i) {
+    const double share = smooth(static_cast<double>(i) * tick / kFeedSeconds);
+    jaw[0].translation() = held + share * (feed_ * along + kAsideRadii * shape.radius * side);
     duct.update_surface({});
     const auto begin = std::chrono::steady_clock::now();
     catheter.step({}, jaw);

@@ -16,7 +16,7 @@ CatheterSettings catheter_settings(const Scene& scene, int catheter, double tick
 /// haptic step.
 class Insertion {
  public:
-  static constexpr double feed_seconds = 0.6, seconds = 1;
+  static constexpr double kFeedSeconds = 0.6, kSeconds = 1;
 
   Insertion(const Scene& scene, int catheter);
 

@@ -38,9 +38,9 @@ ShellMesh refine(const ShellMesh& mesh) {
 
 namespace {
 
-constexpr double course_seconds = 0.2, ramp_seconds = 0.04;
-constexpr int settling = 1500;  // steps until a press rests
-constexpr int modes_of_refined = 150;
+constexpr double kCourseSeconds = 0.2, kRampSeconds = 0.04;
+constexpr int kSettling = 1500;  // steps until a press rests
+constexpr int kModesOfRefined = 150;
 
 using Course = std::vector<std::array<double, 2>>;
 
@@ -136,7 +136,7 @@ class Modal : public Method {
       if (bytes) *bytes = static_cast<double>(press.bytes());
       pressed.answers.emplace_back();
       for (const double depth : presses.depths) {
-        PressAnswer answer = press.to(depth, settling);
+        PressAnswer answer = press.to(depth, kSettling);
         answer.displacement = renumbered(answer.displacement, archive);
         pressed.answers.back().push_back(std::move(answer));
       }
@@ -152,8 +152,8 @@ class Modal : public Method {
     const Patch& patch = errors_.presses().patches[0];
     HapticPress press(press_scene(scene, patch), {archive}, patch, touching());
     Course path;
-    for (double t = step(); t < course_seconds; t += step()) {
-      const double force = press.step(course_depth(t, ramp_seconds, errors_.presses().radius));
+    for (double t = step(); t < kCourseSeconds; t += step()) {
+      const double force = press.step(course_depth(t, kRampSeconds, errors_.presses().radius));
       const auto u = renumbered(press.shown(), archive);
       double along = 0;
       for (const int n : as_is_.surface.triangles[patch.triangle]) along += u[n].dot(patch.inward) / 3;
@@ -185,7 +185,7 @@ class Modal : public Method {
     if (refined_) return *refined_;
     Scene scene = scene_;
     const ShellMesh fine = refine(mesh_);
-    of(scene).shell.modes = modes_of_refined;
+    of(scene).shell.modes = kModesOfRefined;
     of(scene).shell.residual = true;
     NodeSelector near;
     for (int n = 0; n < static_cast<int>(fine.nodes.size()); ++n)

@@ -15,7 +15,7 @@
 namespace palpate::study {
 namespace {
 
-constexpr std::size_t most_tetrahedra = 150000;  // of the mesh that tensors are taken from
+constexpr std::size_t kMaxTetrahedra = 150000;  // of the mesh that tensors are taken from
 
 /// Touchable nodes nearest to any of the patches, as mesh nodes.
 std::vector<int> nearest_nodes(const SolidCase& solid, int count) {
@@ -81,9 +81,9 @@ class QuasiStatic : public Method {
   }
 
   Result evaluate(const Point& point) override {
-    if (point.value == "refine 2" && 64 * solid_->mesh().tetrahedra.size() > most_tetrahedra)
+    if (point.value == "refine 2" && 64 * solid_->mesh().tetrahedra.size() > kMaxTetrahedra)
       throw std::runtime_error(fmt::format("{} tetrahedra take palpate precompute many minutes; a study goes up to {}",
-                                           64 * solid_->mesh().tetrahedra.size(), most_tetrahedra));
+                                           64 * solid_->mesh().tetrahedra.size(), kMaxTetrahedra));
     Scene scene = solid_->scene();
     if (point.apply) point.apply(scene);
     QuasiStaticSpec& spec = as_quasi_static(scene.bodies[body()]);

@@ -24,7 +24,7 @@ std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
 }
 double number(const std::string& cell) {
-  return cell.empty() ? unknown : std::stod(cell);
+  return cell.empty() ? kUnknown : std::stod(cell);
 }
 
 /// Text that is one cell: no comma, quote or line break.

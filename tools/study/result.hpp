@@ -6,7 +6,7 @@
 
 namespace palpate::study {
 
-inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
 
 extern const char* const study_head;  ///< first line of study.csv
 
@@ -14,11 +14,11 @@ extern const char* const study_head;  ///< first line of study.csv
 /// being as the scene has it.
 struct Row {
   std::string scene, method, knob, value;
-  double step_us_median = unknown, step_us_p99 = unknown;  ///< [us] of a run-time step in contact
-  double offline_s = unknown;                              ///< [s] before the run
-  double memory_bytes = unknown;                           ///< that the method holds at run time
-  double err_u_rel = unknown, err_f_rel = unknown;         ///< [1] against the reference
-  std::string reference;                                   ///< empty: refused, see notes.csv
+  double step_us_median = kUnknown, step_us_p99 = kUnknown;  ///< [us] of a run-time step in contact
+  double offline_s = kUnknown;                               ///< [s] before the run
+  double memory_bytes = kUnknown;                            ///< that the method holds at run time
+  double err_u_rel = kUnknown, err_f_rel = kUnknown;         ///< [1] against the reference
+  std::string reference;                                     ///< empty: refused, see notes.csv
 };
 
 /// One line of depth.csv: one press.

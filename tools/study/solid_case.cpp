@@ -19,12 +19,12 @@ namespace palpate::study {
 namespace {
 
 using Fineness = SolidCase::Fineness;
-constexpr Fineness fine_mesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
+constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
     neo_mesh{1, 1 / 5.0, 0.4, 6000};
-constexpr Fineness quick_fine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
+constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
     quick_neo{1, 1 / 4.0, 0.6, 6000};
-constexpr double stride = 1.15;
-constexpr int most_strides = 12;
+constexpr double kStride = 1.15;
+constexpr int kMaxStrides = 12;
 
 void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   numbers.push_back(answer.force);
@@ -94,14 +94,14 @@ double SolidCase::reach() const {
 StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strides) const {
   const Patch& at = presses().patches[patch];
   for (;; ++strides) {
-    const double faster = std::pow(stride, strides);
+    const double faster = std::pow(kStride, strides);
     const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
     const double inner = std::min(outer, fineness.ball * presses().radius);
     const auto size = size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
     try {
-      return refine_graded(problem_, size, fineness.most_nodes);
+      return refine_graded(problem_, size, fineness.max_nodes);
     } catch (const std::runtime_error&) {
-      if (strides == most_strides) throw;
+      if (strides == kMaxStrides) throw;
     }
   }
 }
@@ -154,7 +154,7 @@ std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t 
 const std::vector<PressAnswer>& SolidCase::fine(int patch) {
   const auto found = fine_.find(patch);
   if (found != fine_.end()) return found->second;
-  return fine_[patch] = press_fine(patch, quick_ ? quick_fine : fine_mesh, 0);
+  return fine_[patch] = press_fine(patch, quick_ ? kQuickFine : kFineMesh, 0);
 }
 
 const PressAnswer& SolidCase::fine_linear(int patch, int depth) {
@@ -167,7 +167,7 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
     int strides = 0;  // those of the finer mesh, so that the two remain levels apart
-    refined(static_cast<int>(p), quick_ ? quick_fine : fine_mesh, strides);
+    refined(static_cast<int>(p), quick_ ? kQuickFine : kFineMesh, strides);
     const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh, strides);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);

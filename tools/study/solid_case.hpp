@@ -52,7 +52,7 @@ class SolidCase {
   /// coarser far away and graded faster, in as many strides of 15 % as it takes.
   struct Fineness {
     double edge, ball, growth;
-    int most_nodes;
+    int max_nodes;
   };
   StaticProblem refined(int patch, const Fineness& fineness, int& strides) const;
   double reach() const;  ///< [m] about a patch within which nodes may touch the ball

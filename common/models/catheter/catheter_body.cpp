@@ -13,22 +13,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostSubsteps = 64;
+constexpr int kMaxSubsteps = 64;
 constexpr double kStepMargin = 1.5;  ///< step times frequency bound; eq. 28 is stable up to 2
-constexpr double kLongestStride =
-    0.5;                        ///< of the spacing: by how much neighbours may move against each other in a substep
-constexpr int kMostRounds = 4;  ///< of passages through the wall found and closed
+constexpr double kMaxStride = 0.5;  ///< of the spacing: by how much neighbours may move against each other in a substep
+constexpr int kMaxRounds = 4;       ///< of passages through the wall found and closed
 
 int substeps_for(const Catheter& shape, double step, double bound) {
   if (shape.integrator == "implicit") return 1;
   if (shape.integrator != "semi_implicit")
     throw std::runtime_error("a catheter's integrator is implicit or semi_implicit");
   const double needed = std::ceil(step * bound / kStepMargin);
-  if (needed <= kMostSubsteps) return std::max(1, static_cast<int>(needed));
+  if (needed <= kMaxSubsteps) return std::max(1, static_cast<int>(needed));
   throw std::runtime_error(
       fmt::format("the catheter is too stiff for semi_implicit: it would need {:.0f} substeps a tick and {} "
                   "are the most; use implicit",
-                  needed, kMostSubsteps));
+                  needed, kMaxSubsteps));
 }
 
 }  // namespace
@@ -44,10 +43,10 @@ CatheterBody::CatheterBody(const CatheterSettings& settings, const CatheterWall*
       wall_(wall),
       lumen_(wall, chain_.rest(), settings.shape.radius),
       sleeve_(settings.shape.tail, settings.shape.tip, settings.shape.sleeve),
-      grasps_(settings.most_tools),
+      grasps_(settings.max_tools),
       wall_touches_(chain_.size(), wall, settings.shape.radius, settings.friction),
-      tool_touches_(chain_.size() - 1, settings.most_parts),
-      solve_(chain_.size(), wall, most_touches(chain_.size(), settings.most_parts)),
+      tool_touches_(chain_.size() - 1, settings.max_parts),
+      solve_(chain_.size(), wall, max_touches(chain_.size(), settings.max_parts)),
       x_(chain_.rest().begin(), chain_.rest().end()),
       v_(chain_.size(), Vector3d::Zero()),
       before_(x_),
@@ -57,11 +56,11 @@ CatheterBody::CatheterBody(const CatheterSettings& settings, const CatheterWall*
       right_side_(3 * chain_.size()) {
   if (!(step_ > 0)) throw std::runtime_error("the catheter's step must be positive");
   wall_forces_.reserve(2 * chain_.size());
-  tool_forces_.reserve(most_touches(chain_.size(), settings.most_parts) + Grasps::kMostPoints * settings.most_tools);
+  tool_forces_.reserve(max_touches(chain_.size(), settings.max_parts) + Grasps::kMaxPoints * settings.max_tools);
 }
 
-int CatheterBody::most_touches(int particles, int parts) {
-  return (2 + kMostRounds) * particles + parts * std::min(particles, 64);
+int CatheterBody::max_touches(int particles, int parts) {
+  return (2 + kMaxRounds) * particles + parts * std::min(particles, 64);
 }
 
 void CatheterBody::step(std::span<const CatheterTool> tools, std::span<const Eigen::Isometry3d> jaws) {
@@ -89,7 +88,7 @@ void CatheterBody::substep(int index) {
     solve_.solve(base_, right_side_, v_, h, index, substeps_);
     const bool tauter = note_tension(h) && round == 0;
     if (tauter) assemble(h, left);
-    const bool closed = round < kMostRounds && close_passages();
+    const bool closed = round < kMaxRounds && close_passages();
     if (!closed && !tauter) break;
   }
   keep_together();
@@ -161,7 +160,7 @@ void CatheterBody::keep_together() {
   const auto motion = solve_.motion();
   double widest = 0;
   for (int i = 0; i + 1 < size(); ++i) widest = std::max(widest, (motion[i + 1] - motion[i]).squaredNorm());
-  const double most = kLongestStride * spacing();
+  const double most = kMaxStride * spacing();
   if (widest <= most * most) return;
   for (Vector3d& d : motion) d *= most / std::sqrt(widest);
   solve_.effort().limited++;

@@ -24,8 +24,8 @@ struct CatheterSettings {
   double density = 1000;  ///< [kg/m^3]
   double step = 1e-3;     ///< [s] of a tick
   double friction = 0.3;  ///< [1] against the wall
-  int most_parts = 12;    ///< tool parts that one step meets at most
-  int most_tools = 4;     ///< tools that may hold it, numbered from 0
+  int max_parts = 12;     ///< tool parts that one step meets at most
+  int max_tools = 4;      ///< tools that may hold it, numbered from 0
 };
 
 /// A force between the catheter and a tool.
@@ -96,7 +96,7 @@ class CatheterBody : public Stateful<CatheterBody> {
   void state(State& s);
 
  private:
-  static int most_touches(int particles, int parts);
+  static int max_touches(int particles, int parts);
   void follow_restored();
   void substep(int index);
   void assemble(double h, double left);

@@ -9,7 +9,7 @@ namespace {
 
 // A probe meets a catheter with its tip and its shaft; a forceps with its three segments.
 int parts_against_catheters(bool forceps) {
-  return forceps ? forceps_part_count : 2;
+  return forceps ? kForcepsPartCount : 2;
 }
 
 CatheterTool part_of(const MovingTool& tool, int part, bool forceps) {
@@ -40,8 +40,8 @@ CatheterPart::CatheterPart(const CatheterSpec& spec, const StepSettings& setting
                .density = spec.material.density,
                .step = settings.dt,
                .friction = settings.contact.friction,
-               .most_parts = std::max(static_cast<int>(tools_.size()), 1),
-               .most_tools = std::max(static_cast<int>(settings.tools.size()), 1)};
+               .max_parts = std::max(static_cast<int>(tools_.size()), 1),
+               .max_tools = std::max(static_cast<int>(settings.tools.size()), 1)};
 }
 
 void CatheterPart::join(const FindPart& find) {
@@ -73,7 +73,7 @@ void CatheterPart::finish(std::span<const double> force, double time) {
   wall_contacts_ = touching;
   bool held = false;
   for (std::size_t t = 0; t < force.size(); ++t) {
-    task_.largest_force = std::max(task_.largest_force, force[t]);
+    task_.max_force = std::max(task_.max_force, force[t]);
     held |= body_->holds(static_cast<int>(t));
   }
   if (held) task_.held_s += dt_;

@@ -30,7 +30,7 @@ void CatheterBody::state(State& s) {
 void CatheterBody::follow_restored() {
   lumen_.refresh();
   for (auto& grasp : grasps_.all()) {
-    grasp.count = std::clamp(grasp.count, 0, Grasps::kMostPoints);
+    grasp.count = std::clamp(grasp.count, 0, Grasps::kMaxPoints);
     for (auto& held : grasp.held) held.point.segment = std::clamp(held.point.segment, 0, size() - 2);
   }
 }

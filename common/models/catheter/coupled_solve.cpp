@@ -30,24 +30,24 @@ Matrix3d across(const Vector3d& normal) {
 
 }  // namespace
 
-CoupledSolve::CoupledSolve(int particles, const CatheterWall* wall, int most_touches)
+CoupledSolve::CoupledSolve(int particles, const CatheterWall* wall, int max_touches)
     : particles_(particles),
       modes_(wall ? static_cast<int>(wall->inverse().size()) : 0),
       stride_((modes_ + kLanes - 1) / kLanes * kLanes),
-      most_(most_touches),
+      most_(max_touches),
       duct_(wall),
-      rows_(static_cast<std::size_t>(most_touches) * 3 * stride_, 0.0),
+      rows_(static_cast<std::size_t>(max_touches) * 3 * stride_, 0.0),
       unpadded_(3 * modes_),
-      stiffness_(most_touches),
-      first_(most_touches),
-      given_(most_touches),
-      push_(most_touches),
-      wall_(most_touches),
-      wall_change_(most_touches, Vector3d::Zero()),
+      stiffness_(max_touches),
+      first_(max_touches),
+      given_(max_touches),
+      push_(max_touches),
+      wall_(max_touches),
+      wall_change_(max_touches, Vector3d::Zero()),
       factor_(particles),
       d_(3 * particles + BandMatrix::kBand),
       change_(d_.size()) {
-  touches_.reserve(most_touches);
+  touches_.reserve(max_touches);
   for (auto* values : {&y_, &free_, &inverse_, &answer_, &gone_, &residual_, &direction_, &image_})
     values->assign(stride_, 0.0);
 }
@@ -117,11 +117,11 @@ void CoupledSolve::solve(const BandMatrix& base, std::span<const double> right_s
     free_[m] *= now_.share;
   }
   first_guess(velocity);
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
     ++effort_.passes;
     if (!eliminate(base, right_side)) break;
     if (modes_ > 0) solve_modes();
-    if (pass + 1 == kMostPasses || !revise(pass)) break;
+    if (pass + 1 == kMaxPasses || !revise(pass)) break;
   }
   settle();
   for (int m = 0; m < modes_; ++m) {
@@ -215,7 +215,7 @@ void CoupledSolve::solve_modes() {
     push += image_[m] * image_[m] * inverse_[m];
   }
   const double enough = kTolerance * kTolerance * push;
-  for (int i = 0; any && i < kMostIterations && squared > enough; ++i) {
+  for (int i = 0; any && i < kMaxIterations && squared > enough; ++i) {
     ++effort_.iterations;
     response(direction_.data(), change_.data(), image_.data());
     double curvature = 0;

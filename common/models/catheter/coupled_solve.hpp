@@ -30,14 +30,14 @@ struct SolveEffort {
 /// contact stiffness; without modes there is none. Each costs as much as particles, and modes times touches.
 class CoupledSolve {
  public:
-  static constexpr int kMostPasses = 8;
+  static constexpr int kMaxPasses = 8;
   static constexpr int kFreePasses = 4;       ///< in which touches may also go
   static constexpr int kFrictionPasses = 3;   ///< in which friction is still adapted
-  static constexpr int kMostIterations = 60;  ///< a pass
+  static constexpr int kMaxIterations = 60;   ///< a pass
   static constexpr double kTolerance = 1e-5;  ///< of the residual against the touches' push on the modes
   static constexpr double kCreep = 1e-3;      ///< [m/s] below it friction is viscous
 
-  CoupledSolve(int particles, const CatheterWall* wall, int most_touches);
+  CoupledSolve(int particles, const CatheterWall* wall, int max_touches);
 
   /// Begins a tick: no touches, the wall's free motion.
   void begin();

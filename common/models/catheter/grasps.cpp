@@ -35,7 +35,7 @@ bool Grasps::holds_near(int tool, int segment) const {
 
 void Grasps::add(int tool, const ChainPoint& point, const Vector3d& place, const Eigen::Isometry3d& jaw) {
   Grasp& grasp = grasps_.at(tool);
-  if (grasp.count == kMostPoints) return;
+  if (grasp.count == kMaxPoints) return;
   Held held;
   held.point = point;
   held.in_jaw = jaw.inverse() * place;

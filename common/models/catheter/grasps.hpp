@@ -13,7 +13,7 @@ namespace palpate {
 /// Places of the catheter held by tools: material points tied by springs to places in the jaws' frames.
 class Grasps {
  public:
-  static constexpr int kMostPoints = 3;  ///< per tool
+  static constexpr int kMaxPoints = 3;  ///< per tool
 
   struct Held {
     ChainPoint point;
@@ -25,10 +25,10 @@ class Grasps {
   struct Grasp {
     int count = 0;
     double stiffness = 0;  ///< [N/m] of each point's spring
-    std::array<Held, kMostPoints> held;
+    std::array<Held, kMaxPoints> held;
   };
 
-  explicit Grasps(int most_tools) : grasps_(most_tools) {}
+  explicit Grasps(int max_tools) : grasps_(max_tools) {}
 
   bool holds(int tool) const { return tool >= 0 && tool < tools() && grasps_[tool].count > 0; }
   /// Whether the tool holds the catheter at this segment or beside it.

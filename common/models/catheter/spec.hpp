@@ -45,7 +45,7 @@ inline void describe(Description& d, Catheter& c) {
 
 /// A thin flexible tube of particles. Stretching and bending follow from Young's modulus and the radius.
 struct CatheterSpec : NamedSpec {
-  static constexpr std::string_view kind = "catheter";
+  static constexpr std::string_view kKind = "catheter";
   Material material{0, 0.45, 1000};
   Catheter catheter;
 };
@@ -53,7 +53,7 @@ struct CatheterSpec : NamedSpec {
 inline void describe(Description& d, CatheterSpec& b) {
   describe(d, static_cast<NamedSpec&>(b));
   d.number({"young", "Pa", "Young's modulus", Need::required}, b.material.young, above(0));
-  d.number({"poisson", "1", "Poisson's ratio"}, b.material.poisson, poisson_range);
+  d.number({"poisson", "1", "Poisson's ratio"}, b.material.poisson, kPoissonRange);
   d.number({"density", "kg/m³", "mass per volume"}, b.material.density, above(0));
   d.table({"catheter", "", "where it lies and what it is made of", Need::required, Use::stored}, b.catheter);
 }

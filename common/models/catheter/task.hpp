@@ -9,7 +9,7 @@ struct Task {
   double deepest = 0;                   ///< [m]
   double first_inside_s = -1;           ///< [s] time of the run at which it first went in; -1: not yet
   double deepest_s = -1;                ///< [s] when it was deepest
-  double largest_force = 0;             ///< [N] on any tool
+  double max_force = 0;                 ///< [N] on any tool
   double held_s = 0;                    ///< [s] in which some forceps held it
   std::uint64_t wall_contacts = 0;      ///< touches begun between its particles and the duct's wall
   std::uint64_t grasps = 0, drops = 0;  ///< drops: holds that slipped out of the jaws

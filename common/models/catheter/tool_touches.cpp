@@ -26,12 +26,12 @@ Vector3d first_side(const Segment& before, const Segment& piece) {
 
 }  // namespace
 
-ToolTouches::ToolTouches(int segments, int most_parts)
-    : segments_(segments), most_parts_(most_parts), pairs_(static_cast<std::size_t>(segments) * most_parts) {}
+ToolTouches::ToolTouches(int segments, int max_parts)
+    : segments_(segments), max_parts_(max_parts), pairs_(static_cast<std::size_t>(segments) * max_parts) {}
 
 void ToolTouches::find(std::span<const CatheterTool> tools, std::span<const Vector3d> x, double radius,
                        const Grasps& grasps, CoupledSolve& solve) {
-  for (int part = 0; part < most_parts_; ++part) {
+  for (int part = 0; part < max_parts_; ++part) {
     const bool given = part < static_cast<int>(tools.size());
     for (int segment = 0; segment < segments_; ++segment) {
       if (!given || grasps.holds_near(tools[part].tool, segment)) {

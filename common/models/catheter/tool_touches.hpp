@@ -23,7 +23,7 @@ struct CatheterTool {
 /// that a tool that is forced through still pushes back; it forgets beyond three radii.
 class ToolTouches {
  public:
-  ToolTouches(int segments, int most_parts);
+  ToolTouches(int segments, int max_parts);
 
   /// Finds the coming tick's touches. A tool that holds the catheter does not touch it where it holds.
   void find(std::span<const CatheterTool> tools, std::span<const Eigen::Vector3d> x, double radius,
@@ -43,7 +43,7 @@ class ToolTouches {
             CoupledSolve& solve);
   Pair& pair(int part, int segment) { return pairs_[part * segments_ + segment]; }
 
-  int segments_, most_parts_;
+  int segments_, max_parts_;
   std::vector<Pair> pairs_;
 };
 

@@ -15,7 +15,7 @@ std::optional<Archive> made_archive(const CatheterSpec& body) {
 
   Archive archive;
   archive.body = body.name;
-  archive.model = CatheterSpec::kind;
+  archive.model = CatheterSpec::kKind;
   archive.mesh_nodes = tube.vertices();
   archive.young = {body.material.young};
   archive.poisson = {body.material.poisson};

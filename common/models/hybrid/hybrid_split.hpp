@@ -1,6 +1,6 @@
 #pragma once
 #include "common/archive/archive.hpp"
-#include "common/fem/fixation.hpp"
+#include "common/fem/boundary_conditions.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/models/hybrid/spec.hpp"
 

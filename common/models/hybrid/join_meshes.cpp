@@ -110,7 +110,7 @@ void add_pairs(const TetMesh& mesh, const std::vector<char>& connection, const S
     }
     if (pair.node < 0) continue;
     tensors.gap.push_back(pair);
-    tensors.largest_gap = std::max(tensors.largest_gap, nearest);
+    tensors.max_gap = std::max(tensors.max_gap, nearest);
   }
 }
 

@@ -116,9 +116,9 @@ Parts find_parts(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coa
 Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse, const Progress& progress) try {
   Stopwatch watch(progress);
   const auto parts = find_parts(body, mesh, coarse);
-  const auto dofs = apply_fixation(parts.mesh, body.fixed, fmt::format("body '{}'", body.name));
+  const auto dofs = apply_boundary_conditions(parts.mesh, body.fixed, fmt::format("body '{}'", body.name));
   const auto materials = material_field(body, parts.mesh);
-  auto archive = start_archive(body, HybridSpec::kind, parts.mesh, materials);
+  auto archive = start_archive(body, HybridSpec::kKind, parts.mesh, materials);
   const auto index = add_moving_part(body, parts.mesh, dofs, materials, parts.dynamic, archive);
   watch.lap("surface");
   const auto split = split_hybrid(body, parts.mesh, dofs, parts.dynamic);

@@ -32,7 +32,7 @@ inline void describe(Description& d, Hybrid& h) {
 
 /// One body of a quasi-static and a tensor-mass part that act on each other (RR3510 sec. 6).
 struct HybridSpec : MovingSpec {
-  static constexpr std::string_view kind = "hybrid";
+  static constexpr std::string_view kKind = "hybrid";
   Hybrid hybrid;
 };
 

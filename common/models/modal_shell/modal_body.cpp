@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr double least_energy = 1e-40;  // [J]
+constexpr double kMinEnergy = 1e-40;  // [J]
 
 ModalConstants constants_of(const ModalTensors& modal, const Shell& shell, double h) {
   return make_modal_constants(modal.omega, modal_damping(modal.omega, shell.damping_ratio, shell.damping), h);
@@ -55,12 +55,12 @@ ModalBody::ModalBody(const Archive& archive, const ShellSpec& body, const StepSe
   for (std::size_t m = 0; m < modes; ++m)
     for (std::size_t i = 0; i < rows; ++i) rows_[i * modes + m] = shape_[m * rows + i];
   for (std::vector<double>* v : {&x_, &v_, &tool_force_, &wall_force_, &free_, &moved_}) v->assign(modes, 0.0);
-  pushed_.reserve(max_wall_forces);
+  pushed_.reserve(kMaxWallForces);
   all_.assign(rows, 0.0);
   displacement_.reserve(rows);
   near_displacement_.reserve(rows);
-  columns_.reserve(modes + 27 * max_contacts);
-  coefficients_.reserve(modes + 27 * max_contacts);
+  columns_.reserve(modes + 27 * kMaxContacts);
+  coefficients_.reserve(modes + 27 * kMaxContacts);
   if (residual_) tabulate_residuals();
 }
 
@@ -125,7 +125,7 @@ LawOutcome ModalBody::hold(std::span<const MovingTool> tools) {
   for (int m = 0; m < modes(); ++m) {
     outcome.finite &= std::isfinite(x_[m]);
     // A mode that has swung out stands still: what is left of it would become denormal, and slow.
-    if (x_[m] * x_[m] * constants_.omega2[m] + v_[m] * v_[m] < least_energy) x_[m] = v_[m] = 0;
+    if (x_[m] * x_[m] * constants_.omega2[m] + v_[m] * v_[m] < kMinEnergy) x_[m] = v_[m] = 0;
   }
   return outcome;
 }

@@ -16,7 +16,7 @@ namespace palpate {
 /// paper's scheme suggests, makes the force alternate from step to step for as long as the contact lasts.
 class ModalBody : public TouchBody, public CatheterWall {
  public:
-  static constexpr int max_wall_forces = 512;  ///< of catheters in a step
+  static constexpr int kMaxWallForces = 512;  ///< of catheters in a step
 
   /// `archive`: of a modal_shell, read with ArchivePart::touchable.
   ModalBody(const Archive& archive, const ShellSpec& body, const StepSettings& settings);

@@ -10,7 +10,7 @@
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 #include "common/shell/modes.hpp"
 #include "common/shell/shell_system.hpp"
 
@@ -107,11 +107,11 @@ SurfaceMap make_surface_map(const ShellSpec& body, const ShellMesh& mesh, const 
 Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Progress& progress) try {
   const std::string where = fmt::format("body '{}'", body.name);
   Stopwatch watch(progress);
-  auto dofs = shell_fixation(mesh, body, where);
+  auto dofs = apply_boundary_conditions(mesh, body, where);
   check_shell(body, mesh, dofs, where);
   Archive archive;
   archive.body = body.name;
-  archive.model = ModalShellSpec::kind;
+  archive.model = ModalShellSpec::kKind;
   archive.software = "palpate " PALPATE_VERSION;
   archive.mesh_nodes = static_cast<int>(mesh.nodes.size());
   archive.young = {body.material.young};

@@ -8,7 +8,7 @@ namespace palpate {
 
 /// A thin wall of shell elements, such as a duct, that moves by its lowest modes of vibration (BHS01 sec. V-C-1).
 struct ModalShellSpec : ShellSpec {
-  static constexpr std::string_view kind = "modal_shell";
+  static constexpr std::string_view kKind = "modal_shell";
 };
 
 inline void describe(Description& d, ModalShellSpec& b) {

@@ -18,9 +18,9 @@
 namespace palpate {
 namespace {
 
-constexpr double bound_share = 0.9;           // of the largest stable step that is used where the scene names none
-constexpr double lost_beyond = 3;             // diagonals from its place, beyond which a part that floats is taken away
-constexpr int most_cuts = 4, most_tears = 8;  // tetrahedra that one tick takes away, conformity's apart
+constexpr double kBoundShare = 0.9;         // of the largest stable step that is used where the scene names none
+constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
+constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 double bucket_size(const ContactSpec& contact, const ElasticMesh& mesh) {
   if (contact.bucket_size > 0) return contact.bucket_size;
@@ -55,13 +55,13 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
   }
   if (still_) topology_.join(shown_.joints());
   const Dynamic& motion = body.dynamic;
-  const double bound = palpate::largest_step(integrator_of(motion), model_->frequency_bound(), motion.damping);
+  const double bound = palpate::max_step(integrator_of(motion), model_->frequency_bound(), motion.damping);
   if (motion.step > bound)
     throw std::runtime_error(
         fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", name_, motion.step, bound));
-  largest_step_ = motion.step > 0 ? motion.step : bound_share * bound;
+  max_step_ = motion.step > 0 ? motion.step : kBoundShare * bound;
   if (body.tearing)
-    tearing_.emplace(mesh_, tear_criterion(body.tearing->criterion), body.tearing->threshold, most_tears);
+    tearing_.emplace(mesh_, tear_criterion(body.tearing->criterion), body.tearing->threshold, kMaxTears);
   Eigen::Vector3d low = mesh_.rest[0], high = low;
   for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
   diagonal_ = (high - low).norm();
@@ -71,7 +71,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
 DynamicOrgan::~DynamicOrgan() = default;
 
 int DynamicOrgan::steps_in(double dt) const {
-  return std::max(1, static_cast<int>(std::ceil(dt / largest_step_ - 1e-9)));
+  return std::max(1, static_cast<int>(std::ceil(dt / max_step_ - 1e-9)));
 }
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
@@ -139,7 +139,7 @@ void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
       jaws_closed_[t] = 1;
       const bool moving = contacts_.grasp(t, tools[t].moving.before, jaws->length, jaws->width);
       if (still_ && !moving) still_->grasp(t, tools[t].moving.before, jaws->length, jaws->width);
-    } else if (jaws_closed_[t] && grip > jaws->closed_below + jaw_slack) {
+    } else if (jaws_closed_[t] && grip > jaws->closed_below + kJawSlack) {
       jaws_closed_[t] = 0;
       contacts_.let_go(t);
       if (still_) still_->let_go(t);
@@ -157,7 +157,7 @@ void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const auto& cautery = cautery_[t];
     if (!cautery || !tools[t].present || tools[t].dofs.pedal < 0.5) continue;
-    for (int i = 0; i < most_cuts; ++i) {
+    for (int i = 0; i < kMaxCuts; ++i) {
       const Eigen::Vector3d tip = moving_[t].now.translation();
       double least = cautery->radius * cautery->radius;
       int nearest = -1;
@@ -221,7 +221,7 @@ void DynamicOrgan::drop_fallen() {
   for (int t : loose_) {
     if (!topology_.alive(t)) continue;
     const Eigen::Vector3d& at = position_[topology_.tetrahedron(t)[0]];
-    if ((at - middle_).squaredNorm() < lost_beyond * lost_beyond * diagonal_ * diagonal_) continue;
+    if ((at - middle_).squaredNorm() < kLostBeyond * kLostBeyond * diagonal_ * diagonal_) continue;
     topology_.parts(part_of_);
     const int part = part_of_[t];
     std::vector<int> gone;
@@ -269,11 +269,11 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 bool DynamicOrgan::fits(const Memory& m, std::span<const MovingTool> tools) const {
   const auto known = [&](const TissueContact& c) {
     const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
-    const bool sample_known = tool_known && c.sample >= TissueContact::in_jaws && c.sample < tools[c.tool].size();
+    const bool sample_known = tool_known && c.sample >= TissueContact::kInJaws && c.sample < tools[c.tool].size();
     return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
   };
   const bool sizes = m.motion.size() == model_->state().size() && m.jaws.size() == jaws_closed_.size() &&
-                     m.contacts.size() <= TissueContacts::most && m.previous.size() == position_.size() &&
+                     m.contacts.size() <= TissueContacts::kMost && m.previous.size() == position_.size() &&
                      m.present.size() == position_.size();
   return sizes && std::ranges::all_of(m.contacts, known) &&
          std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });

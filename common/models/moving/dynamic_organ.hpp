@@ -50,8 +50,8 @@ class DynamicOrgan {
     if (still_) still_->forget_factor();
   }
 
-  double largest_step() const { return largest_step_; }  ///< [s] that the bound allows, or the scene gives
-  int steps_in(double dt) const;                         ///< steps of the integrator in a tick of dt [s]
+  double max_step() const { return max_step_; }  ///< [s] that the bound allows, or the scene gives
+  int steps_in(double dt) const;                 ///< steps of the integrator in a tick of dt [s]
   const CutMesh& topology() const { return topology_; }
   const CutSurface& surface() const { return surface_; }
   const DynamicModel& model() const { return *model_; }
@@ -110,7 +110,7 @@ class DynamicOrgan {
   std::unique_ptr<HybridTouch> still_;
   TissueContacts contacts_;
   std::optional<TearSearch> tearing_;
-  double largest_step_;
+  double max_step_;
   double diagonal_;                                      ///< [m] of the body at rest
   Eigen::Vector3d middle_;                               ///< [m] of the body at rest
   std::vector<char> jaws_closed_;                        ///< per tool

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
-constexpr double own_reach = 1.25;  // of a part's radius: a contact this near to its axis is its own
+constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
 
 Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
   return Eigen::Map<const Vector3d>(a.data());
@@ -48,7 +48,7 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   age_weight(age);
   if (m.seq == 0) return load;
   const int held = hold(tool, load);
-  extrapolate(std::min(age, extrapolated));
+  extrapolate(std::min(age, kExtrapolated));
   for (int p = 0; p < tool.size(); ++p) {
     Touched touched;
     const double radius = tool.radius(p);
@@ -62,8 +62,8 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
 }
 
 void LocalBody::age_weight(double age) {
-  const bool fresh = state_.model.seq != 0 && age <= oldest;
-  const double change = dt_ / fade_seconds;
+  const bool fresh = state_.model.seq != 0 && age <= kOldest;
+  const double change = dt_ / kFadeSeconds;
   state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
 }
 
@@ -146,7 +146,7 @@ bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) cons
 
 // A part that held tissue in the model, or the tip with tissue between its jaws, is felt by that alone, not twice.
 bool LocalBody::holds(const Segment& axis, double radius, int part, int held) const {
-  const double reach = own_reach * radius;
+  const double reach = kOwnReach * radius;
   return std::any_of(held_.begin(), held_.begin() + held, [&](const Held& h) {
     return (h.grasped && part == 0) || (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
   });
@@ -158,8 +158,8 @@ void LocalBody::state(State& s) {
   if (!s.restoring()) return;
   const LocalModel& m = memory.model;
   const auto within = [](int count, int most) { return count >= 0 && count <= most; };
-  bool good = within(m.contacts, LocalModel::max_contacts) && within(m.nodes, LocalModel::max_nodes) &&
-              within(m.triangles, LocalModel::max_triangles);
+  bool good = within(m.contacts, LocalModel::kMaxContacts) && within(m.nodes, LocalModel::kMaxNodes) &&
+              within(m.triangles, LocalModel::kMaxTriangles);
   for (int t = 0; good && t < m.triangles; ++t)
     for (const std::uint32_t n : m.triangle[t]) good = good && n < static_cast<std::uint32_t>(m.nodes);
   s.require(good, "the recorded state holds a local contact model that cannot be");

@@ -14,9 +14,9 @@ namespace palpate {
 /// Age counts in haptic steps, so that a replay gives the same bits. Never allocates.
 class LocalBody {
  public:
-  static constexpr double oldest = 0.15;         ///< [s] age of a model at which its force begins to fade
-  static constexpr double fade_seconds = 0.005;  ///< [s] from full force to none, and back
-  static constexpr double extrapolated = 0.02;   ///< [s] at most for which nodes move on with their velocity
+  static constexpr double kOldest = 0.15;        ///< [s] age of a model at which its force begins to fade
+  static constexpr double kFadeSeconds = 0.005;  ///< [s] from full force to none, and back
+  static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
 
   /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
   LocalBody(const Trocar& trocar, double friction, double dt);
@@ -58,9 +58,9 @@ class LocalBody {
   Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
   bool stale_ = false;
-  std::array<Held, LocalModel::max_contacts> held_{};
-  std::array<Eigen::Vector3d, LocalModel::max_nodes> position_;
-  std::array<std::array<Eigen::Vector3d, 2>, LocalModel::max_triangles> box_;
+  std::array<Held, LocalModel::kMaxContacts> held_{};
+  std::array<Eigen::Vector3d, LocalModel::kMaxNodes> position_;
+  std::array<std::array<Eigen::Vector3d, 2>, LocalModel::kMaxTriangles> box_;
 };
 
 }  // namespace palpate

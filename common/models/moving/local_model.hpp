@@ -12,9 +12,9 @@ namespace palpate {
 
 /// A LocalContactModel as plain memory of fixed size: it crosses threads and enters keyframes as bytes.
 struct LocalModel {
-  static constexpr int max_contacts = Limits<LocalContactModel>::contacts;
-  static constexpr int max_nodes = Limits<LocalContactModel>::nodes;
-  static constexpr int max_triangles = Limits<LocalContactModel>::triangles;
+  static constexpr int kMaxContacts = Limits<LocalContactModel>::contacts;
+  static constexpr int kMaxNodes = Limits<LocalContactModel>::nodes;
+  static constexpr int kMaxTriangles = Limits<LocalContactModel>::triangles;
 
   struct Contact {
     std::array<double, 3> position, normal, force;  ///< [m], unit into the tissue, [N] on the tissue; world
@@ -33,9 +33,9 @@ struct LocalModel {
   std::uint64_t tool_step = 0;     ///< haptic step whose pose is in it
   Dofs dofs{};                     ///< that pose
   std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;
-  std::array<Contact, max_contacts> contact{};
-  std::array<Node, max_nodes> node{};
-  std::array<std::array<std::uint32_t, 3>, max_triangles> triangle{};
+  std::array<Contact, kMaxContacts> contact{};
+  std::array<Node, kMaxNodes> node{};
+  std::array<std::array<std::uint32_t, 3>, kMaxTriangles> triangle{};
 
   ToolDofs pose() const {
     return {.yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll, .grip = dofs.grip};

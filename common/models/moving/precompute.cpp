@@ -46,7 +46,7 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
 Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,
                           const Progress& progress) try {
   Stopwatch watch(progress);
-  const auto dofs = apply_fixation(mesh, body.fixed, fmt::format("body '{}'", body.name));
+  const auto dofs = apply_boundary_conditions(mesh, body.fixed, fmt::format("body '{}'", body.name));
   const auto materials = material_field(body, mesh);
   auto archive = start_archive(body, kind, mesh, materials);
   std::vector<int> all(mesh.tetrahedra.size());

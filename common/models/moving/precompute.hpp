@@ -4,8 +4,8 @@
 
 #include "common/archive/archive.hpp"
 #include "common/dynamics/spec.hpp"
+#include "common/fem/boundary_conditions.hpp"
 #include "common/fem/condensation.hpp"
-#include "common/fem/fixation.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/models/kind.hpp"
 
@@ -20,7 +20,7 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
                                  const MaterialField& materials, const std::vector<int>& elements, Archive& archive);
 
 /// The archive of a body of the kind `kind` that moves with inertia as a whole: rest shape, tetrahedra, materials and
-/// fixation. Throws std::runtime_error on an unfixed body, empty selections, or too little memory.
+/// boundary conditions. Throws std::runtime_error on an unfixed body, empty selections, or too little memory.
 Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,
                           const Progress& progress = {});
 

@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-constexpr int sweeps = 8;             // Gauss-Seidel over the contacts: more than one where they share nodes
-constexpr double margin_share = 0.1;  // of a part's radius: what is this near is watched before it is touched
+constexpr int kSweeps = 8;            // Gauss-Seidel over the contacts: more than one where they share nodes
+constexpr double kMarginShare = 0.1;  // of a part's radius: what is this near is watched before it is touched
 
 // From a part's axis to a surface point, on the side from which the surface may be touched.
 Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d& centre,
@@ -25,9 +25,9 @@ Eigen::Vector3d direction_to(const Eigen::Vector3d& point, const Eigen::Vector3d
 TissueContacts::TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown,
                                const CutSurface& surface, DynamicModel& model, double friction)
     : mesh_(mesh), topology_(topology), shown_(shown), surface_(surface), model_(model), friction_(friction) {
-  contacts_.reserve(most);
-  before_.reserve(most);
-  other_load_.reserve(3 * most);
+  contacts_.reserve(kMost);
+  before_.reserve(kMost);
+  other_load_.reserve(3 * kMost);
 }
 
 Eigen::Vector3d TissueContacts::position(const Anchor& a) const {
@@ -61,12 +61,12 @@ void TissueContacts::drop_tool(int tool) {
 
 void TissueContacts::let_go(int tool) {
   std::erase_if(contacts_,
-                [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
+                [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::kInJaws; });
 }
 
 bool TissueContacts::grasping(int tool) const {
   return std::ranges::any_of(
-      contacts_, [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::in_jaws; });
+      contacts_, [&](const TissueContact& c) { return c.tool == tool && c.sample == TissueContact::kInJaws; });
 }
 
 void TissueContacts::set_list(std::span<const TissueContact> contacts) {
@@ -77,7 +77,7 @@ void TissueContacts::find(std::span<const MovingTool> tools) {
   before_.clear();
   before_.swap(contacts_);
   for (const TissueContact& c : before_)
-    if (c.sample == TissueContact::in_jaws) contacts_.push_back(c);
+    if (c.sample == TissueContact::kInJaws) contacts_.push_back(c);
   for (int t = 0; t < static_cast<int>(tools.size()); ++t)
     for (int p = 0; p < tools[t].size(); ++p) find_part(tools, t, p);
 }
@@ -85,7 +85,7 @@ void TissueContacts::find(std::span<const MovingTool> tools) {
 void TissueContacts::find_part(std::span<const MovingTool> tools, int tool, int sample) {
   const MovingTool& moving = tools[tool];
   const Segment before = moving.axis_before(sample), now = moving.axis(sample);
-  const double reach = (1 + margin_share) * moving.radius(sample);
+  const double reach = (1 + kMarginShare) * moving.radius(sample);
   if (add_crossing(moving, tool, sample)) return;
   // The boxes of the axis and of its way here: all that a sphere sweeps, and of a segment what its ends sweep.
   const Eigen::Vector3d low = now.start.cwiseMin(now.end).cwiseMin(before.start).cwiseMin(before.end);
@@ -123,7 +123,7 @@ bool TissueContacts::add_crossing(const MovingTool& moving, int tool, int sample
 // Where facets are smaller than the part's radius, their nodes carry the contact.
 void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, std::span<const int> near) {
   const Segment axis = moving.axis(sample);
-  const double radius = moving.radius(sample), reach = (1 + margin_share) * radius;
+  const double radius = moving.radius(sample), reach = (1 + kMarginShare) * radius;
   for (int facet : near) {
     const std::array<int, 3> nodes = topology_.facet(facet);
     double edges = 0;
@@ -134,7 +134,7 @@ void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, s
       if ((x - centre).squaredNorm() > reach * reach) continue;
       const bool taken = std::ranges::any_of(contacts_, [&](const TissueContact& c) {
         return c.tool == tool && !c.face && c.anchor.nodes[0] == node &&
-               (c.sample == sample || c.sample == TissueContact::in_jaws);
+               (c.sample == sample || c.sample == TissueContact::kInJaws);
       });
       if (taken) continue;
       TissueContact c{.tool = tool, .sample = sample};
@@ -148,7 +148,7 @@ void TissueContacts::add_nodes(const MovingTool& moving, int tool, int sample, s
 // Where they are larger, the part touches between nodes, at the surface point nearest to its axis.
 void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, std::span<const int> near) {
   const Segment axis = moving.axis(sample);
-  const double reach = (1 + margin_share) * moving.radius(sample);
+  const double reach = (1 + kMarginShare) * moving.radius(sample);
   double least = reach * reach;
   TissueContact c{.tool = tool, .sample = sample, .face = 1};
   int nearest = -1;
@@ -179,7 +179,7 @@ void TissueContacts::add_face(const MovingTool& moving, int tool, int sample, st
 
 // A contact of the same part at the same node, or within a facet, keeps where it sticks.
 void TissueContacts::add(const TissueContact& contact, const MovingTool& tool) {
-  if (contacts_.size() == most) return;
+  if (contacts_.size() == kMost) return;
   TissueContact& c = contacts_.emplace_back(contact);
   const auto old = std::ranges::find_if(before_, [&](const TissueContact& b) {
     return b.tool == c.tool && b.sample == c.sample && b.face == c.face &&
@@ -195,8 +195,8 @@ bool TissueContacts::grasp(int tool, const Eigen::Isometry3d& pose, double lengt
   const Eigen::Isometry3d to_tip = pose.inverse();
   const std::size_t first = contacts_.size();
   const auto take = [&](const Anchor& anchor, bool face) {
-    if (contacts_.size() == most) return;
-    TissueContact c{.tool = tool, .sample = TissueContact::in_jaws, .face = face};
+    if (contacts_.size() == kMost) return;
+    TissueContact c{.tool = tool, .sample = TissueContact::kInJaws, .face = face};
     c.anchor = anchor;
     c.offset = to_tip * position(anchor);
     contacts_.push_back(c);
@@ -263,19 +263,19 @@ void TissueContacts::step(std::span<const MovingTool> tools, std::span<const Eig
   model_.step(dt);
   for (const auto& [node, load] : other_load_) model_.set_load(node, load);
   for (TissueContact& c : contacts_) c.push = c.force * dt * dt;
-  for (int sweep = 0; sweep < sweeps; ++sweep)
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (TissueContact& c : contacts_) put_right(c, tools[c.tool], end[c.tool]);
   // What the jaws hold is put in its place last.
   for (TissueContact& c : contacts_)
-    if (c.sample == TissueContact::in_jaws) put_right(c, tools[c.tool], end[c.tool]);
+    if (c.sample == TissueContact::kInJaws) put_right(c, tools[c.tool], end[c.tool]);
   for (TissueContact& c : contacts_) c.force = c.push / (dt * dt);
-  for (int sweep = 0; sweep < sweeps; ++sweep)
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (const TissueContact& c : contacts_) follow_tool(c, tools[c.tool], begin[c.tool], end[c.tool], dt);
 }
 
 // Where the tool in this pose holds a contact's point.
 Eigen::Vector3d TissueContacts::held_at(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& pose) {
-  return c.sample == TissueContact::in_jaws ? pose * c.offset : pose * (tool.parts[c.sample].pose * c.offset);
+  return c.sample == TissueContact::kInJaws ? pose * c.offset : pose * (tool.parts[c.sample].pose * c.offset);
 }
 
 // The position of one contact's point: first the normal push against the gap, then friction against the slip.
@@ -283,7 +283,7 @@ void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const E
   const Eigen::Vector3d mobile = mobility(c.anchor);
   if (mobile.maxCoeff() <= 0) return;
   const Eigen::Vector3d x = position(c.anchor), miss = held_at(c, tool, pose) - x, pushed = c.push;
-  if (c.sample == TissueContact::in_jaws) {
+  if (c.sample == TissueContact::kInJaws) {
     for (int axis = 0; axis < 3; ++axis)
       if (mobile[axis] > 0) c.push[axis] += miss[axis] / mobile[axis];
   } else {
@@ -306,12 +306,12 @@ void TissueContacts::put_right(TissueContact& c, const MovingTool& tool, const E
 // Its velocity: that of the tool, along the normal alone where it slides.
 void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool, const Eigen::Isometry3d& begin,
                                  const Eigen::Isometry3d& end, double dt) {
-  const bool in_jaws = c.sample == TissueContact::in_jaws;
-  if (!in_jaws && c.force.dot(c.normal) <= 0) return;
+  const bool kInJaws = c.sample == TissueContact::kInJaws;
+  if (!kInJaws && c.force.dot(c.normal) <= 0) return;
   const Eigen::Vector3d mobile = mobility(c.anchor);
   const Eigen::Vector3d missing = (held_at(c, tool, end) - held_at(c, tool, begin)) / dt - velocity(c.anchor);
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
-  if (in_jaws || c.sticking) {
+  if (kInJaws || c.sticking) {
     for (int axis = 0; axis < 3; ++axis)
       if (mobile[axis] > 0) impulse[axis] = missing[axis] / mobile[axis];
   } else {
@@ -323,7 +323,7 @@ void TissueContacts::follow_tool(const TissueContact& c, const MovingTool& tool,
 
 void TissueContacts::end_tick(std::span<const MovingTool> tools) {
   for (TissueContact& c : contacts_)
-    if (c.sample != TissueContact::in_jaws && !c.sticking)
+    if (c.sample != TissueContact::kInJaws && !c.sticking)
       c.offset = tools[c.tool].to_part(c.sample, position(c.anchor));
 }
 

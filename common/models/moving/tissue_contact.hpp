@@ -15,7 +15,7 @@ namespace palpate {
 
 /// One contact between a tool and a point of moving tissue. Plain memory: keyframes copy it.
 struct TissueContact {
-  static constexpr std::int32_t in_jaws = -1;
+  static constexpr std::int32_t kInJaws = -1;
 
   std::int32_t tool = 0;
   std::int32_t sample = 0;  ///< which part of the tool, or in_jaws: held on all sides until the jaws open
@@ -35,7 +35,7 @@ struct TissueContact {
 /// left to put right. No stiffness of contact limits the step.
 class TissueContacts {
  public:
-  static constexpr int most = 32;
+  static constexpr int kMost = 32;
 
   TissueContacts(const ElasticMesh& mesh, const CutMesh& topology, const ShownSurface& shown, const CutSurface& surface,
                  DynamicModel& model, double friction);

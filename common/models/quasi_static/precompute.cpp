@@ -16,9 +16,9 @@ namespace palpate {
 Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMesh* specimen, const Progress& progress,
                    Route route, PrecomputeCost* cost) try {
   Stopwatch watch(progress);
-  const auto dofs = apply_fixation(mesh, body.fixed, "body '" + body.name + "'");
+  const auto dofs = apply_boundary_conditions(mesh, body.fixed, "body '" + body.name + "'");
   const auto materials = material_field(body, mesh);
-  auto archive = start_archive(body, QuasiStaticSpec::kind, mesh, materials);
+  auto archive = start_archive(body, QuasiStaticSpec::kKind, mesh, materials);
   archive.surface = make_surface_map(body, mesh, dofs);
   const auto& surface = archive.surface;
   archive.touchable_dofs = free_dofs(surface, 0, surface.touchable);

@@ -7,15 +7,15 @@
 namespace palpate {
 namespace {
 
-constexpr int whole_columns_from = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
+constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
 }  // namespace
 
 QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings)
     : TouchBody(archive.surface, Compliance<double>(archive, Compliance<double>::Rows::touchable), settings) {
   if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
-  columns_.reserve(27 * max_contacts);
-  coefficients_.reserve(27 * max_contacts);
+  columns_.reserve(27 * kMaxContacts);
+  coefficients_.reserve(27 * kMaxContacts);
   displacement_.reserve(3 * map().size());
   of_tool_.reserve(3 * map().size());
   whole_.assign(compliance().stride(), 0.0);
@@ -61,7 +61,7 @@ void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
   const int count = static_cast<int>(columns_.size());
   displacement.resize(3 * marked.size());
   // Reading whole columns beats picking from them once a good part of the nodes is asked for.
-  if (marked.size() * whole_columns_from < static_cast<std::size_t>(map().touchable)) {
+  if (marked.size() * kWholeColumnsFrom < static_cast<std::size_t>(map().touchable)) {
     kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(),
                                       static_cast<int>(marked.size()), displacement.data());
     return;

@@ -41,7 +41,7 @@ inline void describe(Description& d, Nonlinear& n) {
 
 /// Linear elasticity, solved beforehand (TVCG99 sec. 4).
 struct QuasiStaticSpec : SolidSpec {
-  static constexpr std::string_view kind = "quasi_static";
+  static constexpr std::string_view kKind = "quasi_static";
   std::optional<Nonlinear> nonlinear;
   std::optional<Offline> offline;  ///< absent: the mesh itself with linear elements
 };

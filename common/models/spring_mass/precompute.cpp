@@ -5,7 +5,7 @@
 namespace palpate {
 
 ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress) {
-  return moving_archive_job(body, SpringMassSpec::kind, progress);
+  return moving_archive_job(body, SpringMassSpec::kKind, progress);
 }
 
 }  // namespace palpate

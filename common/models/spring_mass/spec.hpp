@@ -8,7 +8,7 @@ namespace palpate {
 
 /// Springs along the edges, their stiffness fitted to Young's modulus; for comparison (RR3510 sec. 5).
 struct SpringMassSpec : MovingSpec {
-  static constexpr std::string_view kind = "spring_mass";
+  static constexpr std::string_view kKind = "spring_mass";
 };
 
 inline void describe(Description& d, SpringMassSpec& b) {

@@ -5,7 +5,7 @@
 namespace palpate {
 
 ArchiveJob archive_job(const TensorMassSpec& body, const Progress& progress) {
-  return moving_archive_job(body, TensorMassSpec::kind, progress);
+  return moving_archive_job(body, TensorMassSpec::kKind, progress);
 }
 
 }  // namespace palpate

@@ -8,7 +8,7 @@ namespace palpate {
 
 /// Linear elasticity with lumped masses, one step after another (RR3510 sec. 5).
 struct TensorMassSpec : MovingSpec {
-  static constexpr std::string_view kind = "tensor_mass";
+  static constexpr std::string_view kKind = "tensor_mass";
 };
 
 inline void describe(Description& d, TensorMassSpec& b) {

@@ -60,7 +60,7 @@ class NodesWithKeys : public ::testing::Test {
     Result result;
     result.status =
         run_command(fmt::format("timeout {} {} {} --domain {} --interface {} --peer {}", limit_s, program("palpate"),
-                                arguments, Nodes::domain, TwoHosts::device, TwoHosts::address_a),
+                                arguments, Nodes::kDomain, TwoHosts::device, TwoHosts::address_a),
                     &result.said);
     return result;
   }
@@ -147,7 +147,7 @@ TEST_F(SecuredNodes, LatencyIsMeasuredWithKeysAndNotWithout) {
     return ChildProcess("palpate",
                         {"/bin/sh", "-c",
                          fmt::format("exec {} latency --answer --json --domain {} --interface {} --peer {} {}",
-                                     program("palpate"), Nodes::domain, TwoHosts::device, TwoHosts::address_b, keys)});
+                                     program("palpate"), Nodes::kDomain, TwoHosts::device, TwoHosts::address_b, keys)});
   };
   ChildProcess other = answer(with_keys("latency"));
   const Result secured = on_b("latency --seconds 1 --rate 200" + with_keys("latency"));

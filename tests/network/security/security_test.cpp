@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int domain = 7;
-constexpr double seconds = 4;
-constexpr unsigned tool = 1, driver = 2, intruder = 9;
-constexpr std::uint64_t many = 100;  ///< of about 800 that are sent
+constexpr int kDomain = 7;
+constexpr double kSeconds = 4;
+constexpr unsigned kTool = 1, kDriver = 2, kIntruder = 9;
+constexpr std::uint64_t kMany = 100;  ///< of about 800 that are sent
 
 class Secured : public ::testing::Test {
  protected:
@@ -28,34 +28,34 @@ class Secured : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Peer on_a(const PeerTask& task, double time = seconds) const {
+  Peer on_a(const PeerTask& task, double time = kSeconds) const {
     const Inside here(hosts_->a());
-    return Peer(task, domain, TwoHosts::device, TwoHosts::address_b, time);
+    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_b, time);
   }
-  Peer on_b(const PeerTask& task, double time = seconds) const {
+  Peer on_b(const PeerTask& task, double time = kSeconds) const {
     const Inside here(hosts_->b());
-    return Peer(task, domain, TwoHosts::device, TwoHosts::address_a, time);
+    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_a, time);
   }
 
   /// A haptic node's topics on host A, a driver and a render node on host B, and an intruder beside them, all at once.
   void run(const PeerTask& task) {
     Peer other = on_b(task);
-    Peer haptic = on_a({keys_, "haptic", "tool_state,force_state", "device_state", tool});
-    Peer drives = on_b({keys_, "driver", "device_state", "force_state", driver});
+    Peer haptic = on_a({keys_, "haptic", "tool_state,force_state", "device_state", kTool});
+    Peer drives = on_b({keys_, "driver", "device_state", "force_state", kDriver});
     Peer render = on_b({keys_, "render", "-", "tool_state,force_state", 0});
     haptic_ = haptic.outcome();
     driver_ = drives.outcome();
     render_ = render.outcome();
     intruder_ = other.outcome();
-    EXPECT_GT(haptic_.of(driver), many) << haptic_.refusal;
-    EXPECT_GT(driver_.of(tool), many) << driver_.refusal;
-    EXPECT_GT(render_.of(tool), many) << render_.refusal;
+    EXPECT_GT(haptic_.of(kDriver), kMany) << haptic_.refusal;
+    EXPECT_GT(driver_.of(kTool), kMany) << driver_.refusal;
+    EXPECT_GT(render_.of(kTool), kMany) << render_.refusal;
   }
   void expect_nothing_from_the_intruder(int of_its_kind = 0) const {
     EXPECT_EQ(intruder_.refusal, "");
-    EXPECT_GT(intruder_.wrote, many) << "it did send";
+    EXPECT_GT(intruder_.wrote, kMany) << "it did send";
     EXPECT_EQ(intruder_.readers, of_its_kind);
-    for (const Outcome* honest : {&haptic_, &driver_, &render_}) EXPECT_EQ(honest->of(intruder), 0u);
+    for (const Outcome* honest : {&haptic_, &driver_, &render_}) EXPECT_EQ(honest->of(kIntruder), 0u);
   }
   /// The intruder's middleware lets it do anything.
   std::string lenient() const {
@@ -71,7 +71,7 @@ class Secured : public ::testing::Test {
 };
 
 TEST_F(Secured, WhoHasNoCertificateNeitherReadsNorWrites) {
-  run({"-", "-", "tool_state,force_state,device_state", "tool_state,force_state,device_state", intruder});
+  run({"-", "-", "tool_state,force_state,device_state", "tool_state,force_state,device_state", kIntruder});
   expect_nothing_from_the_intruder();
   EXPECT_EQ(intruder_.heard.size(), 0u);
 }
@@ -79,43 +79,43 @@ TEST_F(Secured, WhoHasNoCertificateNeitherReadsNorWrites) {
 TEST_F(Secured, WhoHasAForeignCertificateNeitherReadsNorWrites) {
   keys::make_folder(folder_ / "foreign", this_month());
   Peer listener = on_b({folder_ / "foreign", "observer", "-", "tool_state,force_state,device_state", 0});
-  run({folder_ / "foreign", "player", "tool_state,force_state,device_state", "-", intruder});
+  run({folder_ / "foreign", "player", "tool_state,force_state,device_state", "-", kIntruder});
   expect_nothing_from_the_intruder(1);
   const Outcome heard = listener.outcome();
   EXPECT_EQ(heard.refusal, "");
-  EXPECT_EQ(heard.of(tool), 0u);
-  EXPECT_EQ(heard.of(driver), 0u);
-  EXPECT_GT(heard.of(intruder), many) << "it hears its own kind";
+  EXPECT_EQ(heard.of(kTool), 0u);
+  EXPECT_EQ(heard.of(kDriver), 0u);
+  EXPECT_GT(heard.of(kIntruder), kMany) << "it hears its own kind";
 }
 
 TEST_F(Secured, TheWrongRoleIsRefusedByItsOwnMiddleware) {
-  for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", intruder},
-                               PeerTask{keys_, "render", "tool_state", "-", intruder}})
+  for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", kIntruder},
+                               PeerTask{keys_, "render", "tool_state", "-", kIntruder}})
     EXPECT_EQ(on_b(task).outcome().refusal,
               fmt::format("network: creating the writer of palpate/{} is not permitted to the role of these keys",
                           task.writes));
-  EXPECT_EQ(on_b({keys_, "render", "-", "device_state", intruder}).outcome().refusal,
+  EXPECT_EQ(on_b({keys_, "render", "-", "device_state", kIntruder}).outcome().refusal,
             "network: creating topic palpate/device_state is not permitted to the role of these keys");
 }
 
 TEST_F(Secured, AnObserverWritesNothingEvenWhereItsOwnMiddlewareWouldLetIt) {
-  run({keys_, "observer", "tool_state,force_state,device_state", "tool_state,force_state", intruder, lenient()});
+  run({keys_, "observer", "tool_state,force_state,device_state", "tool_state,force_state", kIntruder, lenient()});
   expect_nothing_from_the_intruder();
-  EXPECT_GT(intruder_.of(tool), many) << "it may read";
+  EXPECT_GT(intruder_.of(kTool), kMany) << "it may read";
 }
 
 TEST_F(Secured, ARenderNodeNeitherWritesNorReadsWhatIsNotItsBusiness) {
-  run({keys_, "render", "tool_state,force_state,device_state", "device_state", intruder, lenient()});
+  run({keys_, "render", "tool_state,force_state,device_state", "device_state", kIntruder, lenient()});
   expect_nothing_from_the_intruder();
   EXPECT_EQ(intruder_.heard.size(), 0u) << "a render node reads no devices";
 }
 
 /// That the two tests above would see an intruder: with the same middleware, the role that may write is heard.
 TEST_F(Secured, TheRightRoleIsHeardFromTheSameMiddleware) {
-  run({keys_, "haptic", "tool_state,force_state", "device_state", intruder, lenient()});
-  EXPECT_GT(render_.of(intruder), many) << intruder_.refusal;
-  EXPECT_GT(driver_.of(intruder), many);
-  EXPECT_GT(intruder_.of(driver), many);
+  run({keys_, "haptic", "tool_state,force_state", "device_state", kIntruder, lenient()});
+  EXPECT_GT(render_.of(kIntruder), kMany) << intruder_.refusal;
+  EXPECT_GT(driver_.of(kIntruder), kMany);
+  EXPECT_GT(intruder_.of(kDriver), kMany);
   EXPECT_GT(intruder_.readers, 0);
 }
 
@@ -141,33 +141,33 @@ Seen listen_on(const NetworkNamespace& host, double time, Peer& writer, Peer& re
     seen.readable += memmem(frame.data(), static_cast<std::size_t>(size), &depth, sizeof depth) != nullptr;
   }
   close(wire);
-  EXPECT_GT(reader.outcome().of(tool), many);
-  EXPECT_GT(writer.outcome().wrote, many);
+  EXPECT_GT(reader.outcome().of(kTool), kMany);
+  EXPECT_GT(writer.outcome().wrote, kMany);
   return seen;
 }
 
 TEST_F(Secured, NobodyOnTheWireCanReadIt) {
   {
-    Peer writer = on_a({"-", "-", "tool_state", "-", tool}, 2), reader = on_b({"-", "-", "-", "tool_state", 0}, 2);
+    Peer writer = on_a({"-", "-", "tool_state", "-", kTool}, 2), reader = on_b({"-", "-", "-", "tool_state", 0}, 2);
     const Seen open = listen_on(hosts_->b(), 2, writer, reader);
-    EXPECT_GT(open.readable, static_cast<int>(many)) << "without keys it can be read";
+    EXPECT_GT(open.readable, static_cast<int>(kMany)) << "without keys it can be read";
   }
-  Peer writer = on_a({keys_, "haptic", "tool_state", "-", tool}),
+  Peer writer = on_a({keys_, "haptic", "tool_state", "-", kTool}),
        reader = on_b({keys_, "render", "-", "tool_state", 0});
-  const Seen secured = listen_on(hosts_->b(), seconds, writer, reader);
-  EXPECT_GT(secured.frames, static_cast<int>(many));
+  const Seen secured = listen_on(hosts_->b(), kSeconds, writer, reader);
+  EXPECT_GT(secured.frames, static_cast<int>(kMany));
   EXPECT_EQ(secured.readable, 0);
 }
 
 TEST_F(Secured, KeysThatEndCutOffWhoeverHasThem) {
   const std::time_t now = std::time(nullptr);
   keys::add_keys(keys_, "render", "brief", {now - 60, now + 4});
-  Peer haptic = on_a({keys_, "haptic", "tool_state", "-", tool}, 7);
+  Peer haptic = on_a({keys_, "haptic", "tool_state", "-", kTool}, 7);
   Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}, 7),
        brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0}, 7);
-  const std::uint64_t all = lasting.outcome().of(tool), until_the_end = brief.outcome().of(tool);
+  const std::uint64_t all = lasting.outcome().of(kTool), until_the_end = brief.outcome().of(kTool);
   EXPECT_EQ(haptic.outcome().refusal, "");
-  EXPECT_GT(until_the_end, many);
+  EXPECT_GT(until_the_end, kMany);
   EXPECT_GT(all, until_the_end + 300) << "of 600 that follow";
 }
 

@@ -34,12 +34,12 @@ class Splitter {
     for (int t = 0; t < static_cast<int>(tets_.size()); ++t) note_edges(t);
   }
 
-  void run(int most_nodes) {
+  void run(int max_nodes) {
     while (!longest_.empty()) {
       const auto [ratio, edge] = longest_.top();
       longest_.pop();
-      if (static_cast<int>(nodes_.size()) >= most_nodes)
-        throw std::runtime_error(fmt::format("the reference's mesh would have more than {} nodes", most_nodes));
+      if (static_cast<int>(nodes_.size()) >= max_nodes)
+        throw std::runtime_error(fmt::format("the reference's mesh would have more than {} nodes", max_nodes));
       split(edge);
     }
   }
@@ -157,9 +157,9 @@ class Splitter {
 
 }  // namespace
 
-StaticProblem refine_graded(const StaticProblem& problem, const SizeField& size, int most_nodes) {
+StaticProblem refine_graded(const StaticProblem& problem, const SizeField& size, int max_nodes) {
   Splitter splitter(problem, size);
-  splitter.run(most_nodes);
+  splitter.run(max_nodes);
   return splitter.finished(problem);
 }
 

@@ -13,8 +13,8 @@ using SizeField = std::function<double(const Eigen::Vector3d&)>;
 /// The nodes there were keep their numbers and new ones follow; facets stay flat, so that the shape is the
 /// same. A new node is fixed along an axis if its edge lies on the surface and a face of the surface beside
 /// it is fixed along that axis at all three corners. Materials follow their tetrahedra. Throws
-/// std::runtime_error beyond `most_nodes`.
-StaticProblem refine_graded(const StaticProblem& problem, const SizeField& size, int most_nodes);
+/// std::runtime_error beyond `max_nodes`.
+StaticProblem refine_graded(const StaticProblem& problem, const SizeField& size, int max_nodes);
 
 /// [m] mean edge of the tetrahedra.
 double mean_edge(const TetMesh& mesh);

@@ -9,8 +9,8 @@
 namespace palpate::study {
 namespace {
 
-constexpr int most_rounds = 200;
-constexpr std::size_t right_hand_sides = 64;  // solved at once
+constexpr int kMaxRounds = 200;
+constexpr std::size_t kRightHandSides = 64;  // solved at once
 
 Factorisation factorised(const StaticProblem& problem) {
   const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs);
@@ -33,8 +33,8 @@ LinearContact::LinearContact(StaticProblem problem, const Eigen::Vector3d& centr
     row[i] = problem_.dofs.index(node_[i / 3], static_cast<int>(i % 3));
     if (row[i] >= 0) free.push_back(i);
   }
-  for (std::size_t begin = 0; begin < free.size(); begin += right_hand_sides) {
-    const std::size_t count = std::min(right_hand_sides, free.size() - begin);
+  for (std::size_t begin = 0; begin < free.size(); begin += kRightHandSides) {
+    const std::size_t count = std::min(kRightHandSides, free.size() - begin);
     Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(problem_.dofs.size(), static_cast<Eigen::Index>(count));
     for (std::size_t c = 0; c < count; ++c) unit(row[free[begin + c]], static_cast<Eigen::Index>(c)) = 1;
     const Eigen::MatrixXd answer = factor_.solve(unit);
@@ -56,7 +56,7 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball, const std
   for (std::size_t i = 0; i < n; ++i)
     wanted[i] = ball.radius + normal[i].dot(ball.centre - problem_.mesh.nodes[node_[i]]);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     std::vector<Eigen::Index> held;
     for (std::size_t i = 0; i < n; ++i)
       if (active[i]) held.push_back(static_cast<Eigen::Index>(i));
@@ -71,7 +71,7 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball, const std
     const double most = force.cwiseAbs().maxCoeff();
     bool changed = false;
     // Later rounds change one node at a time, which cannot cycle.
-    for (std::size_t i = 0; i < n && !(changed && round > most_rounds / 4); ++i) {
+    for (std::size_t i = 0; i < n && !(changed && round > kMaxRounds / 4); ++i) {
       const bool leaves = active[i] && force[i] < -1e-12 * most, comes = !active[i] && open[i] < -1e-9 * ball.radius;
       if (!leaves && !comes) continue;
       active[i] = comes;
@@ -88,7 +88,7 @@ PressState LinearContact::press(const Sphere& ball) const {
   std::vector<char> active(n, 0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * n), nodal = u, force;
   for (int round = 0;; ++round) {
-    if (round == most_rounds) throw std::runtime_error("the reference's contact normals do not settle");
+    if (round == kMaxRounds) throw std::runtime_error("the reference's contact normals do not settle");
     double turned = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Eigen::Vector3d now = (problem_.mesh.nodes[node_[i]] + u.segment<3>(3 * i) - ball.centre).normalized();

@@ -10,11 +10,11 @@
 namespace palpate::study {
 namespace {
 
-constexpr int most_iterations = 30;
-constexpr double tolerance = 1e-8;      // of the unbalanced force
-constexpr int most_halvings = 12;       // of a step of load, on end
-constexpr double longest_stride = 0.1;  // of the ball's radius in one step of load
-constexpr double least_share = 1e-3;    // of Newton's step that the line search tries
+constexpr int kMaxIterations = 30;
+constexpr double kTolerance = 1e-8;  // of the unbalanced force
+constexpr int kMaxHalvings = 12;     // of a step of load, on end
+constexpr double kMaxStride = 0.1;   // of the ball's radius in one step of load
+constexpr double kMinShare = 1e-3;   // of Newton's step that the line search tries
 
 /// Where an entry of the lower triangle stands among the matrix's values; -1 outside it.
 std::int64_t place_of(const SparseMatrix& matrix, int row, int column) {
@@ -158,10 +158,10 @@ NewtonOutcome NewtonSolid::solve(const std::optional<Sphere>& ball) {
   NewtonOutcome outcome;
   const auto before = u_;
   double now = energy(u_, ball);
-  for (; outcome.iterations < most_iterations && std::isfinite(now); ++outcome.iterations, ++iterations_) {
+  for (; outcome.iterations < kMaxIterations && std::isfinite(now); ++outcome.iterations, ++iterations_) {
     const double size = assemble(ball);
     outcome.residual = gradient_.norm() / std::max(size, 1e-300);
-    if (outcome.residual < tolerance || gradient_.norm() == 0) {
+    if (outcome.residual < kTolerance || gradient_.norm() == 0) {
       outcome.converged = true;
       return outcome;
     }
@@ -169,7 +169,7 @@ NewtonOutcome NewtonSolid::solve(const std::optional<Sphere>& ball) {
     const double slope = gradient_.dot(step);
     const auto start = u_;
     double share = 1, next = 0;
-    for (; share > least_share; share /= 2) {
+    for (; share > kMinShare; share /= 2) {
       for (int i = 0; i < problem_.dofs.size(); ++i) {
         const int dof = problem_.dofs.dof(i);
         u_[dof / 3][dof % 3] = start[dof / 3][dof % 3] + share * step[i];
@@ -177,7 +177,7 @@ NewtonOutcome NewtonSolid::solve(const std::optional<Sphere>& ball) {
       next = energy(u_, ball);
       if (next <= now + 1e-4 * share * slope + 1e-13 * std::abs(now)) break;
     }
-    if (share <= least_share) break;
+    if (share <= kMinShare) break;
     now = next;
   }
   u_ = before;
@@ -194,7 +194,7 @@ void NewtonSolid::predict(const Sphere& ball, double ratio) {
 
 PressState NewtonSolid::press(const Sphere& from, const Sphere& to) {
   const double way = (to.centre - from.centre).norm();
-  double done = 0, stride = std::min(1.0, longest_stride * to.radius / std::max(way, 1e-300));
+  double done = 0, stride = std::min(1.0, kMaxStride * to.radius / std::max(way, 1e-300));
   for (int halvings = 0; done < 1;) {
     const double next = std::min(1.0, done + stride);
     const Sphere ball{from.centre + next * (to.centre - from.centre), to.radius};
@@ -210,7 +210,7 @@ PressState NewtonSolid::press(const Sphere& from, const Sphere& to) {
     }
     u_ = reached;
     stride /= 2;
-    if (++halvings > most_halvings) throw std::runtime_error("Newton's method does not converge under the ball");
+    if (++halvings > kMaxHalvings) throw std::runtime_error("Newton's method does not converge under the ball");
   }
   return state(to);
 }

@@ -1,4 +1,4 @@
-#include "common/fem/fixation.hpp"
+#include "common/fem/boundary_conditions.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,8 @@ int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
   return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
 }
 
-DofMap apply_fixation(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions, const std::string& where) {
+DofMap apply_boundary_conditions(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions,
+                                 const std::string& where) {
   if (regions.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   DofMap dofs(mesh);
   for (std::size_t i = 0; i < regions.size(); ++i) {

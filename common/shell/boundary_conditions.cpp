@@ -1,4 +1,4 @@
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, c
   return select_nodes(mesh.nodes, mesh.groups, used_shell_nodes(mesh), selector, where);
 }
 
-ShellDofs shell_fixation(const ShellMesh& mesh, const ShellSpec& body, const std::string& where) {
+ShellDofs apply_boundary_conditions(const ShellMesh& mesh, const ShellSpec& body, const std::string& where) {
   if (body.fixed.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");
   ShellDofs dofs(used_shell_nodes(mesh));
   for (std::size_t i = 0; i < body.fixed.size(); ++i) {

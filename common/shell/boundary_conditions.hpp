@@ -13,10 +13,10 @@ namespace palpate {
 /// unknown group.
 std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, const std::string& where);
 
-/// Applies the fixations of a shell: translations along the axes named, and all three rotations where the
+/// Applies the boundary conditions of a shell: translations along the axes named, and all three rotations where the
 /// region holds them. `where` starts the error sentences. Throws std::runtime_error if a region selects
 /// nothing, or if the fixed dofs leave one of the six rigid-body motions.
-ShellDofs shell_fixation(const ShellMesh& mesh, const ShellSpec& body, const std::string& where);
+ShellDofs apply_boundary_conditions(const ShellMesh& mesh, const ShellSpec& body, const std::string& where);
 
 /// What a modal_shell body must fulfil on its mesh: a wall not thicker than the radius (of a tube its
 /// lumen_radius(), else half the mesh's largest extent), and not more modes than free translations. `where`

@@ -1,4 +1,4 @@
-#include "common/shell/fixation.hpp"
+#include "common/shell/boundary_conditions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,45 +43,45 @@ ShellBoundaryCondition group(const char* name) {
   return region;
 }
 
-class ShellFixation : public testing::Test {
+class ShellBoundaryConditions : public testing::Test {
  protected:
   std::string complaint(std::vector<ShellBoundaryCondition> fixed) const {
-    return sentence_of([&] { shell_fixation(tube, duct_body(std::move(fixed)), "body 'duct'"); });
+    return sentence_of([&] { apply_boundary_conditions(tube, duct_body(std::move(fixed)), "body 'duct'"); });
   }
   ShellMesh tube = make_tube(0.005, 0.06, 8, 6);
 };
 
-TEST_F(ShellFixation, ClampedNodesLoseAllSixDofsAndHingedOnesThree) {
-  const ShellDofs clamped = shell_fixation(tube, duct_body({group("end1")}), "x");
+TEST_F(ShellBoundaryConditions, ClampedNodesLoseAllSixDofsAndHingedOnesThree) {
+  const ShellDofs clamped = apply_boundary_conditions(tube, duct_body({group("end1")}), "x");
   EXPECT_EQ(clamped.size(), 6 * (56 - 8));
   EXPECT_EQ(clamped.translations(), 3 * (56 - 8));
   ShellBoundaryCondition hinge = group("end1");
   hinge.rotations = false;
-  const ShellDofs hinged = shell_fixation(tube, duct_body({hinge}), "x");
+  const ShellDofs hinged = apply_boundary_conditions(tube, duct_body({hinge}), "x");
   EXPECT_EQ(hinged.translations(), 3 * (56 - 8));
   EXPECT_EQ(hinged.size(), 6 * 56 - 3 * 8);
   EXPECT_EQ(hinged.index(48, 2), ShellDofs::kFixed);
   EXPECT_GE(hinged.index(48, 3), 0);
 }
 
-TEST_F(ShellFixation, AxesAreThoseOfTheWorld) {
+TEST_F(ShellBoundaryConditions, AxesAreThoseOfTheWorld) {
   const ShellDofs dofs =
-      shell_fixation(tube, duct_body({group("end1"), region_of({3}, {false, true, false}, false)}), "x");
+      apply_boundary_conditions(tube, duct_body({group("end1"), region_of({3}, {false, true, false}, false)}), "x");
   EXPECT_GE(dofs.index(3, 0), 0);
   EXPECT_EQ(dofs.index(3, 1), ShellDofs::kFixed);
   EXPECT_GE(dofs.index(3, 2), 0);
   EXPECT_GE(dofs.index(3, 4), 0);
 }
 
-TEST_F(ShellFixation, NodesThatNoTriangleUsesHaveNoDofs) {
+TEST_F(ShellBoundaryConditions, NodesThatNoTriangleUsesHaveNoDofs) {
   tube.nodes.push_back({0, 0, 0});
-  const ShellDofs dofs = shell_fixation(tube, duct_body({group("end1")}), "x");
+  const ShellDofs dofs = apply_boundary_conditions(tube, duct_body({group("end1")}), "x");
   EXPECT_EQ(dofs.index(56, 0), ShellDofs::kUnused);
   EXPECT_EQ(complaint({region_of({56})}),
             "body 'duct': [[body.fixed]] number 1: an empty fixed set: it selects no node of the mesh");
 }
 
-TEST_F(ShellFixation, AClampedNodeHoldsAShellAndAHingedOneDoesNot) {
+TEST_F(ShellBoundaryConditions, AClampedNodeHoldsAShellAndAHingedOneDoesNot) {
   EXPECT_EQ(complaint({region_of({5})}), "");
   EXPECT_EQ(complaint({region_of({5}, {true, true, true}, false)}),
             "body 'duct': unfixed body: the fixed nodes leave 3 rigid-body motions free, fix more nodes, "
@@ -95,7 +95,7 @@ TEST_F(ShellFixation, AClampedNodeHoldsAShellAndAHingedOneDoesNot) {
             "axes or rotations");
 }
 
-TEST_F(ShellFixation, WhatSelectsNothingIsRefused) {
+TEST_F(ShellBoundaryConditions, WhatSelectsNothingIsRefused) {
   EXPECT_EQ(complaint({}), "body 'duct': unfixed body: it has no [[body.fixed]] section");
   EXPECT_EQ(complaint({group("end2")}),
             "body 'duct': [[body.fixed]] number 1: the mesh has no group 'end2' (it has end0, end1)");
@@ -109,7 +109,7 @@ TEST_F(ShellFixation, WhatSelectsNothingIsRefused) {
 class ShellCheck : public testing::Test {
  protected:
   std::string complaint(const ShellMesh& mesh) const {
-    return sentence_of([&] { check_shell(body, mesh, shell_fixation(mesh, body, "x"), "body 'duct'"); });
+    return sentence_of([&] { check_shell(body, mesh, apply_boundary_conditions(mesh, body, "x"), "body 'duct'"); });
   }
   ShellMesh tube = make_tube(0.005, 0.06, 20, 12);
   ModalShellSpec body = duct_body({group("end1")});

@@ -33,10 +33,11 @@ class DofMap {
   std::vector<int> index_, dof_;
 };
 
-/// Applies the fixations of a body. `where` starts the error sentences. Throws std::runtime_error if a region
+/// Applies the boundary conditions of a body. `where` starts the error sentences. Throws std::runtime_error if a region
 /// selects nothing, or if a rigid-body motion remains: the six rigid motions restricted to the fixed dofs
 /// must be linearly independent.
-DofMap apply_fixation(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions, const std::string& where);
+DofMap apply_boundary_conditions(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions,
+                                 const std::string& where);
 
 /// How many of the six rigid-body motions the fixed dofs leave free.
 int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs);
