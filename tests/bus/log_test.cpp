@@ -123,7 +123,7 @@ TEST_F(Log, OtherProgramsReadItWithTheLcmLibrary) {
 TEST_F(Log, ReadsUpToWhereItWasCutOff) {
   write_log(100);
   const std::string whole = read_file();
-  const std::size_t event = 28 + std::string(topics::tool_state.name).size() + envelope::size + 84;
+  const std::size_t event = 28 + std::string(topics::tool_state.name).size() + envelope::kSize + 84;
   LogReader intact(file_);
   LogEvent last;
   std::vector<std::uint64_t> starts;

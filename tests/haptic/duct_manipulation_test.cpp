@@ -329,8 +329,8 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
       strayed += inside && !led_in;
     }
   }
-  RecordProperty("largest_energy_J", std::to_string(max_energy));
-  RecordProperty("largest_force_N", std::to_string(max_force));
+  RecordProperty("max_energy_J", std::to_string(max_energy));
+  RecordProperty("max_force_N", std::to_string(max_force));
   std::printf(
       "%d s: largest energy %.3g J, largest force %.3g N, %d grasps, %d drops; of %d looks at a particle %d find it "
       "inside, %d outside "
