@@ -46,7 +46,8 @@ void measure(const std::string& scene_file, const std::string& name, bool quick)
   bench::report("table1", name, "normal", 1e3 * normal.median(), "ms");
 
   const Compliance<double> compliance(archives[0], Compliance<double>::Rows::touchable);
-  HeldPoints held(compliance, 4);
+  const CompliantResponse response(compliance);
+  HeldPoints held(response, 4);
   Deformer deformer(scene, archives);
   const std::array hold_all{Hold::all};
   const std::array normals{Eigen::Vector3d(-Eigen::Vector3d::UnitZ())}, target{imposed};

@@ -55,7 +55,8 @@ void speed_precomputed(const ElasticMesh& mesh, int steps) {
   const Archive archive = precompute(body, {mesh.rest, mesh.tetrahedra, {}});
   const Compliance<double> touched(archive, Compliance<double>::Rows::touchable);
   const Compliance<float> shown(archive, Compliance<float>::Rows::surface);
-  HeldPoints held(touched, 1);
+  const CompliantResponse response(touched);
+  HeldPoints held(response, 1);
   std::vector<float> u(shown.stride());
   const std::array hold{Hold::all};
   const std::array<Eigen::Vector3d, 1> normal{-Eigen::Vector3d::UnitZ()}, target{Eigen::Vector3d(0, 0, -0.002)};

@@ -17,9 +17,12 @@ using ConstVec = Eigen::Map<const Eigen::Vector3d>;
 
 }  // namespace
 
-ContactLaw::ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule,
-                       double friction, int capacity)
-    : rest_(rest), rule_(rule), friction_(friction), held_(compliance, rule == Rule::alpha ? 3 * capacity : capacity) {
+ContactLaw::ContactLaw(const Response& response, std::span<const Eigen::Vector3d> unloaded, Rule rule, double friction,
+                       int capacity)
+    : unloaded_(unloaded),
+      rule_(rule),
+      friction_(friction),
+      held_(response, rule == Rule::alpha ? 3 * capacity : capacity) {
   contacts_.reserve(capacity);
   expansions_.reserve(capacity);
   const int points = held_.capacity();
@@ -120,7 +123,7 @@ Eigen::Vector3d ContactLaw::displacement(int contact) const {
 // Where the anchor is now: what holds it has given way by a part of the displacement.
 void ContactLaw::place(int c) {
   TouchContact& contact = contacts_[c];
-  contact.position = anchor_position(contact.anchor, rest_) + displacement(c);
+  contact.position = anchor_position(contact.anchor, unloaded_) + displacement(c);
   if (contact.softness == 0) return;
   const int first = first_point(c);
   for (int k = 0; k < expansions_[c].points; ++k)
@@ -133,7 +136,7 @@ int ContactLaw::solve_held() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const TouchContact& contact = contacts_[c];
     const Expansion& e = expansions_[c];
-    const Eigen::Vector3d rest = anchor_position(contact.anchor, rest_);
+    const Eigen::Vector3d rest = anchor_position(contact.anchor, unloaded_);
     const bool sliding = contact.touch == Touch::sliding;
     const Eigen::Vector3d wanted = sliding
                                        ? Eigen::Vector3d(contact.normal * (contact.plane - contact.normal.dot(rest)))
@@ -249,7 +252,7 @@ void ContactLaw::relax() {
 double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) {
   const Eigen::Vector3d& n = contact.normal;
   const Eigen::Matrix3d own = held_.block(p, p);
-  const Eigen::Vector3d rest = anchor_position(contact.anchor, rest_);
+  const Eigen::Vector3d rest = anchor_position(contact.anchor, unloaded_);
   Eigen::Map<Eigen::Vector3d> force(forces_.data() + 3 * p);
   const Eigen::Vector3d before = force;
   const double softest = held_.floor_of(own.trace() / 3);

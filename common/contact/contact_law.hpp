@@ -60,8 +60,8 @@ class ContactLaw {
   /// (TVCG99 sec. 5 with the sign mended; stiffer).
   enum class Rule { barycentric, alpha };
 
-  /// `rest`: rest positions [m] of the body's surface nodes; must outlive this object, as `compliance`.
-  ContactLaw(const Compliance<double>& compliance, std::span<const Eigen::Vector3d> rest, Rule rule, double friction,
+  /// `unloaded`: positions [m] of the body's nodes without contact forces; outlives this object, as `response` does.
+  ContactLaw(const Response& response, std::span<const Eigen::Vector3d> unloaded, Rule rule, double friction,
              int capacity);
 
   std::span<TouchContact> contacts() { return contacts_; }
@@ -77,6 +77,7 @@ class ContactLaw {
   /// Gives a contact another anchor; its force and state stay.
   void move_anchor(int contact, const Anchor& anchor);
   void forget_factor() { held_.forget_factor(); }
+  void follow_response() { held_.follow_response(); }
 
   LawOutcome solve();
 
@@ -113,7 +114,7 @@ class ContactLaw {
   void relax();
   double relax_point(const TouchContact& contact, double gain, int point);
 
-  std::span<const Eigen::Vector3d> rest_;
+  std::span<const Eigen::Vector3d> unloaded_;
   Rule rule_;
   double friction_;
   HeldPoints held_;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace palpate {
@@ -13,8 +14,10 @@ using Eigen::Vector3d;
 constexpr double kSlackOfBucket = 0.1;
 constexpr int kEntriesPerFacet = 8;
 
-Vector3d area_vector(const Triangle& c) {
-  return (c[1] - c[0]).cross(c[2] - c[0]);
+std::vector<std::array<int, 3>> facets_of(const CutMesh& mesh) {
+  std::vector<std::array<int, 3>> facets;
+  for (int facet = 0; facet < 4 * mesh.size(); ++facet) facets.push_back(mesh.facet(facet));
+  return facets;
 }
 
 // A closed surface has about two facets to a node.
@@ -25,17 +28,18 @@ std::size_t entries_for(const CutMesh& mesh) {
 }  // namespace
 
 CutSurface::CutSurface(const CutMesh& mesh, std::span<const Vector3d> rest, double bucket_size)
-    : mesh_(mesh),
-      position_(rest.begin(), rest.end()),
-      previous_(position_),
+    : ContactSurface(rest, facets_of(mesh)),
+      mesh_(mesh),
       buckets_(rest, bucket_size, 4 * mesh.size(), entries_for(mesh)),
       slack_(kSlackOfBucket * bucket_size),
       box_(rest.size(), {Vector3d::Constant(1), Vector3d::Constant(-1)}),
       facets_of_node_(rest.size(), 0),
       entered_in_(4 * static_cast<std::size_t>(mesh.size()), 0),
+      hidden_(4 * static_cast<std::size_t>(mesh.size()), 0),
       found_(4 * static_cast<std::size_t>(mesh.size())) {
   assert(static_cast<int>(rest.size()) == mesh.nodes());
   leavers_.reserve(rest.size());
+  placed_.reserve(rest.size());
   for (int facet : mesh.visible())
     for (int node : mesh.facet(facet))
       if (facets_of_node_[node]++ == 0) stand(node);
@@ -64,6 +68,8 @@ void CutSurface::enter(int facet) {
 
 void CutSurface::set_positions(std::span<const Vector3d> positions) {
   assert(positions.size() == position_.size());
+  for (const auto& [node, at] : placed_) position_[node] = at;
+  placed_.clear();
   position_.swap(previous_);
   std::copy(positions.begin(), positions.end(), position_.begin());
   leavers_.clear();
@@ -80,6 +86,12 @@ void CutSurface::set_positions(std::span<const Vector3d> positions) {
     enter(facet);
   };
   for (int node : leavers_) for_each_facet_of(node, enter_once);
+}
+
+void CutSurface::place(int node, const Vector3d& position) {
+  const auto found = std::ranges::find(placed_, node, &std::pair<int, Vector3d>::first);
+  if (found == placed_.end()) placed_.emplace_back(node, position_[node]);
+  position_[node] = position;
 }
 
 // Of everything that is or may come to the surface, on its way from the previous to the present positions.
@@ -104,34 +116,55 @@ void CutSurface::follow() {
   for (int facet : mesh_.appeared()) enter(facet);
 }
 
-std::span<const int> CutSurface::find(const Vector3d& a, const Vector3d& b, double radius) const {
-  const Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
-  if ((low_ - high).cwiseMax(low - high_).maxCoeff() > radius) return {};
+void CutSurface::hide(std::span<const int> facets) {
+  for (int facet : facets) hidden_[facet] = 1;
+}
+
+// Into found_, in no order; returns how many.
+int CutSurface::collect(const Vector3d& low, const Vector3d& high, double radius) const {
+  if ((low_ - high).cwiseMax(low - high_).maxCoeff() > radius) return 0;
   const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when boxes were entered; the positions do not, and replay needs that.
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
-    const Triangle x = corners(found_[i]), before = previous_corners(found_[i]);
-    Vector3d box_low = x[0].cwiseMin(before[0]), box_high = x[0].cwiseMax(before[0]);
-    for (int v = 1; v < 3; ++v) {
-      box_low = box_low.cwiseMin(x[v]).cwiseMin(before[v]);
-      box_high = box_high.cwiseMax(x[v]).cwiseMax(before[v]);
-    }
+    if (hidden_[found_[i]]) continue;
+    const auto [box_low, box_high] = swept_box(found_[i]);
     const Vector3d apart = (box_low - high).cwiseMax(low - box_high).cwiseMax(0.0);
     if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
   }
   std::sort(found_.begin(), found_.begin() + kept);
+  return kept;
+}
+
+std::span<const int> CutSurface::find(const Vector3d& a, const Vector3d& b, double radius) const {
+  return std::span(found_).first(collect(a.cwiseMin(b), a.cwiseMax(b), radius));
+}
+
+// All that lies near the box of the segment's way; what is far from the segment itself is left out.
+std::span<const int> CutSurface::find(const Segment& before, const Segment& now, double radius) const {
+  const Vector3d low = now.start.cwiseMin(now.end).cwiseMin(before.start).cwiseMin(before.end);
+  const Vector3d high = now.start.cwiseMax(now.end).cwiseMax(before.start).cwiseMax(before.end);
+  const int count = collect(low, high, radius);
+  const double motion =
+      std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto [box_low, box_high] = swept_box(found_[i]);
+    const Vector3d middle = 0.5 * (box_low + box_high);
+    const double farthest = radius + motion + 0.5 * (box_high - box_low).norm();
+    if ((nearest_point(now, middle) - middle).squaredNorm() <= farthest * farthest) found_[kept++] = found_[i];
+  }
   return std::span(found_).first(kept);
 }
 
-Vector3d CutSurface::normal(int facet) const {
-  return area_vector(corners(facet)).normalized();  // zero stays zero
+Vector3d CutSurface::outer_side(const std::array<int, 3>& n) const {
+  return (position_[n[1]] - position_[n[0]]).cross(position_[n[2]] - position_[n[0]]).normalized();
 }
 
 Vector3d CutSurface::vertex_normal(int node) const {
   Vector3d sum = Vector3d::Zero();
-  for_each_facet_of(node, [&](int facet) { sum += area_vector(corners(facet)); });
-  return sum.normalized();
+  for_each_facet_of(node, [&](int facet) { sum += triangle_normal(facet); });
+  return sum.normalized();  // zero stays zero
 }
 
 }  // namespace palpate

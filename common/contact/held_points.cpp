@@ -6,28 +6,11 @@
 #include "common/kernels/kernels.hpp"
 
 namespace palpate {
-namespace {
 
-double mean_diagonal(const Compliance<double>& c) {
-  double sum = 0;
-  long count = 0;
-  for (int node = 0; node < c.column_nodes(); ++node)
-    for (int axis = 0; axis < 3; ++axis) {
-      const double d = c.column(node, axis)[3 * node + axis];
-      sum += d;
-      count += d > 0;
-    }
-  return count ? sum / count : 1.0;
-}
-
-}  // namespace
-
-HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
-    : compliance_(compliance),
-      capacity_(capacity),
-      stride_(kernels::leading_dimension(3 * capacity)),
-      typical_(mean_diagonal(compliance)) {
+HeldPoints::HeldPoints(const Response& response, int capacity)
+    : response_(response), capacity_(capacity), stride_(kernels::leading_dimension(3 * capacity)) {
   anchors_.reserve(capacity);
+  softness_.reserve(capacity);
   full_.reserve(capacity);
   raised_.reserve(capacity);
   normals_.reserve(capacity);
@@ -41,7 +24,7 @@ HeldPoints::HeldPoints(const Compliance<double>& compliance, int capacity)
 }
 
 double HeldPoints::floor_of(double own) const {
-  return kPivotShare * std::max(own, typical_);
+  return kPivotShare * std::max(own, response_.typical());
 }
 
 Eigen::Matrix3d HeldPoints::block(int i, int j) const {
@@ -52,30 +35,27 @@ Eigen::Matrix3d HeldPoints::block(int i, int j) const {
 }
 
 void HeldPoints::add(const Anchor& anchor, double softness) {
-  const int p = size();
   anchors_.push_back(anchor);
-  const int touchable = compliance_.column_nodes();
+  softness_.push_back(softness);
+  fill(size() - 1);
+}
+
+// The blocks of a point with those before it and with itself.
+void HeldPoints::fill(int p) {
   for (int q = 0; q <= p; ++q) {
-    Eigen::Matrix3d b = Eigen::Matrix3d::Zero();  // displacement of q per force at p
-    for (int v = 0; v < 3; ++v) {
-      if (anchor.weights[v] == 0 || anchor.nodes[v] >= touchable) continue;
-      for (int w = 0; w < 3; ++w) {
-        const Anchor& other = anchors_[q];
-        if (other.weights[w] == 0 || other.nodes[w] >= compliance_.row_nodes()) continue;
-        const double weight = anchor.weights[v] * other.weights[w];
-        for (int c = 0; c < 3; ++c) {
-          const double* from = compliance_.column(anchor.nodes[v], c) + 3 * other.nodes[w];
-          for (int r = 0; r < 3; ++r) b(r, c) += weight * from[r];
-        }
-      }
-    }
+    const Eigen::Matrix3d b = response_.block(anchors_[q], anchors_[p]);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) {
         column(3 * p + c)[3 * q + r] = b(r, c);
         column(3 * q + r)[3 * p + c] = b(r, c);
       }
   }
-  for (int c = 0; c < 3; ++c) column(3 * p + c)[3 * p + c] += softness;
+  for (int c = 0; c < 3; ++c) column(3 * p + c)[3 * p + c] += softness_[p];
+}
+
+void HeldPoints::follow_response() {
+  for (int p = 0; p < size(); ++p) fill(p);
+  forget_factor();
 }
 
 void HeldPoints::remove(int point) {
@@ -97,10 +77,12 @@ void HeldPoints::remove(int point) {
     std::memmove(to + first, from + first + 3, (n - first - 3) * sizeof(double));
   }
   anchors_.erase(anchors_.begin() + point);
+  softness_.erase(softness_.begin() + point);
 }
 
 void HeldPoints::clear() {
   anchors_.clear();
+  softness_.clear();
   forget_factor();
 }
 

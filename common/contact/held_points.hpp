@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/archive/compliance.hpp"
+#include "common/contact/response.hpp"
 #include "common/geometry/anchor.hpp"
 #include "common/kernels/kernels.hpp"
 
@@ -19,9 +19,9 @@ enum class Hold : unsigned char {
 
 /// The compliance among a few surface points, and the Cholesky factor of what is held of it.
 ///
-/// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J the barycentric rows and c each point's
-/// own softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points come
-/// first in the factor and stay there while they are held, so that a new contact costs one append and a lost one a
+/// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J C J^T the body's response and c each
+/// point's own softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points
+/// come first in the factor and stay there while they are held, so that a new contact costs one append and a lost one a
 /// rank-three update; rows held along a normal are appended anew each time since normals turn. Nothing is allocated
 /// after construction.
 class HeldPoints {
@@ -31,7 +31,8 @@ class HeldPoints {
   /// between contradictory ones stays bounded by 50 times a single point's.
   static constexpr double kPivotShare = 0.02;
 
-  HeldPoints(const Compliance<double>& compliance, int capacity);
+  /// `response` outlives this object.
+  HeldPoints(const Response& response, int capacity);
 
   int size() const { return static_cast<int>(anchors_.size()); }
   int capacity() const { return capacity_; }
@@ -41,6 +42,8 @@ class HeldPoints {
   void add(const Anchor& anchor, double softness = 0);
   void remove(int point);  ///< the points after it move down by one
   void clear();
+  /// The body gives way otherwise than it did: after a cut, or for another step.
+  void follow_response();
   /// Forgets the factor, so that the next solve() depends on nothing but the points and the arguments.
   void forget_factor();
 
@@ -62,16 +65,17 @@ class HeldPoints {
  private:
   double* column(int dof) { return a_.data() + stride_ * dof; }
   const double* column(int dof) const { return a_.data() + stride_ * dof; }
+  void fill(int point);
   void keep_full(std::span<const Hold> hold);
   int append_full(int point);
   int append_normal(int point, std::span<const Eigen::Vector3d> normal);
 
-  const Compliance<double>& compliance_;
+  const Response& response_;
   int capacity_;
   std::ptrdiff_t stride_;
-  double typical_;  ///< [m/N] mean diagonal compliance of a touchable node
   std::vector<Anchor> anchors_;
-  std::vector<double> a_;  ///< A, column-major, both triangles
+  std::vector<double> softness_;  ///< [m/N] per point
+  std::vector<double> a_;         ///< A, column-major, both triangles
   kernels::Buffer factor_;
   std::vector<int> full_;     ///< fully held points in the order of the factor
   std::vector<int> raised_;   ///< pivots raised when full_[i] was appended

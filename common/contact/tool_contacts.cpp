@@ -14,6 +14,18 @@ constexpr double kMinFacing =
 constexpr double kMarginShare =
     0.1;  // of a part's radius or a mean edge: what is this near is watched before it is touched
 
+// [m] at rest, from corner v to the next.
+double edge_of(const ContactSurface& surface, int triangle, int v) {
+  const auto& t = surface.triangle(triangle);
+  return (surface.rest()[t[v]] - surface.rest()[t[(v + 1) % 3]]).norm();
+}
+
+MovingTool standing(MovingTool tool) {
+  tool.before = tool.now;
+  tool.parts_before = tool.parts;
+  return tool;
+}
+
 }  // namespace
 
 std::size_t parts_of(std::span<const Tool> tools) {
@@ -29,23 +41,21 @@ double mean_edge(const SurfaceMap& map) {
   return sum / (3.0 * map.triangles.size());
 }
 
-ToolContacts::ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts,
-                           Options options)
-    : law_(law),
-      surface_(map, bucket_size),
-      options_(std::move(options)),
-      touchable_(map.touchable),
-      nodes_(map.size()),
-      body_edge_(palpate::mean_edge(map)),
-      vertex_stamp_(map.size(), 0) {
-  for (const auto& t : map.triangles) {
+ToolContacts::ToolContacts(const ContactSurface& surface, ContactLaw& law, std::size_t parts, Options options)
+    : law_(law), surface_(surface), options_(std::move(options)), vertex_stamp_(surface.nodes(), 0) {
+  double sum = 0;
+  for (int t = 0; t < surface.triangle_count(); ++t) {
     double edges = 0;
-    for (int v = 0; v < 3; ++v) edges += (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm();
+    for (int v = 0; v < 3; ++v) {
+      edges += edge_of(surface, t, v);
+      sum += edge_of(surface, t, v);
+    }
     mean_edge_.push_back(edges / 3);
   }
-  near_.reserve(parts * map.triangles.size());
+  body_edge_ = sum / (3.0 * surface.triangle_count());
+  near_.reserve(parts * surface.triangle_count());
   near_end_.reserve(parts);
-  candidates_.reserve(map.triangles.size());
+  candidates_.reserve(surface.triangle_count());
   crossings_.resize(kMaxSwept + 1);
 }
 
@@ -113,29 +123,44 @@ void ToolContacts::aim(std::span<const MovingTool> tools) {
   for (TouchContact& c : law_.contacts()) aim(c, tools[c.tool]);
 }
 
+void ToolContacts::slide(TouchContact& c, const MovingTool& moving) const {
+  if (c.grasped || c.touch == Touch::open) return;
+  Eigen::Vector3d touched = c.target;
+  if (c.touch == Touch::sliding) {
+    const Eigen::Vector3d held = c.held_at(), centre = nearest_point(moving.axis(c.part), held);
+    touched = centre + radius(moving, c.part) * (held - centre).normalized();
+  }
+  c.offset = moving.to_part(c.part, touched);
+}
+
+// Within its own triangle: the search for others comes with the next step of the surface.
+void ToolContacts::slide(std::span<const MovingTool> tools) {
+  for (TouchContact& c : law_.contacts()) slide(c, tools[c.tool]);
+  int at = 0;
+  for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
+    const TouchContact& c = law_.contacts()[at];
+    if (!c.face || c.grasped || c.touch == Touch::sticking)
+      ++at;
+    else
+      follow(at, standing(tools[c.tool]), {});
+  }
+}
+
 void ToolContacts::settle(std::span<const MovingTool> tools) {
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
     TouchContact& c = law_.contacts()[i];
     if (c.grasped) continue;
     const MovingTool& moving = tools[c.tool];
-    const Segment axis = moving.axis(c.part);
-    const double size = radius(moving, c.part);
     if (c.touch == Touch::open) {
       const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
-      const bool gone = (anchor - nearest_point(axis, anchor)).norm() > reach(moving, c.part) + margin(size);
+      const bool gone = (anchor - nearest_point(moving.axis(c.part), anchor)).norm() >
+                        reach(moving, c.part) + margin(radius(moving, c.part));
       if (c.face || gone) law_.remove(i);
-      continue;
-    }
-    if (moving.parts[c.part].length > 0 && inside_out(c)) {
+    } else if (moving.parts[c.part].length > 0 && inside_out(c)) {
       law_.remove(i);
-      continue;
+    } else {
+      slide(c, moving);
     }
-    Eigen::Vector3d touched = c.target;
-    if (c.touch == Touch::sliding) {
-      const Eigen::Vector3d held = c.held_at(), centre = nearest_point(axis, held);
-      touched = centre + size * (held - centre).normalized();
-    }
-    c.offset = moving.to_part(c.part, touched);
   }
 }
 

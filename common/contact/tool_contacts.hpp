@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/body_part.hpp"
 #include "common/contact/contact_law.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/geometry/segment.hpp"
@@ -17,7 +18,7 @@ namespace palpate {
 /// them. Where triangles are smaller than a part's radius their vertices carry the contact; where they are larger a
 /// sphere touches at one point of a triangle, and a segment at one point of each triangle along it (BHS01 sec. VII).
 /// Nothing is allocated after construction.
-class ToolContacts : public Stateful<ToolContacts> {
+class ToolContacts {
  public:
   /// What a body's tools have in common with one another, and what is each tool's own.
   struct Options {
@@ -25,24 +26,21 @@ class ToolContacts : public Stateful<ToolContacts> {
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
   };
 
-  /// `parts`: of all tools. The law outlives this object.
-  ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts, Options options);
-  ToolContacts(const SurfaceMap& map, double bucket_size, ContactLaw& law, std::size_t parts)
-      : ToolContacts(map, bucket_size, law, parts, Options{}) {}
+  /// `parts`: of all tools. Surface and law outlive this object.
+  ToolContacts(const ContactSurface& surface, ContactLaw& law, std::size_t parts, Options options);
+  ToolContacts(const ContactSurface& surface, ContactLaw& law, std::size_t parts)
+      : ToolContacts(surface, law, parts, Options{}) {}
 
-  const TouchSurface& surface() const { return surface_; }
-
-  /// Marks the nodes that are near the tools or carry a contact; the owner then works out where they are.
-  std::span<const int> mark(std::span<const MovingTool> tools);
-  /// Marks all other nodes too, after mark(): of a body that moves as a whole.
-  std::span<const int> mark_all();
-  /// Moves the marked nodes: three entries [m] per node.
-  void move_marked(std::span<const double> displacement) { surface_.move_marked(displacement); }
+  /// Finds the triangles near the tools: what collide() looks at. Valid until the next call.
+  std::span<const int> look(std::span<const MovingTool> tools);
   /// Finds what the tools touch and adds it to the law.
   void collide(std::span<const MovingTool> tools);
   /// Sets the contacts' targets before the law is solved.
   void aim(std::span<const MovingTool> tools);
-  /// After the solve: sliding contacts move on along their parts, those that have opened and gone are dropped.
+  /// After a solve that another one follows for the same contacts, the surface being where it is then: what slides
+  /// moves on, and so does what has opened.
+  void slide(std::span<const MovingTool> tools);
+  /// After the last solve: sliding contacts move on along their parts, those that have opened and gone are dropped.
   void settle(std::span<const MovingTool> tools);
   /// Takes up a contact that was kept elsewhere; its offset must be in its part's frame.
   void adopt(TouchContact contact);
@@ -55,13 +53,21 @@ class ToolContacts : public Stateful<ToolContacts> {
     const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(p, length, width); };
     return take_nodes(tool, pose, between, allowed) || grasp_nearest(tool, pose, length);
   }
+  /// The same for the jaws of a forceps.
+  template <class Allowed>
+  bool grasp(const OpenJaws& jaws, Allowed&& allowed) {
+    const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(jaws.shape, jaws.opening, p); };
+    return take_nodes(jaws.tool, jaws.pose, between, allowed) ||
+           grasp_nearest(jaws.tool, jaws.pose, jaws.shape.jaw_length);
+  }
   /// The nodes between jaws of another shape: those for which `between` (point in the tip frame [m] to bool) and
   /// `allowed` are true; true if there are any.
   template <class Between, class Allowed>
   bool take_nodes(int tool, const Eigen::Isometry3d& pose, Between&& between, Allowed&& allowed) {
     const std::size_t first = law_.contacts().size();
-    for (int node = 0; node < touchable_; ++node)
-      if (allowed(node) && between(Eigen::Vector3d(pose.inverse() * surface_.positions()[node])))
+    for (int node = 0; node < surface_.nodes(); ++node)
+      if (surface_.touchable(node) && allowed(node) &&
+          between(Eigen::Vector3d(pose.inverse() * surface_.positions()[node])))
         take_in_jaws(tool, pose, {{node, node, node}, Eigen::Vector3d::UnitX()}, false);
     return law_.contacts().size() > first;
   }
@@ -72,9 +78,8 @@ class ToolContacts : public Stateful<ToolContacts> {
   bool grasp_nearest(int tool, const Eigen::Isometry3d& pose, double length);
   void let_go(int tool);
 
-  /// Surface and contacts as bytes, for replay.
-  /// The surface, and the contacts of the law. Restoring throws std::runtime_error on a state that does not fit this
-  /// surface and these tools.
+  /// The contacts of the law, for replay. Restoring throws std::runtime_error on a state that does not fit this surface
+  /// and these tools.
   void state(State& s, std::span<const MovingTool> tools = {});
 
  private:
@@ -108,6 +113,7 @@ class ToolContacts : public Stateful<ToolContacts> {
   bool place_taken(const MovingTool& moving, int tool, int part, double place, double within) const;
   bool triangle_taken(int tool, const std::array<int, 3>& nodes, int besides) const;
   void follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near);
+  void follow(int contact, const MovingTool& moving, std::span<const int> near);
   Eigen::Vector3d inward(const TouchContact& contact, bool segment) const;
   Eigen::Vector3d outward(int node) const;
   Eigen::Vector3d outward(const std::array<int, 3>& triangle) const;
@@ -116,6 +122,7 @@ class ToolContacts : public Stateful<ToolContacts> {
   Eigen::Vector3d came_from(int node, const Segment& before, const Eigen::Vector3d& into) const;
   bool pushed_through(int node, const TouchContact& by, double size) const;
   void aim(TouchContact& contact, const MovingTool& moving) const;
+  void slide(TouchContact& contact, const MovingTool& moving) const;
   double margin(double radius) const;
   double radius(const MovingTool& moving, int part) const { return moving.radius(part) + options_.offset; }
   double reach(const MovingTool& moving, int part) const;
@@ -125,9 +132,8 @@ class ToolContacts : public Stateful<ToolContacts> {
   double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
 
   ContactLaw& law_;
-  TouchSurface surface_;
+  const ContactSurface& surface_;
   Options options_;
-  int touchable_, nodes_;
   double body_edge_;               ///< [m] mean edge of the surface at rest
   std::vector<double> mean_edge_;  ///< [m] per triangle, at rest
   std::vector<int> vertex_stamp_;
@@ -137,6 +143,11 @@ class ToolContacts : public Stateful<ToolContacts> {
   std::vector<Candidate> candidates_;  ///< triangles that a segment may touch
   std::vector<Crossing> crossings_;    ///< of points along a segment
 };
+
+/// Marks the nodes of a surface that are near the tools or carry a contact, for the owner to work out where they are,
+/// and returns them.
+std::span<const int> mark(TouchSurface& surface, ToolContacts& contacts, const ContactLaw& law,
+                          std::span<const MovingTool> tools);
 
 /// Parts of all tools of a scene.
 std::size_t parts_of(std::span<const Tool> tools);

@@ -13,26 +13,26 @@ constexpr double kSideWithin =
 
 }  // namespace
 
-std::span<const int> ToolContacts::mark(std::span<const MovingTool> tools) {
-  surface_.begin_update();
-  for (const TouchContact& c : law_.contacts())
-    for (int v = 0; v < 3; ++v)
-      if (c.anchor.weights[v] != 0) surface_.mark_node(c.anchor.nodes[v]);
+std::span<const int> ToolContacts::look(std::span<const MovingTool> tools) {
   near_.clear();
   near_end_.clear();
   for (const MovingTool& tool : tools)
     for (int p = 0; p < tool.size(); ++p) {
       const std::span<const int> found = surface_.find(tool.axis_before(p), tool.axis(p), reach(tool, p) + body_edge_);
-      surface_.mark_triangles(found);
       near_.insert(near_.end(), found.begin(), found.end());
       near_end_.push_back(near_.size());
     }
-  return surface_.marked();
+  return near_;
 }
 
-std::span<const int> ToolContacts::mark_all() {
-  for (int node = 0; node < touchable_; ++node) surface_.mark_node(node);
-  return surface_.marked();
+std::span<const int> mark(TouchSurface& surface, ToolContacts& contacts, const ContactLaw& law,
+                          std::span<const MovingTool> tools) {
+  surface.begin_update();
+  for (const TouchContact& c : law.contacts())
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0) surface.mark_node(c.anchor.nodes[v]);
+  surface.mark_triangles(contacts.look(tools));
+  return surface.marked();
 }
 
 void ToolContacts::collide(std::span<const MovingTool> tools) {
@@ -102,7 +102,7 @@ void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, st
     if (c.tool == tool && (c.part == part || c.grasped) && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
   for (int t : near)
     for (int node : surface_.triangle(t)) {
-      const bool seen = node >= touchable_ || vertex_stamp_[node] == vertex_clock_;
+      const bool seen = !surface_.touchable(node) || vertex_stamp_[node] == vertex_clock_;
       if (seen || mean_edge_[t] > size || law_.full()) continue;
       vertex_stamp_[node] = vertex_clock_;
       const Eigen::Vector3d& x = surface_.positions()[node];
@@ -111,7 +111,7 @@ void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, st
       if (away.squaredNorm() > within * within) continue;
       const Eigen::Vector3d out = length > 0 ? outward(node) : surface_.vertex_normal(node);
       Eigen::Vector3d normal = length > 0 ? came_from(node, moving.axis_before(part), -out) : Eigen::Vector3d(-out);
-      const bool in_front = away.dot(out) > 0 && (length == 0 || away.dot(surface_.rest_normal(node)) > 0);
+      const bool in_front = away.dot(out) > 0 && (length == 0 || away.dot(surface_.outer_side(node)) > 0);
       if (!in_front) {  // behind the surface: pushed through it from the side of the part's other contacts
         const TouchContact* held = held_near(moving, tool, part, share * length, kSideWithin * size);
         if (!held || (length > 0 ? !pushed_through(node, *held, size) : out.dot(held->normal) >= 0)) continue;
@@ -141,7 +141,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
   if (face >= 0 && vertices_carry) law_.remove(face);
   if (vertices_carry) return;
   if (face >= 0) {
-    if (law_.contacts()[face].touch != Touch::sticking) follow(face, centre, near);
+    if (law_.contacts()[face].touch != Touch::sticking) follow(face, moving, near);
     return;
   }
   if (law_.full()) return;
@@ -172,6 +172,21 @@ bool ToolContacts::triangle_taken(int tool, const std::array<int, 3>& nodes, int
     if (i != besides && c.tool == tool && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
   }
   return false;
+}
+
+// The anchor comes along with the tool. How far a segment has slipped over it in this step is kept in the offset.
+void ToolContacts::follow(int contact, const MovingTool& moving, std::span<const int> near) {
+  const TouchContact& c = law_.contacts()[contact];
+  const Segment axis = moving.axis(c.part);
+  const double length = moving.parts[c.part].length;
+  if (length == 0) return follow(contact, axis.start, near);
+  const double size = radius(moving, c.part);
+  const Eigen::Vector3d slipped = moving.to_world(c.part, c.offset) - moving.to_world_before(c.part, c.offset);
+  follow(contact, axis.at(std::clamp(c.offset.z(), 0.0, length) / length), near);
+  TouchContact& followed = law_.contacts().back();
+  const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + slipped;
+  const Eigen::Vector3d centre = nearest_point(axis, on_tool);
+  followed.offset = moving.to_part(followed.part, centre + size * (on_tool - centre).normalized());
 }
 
 // A sliding contact keeps to the nearest point of its triangle and goes over to a neighbour only across the border

@@ -43,16 +43,16 @@ std::array<int, 2> points_in(const std::array<Eigen::Vector3d, 2>& box, const Se
 // Where a thin wall is thrust in deeply, linear displacements fold it over itself and its normals lose their meaning:
 // which side is the outer one is known from the wall at rest.
 Eigen::Vector3d ToolContacts::outward(int node) const {
-  return unless_folded(surface_.vertex_normal(node), surface_.rest_normal(node));
+  return unless_folded(surface_.vertex_normal(node), surface_.outer_side(node));
 }
 
 Eigen::Vector3d ToolContacts::outward(const std::array<int, 3>& n) const {
   const auto& x = surface_.positions();
-  return unless_folded((x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]).normalized(), surface_.rest_triangle_normal(n));
+  return unless_folded((x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]).normalized(), surface_.outer_side(n));
 }
 
 Eigen::Vector3d ToolContacts::rest_outward(const TouchContact& c) const {
-  return c.face ? surface_.rest_triangle_normal(c.anchor.nodes) : surface_.rest_normal(c.anchor.nodes[0]);
+  return c.face ? surface_.outer_side(c.anchor.nodes) : surface_.outer_side(c.anchor.nodes[0]);
 }
 
 // What has slid round a part until it would be pushed outward is above it, not under it: a fold, which it does not
@@ -74,7 +74,7 @@ Eigen::Vector3d ToolContacts::came_from(int node, const Segment& before, const E
 bool ToolContacts::pushed_through(int node, const TouchContact& by, double size) const {
   const Eigen::Vector3d anchor = anchor_position(by.anchor, surface_.rest());
   const double within = 2 * (size + body_edge_);
-  return by.normal.dot(outward(node)) < 0 && rest_outward(by).dot(surface_.rest_normal(node)) > kSameWall &&
+  return by.normal.dot(outward(node)) < 0 && rest_outward(by).dot(surface_.outer_side(node)) > kSameWall &&
          (surface_.rest()[node] - anchor).squaredNorm() < within * within;
 }
 
@@ -91,8 +91,7 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   const double motion =
       std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
   for (int t : found) {
-    if (surface_.triangle_normal(t).dot(surface_.rest_triangle_normal(surface_.triangle(t))) <= 0)
-      continue;  // folded over
+    if (surface_.triangle_normal(t).dot(surface_.outer_side(surface_.triangle(t))) <= 0) continue;  // folded over
     const auto [from, to] = points_in(surface_.swept_box(t), now, motion, last);
     for (int i = from; i <= to; ++i) {
       const double share = static_cast<double>(i) / last;
@@ -144,7 +143,6 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
 // Points on faces that slide follow the place of the axis that they belong to; where vertices have come to carry, they
 // go.
 void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std::span<const int> near) {
-  const Segment axis = moving.axis(part);
   const double size = radius(moving, part), length = moving.parts[part].length;
   const auto vertex_carries = [&](double place) {
     return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
@@ -161,13 +159,7 @@ void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std:
     if (own && vertex_carries(place)) {
       law_.remove(at);
     } else if (own && c.touch != Touch::sticking) {
-      // The anchor comes along with the tool: how far the tool has slipped over it in this step is kept in the offset.
-      const Eigen::Vector3d slipped = moving.to_world(part, c.offset) - moving.to_world_before(part, c.offset);
-      follow(at, axis.at(place / length), near);
-      TouchContact& followed = law_.contacts().back();
-      const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + slipped;
-      const Eigen::Vector3d centre = nearest_point(axis, on_tool);
-      followed.offset = moving.to_part(part, centre + size * (on_tool - centre).normalized());
+      follow(at, moving, near);
     } else {
       ++at;
     }
@@ -198,7 +190,7 @@ void ToolContacts::find_faces(const MovingTool& moving, int tool, int part, std:
     if (p.squared_distance >= within * within) continue;
     const auto& nodes = surface_.triangle(t);
     const Eigen::Vector3d away = axis.at(p.share) - at;
-    if (away.dot(outward(nodes)) <= 0 || away.dot(surface_.rest_triangle_normal(nodes)) <= 0) continue;
+    if (away.dot(outward(nodes)) <= 0 || away.dot(surface_.outer_side(nodes)) <= 0) continue;
     candidates_.push_back({t, p.share, p.squared_distance});
   }
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {

@@ -66,7 +66,6 @@ bool can_be(const StoredContact& s, std::span<const MovingTool> tools, int nodes
 }  // namespace
 
 void ToolContacts::state(State& s, std::span<const MovingTool> tools) {
-  surface_.state(s);
   int count = static_cast<int>(law_.contacts().size());
   s.value(count);
   s.require(count >= 0 && count <= law_.capacity(), "the state names an impossible number of contacts");
@@ -75,7 +74,7 @@ void ToolContacts::state(State& s, std::span<const MovingTool> tools) {
     StoredContact c = s.restoring() ? StoredContact{} : stored(law_.contacts()[i], law_.point_forces(i));
     s.value(c);
     if (!s.restoring()) continue;
-    s.require(can_be(c, tools, nodes_), "the state holds a contact that this scene cannot have");
+    s.require(can_be(c, tools, surface_.nodes()), "the state holds a contact that this scene cannot have");
     TouchContact contact = contact_of(c);
     contact.softness = softness(contact.tool);
     law_.add(contact, std::span(c.point_force).first(3 * c.points));

@@ -7,8 +7,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxObstacles = 512;
-
 double bucket_size(const SurfaceMap& map, const ContactSpec& contact) {
   return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
 }
@@ -24,11 +22,11 @@ TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const
     : map_(map),
       compliance_(std::move(compliance)),
       unloaded_(map_.position),
-      law_(compliance_, unloaded_, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
-      contacts_(map_, bucket_size(map_, settings.contact), law_, parts_of(settings.tools), std::move(options)),
-      own_(settings.tools.size()) {
-  obstacles_.reserve(kMaxObstacles);
-}
+      response_(compliance_),
+      surface_(map_, bucket_size(map_, settings.contact)),
+      law_(response_, unloaded_, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
+      contacts_(surface_, law_, parts_of(settings.tools), std::move(options)),
+      own_(settings.tools.size()) {}
 
 LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
   contacts_.aim(tools);
@@ -52,34 +50,15 @@ bool TouchBody::adopt(const TouchContact& contact) {
   return true;
 }
 
-// Where the plane in which the jaws turn cuts the surface, edge by edge: nodes alone would miss what passes between
-// them.
 BetweenJaws TouchBody::between(const OpenJaws& jaws) {
-  obstacles_.clear();
-  double distance = 0;
-  const double radius = wall_radius();
-  const Eigen::Isometry3d to_tip = jaws.pose.inverse();
+  obstacles_.begin(jaws, wall_radius());
   const Eigen::Vector3d middle = jaws.pose * Eigen::Vector3d(0, 0, jaws.shape.jaw_length / 2);
-  for (int t : surface().find(middle, middle, jaws.shape.jaw_length)) {
-    const Triangle corners = surface().corners(t);
-    const std::array<Eigen::Vector3d, 3> p{to_tip * corners[0], to_tip * corners[1], to_tip * corners[2]};
-    for (int v = 0; v < 3; ++v) {
-      const Eigen::Vector3d &a = p[v], &b = p[(v + 1) % 3];
-      if ((a.x() < 0) == (b.x() < 0) || obstacles_.size() == kMaxObstacles) continue;
-      const Eigen::Vector3d cut = a + a.x() / (a.x() - b.x()) * (b - a);
-      if (cut.z() <= 0 || cut.z() > jaws.shape.jaw_length) continue;
-      obstacles_.push_back({cut, radius});
-      distance += cut.z();
-    }
-  }
-  if (obstacles_.empty()) return {};
-  return {opening_at_contact(jaws.shape, obstacles_, jaws.opening), distance / static_cast<double>(obstacles_.size())};
+  for (int t : surface().find(middle, middle, jaws.shape.jaw_length)) obstacles_.add(surface().corners(t));
+  return obstacles_.found();
 }
 
 void TouchBody::grasp(const OpenJaws& jaws) {
-  const auto between = [&](const Eigen::Vector3d& p) { return between_jaws(jaws.shape, jaws.opening, p); };
-  if (!contacts_.take_nodes(jaws.tool, jaws.pose, between, [](int) { return true; }))
-    contacts_.grasp_nearest(jaws.tool, jaws.pose, jaws.shape.jaw_length);
+  contacts_.grasp(jaws, [](int) { return true; });
 }
 
 double TouchBody::grasp_load(int tool) const {

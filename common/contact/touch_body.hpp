@@ -5,6 +5,7 @@
 
 #include "common/archive/compliance.hpp"
 #include "common/contact/body_part.hpp"
+#include "common/contact/jaw_obstacles.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/tool/forceps.hpp"
@@ -26,7 +27,7 @@ class TouchBody : public BodyPart {
   /// force: sums what acts on each tool (one entry per tool).
   virtual void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const;
 
-  const TouchSurface& surface() const { return contacts_.surface(); }
+  const TouchSurface& surface() const { return surface_; }
   const ContactLaw& law() const { return law_; }
   const ContactLaw* held() const override { return &law_; }
   bool adopt(const TouchContact& contact) override;
@@ -42,7 +43,10 @@ class TouchBody : public BodyPart {
   void forget_factor() override { law_.forget_factor(); }
   double penetration(const Segment& axis, double radius) const override;
   /// Restoring throws std::runtime_error on a state that does not fit this body and these tools.
-  void state(State& s, std::span<const MovingTool> tools) override { contacts_.state(s, tools); }
+  void state(State& s, std::span<const MovingTool> tools) override {
+    surface_.state(s);
+    contacts_.state(s, tools);
+  }
 
  protected:
   TouchBody(const SurfaceMap& map, Compliance<double> compliance, const StepSettings& settings,
@@ -51,6 +55,17 @@ class TouchBody : public BodyPart {
   const SurfaceMap& map() const { return map_; }
   const Compliance<double>& compliance() const { return compliance_; }
   ToolContacts& contacts() { return contacts_; }
+  /// Marks the nodes that are near the tools or carry a contact; the derived class then works out where they are.
+  std::span<const int> mark(std::span<const MovingTool> tools) {
+    return palpate::mark(surface_, contacts_, law_, tools);
+  }
+  /// Marks all other nodes too, after mark(): of a body that moves as a whole.
+  std::span<const int> mark_all() {
+    surface_.mark_all();
+    return surface_.marked();
+  }
+  /// Moves the marked nodes: three entries [m] per node.
+  void move_marked(std::span<const double> displacement) { surface_.move_marked(displacement); }
   /// Where the contact law takes a node to be without contact forces: displacement [m] from rest.
   void move_rest(int node, const Eigen::Vector3d& displacement) {
     unloaded_[node] = map_.position[node] + displacement;
@@ -61,10 +76,12 @@ class TouchBody : public BodyPart {
   const SurfaceMap map_;
   const Compliance<double> compliance_;
   std::vector<Eigen::Vector3d> unloaded_;  ///< [m] per node
+  const CompliantResponse response_;
+  TouchSurface surface_;
   ContactLaw law_;
   ToolContacts contacts_;
-  std::vector<ToolLoad> own_;            ///< what this body does to each tool
-  std::vector<GripObstacle> obstacles_;  ///< between jaws
+  std::vector<ToolLoad> own_;  ///< what this body does to each tool
+  JawObstacles obstacles_;
 };
 
 }  // namespace palpate

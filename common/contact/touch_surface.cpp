@@ -9,10 +9,7 @@
 namespace palpate {
 
 TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
-    : rest_(map.position),
-      position_(map.position),
-      previous_(map.position),
-      triangles_(map.triangles),
+    : ContactSurface(map.position, map.triangles),
       first_of_node_(map.size() + 1, 0),
       movable_(map.touchable),
       buckets_(map.position, map.triangles, bucket_size),
@@ -34,6 +31,7 @@ TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
   }
   for (const Eigen::Vector3d& x : position_) low_ = low_.cwiseMin(x), high_ = high_.cwiseMax(x);
   for (int n = 0; n < map.size(); ++n) rest_normal_.push_back(vertex_normal(n));
+  for (int n = movable_; n < map.size(); ++n) touchable_[n] = 0;
   found_.resize(triangles_.size());
   found_along_.reserve(triangles_.size());
   found_stamp_.assign(triangles_.size(), 0);
@@ -43,39 +41,14 @@ TouchSurface::TouchSurface(const SurfaceMap& map, double bucket_size)
   triangle_stamp_.assign(triangles_.size(), 0);
 }
 
-Triangle TouchSurface::corners(int t) const {
-  const auto& n = triangles_[t];
-  return {position_[n[0]], position_[n[1]], position_[n[2]]};
-}
-
-Triangle TouchSurface::previous_corners(int t) const {
-  const auto& n = triangles_[t];
-  return {previous_[n[0]], previous_[n[1]], previous_[n[2]]};
-}
-
-Eigen::Vector3d TouchSurface::triangle_normal(int t) const {
-  const Triangle c = corners(t);
-  return (c[1] - c[0]).cross(c[2] - c[0]);
-}
-
 Eigen::Vector3d TouchSurface::vertex_normal(int node) const {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   for (int i = first_of_node_[node]; i < first_of_node_[node + 1]; ++i) n += triangle_normal(of_node_[i]);
   return n.normalized();
 }
 
-Eigen::Vector3d TouchSurface::rest_triangle_normal(const std::array<int, 3>& nodes) const {
+Eigen::Vector3d TouchSurface::outer_side(const std::array<int, 3>& nodes) const {
   return (rest_[nodes[1]] - rest_[nodes[0]]).cross(rest_[nodes[2]] - rest_[nodes[0]]).normalized();
-}
-
-std::array<Eigen::Vector3d, 2> TouchSurface::swept_box(int t) const {
-  const auto& n = triangles_[t];
-  Eigen::Vector3d low = position_[n[0]].cwiseMin(previous_[n[0]]), high = position_[n[0]].cwiseMax(previous_[n[0]]);
-  for (int v = 1; v < 3; ++v) {
-    low = low.cwiseMin(position_[n[v]]).cwiseMin(previous_[n[v]]);
-    high = high.cwiseMax(position_[n[v]]).cwiseMax(previous_[n[v]]);
-  }
-  return {low, high};
 }
 
 // Triangles whose swept boxes come within `radius` of a box, into found_, in no order; returns how many.
@@ -142,6 +115,10 @@ void TouchSurface::mark_node(int node) {
 void TouchSurface::mark_triangles(std::span<const int> triangles) {
   for (int t : triangles)
     for (int node : triangles_[t]) mark_node(node);
+}
+
+void TouchSurface::mark_all() {
+  for (int node = 0; node < movable_; ++node) mark_node(node);
 }
 
 void TouchSurface::enter(int triangle) {

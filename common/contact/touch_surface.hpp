@@ -4,47 +4,34 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/contact/contact_surface.hpp"
 #include "common/describe/state.hpp"
 #include "common/geometry/buckets.hpp"
-#include "common/geometry/triangle.hpp"
-#include "common/tool/tool_part.hpp"
 
 namespace palpate {
 
 /// The deformed surface of one body as the haptic loop knows it. Only the nodes near the tools are brought up to
 /// date in each step, and a few others in turn; the rest keep their last known place. No memory is taken after
 /// construction.
-class TouchSurface {
+class TouchSurface : public ContactSurface {
  public:
   static constexpr int kRefreshedInTurn = 16;  ///< far nodes brought up to date per step
 
   TouchSurface(const SurfaceMap& map, double bucket_size);
 
-  std::span<const Eigen::Vector3d> positions() const { return position_; }  ///< [m] world
-  std::span<const Eigen::Vector3d> previous() const { return previous_; }   ///< [m] one step ago
-  int triangle_count() const { return static_cast<int>(triangles_.size()); }
-  const std::array<int, 3>& triangle(int t) const { return triangles_[t]; }
-  Triangle corners(int t) const;           ///< present
-  Triangle previous_corners(int t) const;  ///< one step ago
-  std::array<Eigen::Vector3d, 2> swept_box(
-      int t) const;                               ///< lowest and highest corner of the box that it sweeps in a step
-  Eigen::Vector3d triangle_normal(int t) const;   ///< outward, not normalised
-  Eigen::Vector3d vertex_normal(int node) const;  ///< outward, unit
-  std::span<const Eigen::Vector3d> rest() const { return rest_; }                    ///< [m] positions at rest
-  const Eigen::Vector3d& rest_normal(int node) const { return rest_normal_[node]; }  ///< vertex_normal() at rest
-  Eigen::Vector3d rest_triangle_normal(const std::array<int, 3>& nodes) const;       ///< outward, unit, at rest
+  Eigen::Vector3d vertex_normal(int node) const override;
+  Eigen::Vector3d outer_side(int node) const override { return rest_normal_[node]; }
+  Eigen::Vector3d outer_side(const std::array<int, 3>& nodes) const override;
 
-  /// Triangles whose boxes, swept from the previous to the present positions, come within `radius` [m] of a point on
-  /// its way from a to b; ascending, a few others nearby among them.
-  std::span<const int> find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const;
-  /// The same for all points of a segment on its way from `before` to `now`. It is looked for in pieces, so that a long
-  /// slanting segment does not bring in all that its box holds. Valid until the next call of either.
-  std::span<const int> find(const Segment& before, const Segment& now, double radius) const;
+  std::span<const int> find(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const override;
+  /// It is looked for in pieces, so that a long slanting segment does not bring in all that its box holds.
+  std::span<const int> find(const Segment& before, const Segment& now, double radius) const override;
 
   /// One update: begin, mark what is near, then move the marked nodes to rest + displacement.
   void begin_update();
   void mark_node(int node);
   void mark_triangles(std::span<const int> triangles);
+  void mark_all();
   std::span<const int> marked() const { return marked_; }
   /// `displacement`: three entries [m] per marked node.
   void move_marked(std::span<const double> displacement);
@@ -60,8 +47,7 @@ class TouchSurface {
   void enter(int triangle);
   int collect(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double radius) const;
 
-  std::vector<Eigen::Vector3d> rest_, position_, previous_, rest_normal_;
-  std::vector<std::array<int, 3>> triangles_;
+  std::vector<Eigen::Vector3d> rest_normal_;
   std::vector<int> first_of_node_, of_node_;  ///< triangles of each node, compressed
   int movable_;                               ///< nodes that can move: the touchable ones
   Buckets buckets_;

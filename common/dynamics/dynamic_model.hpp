@@ -29,6 +29,9 @@ class DynamicModel {
   virtual double frequency_bound() const = 0;
   /// One step of `dt` [s]: every node's u and v go on; loads stay constant within a step.
   virtual void step(double dt) = 0;
+  /// The same by the semi-implicit rule, whatever the model's own: a force f that is known only after it still counts
+  /// as if it had acted within it, by dt f/m on the velocity and dt^2 f/m on the displacement.
+  virtual void step_semi_implicit(double dt) = 0;
   /// Takes tetrahedra out of the model: forces and masses become those of the remaining ones alone, bit for bit as if
   /// built afresh from them.
   virtual void remove(std::span<const int> tetrahedra) = 0;

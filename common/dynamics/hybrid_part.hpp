@@ -136,6 +136,7 @@ class HybridPart final : public Coupling {
   Compliance<float> picture_;
 
   std::vector<Eigen::Vector3d> free_, position_;  // per node: without and with the forces of contacts
+  CompliantResponse response_;
   ContactLaw law_;
   std::vector<NodeForce> dead_, node_forces_;
   std::vector<HeldRow> rows_;

@@ -189,7 +189,13 @@ void Staged<Scalar>::step(double dt) {
   if (integrator_ == Integrator::rk4)
     runge_kutta(static_cast<Scalar>(dt));
   else
-    euler(static_cast<Scalar>(dt));
+    euler(static_cast<Scalar>(dt), integrator_ == Integrator::forward_euler);
+  is_present_ = false;
+}
+
+template <class Scalar>
+void Staged<Scalar>::step_semi_implicit(double dt) {
+  euler(static_cast<Scalar>(dt), false);
   is_present_ = false;
 }
 
@@ -231,14 +237,13 @@ void Staged<Scalar>::runge_kutta(Scalar dt) {
 
 /// The new velocity moves the node (semi-implicit), or the old one does (forward).
 template <class Scalar>
-void Staged<Scalar>::euler(Scalar dt) {
+void Staged<Scalar>::euler(Scalar dt, bool forward) {
   const int entries = static_cast<int>(constant_.size());
   Scalar* __restrict u = this->u();
   Scalar* __restrict v = this->v();
   const Scalar* __restrict force = force_.data();
   const Scalar* __restrict inverse = inverse_mass_.data();
   const Scalar damping = damping_;
-  const bool forward = integrator_ == Integrator::forward_euler;
 
   sum_forces(u);
   for (int i = 0; i < entries; ++i) {

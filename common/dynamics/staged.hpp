@@ -18,6 +18,7 @@ class Staged : public DynamicModel {
   void set_gravity(const Eigen::Vector3d& gravity);
 
   void step(double dt) final;
+  void step_semi_implicit(double dt) final;
   void remove(std::span<const int> tetrahedra) final;
   void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass, double bound) final;
   double frequency_bound() const final;
@@ -71,7 +72,7 @@ class Staged : public DynamicModel {
   void sum_forces(const Scalar* u);
   void add_coupling(const Scalar* u);
   void runge_kutta(Scalar dt);
-  void euler(Scalar dt);
+  void euler(Scalar dt, bool forward);
 
   Integrator integrator_;
   Scalar damping_;

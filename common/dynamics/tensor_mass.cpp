@@ -102,12 +102,13 @@ double TensorMass<Scalar>::frequency_bound() const {
 }
 
 template <class Scalar>
-void TensorMass<Scalar>::step(double dt) {
-  couple_pass(motion_.data());
-  switch (integrator_) {
+void TensorMass<Scalar>::step(double dt, Integrator integrator) {
+  const int vectors = integrator == Integrator::rk4 ? 2 : 1;
+  couple_pass(motion_.data(), vectors);
+  switch (integrator) {
     case Integrator::rk4:
       of_type<Scalar>(kernels_.rk4_first_f, kernels_.rk4_first_d)(blocks_, arrays_, damping_);
-      couple_pass(rates_.data());
+      couple_pass(rates_.data(), vectors);
       return of_type<Scalar>(kernels_.rk4_second_f, kernels_.rk4_second_d)(blocks_, arrays_, damping_, dt);
     case Integrator::semi_implicit:
       return of_type<Scalar>(kernels_.semi_implicit_f, kernels_.semi_implicit_d)(blocks_, arrays_, damping_, dt);
@@ -119,9 +120,9 @@ void TensorMass<Scalar>::step(double dt) {
 /// The forces of the coupling for the vectors that the next pass multiplies: two with RK4, u alone with
 /// Euler.
 template <class Scalar>
-void TensorMass<Scalar>::couple_pass(const Scalar* pair) {
+void TensorMass<Scalar>::couple_pass(const Scalar* pair, int vectors) {
   if (!coupling_) return;
-  for (int first = 0; first < (integrator_ == Integrator::rk4 ? 8 : 4); first += 4) {
+  for (int first = 0; first < 4 * vectors; first += 4) {
     for (std::size_t c = 0; c < coupled_.size(); ++c)
       for (int axis = 0; axis < 3; ++axis)
         coupled_vector_[3 * c + axis] = pair[kNodeWidth * row_[coupled_[c]] + first + axis];

@@ -22,7 +22,8 @@ class TensorMass final : public DynamicModel {
   void set_gravity(const Eigen::Vector3d& gravity);
 
   double frequency_bound() const override;
-  void step(double dt) override;
+  void step(double dt) override { step(dt, integrator_); }
+  void step_semi_implicit(double dt) override { step(dt, Integrator::semi_implicit); }
   void remove(std::span<const int> tetrahedra) override;
   void couple(Coupling* coupling, std::span<const int> nodes, std::span<const double> mass, double bound) override;
 
@@ -52,7 +53,8 @@ class TensorMass final : public DynamicModel {
   void lay_out_edges();
   void write_edge(int edge);
   void write_response(int node);
-  void couple_pass(const Scalar* pair);
+  void step(double dt, Integrator integrator);
+  void couple_pass(const Scalar* pair, int vectors);
 
   ElementTensors elements_;
   Integrator integrator_;

@@ -68,7 +68,7 @@ void DynamicWorld::drop_absent() {
 }
 
 void DynamicWorld::turn_jaws(int t) {
-  if (forceps_[t]) set_opening(std::clamp(tools_[t].dofs.grip, 0.0, forceps_[t]->max_open), parts_[t]);
+  if (forceps_[t]) set_opening(std::clamp(tools_[t].opening, 0.0, forceps_[t]->max_open), parts_[t]);
 }
 
 void DynamicWorld::tick() {
@@ -85,6 +85,8 @@ void DynamicWorld::tick() {
     heard_[t] = ticks_;
     const ToolState& state = newest_[t];
     tool.dofs = dofs_of(state);
+    tool.opening = state.opening;
+    tool.holding = state.holding != 0;
     tool.moving.now = tip_pose(trocars_[t], tool.dofs);
     turn_jaws(t);
     // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
@@ -106,6 +108,8 @@ void DynamicWorld::state(State& s) {
     ToolInTick& tool = tools_[t];
     s.value(tool.moving.now.matrix());
     s.value(tool.dofs);
+    s.value(tool.opening);
+    s.value(tool.holding);
     s.value(consumed_[t]);
     s.value(heard_[t]);
     s.value(tool.present);

@@ -88,7 +88,7 @@ void LocalModels::refresh() {
           }
       }
     }
-    for (const TissueContact& c : organ.contacts())
+    for (const TouchContact& c : organ.contacts())
       for (int v = 0; v < 3; ++v)
         if (c.anchor.weights[v] != 0) {
           by_distance_.emplace_back(-1, c.anchor.nodes[v]);
@@ -111,8 +111,8 @@ void LocalModels::refresh() {
 void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   const auto contacts = organ.contacts();
   std::vector<std::array<int, 5>> shape;
-  for (const TissueContact& c : contacts)
-    shape.push_back({c.tool, c.sticking, c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
+  for (const TouchContact& c : contacts)
+    shape.push_back({c.tool, static_cast<int>(c.touch), c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
   if (shape == own.shape && ++own.age < kCondensedFor) return;
   own.shape = std::move(shape);
   own.age = 0;
@@ -120,14 +120,15 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
 
   std::vector<int> first;
   int rows = 0;
-  const auto is_whole = [](const TissueContact& c) { return c.sticking != 0 || c.sample == TissueContact::kInJaws; };
-  for (const TissueContact& c : contacts) {
-    first.push_back(rows);
-    rows += is_whole(c) ? 3 : 1;
-  }
-  const auto rows_of = [&](const TissueContact& c) -> Eigen::MatrixXd {
-    return is_whole(c) ? Eigen::MatrixXd(Eigen::Matrix3d::Identity()) : Eigen::MatrixXd(c.normal.transpose());
+  const auto rows_of = [&](const TouchContact& c) -> Eigen::MatrixXd {
+    if (c.touch == Touch::open) return Eigen::MatrixXd(0, 3);
+    return c.touch == Touch::sticking ? Eigen::MatrixXd(Eigen::Matrix3d::Identity())
+                                      : Eigen::MatrixXd(c.normal.transpose());
   };
+  for (const TouchContact& c : contacts) {
+    first.push_back(rows);
+    rows += static_cast<int>(rows_of(c).rows());
+  }
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, rows);
   for (std::size_t i = 0; i < contacts.size(); ++i)
     for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -164,15 +165,14 @@ void LocalModels::add_origin(int tool, LocalContactModel& model) const {
 void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
   OfOrgan& own = organs_[i];
   const auto contacts = world_.organ(i).contacts();
-  if (std::ranges::none_of(contacts, [&](const TissueContact& c) { return c.tool == tool; })) return;
+  if (std::ranges::none_of(contacts, [&](const TouchContact& c) { return c.tool == tool; })) return;
   condense(own, world_.organ(i));
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const TissueContact& c = contacts[k];
-    const bool grasped = c.sample == TissueContact::kInJaws;
-    if (c.tool != tool || (!grasped && c.force.dot(c.normal) <= 0) || model.contacts.size() == kMaxContacts) continue;
+    const TouchContact& c = contacts[k];
+    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
-    out.grasped = grasped;
+    out.grasped = c.grasped;
     copy(anchor_position(c.anchor, world_.organ(i).surface().positions()), out.position);
     copy(c.normal, out.normal);
     copy(c.force, out.force);
@@ -190,9 +190,8 @@ void LocalModels::add_surface(int tool, int i, LocalContactModel& model) {
     const Segment axis = t.moving.axis(p);
     const double radius = t.moving.radius(p);
     for (int facet : organ.surface().find(axis.start, axis.end, radius + organs_[i].look_ahead))
-      if (!organ.is_joint(facet))
-        by_distance_.emplace_back(
-            std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
+      by_distance_.emplace_back(
+          std::sqrt(closest_points(axis, organ.surface().corners(facet)).squared_distance) - radius, facet);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
   add_triangles(

@@ -27,6 +27,7 @@ ToolState tool_state(const StepRecord& r, int tool) {
           .roll = from.dofs.roll,
           .grip = from.dofs.grip,
           .opening = from.opening,
+          .holding = from.holding,
           .pedal = from.dofs.pedal,
           .local_model_run = from.model_run,
           .local_model_seq = from.model_seq};

@@ -53,6 +53,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
     const bool moving = haptic.has_moving_tissue();
     r.of_tool[t] = {.dofs = samples[t].dofs,
                     .opening = haptic.opening(t),
+                    .holding = haptic.rig(t).end().holding(),
                     .device_seq = samples[t].seq,
                     .force = plain(haptic.force(t)),
                     .torque = plain(haptic.torque(t)),

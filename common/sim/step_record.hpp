@@ -18,6 +18,7 @@ struct StepRecord {
   struct OfTool {
     ToolDofs dofs;
     double opening;
+    bool holding;
     std::uint64_t device_seq;
     std::array<double, 3> force, torque, press, trocar;
     double grip_torque;

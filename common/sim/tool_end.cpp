@@ -21,6 +21,7 @@ class ProbeEnd : public ToolEnd {
     closed_ = closes;
     for (const auto& body : bodies) closes ? body->pinch(index_, pose, *jaws_) : body->let_go(index_);
   }
+  bool holding() const override { return closed_ != 0; }
   const char* part_name(int part) const override { return part == 0 ? "tip" : "shaft"; }
   void state(State& s) override { s.value(closed_); }
 
@@ -45,6 +46,7 @@ class ForcepsEnd : public ToolEnd {
     hand_.work(grip, pose, bodies);
     turn_jaws();
   }
+  bool holding() const override { return hand_.state().grip.holding; }
   double opening() const override { return hand_.opening(); }
   double handle() const override { return hand_.state().grip.commanded; }
   double torque() const override { return hand_.torque(); }

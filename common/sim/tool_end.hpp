@@ -21,6 +21,7 @@ class ToolEnd {
   /// The jaws follow the handle. `pose`: tip frame at the step's begin, as the bodies stand.
   virtual void work(double /*grip*/, const Eigen::Isometry3d& /*pose*/, BodyParts) {}
 
+  virtual bool holding() const { return false; }      ///< the jaws are shut on what is between them
   virtual double opening() const { return 0; }        ///< [rad] between the jaws of a forceps
   virtual double handle() const { return 0; }         ///< [rad] where the handle stands
   virtual double torque() const { return 0; }         ///< [N m] on the handle, opens the jaws

@@ -20,9 +20,9 @@ std::optional<ForcepsShape> forceps_shape(const Tool& tool) {
   return ForcepsShape{tool.shaft_radius, tool.shaft_length, forceps->jaws.length, forceps->jaws.radius};
 }
 
-std::optional<ProbeJaws> closing_jaws(const Tool& tool) {
-  if (const ProbeSpec* probe = tool.probe()) return probe->jaws;
-  return ProbeJaws{.length = tool.forceps()->jaws.length};
+JawParts jaw_parts(const Tool& tool) {
+  if (tool.probe()) return {0, 1};
+  return {forceps_jaw_a, kForcepsPartCount};
 }
 
 std::vector<ToolPart> tool_parts(const Tool& tool, double opening) {

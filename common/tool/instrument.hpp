@@ -16,9 +16,11 @@ std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double
 /// The shape of a tool of kind forceps; none for other kinds.
 std::optional<ForcepsShape> forceps_shape(const Tool& tool);
 
-/// Jaws that hold moving tissue once they are closed: a probe's own, and those of a forceps as a probe's. None for a
-/// tool without jaws.
-std::optional<ProbeJaws> closing_jaws(const Tool& tool);
+/// Which parts of a tool feel what its jaws hold: from `first` up to `end`. A probe's are its tip.
+struct JawParts {
+  int first = 0, end = 1;
+};
+JawParts jaw_parts(const Tool& tool);
 
 /// The parts of a tool of any kind for collision. `opening` [rad] between the jaws of a forceps; a probe has none.
 std::vector<ToolPart> tool_parts(const Tool& tool, double opening = 0);

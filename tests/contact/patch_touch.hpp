@@ -44,18 +44,20 @@ inline Archive tube(int n_around, int n_along, double radius, double length, dou
 }
 
 /// Tools against one synthetic surface: a haptic step without its node.
-class PatchTouch {
+class PatchTouch : public Stateful<PatchTouch> {
  public:
   PatchTouch(Archive archive, double friction, std::size_t parts, ToolContacts::Options options = {})
       : archive_(std::move(archive)),
         compliance_(archive_, Compliance<double>::Rows::touchable),
-        law_(compliance_, archive_.surface.position, ContactLaw::Rule::barycentric, friction, 96),
-        contacts_(archive_.surface, 2 * mean_edge(archive_.surface), law_, parts, std::move(options)) {
+        response_(compliance_),
+        surface_(archive_.surface, 2 * mean_edge(archive_.surface)),
+        law_(response_, archive_.surface.position, ContactLaw::Rule::barycentric, friction, 96),
+        contacts_(surface_, law_, parts, std::move(options)) {
     displacement_.reserve(3 * archive_.surface.position.size());
   }
 
   LawOutcome step(std::span<const MovingTool> tools) {
-    const auto marked = contacts_.mark(tools);
+    const auto marked = mark(surface_, contacts_, law_, tools);
     displacement_.assign(3 * marked.size(), 0.0);
     law_.for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +66,7 @@ class PatchTouch {
           for (int r = 0; r < 3; ++r) displacement_[3 * i + r] += column[3 * marked[i] + r] * f[axis];
       }
     });
-    contacts_.move_marked(displacement_);
+    surface_.move_marked(displacement_);
     contacts_.collide(tools);
     contacts_.aim(tools);
     const LawOutcome outcome = law_.solve();
@@ -98,14 +100,22 @@ class PatchTouch {
     return count;
   }
 
+  void state(State& s, std::span<const MovingTool> tools = {}) {
+    surface_.state(s);
+    contacts_.state(s, tools);
+  }
+
   const Archive& archive() const { return archive_; }
   const Compliance<double>& compliance() const { return compliance_; }
   ContactLaw& law() { return law_; }
   ToolContacts& contacts() { return contacts_; }
+  const TouchSurface& surface() const { return surface_; }
 
  private:
   Archive archive_;
   Compliance<double> compliance_;
+  CompliantResponse response_;
+  TouchSurface surface_;
   ContactLaw law_;
   ToolContacts contacts_;
   std::vector<double> displacement_;

@@ -39,7 +39,7 @@ TEST(SegmentContact, ThePressedSurfaceLiesOutsideADenseRowOfSpheresAndTheirForce
       if ((axis.at(k / 4000.0) - x).norm() < (nearest - x).norm()) nearest = axis.at(k / 4000.0);
     return nearest;
   };
-  const auto& x = touch.contacts().surface().positions();
+  const auto& x = touch.surface().positions();
   for (const Vector3d& p : x)
     ASSERT_TRUE((nearest_point(axis, p) - p).norm() > 2 * radius || (p - nearest_of_row(p)).norm() > radius - 2e-7);
   int pressing = 0;
@@ -229,12 +229,12 @@ TEST(SegmentContact, ARestoredStateGoesOnBitForBit) {
     step(first, tool);
   }
   ASSERT_GT(first.pressing(), 0);
-  std::vector<unsigned char> state(first.contacts().state_size());
-  first.contacts().save(state.data());
+  std::vector<unsigned char> state(first.state_size());
+  first.save(state.data());
   first.law().forget_factor();
   PatchTouch second = make();
   const MovingTool moving = tool.moving();
-  second.contacts().restore(state.data(), std::span<const MovingTool>(&moving, 1));
+  second.restore(state.data(), std::span<const MovingTool>(&moving, 1));
   for (int i = 150; i < 300; ++i) {
     pose(tool, i);
     step(first, tool);
@@ -245,8 +245,8 @@ TEST(SegmentContact, ARestoredStateGoesOnBitForBit) {
     ASSERT_EQ(std::memcmp(t.data(), u.data(), sizeof(double[3])), 0) << "step " << i;
   }
   std::vector<unsigned char> end_first(state.size()), end_second(state.size());
-  first.contacts().save(end_first.data());
-  second.contacts().save(end_second.data());
+  first.save(end_first.data());
+  second.save(end_second.data());
   EXPECT_EQ(end_first, end_second);
 }
 

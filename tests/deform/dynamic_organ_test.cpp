@@ -39,7 +39,7 @@ TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   const Archive& archive = bench.archives()[0];
   std::vector<Constraint> held;
   Vector3d sum = Vector3d::Zero();
-  for (const TissueContact& c : contacts) {
+  for (const TouchContact& c : contacts) {
     if (c.force.dot(c.normal) <= 0) continue;
     ASSERT_FALSE(c.face);
     const int node = c.anchor.nodes[0];
@@ -49,7 +49,7 @@ TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   }
   const StaticSolution exact = solve_direct(make_static_problem(block_of(scene), mesh), held);
   Vector3d wanted = Vector3d::Zero();
-  for (const TissueContact& c : contacts)
+  for (const TouchContact& c : contacts)
     if (c.force.dot(c.normal) > 0) wanted += exact.force[archive.surface.node_number[c.anchor.nodes[0]]];
   EXPECT_LT(sum.z(), -0.05);
   EXPECT_LT((sum - wanted).norm(), 0.01 * wanted.norm()) << sum.transpose() << " against " << wanted.transpose();
@@ -61,7 +61,7 @@ TEST(DynamicOrgan, LetsATipGoWithoutPullingAtIt) {
   EXPECT_LT(bench.force().z(), -0.01);
   for (int i = 0; i < 400; ++i) {
     bench.tick(from_above(i, 200, kTop + kRadius - 0.004, kTop + 0.03));
-    for (const TissueContact& c : bench.organ().contacts()) EXPECT_GE(c.force.dot(c.normal), 0);
+    for (const TouchContact& c : bench.organ().contacts()) EXPECT_GE(c.force.dot(c.normal), 0);
   }
   EXPECT_TRUE(bench.force().isZero(0));
 }
@@ -200,7 +200,7 @@ TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
   Bench bench(block_scene());
   for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   const std::vector<std::uint8_t> state = bench.world().save();
-  const TissueContact& first = bench.organ().contacts()[0];
+  const TouchContact& first = bench.organ().contacts()[0];
   const auto* pattern = reinterpret_cast<const std::uint8_t*>(&first.anchor);
   const auto at = std::search(state.begin(), state.end(), pattern, pattern + sizeof first.anchor.nodes);
   ASSERT_NE(at, state.end());

@@ -66,6 +66,8 @@ class Bench {
                 .roll = 0,
                 .grip = grip};
     s.pedal = pedal;
+    const auto& jaws = scene_.tools[0].probe()->jaws;
+    s.holding = jaws && grip < jaws->closed_below;
     world_.take(s);
     world_.tick();
   }
@@ -78,7 +80,7 @@ class Bench {
   /// [N] on the tissue, of all contacts.
   Eigen::Vector3d force() const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const TissueContact& c : organ().contacts()) sum += c.force;
+    for (const TouchContact& c : organ().contacts()) sum += c.force;
     return sum;
   }
   bool finite() const {

@@ -27,10 +27,11 @@ class ContactLawTest : public ::testing::Test {
     return c;
   }
   ContactLaw law(double friction, ContactLaw::Rule rule = ContactLaw::Rule::barycentric) const {
-    return {compliance_, archive_.surface.position, rule, friction, 64};
+    return {response_, archive_.surface.position, rule, friction, 64};
   }
   Archive archive_ = testing::flat_patch(12, 0.01, 1e-2);
   Compliance<double> compliance_{archive_, Compliance<double>::Rows::touchable};
+  CompliantResponse response_{compliance_};
 };
 
 TEST_F(ContactLawTest, FrictionlessContactsNeverPullAndNeverPenetrate) {

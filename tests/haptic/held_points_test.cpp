@@ -36,11 +36,12 @@ class HeldPointsTest : public ::testing::Test {
  protected:
   Archive archive_ = testing::flat_patch(12, 0.01, 1e-2);
   Compliance<double> compliance_{archive_, Compliance<double>::Rows::touchable};
+  CompliantResponse response_{compliance_};
   std::mt19937 random_{7};
 };
 
 TEST_F(HeldPointsTest, FullyHeldPointsTakeTheForcesOfTheDirectInverse) {
-  HeldPoints held(compliance_, 8);
+  HeldPoints held(response_, 8);
   std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
   for (const Anchor& a : anchors) held.add(a);
   const std::vector<Hold> hold(4, Hold::all);
@@ -55,7 +56,7 @@ TEST_F(HeldPointsTest, FullyHeldPointsTakeTheForcesOfTheDirectInverse) {
 }
 
 TEST_F(HeldPointsTest, AnyHistoryOfAddingRemovingAndHoldingGivesTheForcesOfAFreshSolve) {
-  HeldPoints held(compliance_, 24);
+  HeldPoints held(response_, 24);
   std::vector<Anchor> anchors;
   std::vector<Hold> hold;
   std::uniform_int_distribution<int> node(0, 143), kind(0, 5), state(0, 2);
@@ -108,7 +109,7 @@ TEST_F(HeldPointsTest, AnyHistoryOfAddingRemovingAndHoldingGivesTheForcesOfAFres
 }
 
 TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces) {
-  HeldPoints held(compliance_, 4);
+  HeldPoints held(response_, 4);
   const Anchor a{{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)};
   held.add(a);
   held.add(a);
@@ -116,7 +117,7 @@ TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces)
   const std::vector<Vector3d> normal(2, Vector3d::UnitZ()), target{Vector3d(0, 0, 1e-3), Vector3d(0, 0, -1e-3)};
   VectorXd f = VectorXd::Zero(6);
   EXPECT_GT(held.solve(hold, normal, target, f.data()), 0);
-  HeldPoints single(compliance_, 1);
+  HeldPoints single(response_, 1);
   single.add(a);
   VectorXd alone = VectorXd::Zero(3);
   single.solve(std::span(hold).first(1), std::span(normal).first(1), std::span(target).first(1), alone.data());
@@ -126,7 +127,7 @@ TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces)
 
 TEST_F(HeldPointsTest, ASoftHoldGivesThePointsTargetLessSoftnessTimesForce) {
   const double softness[] = {0, 2e-3, 7e-3, 1e-3};
-  HeldPoints held(compliance_, 8);
+  HeldPoints held(response_, 8);
   std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
   held.add(vertex(80), 5e-3);
   for (int p = 0; p < 4; ++p) held.add(anchors[p], softness[p]);

@@ -35,7 +35,8 @@ Result hold_nodes(const Archive& archive, const std::string& how, int count, dou
   const Vector3d middle =
       std::accumulate(surface.position.begin(), surface.position.end(), Vector3d(0, 0, 0)) / surface.size();
   const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
-  HeldPoints held(compliance, count);
+  const CompliantResponse response(compliance);
+  HeldPoints held(response, count);
   std::vector<Vector3d> target;
   for (int i = 0; i < count; ++i) {
     const int node = node_of(free, how, i, count);

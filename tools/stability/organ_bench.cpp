@@ -24,10 +24,12 @@ void OrganBench::tick(const Vector3d& p, double pedal, double grip) {
               .roll = 0,
               .grip = grip};
   s.pedal = pedal;
+  const ProbeSpec* probe = tool.probe();
+  s.holding = probe && probe->jaws && grip < probe->jaws->closed_below;
   world_.take(s);
   world_.tick();
   Vector3d force = Vector3d::Zero();
-  for (const TissueContact& c : organ().contacts()) force += c.force;
+  for (const TouchContact& c : organ().contacts()) force += c.force;
   for (const Vector3d& x : organ().surface().positions()) {
     reach_ = larger(reach_, x.norm());
   }

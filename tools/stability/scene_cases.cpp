@@ -73,6 +73,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
                   .grip = d.grip};
       s.pedal = d.pedal;
       s.opening = haptic.opening(static_cast<int>(t));
+      s.holding = haptic.rig(static_cast<int>(t)).end().holding();
       world->take(s);
     }
     world->tick();

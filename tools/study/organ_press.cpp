@@ -33,7 +33,7 @@ double OrganPress::tick(double depth) {
   tool_.moving.now = tip_pose(trocar_, tool_.dofs);
   organ_.tick({&tool_, 1}, tick_);
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  for (const TissueContact& c : organ_.contacts()) force += c.force;
+  for (const TouchContact& c : organ_.contacts()) force += c.force;
   if (const HybridTouch* still = organ_.still_part())
     for (std::size_t c = 0; c < still->contacts().size(); ++c) force += still->force(static_cast<int>(c));
   return force.dot(patch_.inward);

@@ -69,13 +69,13 @@ void ModalBody::update_surface(std::span<const MovingTool> tools) {
   for (int m = 0; m < modes(); ++m) columns_.push_back(shape_.data() + all_.size() * m);
   kernels::active().combine_d(columns_.data(), x_.data(), modes(), static_cast<std::ptrdiff_t>(all_.size()),
                               all_.data());
-  const std::span<const int> near = contacts().mark(tools);
+  const std::span<const int> near = mark(tools);
   if (residual_) add_residual(near);
-  const std::span<const int> marked = contacts().mark_all();
+  const std::span<const int> marked = mark_all();
   displacement_.resize(3 * marked.size());
   for (std::size_t i = 0; i < marked.size(); ++i)
     std::copy_n(all_.data() + 3 * marked[i], 3, displacement_.data() + 3 * i);
-  contacts().move_marked(displacement_);
+  move_marked(displacement_);
   pushed_.clear();
   std::ranges::fill(wall_force_, 0.0);
   palpate::free_motion(constants_, x_.data(), v_.data(), tool_force_.data(), free_.data());

@@ -42,24 +42,29 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
-      contacts_(mesh_, topology_, shown_, surface_, *model_, settings.contact.friction),
-      jaws_closed_(settings.tools.size(), 0),
+      contacts_(mesh_, surface_, *model_, settings.contact.friction, parts_of(settings.tools)),
+      holding_(settings.tools.size(), 0),
       position_(mesh_.rest),
       poses_(settings.tools.size(), Eigen::Isometry3d::Identity()),
       poses_before_(poses_),
       moving_(settings.tools.size()),
       in_step_(settings.tools.size()) {
   for (const Tool& tool : settings.tools) {
-    jaws_.push_back(closing_jaws(tool));
+    jaws_.push_back({tool.probe() ? tool.probe()->jaws : std::nullopt, forceps_shape(tool)});
     cautery_.push_back(tool.probe() ? tool.probe()->cautery : std::nullopt);
   }
   if (still_) topology_.join(shown_.joints());
+  surface_.hide(shown_.joints());
+  for (int node = 0; node < mesh_.nodes(); ++node)
+    if (std::ranges::all_of(mesh_.fixed[node], std::identity{})) surface_.fix(node);
   const Dynamic& motion = body.dynamic;
   const double bound = palpate::max_step(integrator_of(motion), model_->frequency_bound(), motion.damping);
   if (motion.step > bound)
     throw std::runtime_error(
         fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", name_, motion.step, bound));
   max_step_ = motion.step > 0 ? motion.step : kBoundShare * bound;
+  touched_step_ = std::min(
+      max_step_, kBoundShare * palpate::max_step(Integrator::semi_implicit, model_->frequency_bound(), motion.damping));
   if (body.tearing)
     tearing_.emplace(mesh_, tear_criterion(body.tearing->criterion), body.tearing->threshold, kMaxTears);
   Eigen::Vector3d low = mesh_.rest[0], high = low;
@@ -70,8 +75,8 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
 
 DynamicOrgan::~DynamicOrgan() = default;
 
-int DynamicOrgan::steps_in(double dt) const {
-  return std::max(1, static_cast<int>(std::ceil(dt / max_step_ - 1e-9)));
+int DynamicOrgan::steps_in(double dt, bool touched) const {
+  return std::max(1, static_cast<int>(std::ceil(dt / (touched ? touched_step_ : max_step_) - 1e-9)));
 }
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
@@ -88,7 +93,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   contacts_.find(moving_);
   if (still_) still_->find(moving_);
   in_step_ = moving_;
-  const int steps = steps_in(dt);
+  const bool touched = !contacts_.contacts().empty();
+  const int steps = steps_in(dt, touched);
   for (std::size_t t = 0; t < moving_.size(); ++t) poses_[t] = moving_[t].before;
   for (int s = 1; s <= steps; ++s) {
     const double share = static_cast<double>(s) / steps;
@@ -99,9 +105,15 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
       poses_[t].linear() =
           Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
     }
-    for (std::size_t t = 0; t < moving_.size(); ++t) in_step_[t].now = poses_[t];
+    for (std::size_t t = 0; t < moving_.size(); ++t) {
+      in_step_[t].before = poses_before_[t];
+      in_step_[t].now = poses_[t];
+    }
     if (still_) still_->hold(in_step_);
-    contacts_.step(moving_, poses_before_, poses_, dt / steps);
+    if (touched)
+      contacts_.step(in_step_, dt / steps);
+    else
+      model_->step(dt / steps);
     if (still_) still_->take();
   }
   contacts_.end_tick(moving_);
@@ -129,22 +141,31 @@ void DynamicOrgan::update_positions() {
   surface_.set_positions(position_);
 }
 
-// Jaws that close hold what is between them, until they open.
+// Jaws that shut hold what is between them, until they open.
 void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-    const auto& jaws = jaws_[t];
-    if (!jaws || !tools[t].present) continue;
-    const double grip = tools[t].dofs.grip;
-    if (!jaws_closed_[t] && grip < jaws->closed_below) {
-      jaws_closed_[t] = 1;
-      const bool moving = contacts_.grasp(t, tools[t].moving.before, jaws->length, jaws->width);
-      if (still_ && !moving) still_->grasp(t, tools[t].moving.before, jaws->length, jaws->width);
-    } else if (jaws_closed_[t] && grip > jaws->closed_below + kJawSlack) {
-      jaws_closed_[t] = 0;
-      contacts_.let_go(t);
+    if (!tools[t].present || tools[t].holding == (holding_[t] != 0)) continue;
+    holding_[t] = tools[t].holding;
+    if (holding_[t]) {
+      grasp(t, tools[t]);
+    } else {
+      contacts_.search().let_go(t);
       if (still_) still_->let_go(t);
     }
   }
+}
+
+// The quasi-static part is taken where there is no moving tissue between the jaws.
+void DynamicOrgan::grasp(int tool, const ToolInTick& with) {
+  const auto take = [&](auto&& from, auto&& allowed) {
+    const Eigen::Isometry3d& pose = with.moving.before;
+    if (const auto& probe = jaws_[tool].probe) return from.grasp(tool, pose, probe->length, probe->width, allowed);
+    if (const auto& forceps = jaws_[tool].forceps)
+      return from.grasp(OpenJaws{tool, *forceps, pose, with.opening, 0}, allowed);
+    return false;
+  };
+  if (take(contacts_.search(), [&](int node) { return topology_.has_node(node); }) || !still_) return;
+  take(still_->search(), [&](int node) { return still_->part().owns(node); });
 }
 
 bool DynamicOrgan::holds(int tool) const {
@@ -163,7 +184,7 @@ void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
       int nearest = -1;
       for (int facet : surface_.find(tip, tip, cautery->radius)) {
         const double squared = closest_point(tip, surface_.corners(facet)).squared_distance;
-        if (squared >= least || is_joint(facet)) continue;
+        if (squared >= least) continue;
         least = squared;
         nearest = facet;
       }
@@ -192,7 +213,7 @@ void DynamicOrgan::note_change(RemovalCause cause, std::size_t first) {
   changes_.push_back({cause, {removed_.begin() + static_cast<std::ptrdiff_t>(first), removed_.end()}});
   model_->remove(changes_.back().removed);
   if (tearing_) tearing_->remove(changes_.back().removed);
-  contacts_.forget_removed();
+  contacts_.follow_cut(topology_);
   follow_change();
 }
 
@@ -244,11 +265,9 @@ void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eig
 
 DynamicOrgan::Memory DynamicOrgan::memory() const {
   const auto motion = model_->state();
-  const auto list = contacts_.list();
   return {removed_,
           {motion.begin(), motion.end()},
-          {list.begin(), list.end()},
-          jaws_closed_,
+          holding_,
           {surface_.previous().begin(), surface_.previous().end()},
           {surface_.positions().begin(), surface_.positions().end()}};
 }
@@ -257,30 +276,23 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   Memory m = s.restoring() ? Memory{} : memory();
   s.list(m.removed);
   s.list(m.motion);
-  s.list(m.contacts);
-  s.list(m.jaws);
+  s.list(m.holding);
   s.list(m.previous);
   s.list(m.present);
-  if (s.restoring()) recall(m, tools);
+  if (s.restoring()) recall(m);
+  contacts_.state(s, tools);
   if (still_) still_->state(s, tools);
 }
 
 // Whether what was read can be of this body and these tools.
-bool DynamicOrgan::fits(const Memory& m, std::span<const MovingTool> tools) const {
-  const auto known = [&](const TissueContact& c) {
-    const bool tool_known = c.tool >= 0 && c.tool < static_cast<int>(tools.size());
-    const bool sample_known = tool_known && c.sample >= TissueContact::kInJaws && c.sample < tools[c.tool].size();
-    return sample_known && std::ranges::all_of(c.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
-  };
-  const bool sizes = m.motion.size() == model_->state().size() && m.jaws.size() == jaws_closed_.size() &&
-                     m.contacts.size() <= TissueContacts::kMost && m.previous.size() == position_.size() &&
-                     m.present.size() == position_.size();
-  return sizes && std::ranges::all_of(m.contacts, known) &&
-         std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+bool DynamicOrgan::fits(const Memory& m) const {
+  const bool sizes = m.motion.size() == model_->state().size() && m.holding.size() == holding_.size() &&
+                     m.previous.size() == position_.size() && m.present.size() == position_.size();
+  return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
 }
 
-void DynamicOrgan::recall(const Memory& m, std::span<const MovingTool> tools) {
-  if (!fits(m, tools) || !removed_.empty())
+void DynamicOrgan::recall(const Memory& m) {
+  if (!fits(m) || !removed_.empty())
     throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
   removed_ = m.removed;
   topology_.erase(removed_);
@@ -288,8 +300,7 @@ void DynamicOrgan::recall(const Memory& m, std::span<const MovingTool> tools) {
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
   model_->set_state(m.motion);
-  contacts_.set_list(m.contacts);
-  jaws_closed_ = m.jaws;
+  holding_ = m.holding;
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;

@@ -17,7 +17,7 @@
 #include "common/dynamics/tearing.hpp"
 #include "common/mesh/shown_surface.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
-#include "common/models/moving/tissue_contact.hpp"
+#include "common/models/moving/tissue_touch.hpp"
 #include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
 
@@ -27,6 +27,8 @@ namespace palpate {
 struct ToolInTick {
   MovingTool moving;
   ToolDofs dofs;
+  double opening = 0;    ///< [rad] between a forceps' jaws
+  bool holding = false;  ///< its jaws are shut on what is between them
   bool present = false;  ///< its pose is known
 };
 
@@ -47,16 +49,19 @@ class DynamicOrgan {
 
   /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
   void forget_factors() {
+    contacts_.forget_factor();
     if (still_) still_->forget_factor();
   }
 
   double max_step() const { return max_step_; }  ///< [s] that the bound allows, or the scene gives
-  int steps_in(double dt) const;                 ///< steps of the integrator in a tick of dt [s]
+  /// Steps of the tissue in a tick of dt [s]: of the scene's integrator, or while tools touch it of the semi-implicit
+  /// one.
+  int steps_in(double dt, bool touched = false) const;
   const CutMesh& topology() const { return topology_; }
   const CutSurface& surface() const { return surface_; }
   const DynamicModel& model() const { return *model_; }
   const ElasticMesh& mesh() const { return mesh_; }
-  std::span<const TissueContact> contacts() const { return contacts_.list(); }
+  std::span<const TouchContact> contacts() const { return contacts_.contacts(); }
   /// The quasi-static part of a hybrid organ; null for others.
   const HybridTouch* still_part() const { return still_.get(); }
   /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
@@ -79,18 +84,23 @@ class DynamicOrgan {
   std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
+  /// How a tool takes hold: at most one of these.
+  struct Jaws {
+    std::optional<ProbeJaws> probe;
+    std::optional<ForcepsShape> forceps;
+  };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
     std::vector<int> removed;
     std::vector<std::byte> motion;
-    std::vector<TissueContact> contacts;
-    std::vector<char> jaws;
+    std::vector<char> holding;
     std::vector<Eigen::Vector3d> previous, present;
   };
   Memory memory() const;
-  bool fits(const Memory& memory, std::span<const MovingTool> tools) const;
-  void recall(const Memory& memory, std::span<const MovingTool> tools);
+  bool fits(const Memory& memory) const;
+  void recall(const Memory& memory);
   void work_jaws(std::span<const ToolInTick> tools);
+  void grasp(int tool, const ToolInTick& with);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);
   void tear();
@@ -100,7 +110,7 @@ class DynamicOrgan {
   void follow_change();
 
   std::string name_;
-  std::vector<std::optional<ProbeJaws>> jaws_;   ///< per tool
+  std::vector<Jaws> jaws_;                       ///< per tool
   std::vector<std::optional<Cautery>> cautery_;  ///< per tool
   ElasticMesh mesh_;
   CutMesh topology_;
@@ -108,12 +118,12 @@ class DynamicOrgan {
   CutSurface surface_;
   std::unique_ptr<DynamicModel> model_;
   std::unique_ptr<HybridTouch> still_;
-  TissueContacts contacts_;
+  TissueTouch contacts_;
   std::optional<TearSearch> tearing_;
-  double max_step_;
+  double max_step_, touched_step_;
   double diagonal_;                                      ///< [m] of the body at rest
   Eigen::Vector3d middle_;                               ///< [m] of the body at rest
-  std::vector<char> jaws_closed_;                        ///< per tool
+  std::vector<char> holding_;                            ///< per tool
   std::vector<Eigen::Vector3d> position_;                ///< [m] per node
   std::vector<Eigen::Isometry3d> poses_, poses_before_;  ///< at the end and beginning of a step, per tool
   std::vector<MovingTool> moving_, in_step_;             ///< in_step_: now is the pose at a step's end

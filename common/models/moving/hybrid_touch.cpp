@@ -23,7 +23,8 @@ HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, b
     : model_(model),
       map_(quasi_static_surface(archive)),
       part_(archive, settings.contact.friction, single),
-      contacts_(map_, bucket_size(settings.contact, map_), part_.law(), parts_of(settings.tools)),
+      surface_(map_, bucket_size(settings.contact, map_)),
+      contacts_(surface_, part_.law(), parts_of(settings.tools)),
       moved_(map_.size(), Eigen::Vector3f::Zero()) {
   part_.couple(model);
   displacement_.reserve(3 * map_.size());
@@ -40,14 +41,14 @@ void HybridTouch::drop_tool(int tool) {
 }
 
 void HybridTouch::find(std::span<const MovingTool> tools) {
-  const std::span<const int> marked = contacts_.mark(tools);
+  const std::span<const int> marked = mark(surface_, contacts_, part_.law(), tools);
   part_.update(marked);
   displacement_.clear();
   for (int node : marked) {
     const Eigen::Vector3d u = part_.positions()[node] - map_.position[node];
     displacement_.insert(displacement_.end(), u.data(), u.data() + 3);
   }
-  contacts_.move_marked(displacement_);
+  surface_.move_marked(displacement_);
   contacts_.collide(tools);
 }
 
@@ -65,6 +66,7 @@ void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::
 }
 
 void HybridTouch::state(State& s, std::span<const MovingTool> tools) {
+  surface_.state(s);
   contacts_.state(s, tools);
   std::vector<Eigen::Vector3d> forces;
   if (!s.restoring())

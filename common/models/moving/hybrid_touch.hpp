@@ -19,9 +19,7 @@ class HybridTouch {
   /// Once a tick: brings the surface near the tools up to date and finds what they touch.
   void find(std::span<const MovingTool> tools);
   /// Jaws take nodes of this part alone; those that it shares are the moving tissue's.
-  bool grasp(int tool, const Eigen::Isometry3d& pose, double length, double width) {
-    return contacts_.grasp(tool, pose, length, width, [&](int node) { return part_.owns(node); });
-  }
+  ToolContacts& search() { return contacts_; }
   void let_go(int tool) { contacts_.let_go(tool); }
   bool grasping(int tool) const;
   void drop_tool(int tool);
@@ -34,7 +32,7 @@ class HybridTouch {
   void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
 
   const HybridPart& part() const { return part_; }
-  const TouchSurface& surface() const { return contacts_.surface(); }
+  const TouchSurface& surface() const { return surface_; }
   std::span<const TouchContact> contacts() const { return part_.law().contacts(); }
   Eigen::Vector3d force(int contact) const { return part_.contact_force(contact); }  ///< [N] on the tissue
 
@@ -49,6 +47,7 @@ class HybridTouch {
   DynamicModel& model_;
   SurfaceMap map_;  ///< with the triangles of this part alone
   HybridPart part_;
+  TouchSurface surface_;
   ToolContacts contacts_;
   std::vector<double> displacement_;
   std::vector<Eigen::Vector3f> moved_;

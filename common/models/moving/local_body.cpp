@@ -30,7 +30,8 @@ Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double frict
 
 }  // namespace
 
-LocalBody::LocalBody(const Trocar& trocar, double friction, double dt) : trocar_(trocar), friction_(friction), dt_(dt) {
+LocalBody::LocalBody(const Tool& tool, double friction, double dt)
+    : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)), jaws_(jaw_parts(tool)), friction_(friction), dt_(dt) {
   position_.fill(Vector3d::Zero());
   for (auto& box : box_) box.fill(Vector3d::Zero());
 }
@@ -77,6 +78,7 @@ int LocalBody::hold(const MovingTool& tool, ToolLoad& load) {
   const LocalModel& m = state_.model;
   const Eigen::Isometry3d motion = tool.now * model_pose_.inverse();
   int held = 0;
+  grasp_force_.setZero();
   for (int i = 0; i < m.contacts; ++i) {
     const LocalModel::Contact& c = m.contact[i];
     const auto normal = vector(c.normal), before = vector(c.position), force = vector(c.force);
@@ -85,6 +87,7 @@ int LocalBody::hold(const MovingTool& tool, ToolLoad& load) {
     Vector3d now = force + Stiffness(c.stiffness.data()) * (at - before);
     if (!c.grasped) now = within_cone(now, normal, friction_);
     held_[held++] = {at, c.grasped != 0};
+    if (c.grasped) grasp_force_ += now;
     add(at, now, tool, load);
   }
   return held;
@@ -144,17 +147,29 @@ bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) cons
   return depth > 0 && along > 0;
 }
 
-// A part that held tissue in the model, or the tip with tissue between its jaws, is felt by that alone, not twice.
+// A part that held tissue in the model, or jaws with tissue between them, are felt by that alone, not twice.
 bool LocalBody::holds(const Segment& axis, double radius, int part, int held) const {
   const double reach = kOwnReach * radius;
   return std::any_of(held_.begin(), held_.begin() + held, [&](const Held& h) {
-    return (h.grasped && part == 0) || (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
+    return (h.grasped && part >= jaws_.first && part < jaws_.end) ||
+           (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
   });
+}
+
+BetweenJaws LocalBody::between(const OpenJaws& jaws) {
+  obstacles_.begin(jaws, 0);
+  for (int t = 0; t < state_.model.triangles; ++t) {
+    const auto& [a, b, c] = state_.model.triangle[t];
+    obstacles_.add({position_[a], position_[b], position_[c]});
+  }
+  return obstacles_.found();
 }
 
 void LocalBody::state(State& s) {
   Memory memory = state_;
   s.value(memory);
+  s.all(position_);
+  s.value(grasp_force_);
   if (!s.restoring()) return;
   const LocalModel& m = memory.model;
   const auto within = [](int count, int most) { return count >= 0 && count <= most; };

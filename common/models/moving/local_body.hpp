@@ -1,9 +1,10 @@
 #pragma once
 #include <array>
 
-#include "common/contact/body_part.hpp"
+#include "common/contact/jaw_obstacles.hpp"
 #include "common/describe/state.hpp"
 #include "common/models/moving/local_model.hpp"
+#include "common/tool/instrument.hpp"
 #include "common/tool/kinematics.hpp"
 
 namespace palpate {
@@ -19,7 +20,7 @@ class LocalBody {
   static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
 
   /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
-  LocalBody(const Trocar& trocar, double friction, double dt);
+  LocalBody(const Tool& tool, double friction, double dt);
 
   /// From the next step on this model is used.
   void consume(const LocalModel& model);
@@ -27,6 +28,10 @@ class LocalBody {
 
   /// Force and torque on the tool in haptic step `step`. Its parts are those of `tool`, a probe's tip first.
   ToolLoad load(const MovingTool& tool, std::uint64_t step);
+  /// What lies between a forceps' jaws, as the surface was in the last load().
+  BetweenJaws between(const OpenJaws& jaws);
+  /// [N] by which the jaws held tissue in the last load().
+  double grasp_load() const { return grasp_force_.norm(); }
   /// True if the last load was less than it should be, because the model is too old or has only just come back.
   bool stale() const { return stale_; }
 
@@ -54,10 +59,13 @@ class LocalBody {
   bool holds(const Segment& axis, double radius, int part, int held) const;
 
   Trocar trocar_;
+  JawParts jaws_;
   double friction_, dt_;
   Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
   bool stale_ = false;
+  Eigen::Vector3d grasp_force_ = Eigen::Vector3d::Zero();  ///< [N] on the tissue
+  JawObstacles obstacles_;
   std::array<Held, LocalModel::kMaxContacts> held_{};
   std::array<Eigen::Vector3d, LocalModel::kMaxNodes> position_;
   std::array<std::array<Eigen::Vector3d, 2>, LocalModel::kMaxTriangles> box_;

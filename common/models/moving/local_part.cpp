@@ -7,8 +7,7 @@
 namespace palpate {
 
 LocalPart::LocalPart(const StepSettings& settings) {
-  for (const Tool& tool : settings.tools)
-    of_tool_.emplace_back(make_trocar(tool.pivot, tool.axis, tool.up), settings.contact.friction, settings.dt);
+  for (const Tool& tool : settings.tools) of_tool_.emplace_back(tool, settings.contact.friction, settings.dt);
 }
 
 LawOutcome LocalPart::touch(const ToolsInStep& in, std::span<ToolLoad> loads) {

@@ -17,6 +17,9 @@ class LocalPart : public BodyPart {
   LocalBody& of(int tool) { return of_tool_[tool]; }
 
   LawOutcome touch(const ToolsInStep& in, std::span<ToolLoad> loads) override;
+  // The jaws' hold itself is the deformation node's: it hears of it from the tool's state.
+  BetweenJaws between(const OpenJaws& jaws) override { return of_tool_[jaws.tool].between(jaws); }
+  double grasp_load(int tool) const override { return of_tool_[tool].grasp_load(); }
   void state(State& s, std::span<const MovingTool> tools) override;
 
  private:

@@ -22,7 +22,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
 }
 
 void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
-  const std::span<const int> marked = contacts().mark(tools);
+  const std::span<const int> marked = mark(tools);
   displacement_.assign(3 * marked.size(), 0.0);
   if (!nonlinear_) {
     superpose(-1, displacement_);
@@ -43,7 +43,7 @@ void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
                                        (c.face && (c.anchor.nodes[1] == marked[i] || c.anchor.nodes[2] == marked[i]))))
           std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
   }
-  contacts().move_marked(displacement_);
+  move_marked(displacement_);
 }
 
 // u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.

@@ -1,0 +1,79 @@
+#include "common/models/moving/tissue_touch.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+template <class Visit>
+void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
+  for (const TouchContact& c : contacts)
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0) visit(c.anchor.nodes[v]);
+}
+
+}  // namespace
+
+TissueTouch::TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicModel& model, double friction,
+                         std::size_t parts)
+    : mesh_(mesh),
+      model_(model),
+      surface_(surface),
+      free_(mesh.rest),
+      response_(mesh, model),
+      law_(response_, free_, ContactLaw::Rule::barycentric, friction, kMaxContacts),
+      contacts_(surface, law_, parts) {}
+
+void TissueTouch::find(std::span<const MovingTool> tools) {
+  contacts_.look(tools);
+  contacts_.collide(tools);
+}
+
+void TissueTouch::drop_tool(int tool) {
+  for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
+    if (contacts()[i].tool == tool) law_.remove(i);
+}
+
+bool TissueTouch::grasping(int tool) const {
+  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.tool == tool; });
+}
+
+void TissueTouch::follow_cut(const CutMesh& topology) {
+  for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i) {
+    const Anchor& a = contacts()[i].anchor;
+    bool gone = false;
+    for (int v = 0; v < 3; ++v) gone |= a.weights[v] != 0 && !topology.has_node(a.nodes[v]);
+    if (gone) law_.remove(i);
+  }
+  follow_response(dt_);
+}
+
+void TissueTouch::follow_response(double dt) {
+  dt_ = dt;
+  response_.follow(dt);
+  law_.follow_response();
+}
+
+void TissueTouch::solve(std::span<const MovingTool> tools) {
+  for_each_node(contacts(), [&](int node) { free_[node] = mesh_.rest[node] + model_.displacement(node); });
+  contacts_.aim(tools);
+  law_.solve();
+}
+
+void TissueTouch::put_right(double dt) {
+  law_.for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
+    const Eigen::Vector3d moved = response_.of_node(node).cwiseProduct(f);
+    model_.set_motion(node, model_.displacement(node) + moved, model_.velocity(node) + moved / dt);
+  });
+  for_each_node(contacts(), [&](int node) { surface_.place(node, mesh_.rest[node] + model_.displacement(node)); });
+}
+
+void TissueTouch::step(std::span<const MovingTool> tools, double dt) {
+  if (dt != dt_) follow_response(dt);
+  model_.step_semi_implicit(dt);
+  solve(tools);
+  put_right(dt);
+  contacts_.slide(tools);
+}
+
+}  // namespace palpate

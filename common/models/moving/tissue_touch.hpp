@@ -1,0 +1,60 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "common/contact/cut_surface.hpp"
+#include "common/contact/tool_contacts.hpp"
+#include "common/dynamics/dynamic_model.hpp"
+#include "common/models/moving/inertial_response.hpp"
+
+namespace palpate {
+
+/// Contacts of tools with tissue that moves with inertia. What the tools touch is found once a tick; the contacts are
+/// solved in every step of the tissue, for its end: first it moves without them, then their forces, by dt^2 / m of the
+/// touched nodes, put right where these have come. A step with contacts is a semi-implicit one, whose end they set
+/// exactly, so that at rest the forces are those of the static problem, what is pressed leaves a step with the tool's
+/// velocity, and no stiffness of contact limits the step. Where points slide they do so within the tick too: an anchor
+/// that stood still while the tissue swings under it would feed the swing.
+class TissueTouch {
+ public:
+  static constexpr int kMaxContacts = 32;
+
+  /// All outlive this object. `parts`: of all tools.
+  TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicModel& model, double friction, std::size_t parts);
+
+  std::span<const TouchContact> contacts() const { return law_.contacts(); }
+
+  /// Once a tick: which points the tools' parts touch. Contacts that go on keep where they stick.
+  void find(std::span<const MovingTool> tools);
+  /// Forgets what a tool touches, its jaws' hold as well.
+  void drop_tool(int tool);
+  ToolContacts& search() { return contacts_; }
+  bool grasping(int tool) const;
+
+  /// One step of `dt` [s] of the tissue, with contacts. `tools`: as they are at its beginning and end.
+  void step(std::span<const MovingTool> tools, double dt);
+  /// After the last step of a tick: contacts that have opened and gone are dropped.
+  void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
+  /// After a cut: contacts on what is gone are dropped; the masses of what is left have changed.
+  void follow_cut(const CutMesh& topology);
+
+  void forget_factor() { law_.forget_factor(); }
+  void state(State& s, std::span<const MovingTool> tools) { contacts_.state(s, tools); }
+
+ private:
+  void follow_response(double dt);
+  void solve(std::span<const MovingTool> tools);
+  void put_right(double dt);
+
+  const ElasticMesh& mesh_;
+  DynamicModel& model_;
+  CutSurface& surface_;
+  std::vector<Eigen::Vector3d> free_;  ///< [m] per node: where it is at a step's end without contacts
+  InertialResponse response_;
+  ContactLaw law_;
+  ToolContacts contacts_;
+  double dt_ = 0;  ///< [s] of the step that the response is for
+};
+
+}  // namespace palpate
