@@ -198,7 +198,7 @@ TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
   EXPECT_FALSE(store.find(point));
   Result result;
   result.rows.push_back(
-      {"small", "quasi_static", "scene", "as it is", 1.5, 2.5, unknown, 4e6, 0.25, 0.125, "fine_linear"});
+      {"small", "quasi_static", "scene", "as it is", 1.5, 2.5, kUnknown, 4e6, 0.25, 0.125, "fine_linear"});
   result.courses.push_back({"small", "quasi_static", "scene", "as it is", 0.001, 1, 2, 3, 4});
   result.notes.push_back({"small", "quasi_static", "scene", "as it is", "with, commas"});
   store.keep(point, result);
