@@ -112,10 +112,9 @@ double BallPress::along(const std::vector<Eigen::Vector3d>& u, const std::array<
   return sum;
 }
 
-// It is made once more, alone.
-std::size_t BallPress::bytes() const {
-  return std::visit([&](const auto& spec) { return owner_bytes(spec, rig_.scene(), rig_.archives()); },
-                    rig_.scene().bodies[0]);
+std::size_t owner_bytes(const Scene& scene, const Archive& archive) {
+  const std::vector<Archive> archives{archive};
+  return std::visit([&](const auto& spec) { return owner_bytes(spec, scene, archives); }, scene.bodies[0]);
 }
 
 std::size_t owner_bytes(const NamedSpec&, const Scene& scene, const std::vector<Archive>& archives) {

@@ -9,6 +9,9 @@ namespace palpate::study {
 /// press. Nothing limits the ball's force.
 Scene ball_scene(const Scene& from, Body body, const Patch& patch, double radius);
 
+/// [bytes] that what owns the state of a scene's one body takes, and what shows it.
+std::size_t owner_bytes(const Scene& scene, const Archive& archive);
+
 /// Presses one body with a ball, tick by tick, by what owns the body's state in the product: see PressRig::press().
 class BallPress {
  public:
@@ -31,7 +34,6 @@ class BallPress {
   std::vector<Eigen::Vector3d> displacement() { return rig_.displacement(); }  ///< [m] per node of the surface map
   /// [m] mean displacement along the press of three of the nodes of a field.
   double along(const std::vector<Eigen::Vector3d>& u, const std::array<int, 3>& nodes) const;
-  std::size_t bytes() const;  ///< that the owner of the body's state takes, and what shows it
   PressRig& rig() { return rig_; }
 
  private:

@@ -146,8 +146,8 @@ class Dynamic : public Method {
       auto& motion = motion_of(alone.bodies[0]);
       motion.damping = std::max(kRestDamping, motion.damping);
       if (motion.step > 0) motion.step *= 0.98;  // the bound falls a little with the damping
+      if (p == 0) row.memory_bytes = static_cast<double>(owner_bytes(alone, ready.archive));
       BallPress press(alone, ready.archive, presses.patches[p], presses.radius);
-      row.memory_bytes = static_cast<double>(press.bytes());
       answers.emplace_back();
       for (const double depth : presses.depths) {
         press.bring(depth, 50);

@@ -44,11 +44,11 @@ Methods methods_of(std::optional<OneMesh> whole, const StudiedBody& body, const 
   const Scene& scene = body.scene;
   if (!whole) {
     const std::string name = name_of(scene.bodies[body.index]);
-    return only(std::make_unique<JoinedAtNodes>(body.index, scene.bodies.size() == 1 ? "hybrid" : fmt::format("{}:hybrid", name)));
+    return only(std::make_unique<JoinedAtNodes>(body.index,
+                                                scene.bodies.size() == 1 ? "hybrid" : fmt::format("{}:hybrid", name)));
   }
-  const auto solid =
-      std::make_shared<SolidCase>(scene, body.index, *std::move(whole), body.options.quick,
-                                  ReferenceCache(body.options.references), body.options.say);
+  const auto solid = std::make_shared<SolidCase>(scene, body.index, *std::move(whole), body.options.quick,
+                                                 ReferenceCache(body.options.references), body.options.say);
   Methods methods = only(make_quasi_static(solid));
   methods.push_back(make_linearity(solid));
   for (const MovingModel& model : models) methods.push_back(make_dynamic(solid, model));

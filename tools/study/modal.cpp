@@ -117,8 +117,9 @@ class Modal : public Method {
     Pressed pressed;
     const Presses& presses = errors_.presses();
     for (const Patch& patch : presses.patches) {
-      BallPress press(press_scene(scene, patch), archive, patch, touching());
-      if (bytes) *bytes = static_cast<double>(press.bytes());
+      const Scene alone = press_scene(scene, patch);
+      if (bytes && pressed.answers.empty()) *bytes = static_cast<double>(owner_bytes(alone, archive));
+      BallPress press(alone, archive, patch, touching());
       pressed.answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth, kSettling);

@@ -97,7 +97,9 @@ class QuasiStatic : public Method {
     const auto& presses = solid_->presses();
     const int samples = (solid_->quick() ? 600 : 2400) / static_cast<int>(presses.patches.size());
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      BallPress press(solid_->press_scene(scene, static_cast<int>(p)), archive, presses.patches[p], presses.radius);
+      const Scene alone = solid_->press_scene(scene, static_cast<int>(p));
+      if (p == 0) row.memory_bytes = static_cast<double>(owner_bytes(alone, archive));
+      BallPress press(alone, archive, presses.patches[p], presses.radius);
       answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth);
@@ -107,7 +109,6 @@ class QuasiStatic : public Method {
       }
       const auto times = press.time(200, samples);
       seconds.insert(seconds.end(), times.begin(), times.end());
-      row.memory_bytes = static_cast<double>(press.bytes());
     }
     const StepTime time = summarise(std::move(seconds));
     row.step_us_median = 1e6 * time.median;
