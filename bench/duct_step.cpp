@@ -5,30 +5,42 @@
 #include "bench/report.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "common/sim/haptic_step.hpp"
-#include "common/tool/trajectory.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/rig/scripted_tools.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr int kMaxModes = 200;
 
-/// The duct with its 200 lowest modes, of which each run keeps the first.
+// What a scene needs of each body: the duct has its 200 lowest modes, of which each run keeps the first.
+void compute(NamedSpec&, Archive&) {}
+void compute(ModalShellSpec& duct, Archive& archive) {
+  duct.shell.modes = kMaxModes;
+  archive = precompute(duct, load_shell_mesh(duct.mesh, duct.scale));
+}
+
+struct Sizes {
+  int modes, particles;
+};
+void resize(NamedSpec&, Archive&, const Sizes&) {}
+void resize(ModalShellSpec&, Archive& archive, const Sizes& sizes) {
+  ModalTensors& modal = *archive.modal;
+  modal.shape.resize(modal.shape.size() / modal.omega.size() * sizes.modes);
+  modal.omega.resize(sizes.modes);
+}
+void resize(CatheterSpec& wire, Archive& archive, const Sizes& sizes) {
+  wire.catheter.particles = sizes.particles;
+  archive = *made_archive(wire);
+}
+
 struct Insertion {
   Scene scene = load_scene(PALPATE_SCENES "/catheter_insertion.toml");
-  std::vector<Archive> archives;
-  std::vector<Trajectory> motions;
+  std::vector<Archive> archives{scene.bodies.size()};
 
   Insertion() {
-    for (Body& body : scene.bodies) {
-      archives.emplace_back();
-      auto* duct = as<ModalShellSpec>(body);
-      if (!duct) continue;
-      duct->shell.modes = kMaxModes;
-      archives.back() = precompute(*duct, load_shell_mesh(duct->mesh, duct->scale));
-    }
-    for (const Tool& tool : scene.tools)
-      motions.push_back(load_trajectory(std::get<ScriptedDeviceSpec>(tool.device).trajectory));
+    for (std::size_t b = 0; b < archives.size(); ++b)
+      std::visit([&](auto& spec) { compute(spec, archives[b]); }, scene.bodies[b]);
   }
 };
 
@@ -40,25 +52,18 @@ struct Timed {
 Timed run(const Insertion& whole, int modes, int particles, int every) {
   Scene scene = whole.scene;
   std::vector<Archive> archives = whole.archives;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (auto* wire = as<CatheterSpec>(scene.bodies[b])) wire->catheter.particles = particles;
-    if (!as<ModalShellSpec>(scene.bodies[b])) continue;
-    ModalTensors& modal = *archives[b].modal;
-    modal.shape.resize(modal.shape.size() / modal.omega.size() * modes);
-    modal.omega.resize(modes);
-  }
-  HapticStep haptic(scene, archives);
-  std::vector<ToolDofs> dofs;
-  for (const Trajectory& m : whole.motions) dofs.push_back(m.at(0));
-  haptic.start(dofs);
+  for (std::size_t b = 0; b < archives.size(); ++b)
+    std::visit([&](auto& spec) { resize(spec, archives[b], {modes, particles}); }, scene.bodies[b]);
+  PressRig rig(scene, std::move(archives));
+  ScriptedTools tools(scene);
+  rig.start(tools.at(0));
   Timed timed;
-  const double end = std::max(whole.motions[0].duration(), whole.motions[1].duration());
-  for (int i = 0; i * haptic.dt() < end; i += every) {
-    for (std::size_t t = 0; t < dofs.size(); ++t) dofs[t] = whole.motions[t].at(i * haptic.dt());
+  for (int i = 0; i * rig.dt() < tools.duration(); i += every) {
+    const auto dofs = tools.at(i * rig.dt());
     const auto begin = std::chrono::steady_clock::now();
-    haptic.step(dofs);
+    rig.press(dofs);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const double inserted = haptic.task(0).inserted;
+    const double inserted = rig.simulator().task(0).inserted;
     if (inserted > 0.005) timed.inside.add(seconds);
     timed.by_depth[static_cast<int>(1e3 * inserted)].add(seconds);
   }

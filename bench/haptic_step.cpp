@@ -4,34 +4,32 @@
 #include "bench/report.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/scene/ensure_archive.hpp"
-#include "common/sim/step_record.hpp"
-#include "common/tool/trajectory.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/rig/scripted_tools.hpp"
 
 namespace palpate {
 namespace {
 
 /// The scripted motion of the liver scene; steps in contact are sampled, and their hand-over to the ring.
 void one_contact(const Scene& scene, const std::vector<Archive>& archives, bool quick) {
-  HapticStep haptic(scene, archives);
-  const Trajectory motion = load_trajectory(std::get<ScriptedDeviceSpec>(scene.tools[0].device).trajectory);
+  PressRig rig(scene, archives);
+  ScriptedTools tools(scene);
   SpscRing<StepRecord> ring(64);
   bench::Samples steps, pushes;
-  std::vector<ToolDofs> dofs(haptic.tools());
+  rig.start(tools.at(0));
   for (int lap = 0; lap < (quick ? 2 : 6); ++lap) {
-    dofs[0] = motion.at(0);
-    if (lap == 0) haptic.start(dofs);
-    for (double t = 0; t < motion.duration(); t += haptic.dt()) {
-      dofs[0] = motion.at(t);
+    for (double t = 0; t < tools.duration(); t += rig.dt()) {
+      const auto dofs = tools.at(t);
       const auto begin = std::chrono::steady_clock::now();
-      haptic.step(dofs);
+      rig.press(dofs);
       const auto stepped = std::chrono::steady_clock::now();
       const std::array<DeviceSample, 1> samples{DeviceSample{dofs[0], 0}};
       StepRecord* record = ring.begin_push();
-      fill_record(haptic, samples, 0, 0, *record);
+      fill_record(rig.haptic(), samples, 0, 0, *record);
       ring.commit_push();
       const auto pushed = std::chrono::steady_clock::now();
       if (ring.begin_pop()) ring.commit_pop();
-      if (haptic.force(0).isZero(0) || lap == 0) continue;
+      if (rig.force().isZero(0) || lap == 0) continue;
       steps.add(std::chrono::duration<double>(stepped - begin).count());
       pushes.add(std::chrono::duration<double>(pushed - stepped).count());
     }
@@ -42,18 +40,6 @@ void one_contact(const Scene& scene, const std::vector<Archive>& archives, bool 
   bench::report("haptic_step", "liver1400_contact1", "max", 1e6 * steps.max(), "us");
   bench::report("publish", "haptic_step", "p50", 1e6 * pushes.median(), "us");
   bench::report("publish", "haptic_step", "p999", 1e6 * pushes.p999(), "us");
-}
-
-int held_nodes(const HapticStep& haptic) {
-  int held = 0;
-  for (const TouchContact& c : haptic.body(0).law().contacts()) held += c.touch != Touch::open;
-  return held;
-}
-
-int held_by(const HapticStep& haptic, int tool) {
-  int held = 0;
-  for (const TouchContact& c : haptic.body(0).law().contacts()) held += c.touch != Touch::open && c.tool == tool;
-  return held;
 }
 
 /// Eight balls of 0.1 m press the liver from all sides until they hold 64 nodes together, and tremble there.
@@ -74,16 +60,17 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
     scene.tools.push_back(tool);
   }
   scene.contact.friction = 10;  // all stick, so that all three displacements of every node are held
-  HapticStep haptic(scene, archives);
+  PressRig rig(scene, archives);
   std::vector<ToolDofs> dofs(scene.tools.size());
   for (ToolDofs& d : dofs) d.depth = 0.5;
-  haptic.start(dofs);
-  for (int i = 0; held_nodes(haptic) < wanted && i < 300000; ++i) {
+  rig.start(dofs);
+  const auto held_by = [&](int tool) { return held_points(rig.haptic(), 0, tool); };
+  for (int i = 0; held_points(rig.haptic(), 0) < wanted && i < 300000; ++i) {
     int least = 0;
     for (int t = 1; t < static_cast<int>(dofs.size()); ++t)
-      if (held_by(haptic, t) < held_by(haptic, least)) least = t;
+      if (held_by(t) < held_by(least)) least = t;
     dofs[least].depth += 1e-5;
-    haptic.step(dofs);
+    rig.press(dofs);
   }
   const std::vector<ToolDofs> pressed = dofs;
   double held = 0;
@@ -91,8 +78,8 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
   const int count = quick ? 2000 : 20000;
   samples.measure(200, count, [&](int i) {
     for (std::size_t t = 0; t < dofs.size(); ++t) dofs[t].depth = pressed[t].depth + 2e-6 * std::sin(0.05 * i + t);
-    haptic.step(dofs);
-    if (i >= 0) held += held_nodes(haptic);
+    rig.press(dofs);
+    if (i >= 0) held += held_points(rig.haptic(), 0);
   });
   bench::report("held_nodes", "liver1400_64", "held", held / count, "nodes");
   bench::report("held_nodes", "liver1400_64", "p50", 1e6 * samples.median(), "us");
@@ -105,7 +92,7 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
 int main(int argc, char** argv) {
   const bool quick = palpate::bench::quick(argc, argv);
   const palpate::Scene scene = palpate::load_scene(PALPATE_SCENES "/liver.toml");
-  const auto archives = palpate::load_or_precompute(scene, palpate::ArchivePart::touchable);
+  const auto archives = palpate::load_or_precompute(scene, palpate::ArchivePart::surface);
   palpate::one_contact(scene, archives, quick);
   palpate::many_contacts(scene, archives, quick);
 }

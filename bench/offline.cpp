@@ -3,8 +3,8 @@
 #include "bench/report.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/precompute.hpp"
-#include "common/sim/haptic_step.hpp"
-#include "common/tool/trajectory.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/rig/scripted_tools.hpp"
 
 namespace palpate {
 namespace {
@@ -23,30 +23,28 @@ Archive compute(const Scene& scene, std::optional<Offline> offline, const char* 
 }
 
 /// Times the steps in contact of one lap of the scene's scripted motion.
-void lap(HapticStep& haptic, const Trajectory& motion, bench::Samples& samples) {
-  std::vector<ToolDofs> dofs(1);
-  for (double t = 0; t < motion.duration(); t += haptic.dt()) {
-    dofs[0] = motion.at(t);
+void lap(PressRig& rig, ScriptedTools& tools, bench::Samples& samples) {
+  for (double t = 0; t < tools.duration(); t += rig.dt()) {
+    const auto dofs = tools.at(t);
     const auto begin = std::chrono::steady_clock::now();
-    haptic.step(dofs);
+    rig.press(dofs);
     const auto end = std::chrono::steady_clock::now();
-    if (!haptic.force(0).isZero(0)) samples.add(std::chrono::duration<double>(end - begin).count());
+    if (!rig.force().isZero(0)) samples.add(std::chrono::duration<double>(end - begin).count());
   }
 }
 
 void measure(const Scene& scene, bool quick) {
-  const Trajectory motion = load_trajectory(std::get<ScriptedDeviceSpec>(scene.tools[0].device).trajectory);
-  const std::vector<ToolDofs> start{motion.at(0)};
-  HapticStep plain(scene, {compute(scene, {}, "liver1400_plain")});
-  HapticStep fine(scene, {compute(scene, Offline{0, "p2", "locking_free"}, "liver1400_p2_locking_free")});
-  plain.start(start);
-  fine.start(start);
+  ScriptedTools tools(scene);
+  PressRig plain(scene, {compute(scene, {}, "liver1400_plain")});
+  PressRig fine(scene, {compute(scene, Offline{0, "p2", "locking_free"}, "liver1400_p2_locking_free")});
+  plain.start(tools.at(0));
+  fine.start(tools.at(0));
   bench::Samples none, of_plain, of_fine;
-  lap(plain, motion, none);
-  lap(fine, motion, none);
+  lap(plain, tools, none);
+  lap(fine, tools, none);
   for (int i = 0; i < (quick ? 2 : 8); ++i) {
-    lap(plain, motion, of_plain);
-    lap(fine, motion, of_fine);
+    lap(plain, tools, of_plain);
+    lap(fine, tools, of_fine);
   }
   bench::report("offline", "liver1400_plain", "step_p50", 1e6 * of_plain.median(), "us");
   bench::report("offline", "liver1400_plain", "step_p99", 1e6 * of_plain.p99(), "us");

@@ -18,6 +18,20 @@ const Scene& checked(const Scene& scene) {
   return scene;
 }
 
+/// What the deformer rebuilds the bodies of the haptic step from.
+void show(const StepRecord& record, std::vector<ContactState>& contacts, std::vector<ModalState>& modal,
+          std::vector<CatheterState>& catheters, Deformer& deformer) {
+  for (std::size_t t = 0; t < contacts.size(); ++t) {
+    describe_contacts(record, static_cast<int>(t), contacts[t]);
+    deformer.take(contacts[t]);
+  }
+  if (!record.has_shapes) return;
+  describe_shapes(record, modal);
+  describe_shapes(record, catheters);
+  for (const ModalState& m : modal) deformer.take(m);
+  for (const CatheterState& m : catheters) deformer.take(m);
+}
+
 }  // namespace
 
 Simulator::Simulator(const Scene& scene, const std::vector<Archive>& archives)
@@ -44,22 +58,9 @@ void Simulator::step(std::span<const ToolInput> inputs) {
   haptic_.step(dofs_);
   const auto now_ns = static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(steps_) * dt()));
   fill_record(haptic_, inputs, steps_, now_ns, record_);
-  show();
+  show(record_, contacts_, modal_, catheters_, deformer_);
   if (world_.organs() > 0) move_tissue();
   ++steps_;
-}
-
-// What the deformer rebuilds the bodies of the haptic step from.
-void Simulator::show() {
-  for (int t = 0; t < tools(); ++t) {
-    describe_contacts(record_, t, contacts_[t]);
-    deformer_.take(contacts_[t]);
-  }
-  if (!record_.has_shapes) return;
-  describe_shapes(record_, modal_);
-  describe_shapes(record_, catheters_);
-  for (const ModalState& m : modal_) deformer_.take(m);
-  for (const CatheterState& m : catheters_) deformer_.take(m);
 }
 
 // The tissue follows the tools, and the next step feels how it then is.
@@ -98,14 +99,44 @@ std::vector<ChangeView> Simulator::changes() const {
   return all;
 }
 
+int Simulator::organ_of(int body) const {
+  const auto found = std::ranges::find(world_.bodies(), body);
+  return found == world_.bodies().end() ? -1 : static_cast<int>(found - world_.bodies().begin());
+}
+
 SurfaceView Simulator::surface(int body) {
-  const auto moving = std::ranges::find(world_.bodies(), body);
-  if (moving != world_.bodies().end()) {
-    world_.organ(static_cast<int>(moving - world_.bodies().begin())).shape(position_, normal_);
+  if (const int moving = organ_of(body); moving >= 0) {
+    world_.organ(moving).shape(position_, normal_);
     return {position_, normal_};
   }
   if (deformer_.fresh()) deformer_.deform();
   return {deformer_.surface(body).position, deformer_.surface(body).normal};
+}
+
+// As the haptic step is, also between the steps at which walls and catheters are shown.
+void Simulator::show_now() {
+  StepRecord record{};
+  prepare_record(haptic_, record);
+  fill_record(haptic_, std::vector<ToolInput>(dofs_.size()), 0, 0, record);
+  std::vector<ContactState> contacts(dofs_.size(), ContactState{.run = kRun});
+  auto modal = modal_states(haptic_, kRun);
+  auto catheters = catheter_states(haptic_, kRun);
+  show(record, contacts, modal, catheters, deformer_);
+  deformer_.deform();
+}
+
+std::vector<Eigen::Vector3d> Simulator::displacement(int body) {
+  std::vector<Eigen::Vector3d> u;
+  if (const int moving = organ_of(body); moving >= 0) {
+    const DynamicOrgan& organ = world_.organ(moving);
+    const HybridPart* still = organ.still_part() ? &organ.still_part()->part() : nullptr;
+    for (int n = 0; n < deformer_.map(body).size(); ++n)
+      u.push_back(still && still->owns(n) ? still->displacement(n) : organ.model().displacement(n));
+    return u;
+  }
+  show_now();
+  for (const Eigen::Vector3f& d : deformer_.surface(body).displacement) u.push_back(d.cast<double>());
+  return u;
 }
 
 }  // namespace palpate::sim

@@ -72,10 +72,16 @@ class Simulator {
   /// Rebuilt when it is asked for, and valid until the next call or step. Walls and catheters are shown
   /// as they were in the newest of every StepRecord::kShapeInterval steps.
   SurfaceView surface(int body);
+  /// [m] of each node of a body's surface map, as its owner has it now; surface() shows that too until the next step.
+  std::vector<Eigen::Vector3d> displacement(int body);
 
-  // Its parts, to look at.
+  // Its parts, to look at, or to be moved on alone where a part's own time or forces are wanted: the others then stay
+  // behind.
   const HapticStep& haptic() const { return haptic_; }
   const DynamicWorld& tissue() const { return world_; }
+  HapticStep& haptic() { return haptic_; }
+  DynamicWorld& tissue() { return world_; }
+  LocalModels& local_models() { return local_models_; }
 
   /// The whole state as bytes. What is kept of earlier solutions only to be faster is forgotten, so that the run goes
   /// on bit for bit as one that begins with restore().
@@ -89,7 +95,8 @@ class Simulator {
   void forget_factors();
   void state(State& s);
   void move_tissue();
-  void show();
+  void show_now();
+  int organ_of(int body) const;  ///< its place among the tissue's; -1 where the haptic step owns it
 
   const Scene scene_;  // the tissue refers to it
   HapticStep haptic_;

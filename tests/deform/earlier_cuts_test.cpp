@@ -4,7 +4,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
-#include "tests/deform/organ_bench.hpp"
+#include "tests/deform/block_bench.hpp"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,9 @@
 #pragma once
-#include "common/mesh/generators.hpp"
 #include "common/models/quasi_static/precompute.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/tip_at.hpp"
 
 namespace palpate::testing {
 
@@ -13,7 +14,7 @@ struct BlockScene {
   std::vector<Archive> archives;
 
   explicit BlockScene(int tools = 1, int cells = 8) {
-    const TetMesh mesh = make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
+    const TetMesh mesh = block_mesh(cells);
     QuasiStaticSpec body;
     body.name = "block";
     body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
@@ -48,11 +49,6 @@ inline Scene moving_block_scene(double radius) {
   scene.tools.push_back(tool);
   scene.contact.friction = 0;
   return scene;
-}
-
-/// Degrees of freedom that put the tip's centre at p.
-inline ToolDofs tip_at(const Tool& tool, const Eigen::Vector3d& p, double roll = 0) {
-  return dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), p, roll);
 }
 
 }  // namespace palpate::testing

@@ -18,7 +18,7 @@ class TouchedBlock {
  public:
   /// `cells` along the block's sides of 0.1 m; half of that along its height of 0.05 m.
   TouchedBlock(double young, double damping, int cells = 6) {
-    const TetMesh mesh = make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
+    const TetMesh mesh = block_mesh(cells);
     QuasiStaticSpec body;
     body.name = "block";
     body.material = {.young = young, .poisson = 0.4, .density = 1000};

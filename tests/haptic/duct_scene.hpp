@@ -10,17 +10,13 @@ namespace palpate::testing {
 /// A straight duct along z from 0 to 40 mm, 9 mm wide, clamped at its far end, under tools whose trocars lie above it
 /// (along +y): at depth d a tool's tip is 0.15 m - d above the axis, in the middle of the duct.
 struct DuctScene {
-  static constexpr double kRadius = 0.0045, kLength = 0.04, kThickness = 0.001;
+  static constexpr double kRadius = kDuctRadius, kLength = kDuctLength, kThickness = 0.001;
   Scene scene;
   std::vector<Archive> archives;
 
   explicit DuctScene(int modes = 30) {
     const ShellMesh mesh = make_tube(kRadius, kLength, 16, 16);
-    ModalShellSpec duct;
-    duct.name = "duct";
-    duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
-    duct.shell = {.thickness = kThickness, .modes = modes};
-    duct.fixed.push_back({{.where = {.box = Box{{-1, -1, kLength - 1e-6}, {1, 1, 1}}}}});
+    const ModalShellSpec duct = duct_body(kThickness, modes);
     scene.bodies.push_back(duct);
     archives.push_back(precompute(duct, mesh));
   }

@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::BlockScene;
-using testing::tip_at;
 
 class HapticStepTest : public ::testing::Test {
  protected:

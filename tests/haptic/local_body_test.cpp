@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 using testing::add_contact;
 using testing::add_square;
 using testing::empty_model;
-using testing::tip_at;
 
 constexpr double kRadius = 0.008;
 

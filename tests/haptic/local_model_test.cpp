@@ -10,7 +10,6 @@ namespace {
 using Eigen::Vector3d;
 using testing::Hand;
 using testing::LoopTrace;
-using testing::tip_at;
 using testing::TouchedBlock;
 
 constexpr double kDt = 1e-3, kRadius = 0.008;

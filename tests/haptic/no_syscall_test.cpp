@@ -52,7 +52,6 @@ namespace palpate {
 namespace {
 
 using testing::BlockScene;
-using testing::tip_at;
 
 /// A tick as the haptic loop runs it: step, record into the ring, checkpoint now and then.
 class Ticks {

@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::BlockScene;
-using testing::tip_at;
 
 constexpr double kDt = 1e-3;
 

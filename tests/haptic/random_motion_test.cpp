@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::BlockScene;
-using testing::tip_at;
 
 /// Wanders with the speed of a hand, and now and then jumps anywhere, through the organ included.
 class Wanderer {

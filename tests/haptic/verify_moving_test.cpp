@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
-using testing::tip_at;
 
 constexpr std::uint64_t kRunId = 5;
 constexpr int kSteps = 2500;

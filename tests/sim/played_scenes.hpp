@@ -5,7 +5,7 @@
 
 #include "common/scene/find_archive.hpp"
 #include "common/sim/simulator.hpp"
-#include "tests/deform/organ_bench.hpp"
+#include "tests/deform/block_bench.hpp"
 #include "tests/haptic/block_scene.hpp"
 #include "tests/haptic/duct_scene.hpp"
 
@@ -40,8 +40,8 @@ PlayedScene cut_block() {
   }
   Scene scene = block_scene(body);
   scene.tools[0].probe()->cautery = Cautery{.radius = 0.006};
-  const TetMesh mesh = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {6, 6, 3});
-  std::vector<Archive> archives{precompute_block(scene, mesh, nullptr)};
+  const TetMesh mesh = middle_block_mesh(6);
+  std::vector<Archive> archives{precompute_on(scene.bodies[0], mesh)};
   const Tool tool = scene.tools[0];
   return {"cut_block", scene, archives, [tool](int i) -> std::vector<sim::ToolInput> {
             const double down = 0.001 - 0.004 * std::sin(0.01 * i);

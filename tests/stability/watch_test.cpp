@@ -1,8 +1,11 @@
+#include "tools/stability/watch.hpp"
+
 #include <gtest/gtest.h>
 
-#include "tools/stability/catheter_bench.hpp"
-#include "tools/stability/organ_bench.hpp"
-#include "tools/stability/press_bench.hpp"
+#include "tools/rig/duct.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/stability/press.hpp"
 
 /// What looks on sees what must not occur.
 namespace palpate::stability {
@@ -47,8 +50,8 @@ TEST(StabilityWatch, ADuctIsMovedByTheCatheterThatLeansOnIt) {
 }
 
 TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
-  const Result shallow = press_organ(organ_scene(), organ_mesh(), 0.002, 200),
-               deep = press_organ(organ_scene(), organ_mesh(), 0.004, 200);
+  const Result shallow = press_tissue(moving_block_scene(), small_block_mesh(), 0.002, 200),
+               deep = press_tissue(moving_block_scene(), small_block_mesh(), 0.004, 200);
   EXPECT_GT(shallow.max_force, 1e-3);
   EXPECT_GT(deep.max_force, 1.5 * shallow.max_force);
   EXPECT_GT(deep.energy_growth, -1e-12);
@@ -57,7 +60,7 @@ TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
 /// Moving tissue whose two contacts pull against each other with `force` [N], ten millimetres apart.
 Result pulled_by_a_couple(double force) {
   Scene scene = block_scene();
-  make_moving(scene);
+  scene.bodies[0] = as_kind<TensorMassSpec>(block_of(scene));
   scene.passivity.controller = false;
   HapticStep haptic(scene, std::vector<Archive>(1));
   const ToolDofs dofs = tip_at(scene.tools[0], {0, 0, 0.008});

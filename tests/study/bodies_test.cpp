@@ -98,7 +98,7 @@ TEST(Study, AHybridOfTwoMeshesThatMeetInAllNodesIsStudiedAsOneBody) {
     for (const int n : whole->mesh.tetrahedra[t]) EXPECT_GT(whole->mesh.nodes[n].z(), 0.02 - 1e-9);
   const auto solid = std::make_shared<SolidCase>(scene, 0, *whole, true);
   for (const Patch& patch : solid->presses().patches) EXPECT_GT(patch.point.z(), 0.001);
-  const auto method = make_dynamic(solid, "hybrid");
+  const auto method = make_dynamic(solid, moving_model<HybridSpec, HybridSpec>());
   const Result result = method->evaluate(method->points()[0]);
   const Row *fine = find(result, "hybrid", "scene", "", "fine_linear"),
             *same = find(result, "hybrid", "scene", "", "same_mesh");
@@ -109,10 +109,10 @@ TEST(Study, AHybridOfTwoMeshesThatMeetInAllNodesIsStudiedAsOneBody) {
       EXPECT_LT(std::abs(d.err_f_rel), 1e-3);
     }
   // What a budget may choose, the scene's own files can say.
-  for (const std::string model : {"hybrid", "tensor_mass"})
+  for (const MovingModel& model : {moving_model<HybridSpec, HybridSpec>(), moving_model<TensorMassSpec, HybridSpec>()})
     for (const Point& point : make_dynamic(solid, model)->points())
       if (point.serves) {
-        EXPECT_TRUE(model == "hybrid" && point.knob != "dynamic share") << model << " " << point.knob;
+        EXPECT_TRUE(model.own && point.knob != "dynamic share") << model.name << " " << point.knob;
       }
 }
 

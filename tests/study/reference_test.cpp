@@ -7,6 +7,7 @@
 #include "common/fem/dense.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/rig/example_bodies.hpp"
 #include "tools/study/reference/graded.hpp"
 #include "tools/study/reference/linear_contact.hpp"
 #include "tools/study/reference/newton.hpp"
@@ -17,18 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-SolidSpec block_body(double poisson = 0.3) {
-  SolidSpec body;
-  body.name = "block";
-  body.material = {5000, poisson, 1000};
-  body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-  return body;
+SolidSpec soft_block(double poisson = 0.3) {
+  return block_body<SolidSpec>({}, poisson);
 }
 
 /// 60 x 60 x 30 mm on its base, top at z = 30 mm.
 StaticProblem block(int cells, double poisson = 0.3) {
-  return make_static_problem(block_body(poisson),
-                             make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {cells, cells, cells / 2}));
+  return make_static_problem(soft_block(poisson), middle_block_mesh(cells));
 }
 
 Eigen::Matrix<double, 4, 3> random_corners(unsigned seed, double size) {
@@ -155,10 +151,10 @@ double volume(const TetMesh& mesh) {
 }
 
 TEST(Graded, AFinerMeshIsConformingHasTheSameShapeAndKeepsItsNodes) {
-  SolidSpec body = block_body();
+  SolidSpec body = soft_block();
   body.materials.push_back(
       {.where = {.indices = {}, .box = Box{{-1, -1, 0.015}, {1, 1, 1}}, .group = {}}, .material = {9000, 0.2, 1000}});
-  const StaticProblem coarse = make_static_problem(body, make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {4, 4, 2}));
+  const StaticProblem coarse = make_static_problem(body, middle_block_mesh(4));
   const StaticProblem fine =
       refine_graded(coarse, size_around({0, 0, 0.03}, Vector3d::UnitZ(), 0.008, 0.003, 0.5, 0.012), 100000);
   EXPECT_GT(fine.mesh.nodes.size(), 4 * coarse.mesh.nodes.size());
@@ -191,7 +187,7 @@ TEST(LinearContact, AShallowPressOnALargeBlockComesToHertzAsTheMeshGetsFiner) {
   const double r = 0.05, e = 5000, nu = 0.3, d = 0.01 * r, a = std::sqrt(r * d);
   const double hertz = 4.0 / 3 * e / (1 - nu * nu) * std::sqrt(r) * std::pow(d, 1.5);
   const StaticProblem block =
-      make_static_problem(block_body(), make_block({-0.3, -0.3, 0}, {0.3, 0.3, 0.3}, {4, 4, 2}));
+      make_static_problem(soft_block(), make_block({-0.3, -0.3, 0}, {0.3, 0.3, 0.3}, {4, 4, 2}));
   double last = 1;
   for (const double share : {0.55, 0.36}) {  // of the contact's radius; the edges grow as slowly as they are small
     const double h = share * a;

@@ -8,6 +8,7 @@
 
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/scene/scene.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/result.hpp"
 

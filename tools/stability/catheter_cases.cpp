@@ -5,7 +5,8 @@
 #include <optional>
 #include <random>
 
-#include "tools/stability/catheter_bench.hpp"
+#include "tools/rig/duct.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {

@@ -4,12 +4,25 @@
 #include <cmath>
 
 #include "common/models/quasi_static/fitted_curve.hpp"
-#include "tools/stability/organ_bench.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/stability/press.hpp"
 
 namespace palpate::stability {
 namespace {
 
-const Body kinds[] = {TensorMassSpec{}, SpringMassSpec{}};
+using Eigen::Vector3d;
+
+/// A block of moving tissue of one kind.
+struct Tissue {
+  Scene scene;
+  bool of_elements;  ///< which can turn with the tissue
+};
+std::vector<Tissue> tissues() {
+  return {{moving_block_scene<TensorMassSpec>(), true}, {moving_block_scene<SpringMassSpec>(), false}};
+}
+
 constexpr const char* kPrecisions[] = {"single", "double"};
 
 double bound_of(const Scene& scene, const Archive& archive) {
@@ -21,20 +34,16 @@ double bound_of(const Scene& scene, const Archive& archive) {
 
 /// Free motion from a pluck at one step size: the energy of the undamped tissue may not grow.
 Result pluck(const Scene& scene, double step, int count) {
-  const Archive archive = precompute_tissue(scene.bodies[0], organ_mesh());
+  const Archive archive = precompute_on(scene.bodies[0], small_block_mesh());
   const double bound = bound_of(scene, archive);
-  const auto make = [&] {
-    Scene asked = scene;
-    tissue_of(asked).dynamic.step = step;
-    return OrganBench(asked, {archive});
-  };
-  (void)make();  // refuses beyond the bound
+  Scene asked = scene;
+  moving_block_of(asked).dynamic.step = step;
+  (void)PressRig(asked, {archive});  // refuses beyond the bound
   const auto model = model_maker(scene.bodies[0])(elastic_mesh(archive), motion_of(scene.bodies[0]));
   double strongest = 0, first = 0, last = 0;
   for (int n = 0; n < model->nodes(); ++n)
     if (model->mass(n) > 0)
-      model->set_motion(n, Eigen::Vector3d::Zero(),
-                        Eigen::Vector3d(1e-3 * std::sin(1.7 * n), 1e-3 * std::cos(2.3 * n), 1e-3));
+      model->set_motion(n, Vector3d::Zero(), Vector3d(1e-3 * std::sin(1.7 * n), 1e-3 * std::cos(2.3 * n), 1e-3));
   first = model->energy();
   for (int i = 0; i < count; ++i) {
     model->step(step);
@@ -52,20 +61,22 @@ Result pluck(const Scene& scene, double step, int count) {
 
 std::vector<Point> dynamic_points(const Extent& extent) {
   std::vector<Point> points;
-  for (const Body& kind : kinds)
+  for (const Tissue& tissue : tissues())
     for (const char* integrator : {"rk4", "semi_implicit"})
       for (const bool corotational : {false, true}) {
-        if (corotational && (!as<TensorMassSpec>(kind) || extent.quick)) continue;
-        Scene scene = organ_scene(kind);
-        tissue_of(scene).dynamic.integrator = integrator;
-        tissue_of(scene).dynamic.damping = 0;
-        tissue_of(scene).dynamic.precision = "double";
-        tissue_of(scene).dynamic.corotational = corotational;
+        if (corotational && (!tissue.of_elements || extent.quick)) continue;
+        Scene scene = tissue.scene;
+        Dynamic& motion = moving_block_of(scene).dynamic;
+        motion.integrator = integrator;
+        motion.damping = 0;
+        motion.precision = "double";
+        motion.corotational = corotational;
         const std::string name =
-            fmt::format("step {} {}{}", kind_of(kind), integrator, corotational ? " corotational" : "");
+            fmt::format("step {} {}{}", kind_of(scene.bodies[0]), integrator, corotational ? " corotational" : "");
         for (double s : extent.quick ? std::vector{0.9, 1.5} : std::vector{0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 3.0, 10.0})
           points.push_back({name, "step / bound [1]", fmt::format("{:g}", s), [scene, s, extent, corotational] {
-                              return pluck(scene, s * bound_of(scene, precompute_tissue(scene.bodies[0], organ_mesh())),
+                              return pluck(scene,
+                                           s * bound_of(scene, precompute_on(scene.bodies[0], small_block_mesh())),
                                            extent.quick   ? 500
                                            : corotational ? 2000
                                                           : 20000);
@@ -75,77 +86,77 @@ std::vector<Point> dynamic_points(const Extent& extent) {
   for (double a : extent.quick ? std::vector{0.0, 1e4} : std::vector{0.0, 1e-3, 1.0, 60.0, 1e3, 1e4, 1e6})
     for (const char* integrator : {"rk4", "semi_implicit"})
       points.push_back({fmt::format("damping {}", integrator), "damping [1/s]", fmt::format("{:g}", a), [=] {
-                          Scene scene = organ_scene();
-                          tissue_of(scene).dynamic.damping = a;
-                          tissue_of(scene).dynamic.integrator = integrator;
-                          return press_organ(scene, organ_mesh(), 0.004, extent.quick ? 100 : 1000);
+                          Scene scene = moving_block_scene();
+                          moving_block_of(scene).dynamic.damping = a;
+                          moving_block_of(scene).dynamic.integrator = integrator;
+                          return press_tissue(scene, small_block_mesh(), 0.004, extent.quick ? 100 : 1000);
                         }});
   for (double e : extent.quick ? std::vector{1.0} : std::vector{1.0, 1e3, 1e6, 1e8})
     for (const char* precision : kPrecisions)
       points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e),
                         [=] {
-                          Scene scene = organ_scene();
-                          tissue_of(scene).material.young = e;
-                          tissue_of(scene).dynamic.precision = precision;
-                          return press_organ(scene, organ_mesh(), 0.004, 100);
+                          Scene scene = moving_block_scene();
+                          moving_block_of(scene).material.young = e;
+                          moving_block_of(scene).dynamic.precision = precision;
+                          return press_tissue(scene, small_block_mesh(), 0.004, 100);
                         },
                         120});
   for (double d : extent.quick ? std::vector{1e-12, 0.019} : std::vector{1e-12, 1e-6, 1e-3, 0.01, 0.019, 0.03})
     points.push_back({"press moving", "depth [m] of 0.02", fmt::format("{:g}", d),
-                      [=] { return press_organ(organ_scene(), organ_mesh(), d, 300); }});
+                      [=] { return press_tissue(moving_block_scene(), small_block_mesh(), d, 300); }});
   return points;
 }
 
 std::vector<Point> cut_points(const Extent& extent) {
   std::vector<Point> points;
-  for (const Body& kind : kinds) {
-    if (extent.quick && !as<TensorMassSpec>(kind)) continue;
+  for (const Tissue& tissue : tissues()) {
+    if (extent.quick && !tissue.of_elements) continue;
+    const Scene& whole = tissue.scene;
+    const std::string_view kind = kind_of(whole.bodies[0]);
+    points.push_back({fmt::format("cut down {}", kind), "tetrahedra left", "1 and 0", [body = whole.bodies[0]] {
+                        const Archive archive = precompute_on(body, small_block_mesh(2));
+                        const Dynamic& motion = motion_of(body);
+                        const auto tissue = model_maker(body)(elastic_mesh(archive), motion);
+                        const double step = 0.5 * max_step(integrator_of(motion), tissue->frequency_bound(), 60);
+                        const int count = elastic_mesh(archive).tetrahedra.size();
+                        Result r{.note = {}};
+                        for (int t = count - 1; t >= 0; --t) {
+                          tissue->remove(std::array{t});
+                          for (int i = 0; i < 20; ++i) tissue->step(step);
+                          for (int n = 0; n < tissue->nodes(); ++n) {
+                            if (tissue->mass(n) > 0)
+                              tissue->set_motion(n, 1e-4 * Vector3d(n % 3, n % 5, n % 2), Vector3d::Zero());
+                            r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
+                            if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
+                          }
+                          if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
+                        }
+                        r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
+                        return r;
+                      }});
     points.push_back(
-        {fmt::format("cut down {}", kind_of(kind)), "tetrahedra left", "1 and 0", [=] {
-           Scene scene = organ_scene(kind);
-           const TetMesh mesh = organ_mesh(2);
-           const Archive archive = precompute_tissue(scene.bodies[0], mesh);
-           const auto tissue = model_maker(kind)(elastic_mesh(archive), tissue_of(scene).dynamic);
-           const double step = 0.5 * max_step(integrator_of(tissue_of(scene).dynamic), tissue->frequency_bound(), 60);
-           const int count = elastic_mesh(archive).tetrahedra.size();
-           Result r{.note = {}};
-           for (int t = count - 1; t >= 0; --t) {
-             tissue->remove(std::array{t});
-             for (int i = 0; i < 20; ++i) tissue->step(step);
-             for (int n = 0; n < tissue->nodes(); ++n) {
-               if (tissue->mass(n) > 0)
-                 tissue->set_motion(n, 1e-4 * Eigen::Vector3d(n % 3, n % 5, n % 2), Eigen::Vector3d::Zero());
-               r.max_force = larger(r.max_force, tissue->elastic_force(n).norm());
-               if (!tissue->displacement(n).allFinite()) r.outcome = Outcome::failed;
-             }
-             if (!std::isfinite(tissue->energy())) r.outcome = Outcome::failed;
-           }
-           r.note = fmt::format("{} tetrahedra taken one by one, the last one too", count);
-           return r;
-         }});
-    points.push_back(
-        {fmt::format("cut away {}", kind_of(kind)), "by", "cautery through the whole block", [=] {
-           Scene scene = organ_scene(kind);
+        {fmt::format("cut away {}", kind), "by", "cautery through the whole block", [scene = whole]() mutable {
            scene.tools[0].probe()->cautery = Cautery{.radius = 0.008};
-           OrganBench bench(scene, {precompute_tissue(scene.bodies[0], organ_mesh())});
-           for (int i = 0; i < 1500; ++i)
-             bench.tick({0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500}, 1);
-           Result r = bench.result();
-           r.note += fmt::format("; {} of {} tetrahedra gone", bench.organ().removed().size(),
-                                 bench.organ().mesh().tetrahedra.size());
+           const auto path = [](int i) {
+             return Vector3d(0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500);
+           };
+           const PressedTissue pressed = press_tissue(scene, small_block_mesh(), path, 1500, true);
+           Result r = pressed.result;
+           r.note += fmt::format("; {} of {} tetrahedra gone", pressed.removed, pressed.tetrahedra);
            return r;
          }});
   }
   for (double threshold : extent.quick ? std::vector{0.05} : std::vector{1e-6, 1e-3, 0.05, 0.5})
     points.push_back({"tearing", "volume change [1]", fmt::format("{:g}", threshold), [=] {
-                        Scene scene = organ_scene();
-                        tissue_of(scene).tearing = Tearing{.criterion = "volume", .threshold = threshold};
-                        OrganBench bench(scene, {precompute_tissue(scene.bodies[0], organ_mesh())});
-                        for (int i = 0; i < 400; ++i)
-                          bench.tick({0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0)});
-                        Result r = bench.result();
-                        r.note += fmt::format("; a cascade of {} of {} tetrahedra", bench.organ().removed().size(),
-                                              bench.organ().mesh().tetrahedra.size());
+                        Scene scene = moving_block_scene();
+                        moving_block_of(scene).tearing = Tearing{.criterion = "volume", .threshold = threshold};
+                        const auto path = [](int i) {
+                          return Vector3d(0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0));
+                        };
+                        const PressedTissue pressed = press_tissue(scene, small_block_mesh(), path, 400);
+                        Result r = pressed.result;
+                        r.note +=
+                            fmt::format("; a cascade of {} of {} tetrahedra", pressed.removed, pressed.tetrahedra);
                         return r;
                       }});
   return points;

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "tools/stability/organ_bench.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/stability/press.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -17,18 +18,19 @@ Scene hybrid_scene(const TetMesh& mesh, double share) {
     for (const int n : mesh.tetrahedra[t]) height += mesh.nodes[n].z() / 4;
     if (height > share * 0.02) upper.indices.push_back(t);
   }
-  return organ_scene(std::move(body));
+  return moving_block_scene(std::move(body));
 }
 
 std::vector<int>& upper_part(Scene& scene) {
-  return as<HybridSpec>(scene.bodies[0])->hybrid.regions[0].indices;
+  return std::get<HybridSpec>(scene.bodies[0]).hybrid.regions[0].indices;
 }
 
 void soften(Scene& scene, double young, double density) {
-  Material upper = tissue_of(scene).material;
+  Material upper = moving_block_of(scene).material;
   upper.young *= young;
   upper.density *= density;
-  tissue_of(scene).materials.push_back({{.indices = {}, .box = Box{{-1, -1, 0.0095}, {1, 1, 1}}, .group = {}}, upper});
+  moving_block_of(scene).materials.push_back(
+      {{.indices = {}, .box = Box{{-1, -1, 0.0095}, {1, 1, 1}}, .group = {}}, upper});
 }
 
 }  // namespace
@@ -38,10 +40,10 @@ std::vector<Point> hybrid_points(const Extent& extent) {
   const auto add = [&](const char* parameter, const std::string& value, auto&& change) {
     points.push_back({"hybrid", parameter, value,
                       [=] {
-                        const TetMesh mesh = organ_mesh();
+                        const TetMesh mesh = small_block_mesh();
                         Scene scene = hybrid_scene(mesh, 0.5);
                         change(scene);
-                        return press_organ(scene, mesh, 0.004, 300);
+                        return press_tissue(scene, mesh, 0.004, 300);
                       },
                       120});
   };
@@ -50,27 +52,27 @@ std::vector<Point> hybrid_points(const Extent& extent) {
   for (double c : extent.quick ? std::vector{1e3} : std::vector{1e-4, 1e-2, 1e2, 1e3})
     add("density dynamic / quasi-static [1]", fmt::format("{:g}", c), [c](Scene& s) { soften(s, 1, c); });
   for (double a : extent.quick ? std::vector{0.0} : std::vector{0.0, 1.0, 1e4})
-    add("damping [1/s]", fmt::format("{:g}", a), [a](Scene& s) { tissue_of(s).dynamic.damping = a; });
+    add("damping [1/s]", fmt::format("{:g}", a), [a](Scene& s) { moving_block_of(s).dynamic.damping = a; });
   for (double s : extent.quick ? std::vector{10.0} : std::vector{2.0, 10.0})
     add("step / what the bound gives about [1]", fmt::format("{:g}", s),
-        [s](Scene& scene) { tissue_of(scene).dynamic.step = s * 5e-4; });
+        [s](Scene& scene) { moving_block_of(scene).dynamic.step = s * 5e-4; });
   for (double t : extent.quick ? std::vector{0.02} : std::vector{1e-6, 0.02, 0.2})
     add("tears from a volume change of [1]", fmt::format("{:g}", t),
-        [t](Scene& scene) { tissue_of(scene).tearing = Tearing{.criterion = "volume", .threshold = t}; });
+        [t](Scene& scene) { moving_block_of(scene).tearing = Tearing{.criterion = "volume", .threshold = t}; });
   for (double share : extent.quick ? std::vector{0.7} : std::vector{-0.1, 0.2, 0.5, 0.7, 0.95})
     points.push_back({"hybrid share", "height of the border [1]", fmt::format("{:g}", share), [share] {
-                        const TetMesh mesh = organ_mesh();
+                        const TetMesh mesh = small_block_mesh();
                         Scene scene = hybrid_scene(mesh, share);
-                        Result r = press_organ(scene, mesh, 0.004, 300);
+                        Result r = press_tissue(scene, mesh, 0.004, 300);
                         r.note += fmt::format("; {} of {} tetrahedra are dynamic", upper_part(scene).size(),
                                               mesh.tetrahedra.size());
                         return r;
                       }});
   points.push_back({"hybrid share", "dynamic part", "one tetrahedron at a corner", [] {
-                      const TetMesh mesh = organ_mesh();
+                      const TetMesh mesh = small_block_mesh();
                       Scene scene = hybrid_scene(mesh, 0.5);
                       upper_part(scene) = {static_cast<int>(mesh.tetrahedra.size()) - 1};
-                      return press_organ(scene, mesh, 0.004, 300);
+                      return press_tissue(scene, mesh, 0.004, 300);
                     }});
   return points;
 }

@@ -11,12 +11,12 @@
 
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <random>
 
-#include "common/sim/local_models.hpp"
-#include "tools/stability/organ_bench.hpp"
-#include "tools/stability/press_bench.hpp"
-#include "tools/stability/wait_for_workers.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -87,7 +87,7 @@ constexpr double kTipRadius = 0.008, kPush = 0.01;
 
 Scene wall_scene(const Link& link) {
   Scene scene = block_scene();
-  make_moving(scene);
+  scene.bodies[0] = as_kind<TensorMassSpec>(block_of(scene));
   scene.contact.friction = 0;
   scene.rates.haptic_hz = link.rate;
   scene.passivity.controller = link.controller;
@@ -167,45 +167,38 @@ Result max_stiffness(const Link& link) {
   return r;
 }
 
+/// What the deformation node says of the tissue after a tick.
+std::optional<LocalContactModel> model_of(PressRig& rig, std::uint64_t tick) {
+  LocalContactModel m;
+  rig.simulator().local_models().refresh();
+  if (!rig.simulator().local_models().describe(0, m)) return {};
+  m.run = 1, m.seq = tick + 1;
+  return m;
+}
+
 /// Tissue of the deformation node under the hand, its local contact models `delay` ticks late.
 LoopEnd touch_tissue(int delay, bool controller) {
-  Scene scene = organ_scene();
+  Scene scene = moving_block_scene();
   scene.passivity.controller = controller;
   scene.contact.friction = 0;
-  const std::vector<Archive> archives{precompute_tissue(scene.bodies[0], organ_mesh())};
-  DynamicWorld world(scene, archives);
-  LocalModels models(world, archives);
-  HapticStep haptic(scene, archives);
-  const Tool& tool = scene.tools[0];
+  PressRig rig(scene, {precompute_on(scene.bodies[0], small_block_mesh())});
+  HapticStep& haptic = rig.haptic();
   Hand hand{.at = 0.002};
-  const auto dofs_of = [&] { return tip_at(tool, {0, 0, 0.026 + hand.at}); };
-  haptic.start(std::array{dofs_of()});
+  const auto dofs_of = [&] { return std::array{tip_at(scene.tools[0], {0, 0, 0.026 + hand.at})}; };
+  rig.start(dofs_of());
   std::deque<std::pair<std::uint64_t, LocalContactModel>> late;
   Watch watch;
   Swing swing;
   for (std::uint64_t i = 0; i < 3000; ++i) {
     hand.move(-0.006, i > 0 ? haptic.force(0).z() : 0, 1e-3);
-    const ToolDofs d = dofs_of();
-    world.take({.run = 1,
-                .step = i,
-                .sense_ns = static_cast<std::int64_t>(i),
-                .yaw = d.yaw,
-                .pitch = d.pitch,
-                .depth = d.depth,
-                .roll = d.roll,
-                .grip = d.grip});
-    world.tick();
-    models.refresh();
-    wait_for_workers();
-    LocalContactModel m;
-    m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
-    m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
-    if (models.describe(0, m)) late.emplace_back(i + delay, m);
+    const auto dofs = dofs_of();
+    rig.press(dofs);
+    if (const auto m = model_of(rig, i)) late.emplace_back(i + delay, *m);
     while (!late.empty() && late.front().first <= i) {
       haptic.consume(late.front().second);
       late.pop_front();
     }
-    haptic.step(std::array{d});
+    haptic.step(dofs);
     watch.look(haptic);
     swing.add(1e-3 * static_cast<double>(i), hand.at);
   }
@@ -220,16 +213,16 @@ LoopEnd touch_block(double young, double rate, bool controller) {
   scene.passivity.controller = controller;
   scene.tools[0].max_force = 20;
   scene.tools[0].max_force_rate = 1e5;
-  HapticStep haptic(scene, {precompute(block_of(scene), block_mesh())});
+  PressRig rig(scene, {precompute(block_of(scene), block_mesh())});
   Hand hand{.at = 0.002};
-  const auto dofs_of = [&] { return std::array{tip_at(scene.tools[0], {0, 0, kTipRadius + hand.at})}; };
-  haptic.start(dofs_of());
+  const auto tip = [&] { return Eigen::Vector3d(0, 0, kTipRadius + hand.at); };
+  rig.start(tip());
   Watch watch;
   Swing swing;
   for (int i = 0; i < 3 * rate; ++i) {
-    hand.move(-kPush, i > 0 ? haptic.force(0).z() : 0, 1 / rate);
-    haptic.step(dofs_of());
-    watch.look(haptic);
+    hand.move(-kPush, i > 0 ? rig.haptic().force(0).z() : 0, 1 / rate);
+    rig.step(tip());
+    watch.look(rig.haptic());
     swing.add(i / rate, hand.at);
   }
   return {watch.result(), swing.late(), swing.early(), swing.last()};

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "common/scene/ensure_archive.hpp"
-#include "common/sim/local_models.hpp"
-#include "haptic_node/device.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/rig/scripted_tools.hpp"
 #include "tools/stability/held_nodes.hpp"
-#include "tools/stability/press_bench.hpp"
-#include "tools/stability/wait_for_workers.hpp"
-#include "tools/study/solid_kinds.hpp"
+#include "tools/stability/kinds.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -21,74 +22,28 @@ struct Bend {
   double speed = 1;   ///< times as fast
   double deeper = 0;  ///< [m] further along the shaft, once the motion has begun
   bool controller = true;
-  int delay = 1;  ///< [ticks] of the moving tissue's answers
 };
 
-/// Haptic step and moving tissue side by side, as the nodes run them, without a clock.
+/// The scene as the nodes run it, in lock step.
 Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend& bend) {
-  HapticStep haptic(scene, archives);
-  std::unique_ptr<DynamicWorld> world;
-  std::unique_ptr<LocalModels> models;
-  if (haptic.has_moving_tissue()) {
-    world = std::make_unique<DynamicWorld>(scene, archives);
-    models = std::make_unique<LocalModels>(*world, archives);
-  }
-  std::vector<std::unique_ptr<Device>> devices;
-  for (int t = 0; t < haptic.tools(); ++t) {
-    if (!std::holds_alternative<ScriptedDeviceSpec>(scene.tools[t].device))
-      throw std::runtime_error(fmt::format("tool '{}' is not scripted", scene.tools[t].name));
-    devices.push_back(make_device(scene, t));
-  }
-  std::vector<ToolDofs> dofs(devices.size());
-  const auto read = [&](std::uint64_t i) {
-    const double time = static_cast<double>(i) * haptic.dt() * bend.speed;
-    bool finished = true;
-    for (std::size_t t = 0; t < devices.size(); ++t) {
-      dofs[t] = devices[t]->read(time).dofs;
-      dofs[t].depth += bend.deeper * std::min(1.0, time);
-      finished &= devices[t]->finished(time);
-    }
-    return !finished;
+  PressRig rig(scene, archives);
+  ScriptedTools tools(scene);
+  const auto at = [&](double time) {
+    const auto script = tools.at(time);
+    std::vector<ToolDofs> dofs(script.begin(), script.end());
+    for (ToolDofs& d : dofs) d.depth += bend.deeper * std::min(1.0, time);
+    return dofs;
   };
-  read(0);
-  haptic.start(dofs);
+  rig.start(at(0));
   Watch watch;
-  std::vector<LocalContactModel> waiting;
-  for (std::uint64_t i = 0; i < 60000 && read(i); ++i) {
-    for (const LocalContactModel& m : waiting) haptic.consume(m);
-    waiting.clear();
-    haptic.step(dofs);
-    watch.look(haptic);
-    if (!world) continue;
-    for (std::size_t t = 0; t < dofs.size(); ++t) {
-      const ToolDofs& d = dofs[t];
-      ToolState s{.tool = static_cast<std::uint32_t>(t),
-                  .run = 1,
-                  .step = i,
-                  .sense_ns = static_cast<std::int64_t>(i),
-                  .yaw = d.yaw,
-                  .pitch = d.pitch,
-                  .depth = d.depth,
-                  .roll = d.roll,
-                  .grip = d.grip};
-      s.pedal = d.pedal;
-      s.opening = haptic.opening(static_cast<int>(t));
-      s.holding = haptic.rig(static_cast<int>(t)).end().holding();
-      world->take(s);
-    }
-    world->tick();
-    models->refresh();
-    wait_for_workers();
-    for (std::size_t t = 0; t < dofs.size(); ++t) {
-      const ToolDofs& d = dofs[t];
-      LocalContactModel m;
-      m.tool = static_cast<std::uint32_t>(t), m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
-      m.yaw = d.yaw, m.pitch = d.pitch, m.depth = d.depth, m.roll = d.roll, m.grip = d.grip;
-      if (models->describe(static_cast<int>(t), m)) waiting.push_back(m);
-    }
+  for (int i = 0; i < 60000; ++i) {
+    const double time = i * rig.dt() * bend.speed;
+    if (time > tools.duration()) break;
+    rig.step(at(time));
+    watch.look(rig.haptic());
   }
   Result r = watch.result();
-  r.note += fmt::format("{}energy at the end {:.4g} J", r.note.empty() ? "" : "; ", haptic.energy());
+  r.note += fmt::format("{}energy at the end {:.4g} J", r.note.empty() ? "" : "; ", rig.simulator().energy());
   return r;
 }
 
@@ -110,11 +65,8 @@ class OwnCache {
 /// Every body's material, its regions included.
 template <class Change>
 void change_materials(Scene& scene, Change&& change) {
-  for (Body& body : scene.bodies) {
-    std::visit([&](auto& spec) { change(spec.material); }, body);
-    if (auto* solid = as<SolidSpec>(body))
-      for (MaterialRegion& region : solid->materials) change(region.material);
-  }
+  for (Body& body : scene.bodies)
+    for (Material* material : std::visit([](auto& spec) { return materials_in(spec); }, body)) change(*material);
 }
 
 /// [m] largest extent of a body's surface.
@@ -127,7 +79,7 @@ double extent_of(const SurfaceMap& surface) {
 /// Held nodes of the quasi-static bodies, by a hundredth of their size.
 void add_held_nodes(const Scene& scene, const Extent& extent, std::vector<Point>& points) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (!as<QuasiStaticSpec>(scene.bodies[b])) continue;
+    if (!std::visit([](const auto& spec) { return holds_nodes(spec); }, scene.bodies[b])) continue;
     for (const int count : extent.quick ? std::vector{1, 64, 512} : std::vector{1, 8, 32, 64, 96, 256, 512})
       points.push_back(
           {"held nodes", fmt::format("number, of body '{}'", name_of(scene.bodies[b])), std::to_string(count),
@@ -144,13 +96,14 @@ Result play_at_step(Scene scene, double share) {
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
   std::string bounds;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    auto* body = as<MovingSpec>(scene.bodies[b]);
-    if (!body) continue;
-    body->dynamic.step = 0;
+    Dynamic* motion = find_motion(scene.bodies[b]);
+    if (!motion) continue;
+    motion->step = 0;
     const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
-    const DynamicOrgan organ(archives[b], *body, settings, model_maker(scene.bodies[b]));
-    const double bound = max_step(integrator_of(body->dynamic), organ.model().frequency_bound(), body->dynamic.damping);
-    body->dynamic.step = share * bound;
+    const auto organ =
+        std::visit([&](const auto& spec) { return make_organ(spec, archives[b], settings); }, scene.bodies[b]);
+    const double bound = max_step(integrator_of(*motion), organ->model().frequency_bound(), motion->damping);
+    motion->step = share * bound;
     bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, name_of(scene.bodies[b]));
   }
   Result r = play(scene, archives, {});
@@ -192,7 +145,7 @@ std::vector<Point> scene_points(const Scene& scene, const Extent& extent) {
   for (double nu : extent.quick ? std::vector{0.49999} : std::vector{0.0, 0.499, 0.49999})
     add("poisson [1]", fmt::format("{:g}", nu), {},
         [nu](Scene& s) { change_materials(s, [nu](Material& m) { m.poisson = nu; }); });
-  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return as<MovingSpec>(body) != nullptr; }))
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return find_motion(body) != nullptr; }))
     for (double share : extent.quick ? std::vector{1.5} : std::vector{0.1, 0.5, 0.999, 1.001, 1.5, 10.0})
       points.push_back({"scene", "step of moving tissue / bound [1]", fmt::format("{:g}", share),
                         [=] { return play_at_step(scene, share); }, 600});

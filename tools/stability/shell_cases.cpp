@@ -5,23 +5,19 @@
 
 #include "common/mesh/shell_generators.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "tools/stability/press_bench.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.0045, kLength = 0.04;
+constexpr double kRadius = kDuctRadius, kLength = kDuctLength;
 
 Scene duct_scene(double thickness) {
   Scene scene = block_scene();
-  ModalShellSpec duct;
-  duct.name = "duct";
-  duct.material = {.young = 200e3, .poisson = 0.45, .density = 1000};
-  duct.shell = {.thickness = thickness, .modes = 20};
-  duct.fixed.push_back({{.where = {.indices = {}, .box = Box{{-1, -1, kLength - 1e-6}, {1, 1, 1}}, .group = {}}}});
-  scene.bodies[0] = duct;
+  scene.bodies[0] = duct_body(thickness);
   Tool& tool = scene.tools[0];
   tool.pivot = {0, 0.15, kLength / 2};
   tool.axis = -Vector3d::UnitY();
@@ -32,20 +28,18 @@ Scene duct_scene(double thickness) {
 }
 
 ModalShellSpec& duct_of(Scene& scene) {
-  return *as<ModalShellSpec>(scene.bodies[0]);
+  return std::get<ModalShellSpec>(scene.bodies[0]);
 }
 
 Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
-  HapticStep haptic(scene, {precompute(std::get<ModalShellSpec>(scene.bodies[0]), mesh)});
-  const auto at = [&](double above) {
-    return std::array{tip_at(scene.tools[0], {0, surface + 0.003 + above, kLength / 2})};
-  };
-  haptic.start(at(0.002));
+  PressRig rig(scene, {precompute(std::get<ModalShellSpec>(scene.bodies[0]), mesh)});
+  const auto at = [&](double above) { return Vector3d(0, surface + 0.003 + above, kLength / 2); };
+  rig.start(at(0.002));
   Watch watch;
   for (int i = 1; i <= 900; ++i) {
     const double share = i < 300 ? i / 300.0 : i < 600 ? 1.0 : (900 - i) / 300.0;
-    haptic.step(at(0.002 - share * (0.002 + depth)));
-    watch.look(haptic);
+    rig.step(at(0.002 - share * (0.002 + depth)));
+    watch.look(rig.haptic());
   }
   return watch.result();
 }
@@ -61,25 +55,25 @@ Result tap_wall(double young, double rate, double speed) {
   scene.passivity.controller = false;
   scene.tools[0].max_force = 1e6;
   scene.tools[0].max_force_rate = 1e12;
-  HapticStep haptic(scene, {precompute(duct_of(scene), make_tube(kRadius, kLength, 12, 12))});
+  PressRig rig(scene, {precompute(duct_of(scene), make_tube(kRadius, kLength, 12, 12))});
   constexpr double reach = 0.0003;  // [m] to both sides of the wall
   const auto at = [&](double time) {
-    return std::array{
-        tip_at(scene.tools[0], {0, kRadius + 0.0035 + reach * std::cos(speed / reach * time), kLength / 2})};
+    return Vector3d(0, kRadius + 0.0035 + reach * std::cos(speed / reach * time), kLength / 2);
   };
-  haptic.start(at(0));
+  rig.start(at(0));
   Watch watch;
   const int steps = static_cast<int>(50 * 2 * M_PI * reach / speed * rate);
   double most = 0, drop = 0;
   for (int i = 1; i <= steps; ++i) {
-    haptic.step(at(i / rate));
-    watch.look(haptic);
-    most = std::max(most, haptic.energy());
-    drop = std::max(drop, most - haptic.energy());
+    rig.step(at(i / rate));
+    watch.look(rig.haptic());
+    const double energy = rig.simulator().energy();
+    most = std::max(most, energy);
+    drop = std::max(drop, most - energy);
   }
   Result r = watch.result();
   r.note = fmt::format("{:.3g} mJ put in by the taps at the end; given back in one go {:.3g} mJ at most{}{}",
-                       1e3 * haptic.energy(), 1e3 * drop, r.note.empty() ? "" : "; ", r.note);
+                       1e3 * rig.simulator().energy(), 1e3 * drop, r.note.empty() ? "" : "; ", r.note);
   return r;
 }
 

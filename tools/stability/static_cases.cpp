@@ -4,9 +4,12 @@
 #include <cmath>
 #include <random>
 
+#include "common/mesh/generators.hpp"
 #include "common/mesh/quality.hpp"
+#include "common/models/quasi_static/precompute.hpp"
+#include "tools/rig/example_bodies.hpp"
 #include "tools/stability/held_nodes.hpp"
-#include "tools/stability/press_bench.hpp"
+#include "tools/stability/press.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -84,7 +87,7 @@ std::vector<Point> geometry_points(const Extent& extent) {
                       [n] { return press_block([](Scene&) {}, needles(n)); }});
   for (double s : extent.quick ? std::vector{1e-3, 1e6} : std::vector{1e-6, 1e-3, 1.0, 1e3, 1e6})
     points.push_back({"units", "size of the block / 0.1 m [1]", fmt::format("{:g}", s), [s] {
-                        return press(block_scene(s), block_mesh(s),
+                        return press(block_scene(s), block_mesh(6, s),
                                      down_and_up(s * (kRadius + 0.001), s * (0.004 - kRadius), 100), 300);
                       }});
   return points;
@@ -94,7 +97,7 @@ std::vector<Point> hold_points(const Extent& extent) {
   std::vector<Point> points;
   const auto add = [&](const std::string& how, int count) {
     points.push_back({"held_nodes", how, std::to_string(count), [how, count] {
-                        const TetMesh mesh = block_mesh(1, how == "spread" && count > 100 ? 16 : 8);
+                        const TetMesh mesh = block_mesh(how == "spread" && count > 100 ? 16 : 8);
                         Scene scene = block_scene();
                         return hold_nodes(precompute(block_of(scene), mesh), how, count, 0.001, 512);
                       }});

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tools/rig/kinds.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
-#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -115,7 +115,7 @@ Result rest_after_cut(const SolidCase& solid, const Body& body, Row row) {
   Body alone = body;
   motion_of(alone).gravity.setZero();
   const auto begin = std::chrono::steady_clock::now();
-  const Archive archive = precompute_tissue(alone, solid.mesh());
+  const Archive archive = precompute_on(alone, solid.mesh());
   row.offline_s = seconds_since(begin);
   std::vector<double> seconds;
   const Field ours = rest_of(archive, alone, slot, load, seconds);

@@ -10,10 +10,10 @@
 
 #include "common/mesh/surface.hpp"
 #include "common/models/quasi_static/precompute.hpp"
+#include "tools/study/ball_press.hpp"
 #include "tools/study/cut_rest.hpp"
-#include "tools/study/haptic_press.hpp"
-#include "tools/study/organ_press.hpp"
-#include "tools/study/solid_kinds.hpp"
+#include "tools/study/kinds.hpp"
+#include "tools/study/measure.hpp"
 
 namespace palpate::study {
 namespace {
@@ -30,30 +30,27 @@ struct Ready {
 
 class Dynamic : public Method {
  public:
-  Dynamic(std::shared_ptr<SolidCase> solid, std::string model)
-      : solid_(std::move(solid)),
-        model_(std::move(model)),
-        name_(solid_->name(model_)),
-        own_(kind_of(solid_->body()) == model_) {}
+  Dynamic(std::shared_ptr<SolidCase> solid, MovingModel model)
+      : solid_(std::move(solid)), model_(std::move(model)), name_(solid_->name(model_.name)), own_(model_.own) {}
   int body() const override { return solid_->index(); }
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto* own = as<MovingSpec>(solid_->body());
-    const palpate::Dynamic motion = own ? own->dynamic : palpate::Dynamic{};
+    const palpate::Dynamic* moves = find_motion(solid_->body());
+    const palpate::Dynamic motion = moves ? *moves : palpate::Dynamic{};
     const auto add = [&](const std::string& knob, const std::string& value, bool serves,
                          std::function<void(Body&)> change) {
       all.push_back({name_, knob, value,
                      [=, this](Scene& scene) {
                        Body& body = scene.bodies[solid_->index()];
-                       become(body);
+                       model_.become(body);
                        change(body);
                      },
-                     serves && own && (own_ || !solid_->has_two_meshes())});
+                     serves && moves && (own_ || !solid_->has_two_meshes())});
     };
-    add(own_ ? "scene" : "model", own_ ? "as it is" : model_, true, [](Body&) {});
+    add(own_ ? "scene" : "model", own_ ? "as it is" : model_.name, true, [](Body&) {});
     const bool turning = motion.corotational;
-    if (model_ != "spring_mass")
+    if (model_.turns)
       add("corotational", turning ? "off" : "on", true,
           [turning](Body& body) { motion_of(body).corotational = !turning; });
     if (!own_ && solid_->quick()) return all;
@@ -67,19 +64,19 @@ class Dynamic : public Method {
       const double step = 0.9 * bound() / parts;
       add("step", fmt::format("{:.4g} s", step), true, [step](Body& body) { motion_of(body).step = step; });
     }
-    if (const auto* hybrid = as<HybridSpec>(solid_->body()); hybrid && own_)
+    if (own_)
       for (const int layers : {-1, 1, 2, 4}) {
         if (solid_->quick() && layers != 1) continue;
-        const auto part = grown_part(*hybrid, solid_->mesh(), layers);
+        const auto part =
+            std::visit([&](const auto& spec) { return grown_part(spec, solid_->mesh(), layers); }, solid_->body());
         if (part.empty() || part.size() == solid_->mesh().tetrahedra.size()) continue;
         add("dynamic share",
             fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.size()) /
                                         static_cast<double>(solid_->mesh().tetrahedra.size())),
-            layers > 0 && !solid_->has_two_meshes(), [part](Body& body) {
-              as<HybridSpec>(body)->hybrid.regions = {{{.indices = part, .box = {}, .group = {}}}};
-            });
+            layers > 0 && !solid_->has_two_meshes(),
+            [part](Body& body) { std::visit([&](auto& spec) { set_moving_part(spec, part); }, body); });
       }
-    if (model_ != "hybrid" && own_) {
+    if (model_.cut) {
       if (!solid_->quick()) all.push_back({name_, "resolution", "edges x 0.6", {}, false});
       all.push_back({name_, "cut", "a slot", {}, false});
     }
@@ -88,7 +85,7 @@ class Dynamic : public Method {
 
   Result evaluate(const Point& point) override {
     Scene scene = solid_->scene();
-    become(scene.bodies[body()]);
+    model_.become(scene.bodies[body()]);
     if (point.apply) point.apply(scene = solid_->scene());
     Row row{solid_->scene().file.stem().string(), point.method, point.knob, point.value};
     if (point.knob == "cut") return rest_after_cut(*solid_, scene.bodies[body()], row);
@@ -98,26 +95,13 @@ class Dynamic : public Method {
   }
 
  private:
-  /// The body as another kind that moves, in the way that it has if it moves already.
-  template <class Spec>
-  static Spec moving(const Body& body) {
-    Spec spec = as_kind<Spec>(*as<SolidSpec>(body));
-    if (const auto* own = as<MovingSpec>(body)) static_cast<MovingSpec&>(spec) = *own;
-    return spec;
-  }
-
-  void become(Body& body) const {
-    if (model_ == TensorMassSpec::kKind) body = moving<TensorMassSpec>(body);
-    if (model_ == SpringMassSpec::kKind) body = moving<SpringMassSpec>(body);
-  }
-
   Ready prepare(const Scene& scene) const { return prepare(scene.bodies[body()], solid_->mesh()); }
 
   Ready prepare(Body body, const TetMesh& mesh) const {
     motion_of(body).gravity.setZero();
     Ready ready;
     const auto begin = std::chrono::steady_clock::now();
-    ready.archive = precompute_tissue(body, mesh);
+    ready.archive = precompute_on(body, mesh);
     ready.offline = seconds_since(begin);
     std::vector<int> of_mesh(mesh.nodes.size(), -1);
     for (int n = 0; n < ready.archive.surface.size(); ++n) of_mesh[ready.archive.surface.node_number[n]] = n;
@@ -135,16 +119,17 @@ class Dynamic : public Method {
   double bound() const {
     if (!bound_) {
       Scene scene = solid_->scene();
-      become(scene.bodies[body()]);
+      model_.become(scene.bodies[body()]);
       motion_of(scene.bodies[body()]).step = 0;
       const Ready ready = prepare(scene);
       const Scene alone = solid_->press_scene(scene, 0);
-      bound_ = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
-                   .organ()
-                   .max_step() /
-               0.9;
+      bound_ = on_first_patch(alone, ready)->rig().organ().max_step() / 0.9;
     }
     return *bound_;
+  }
+
+  std::unique_ptr<BallPress> on_first_patch(const Scene& alone, const Ready& ready) const {
+    return std::make_unique<BallPress>(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius);
   }
 
   double tick() const { return 1 / solid_->scene().rates.haptic_hz; }
@@ -161,12 +146,11 @@ class Dynamic : public Method {
       auto& motion = motion_of(alone.bodies[0]);
       motion.damping = std::max(kRestDamping, motion.damping);
       if (motion.step > 0) motion.step *= 0.98;  // the bound falls a little with the damping
-      OrganPress press(alone, ready.archive, presses.patches[p], presses.radius, tick());
-      row.memory_bytes = static_cast<double>(press.bytes());
+      if (p == 0) row.memory_bytes = static_cast<double>(owner_bytes(alone, ready.archive));
+      BallPress press(alone, ready.archive, presses.patches[p], presses.radius);
       answers.emplace_back();
       for (const double depth : presses.depths) {
-        const double from = press.depth();
-        for (int i = 1; i <= 50; ++i) press.tick(from + (depth - from) * i / 50);
+        press.bring(depth, 50);
         PressAnswer answer;
         answer.force = press.settle(solid_->quick() ? 0.5 : 1.0);
         const auto u = press.displacement();
@@ -174,9 +158,7 @@ class Dynamic : public Method {
         stable &= std::isfinite(answer.force);
         answers.back().push_back(std::move(answer));
       }
-      const double middle = press.depth();
-      const auto times =
-          time_steps(50, samples, [&](int i) { press.tick(middle + 1e-3 * presses.radius * std::sin(0.05 * i)); });
+      const auto times = press.time(50, samples);
       seconds.insert(seconds.end(), times.begin(), times.end());
     }
     if (!stable) throw std::runtime_error("the press does not stay finite");
@@ -198,7 +180,7 @@ class Dynamic : public Method {
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p], presses.radius);
+      BallPress press(solid_->press_scene(scene, static_cast<int>(p)), archive, presses.patches[p], presses.radius);
       same_mesh_.emplace_back();
       for (const double depth : presses.depths) same_mesh_.back().push_back(press.to(depth));
     }
@@ -209,13 +191,13 @@ class Dynamic : public Method {
   std::vector<std::array<double, 2>> course(const Scene& scene, const Ready& ready) const {
     const Presses& presses = solid_->presses();
     const Scene alone = solid_->press_scene(scene, 0);
-    OrganPress press(alone, ready.archive, presses.patches[0], presses.radius, tick());
+    const auto press = on_first_patch(alone, ready);
     std::array<int, 3> nodes;
     for (int v = 0; v < 3; ++v) nodes[v] = ready.node[solid_->surface().triangles[presses.patches[0].triangle][v]];
     std::vector<std::array<double, 2>> path;
     for (double t = tick(); t < kCourseSeconds; t += tick()) {
-      const double force = press.tick(course_depth(t, kRampSeconds, presses.radius));
-      path.push_back({force, press.at(nodes)});
+      const double force = press->step(course_depth(t, kRampSeconds, presses.radius));
+      path.push_back({force, press->along(press->displacement(), nodes)});
     }
     return path;
   }
@@ -233,10 +215,7 @@ class Dynamic : public Method {
       motion.precision = "double";
       motion.step = 0;
       const Scene alone = solid_->press_scene(scene, 0);
-      motion.step = OrganPress(alone, ready.archive, solid_->presses().patches[0], solid_->presses().radius, tick())
-                        .organ()
-                        .max_step() /
-                    16;
+      motion.step = on_first_patch(alone, ready)->rig().organ().max_step() / 16;
       small_step_[key] = course(scene, ready);
     }
     row.reference = "small_step";
@@ -244,7 +223,8 @@ class Dynamic : public Method {
   }
 
   std::shared_ptr<SolidCase> solid_;
-  std::string model_, name_;
+  MovingModel model_;
+  std::string name_;
   bool own_;
   mutable std::optional<double> bound_;
   PressAnswers same_mesh_;
@@ -253,7 +233,7 @@ class Dynamic : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const std::string& model) {
+std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const MovingModel& model) {
   return std::make_unique<Dynamic>(std::move(solid), model);
 }
 

@@ -1,14 +1,49 @@
 #pragma once
+#include <concepts>
+#include <memory>
+#include <string>
+
+#include "tools/rig/kinds.hpp"
 #include "tools/study/method.hpp"
 #include "tools/study/solid_case.hpp"
 
 namespace palpate::study {
 
-/// Moving tissue of one model (tensor_mass | spring_mass | hybrid) pressed in the deformation node's organ:
-/// integrator, step, precision, turning elements, resolution, share of a hybrid's dynamic elements; rest
-/// after a cut. A body that has another model in its scene is neither cut nor refined, and in quick mode gets the model
-/// alone, and turning elements.
-std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const std::string& model);
+// Springs turn with the tissue by themselves; a hybrid is neither cut nor refined.
+constexpr bool can_turn(const MovingSpec&) {
+  return true;
+}
+constexpr bool can_turn(const SpringMassSpec&) {
+  return false;
+}
+constexpr bool can_be_cut(const MovingSpec&) {
+  return true;
+}
+constexpr bool can_be_cut(const HybridSpec&) {
+  return false;
+}
+
+/// A model of moving tissue, for a body that may be of another kind.
+struct MovingModel {
+  std::string name;  ///< as a scene file has it
+  bool own;          ///< the body is of that kind in its scene
+  bool turns;        ///< its elements can turn with the tissue
+  bool cut;          ///< it is cut and refined
+  void (*become)(Body& body);
+};
+/// The model Spec for a body of the kind Own.
+template <std::derived_from<MovingSpec> Spec, std::derived_from<SolidSpec> Own>
+MovingModel moving_model() {
+  constexpr bool own = std::same_as<Spec, Own>;
+  const Spec spec;
+  return {std::string(Spec::kKind), own, can_turn(spec), own && can_be_cut(spec),
+          [](Body& body) { body = as_kind<Spec>(body); }};
+}
+
+/// Moving tissue of one model pressed in the deformation node's organ: integrator, step, precision, turning elements,
+/// resolution, share of a hybrid's dynamic elements; rest after a cut. A body that has another model in its scene is
+/// neither cut nor refined, and in quick mode gets the model alone, and turning elements.
+std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const MovingModel& model);
 
 /// A body on a finer mesh of the same shape, everything that names its nodes and elements named anew.
 struct FinerBody {
@@ -16,9 +51,5 @@ struct FinerBody {
   TetMesh mesh;
 };
 FinerBody finer_body(const Body& body, const StaticProblem& problem, double share_of_edge);
-
-/// The elements of a hybrid's tensor-mass part, grown by so many layers of neighbours; shrunk by as many if
-/// negative.
-std::vector<int> grown_part(const HybridSpec& body, const TetMesh& mesh, int layers);
 
 }  // namespace palpate::study

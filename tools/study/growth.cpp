@@ -13,7 +13,9 @@
 #include "common/models/catheter/catheter_body.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "common/models/quasi_static/precompute.hpp"
-#include "tools/study/haptic_press.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/study/ball_press.hpp"
+#include "tools/study/measure.hpp"
 
 namespace palpate::study {
 namespace {
@@ -42,59 +44,28 @@ class Growth {
   std::function<void(const std::string&)> say_;
 };
 
-Scene press_scene(Body body, double radius, const Eigen::Vector3d& at) {
-  Scene scene;
-  scene.bodies = {std::move(body)};
-  scene.contact.friction = 0;
-  scene.passivity.controller = false;
-  Tool ball;
-  ball.name = "ball";
-  ball.pivot = at + Eigen::Vector3d(0, 0, 0.3);
-  ball.probe()->radius = radius;
-  ball.shaft_radius = 0.3 * radius;
-  ball.shaft_length = 0.4 * radius;
-  ball.max_force = 1e9;
-  ball.max_force_rate = 1e15;
-  scene.tools = {ball};
-  return scene;
-}
-
-QuasiStaticSpec block_body() {
-  QuasiStaticSpec body;
-  body.name = "block";
-  body.material = {5000, 0.4, 1000};
-  body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-  return body;
-}
-
-/// 0.1 x 0.1 x 0.05 m, its top in the plane z = 0.
-TetMesh block(int cells) {
-  return make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {cells, cells, cells / 2});
-}
-
 const Patch kTop{{0.0007, 0.0005, 0}, {0, 0, -1}, 0};
 
 void over_surface_nodes(Growth& growth) {
   for (const int cells : growth.quick() ? std::vector{4, 6, 8} : std::vector{6, 8, 10, 12, 16, 20}) {
-    const Archive archive = precompute(block_body(), block(cells));
-    HapticPress press(press_scene(block_body(), 0.3 * 0.1 / cells, kTop.point), {archive}, kTop,
-                      0.3 * 0.1 / cells);  // a single contact
+    const Archive archive = precompute(block_body<QuasiStaticSpec>(), block_mesh(cells));
+    BallPress press(ball_scene({}, block_body<QuasiStaticSpec>(), kTop, 0.3 * 0.1 / cells), archive, kTop,
+                    0.3 * 0.1 / cells);  // a single contact
     press.to(0.1 * 0.1 / cells);
-    growth.add("haptic step", "surface nodes", archive.surface.size(), press.time(growth.samples()));
+    growth.add("haptic step", "surface nodes", archive.surface.size(), press.time(200, growth.samples()));
     growth.add("shape for the picture", "surface nodes", archive.surface.size(),
-               time_steps(20, growth.samples() / 3, [&](int) { press.shown(); }));
+               time_steps(20, growth.samples() / 3, [&](int) { press.displacement(); }));
   }
 }
 
 void over_contacts(Growth& growth) {
   const int cells = growth.quick() ? 10 : 16;
-  const Archive archive = precompute(block_body(), block(cells));
+  const Archive archive = precompute(block_body<QuasiStaticSpec>(), block_mesh(cells));
   for (const double radius : {0.008, 0.014, 0.022, 0.034, 0.05}) {
-    HapticPress press(press_scene(block_body(), radius, kTop.point), {archive}, kTop, radius);
+    BallPress press(ball_scene({}, block_body<QuasiStaticSpec>(), kTop, radius), archive, kTop, radius);
     press.to(0.3 * radius);
-    int held = 0;
-    for (const TouchContact& c : press.haptic().body(0).law().contacts()) held += c.touch != Touch::open;
-    growth.add("haptic step of many contacts", "held contacts", held, press.time(growth.samples()));
+    const int held = held_points(press.rig().haptic(), 0);
+    growth.add("haptic step of many contacts", "held contacts", held, press.time(200, growth.samples()));
   }
 }
 
@@ -122,13 +93,9 @@ void over_modes(Growth& growth) {
     body.shell = {.thickness = 8e-4, .modes = modes};
     const Archive archive = precompute(body, mesh);
     const Patch side{{0.0045, 0.0002, 0.031}, {-1, 0, 0}, 0};
-    Scene scene = press_scene(body, 0.002, side.point);
-    scene.tools[0].axis = side.inward;
-    scene.tools[0].up = {0, 1, 0};
-    scene.tools[0].pivot = side.point - 0.3 * side.inward;
-    HapticPress press(scene, {archive}, side, 0.0024);
+    BallPress press(ball_scene({}, body, side, 0.002), archive, side, 0.0024);
     press.to(0.0006);
-    growth.add("haptic step of a shell", "modes", modes, press.time(growth.samples()));
+    growth.add("haptic step of a shell", "modes", modes, press.time(200, growth.samples()));
   }
 }
 

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "common/mesh/shell_file.hpp"
-#include "common/models/modal_shell/modal_body.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "tools/study/measure.hpp"
+#include "tools/rig/duct.hpp"
 
 namespace palpate::study {
 namespace {
@@ -64,13 +63,8 @@ std::vector<std::array<double, 2>> Insertion::course(const Scene& scene, double 
   for (long i = 1; static_cast<double>(i) * tick < kSeconds + 1e-9; ++i) {
     const double share = smooth(static_cast<double>(i) * tick / kFeedSeconds);
     jaw[0].translation() = held + share * (feed_ * along + kAsideRadii * shape.radius * side);
-    duct.update_surface({});
-    const auto begin = std::chrono::steady_clock::now();
-    catheter.step({}, jaw);
-    if (times) times->push_back(seconds_since(begin));
-    duct.push(catheter.wall_forces());
-    duct.collide({});
-    duct.hold({});
+    const double seconds = tick_in_duct(catheter, duct, jaw);
+    if (times) times->push_back(seconds);
     if (i % each == 0) path.push_back({force_on_wall(catheter), catheter.inserted()});
   }
   return path;

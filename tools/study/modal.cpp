@@ -10,7 +10,9 @@
 
 #include "common/mesh/shell_file.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "tools/study/haptic_press.hpp"
+#include "tools/study/ball_press.hpp"
+#include "tools/study/kinds.hpp"
+#include "tools/study/measure.hpp"
 
 namespace palpate::study {
 
@@ -106,25 +108,8 @@ class Modal : public Method {
   double touching() const { return errors_.presses().radius + of(scene_).shell.thickness / 2; }
 
   Scene press_scene(const Scene& from, const Patch& patch) const {
-    Scene scene;
-    scene.file = from.file;
-    scene.bodies = {of(from)};
-    scene.contact = from.contact;
-    scene.contact.friction = 0;
-    scene.rates = from.rates;
-    scene.passivity.controller = false;
-    Tool ball;
-    ball.name = "ball";
-    ball.axis = patch.inward;
-    ball.up = patch.inward.unitOrthogonal();
-    ball.probe()->radius = errors_.presses().radius;
-    ball.shaft_radius = 0.3 * errors_.presses().radius;
-    ball.shaft_length = 0.4 * errors_.presses().radius;
-    ball.pivot = patch.point - 0.3 * patch.inward;
-    ball.max_force = 1e9;
-    ball.max_force_rate = 1e15;
-    if (!from.tools.empty()) ball.compliance = from.tools[0].compliance;
-    scene.tools = {ball};
+    Scene scene = ball_scene(from, of(from), patch, errors_.presses().radius);
+    if (!from.tools.empty()) scene.tools[0].compliance = from.tools[0].compliance;
     return scene;
   }
 
@@ -132,8 +117,9 @@ class Modal : public Method {
     Pressed pressed;
     const Presses& presses = errors_.presses();
     for (const Patch& patch : presses.patches) {
-      HapticPress press(press_scene(scene, patch), {archive}, patch, touching());
-      if (bytes) *bytes = static_cast<double>(press.bytes());
+      const Scene alone = press_scene(scene, patch);
+      if (bytes && pressed.answers.empty()) *bytes = static_cast<double>(owner_bytes(alone, archive));
+      BallPress press(alone, archive, patch, touching());
       pressed.answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth, kSettling);
@@ -141,7 +127,7 @@ class Modal : public Method {
         pressed.answers.back().push_back(std::move(answer));
       }
       if (!seconds) continue;
-      const auto times = press.time((quick_ ? 600 : 2400) / static_cast<int>(presses.patches.size()));
+      const auto times = press.time(200, (quick_ ? 600 : 2400) / static_cast<int>(presses.patches.size()));
       seconds->insert(seconds->end(), times.begin(), times.end());
     }
     pressed.course = course(scene, archive);
@@ -150,14 +136,12 @@ class Modal : public Method {
 
   Course course(const Scene& scene, const Archive& archive) const {
     const Patch& patch = errors_.presses().patches[0];
-    HapticPress press(press_scene(scene, patch), {archive}, patch, touching());
+    BallPress press(press_scene(scene, patch), archive, patch, touching());
     Course path;
     for (double t = step(); t < kCourseSeconds; t += step()) {
       const double force = press.step(course_depth(t, kRampSeconds, errors_.presses().radius));
-      const auto u = renumbered(press.shown(), archive);
-      double along = 0;
-      for (const int n : as_is_.surface.triangles[patch.triangle]) along += u[n].dot(patch.inward) / 3;
-      path.push_back({force, along});
+      const auto u = renumbered(press.displacement(), archive);
+      path.push_back({force, press.along(u, as_is_.surface.triangles[patch.triangle])});
     }
     return path;
   }

@@ -9,8 +9,9 @@
 
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/precompute.hpp"
-#include "tools/study/haptic_press.hpp"
-#include "tools/study/solid_kinds.hpp"
+#include "tools/study/ball_press.hpp"
+#include "tools/study/kinds.hpp"
+#include "tools/study/measure.hpp"
 
 namespace palpate::study {
 namespace {
@@ -35,8 +36,7 @@ std::vector<int> nearest_nodes(const SolidCase& solid, int count) {
 
 /// The body, which becomes a quasi-static one if it is not.
 QuasiStaticSpec& as_quasi_static(Body& body) {
-  if (!as<QuasiStaticSpec>(body)) body = as_kind<QuasiStaticSpec>(*as<SolidSpec>(body));
-  return *as<QuasiStaticSpec>(body);
+  return body.emplace<QuasiStaticSpec>(as_kind<QuasiStaticSpec>(body));
 }
 
 class QuasiStatic : public Method {
@@ -47,8 +47,7 @@ class QuasiStatic : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto* own = as<QuasiStaticSpec>(solid_->body());
-    const bool serves = own != nullptr;
+    const bool serves = !find_motion(solid_->body());
     const int b = solid_->index();
     const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
       all.push_back({name_, knob, value,
@@ -75,7 +74,7 @@ class QuasiStatic : public Method {
       if (solid_->quick() && value != "refine 1") continue;
       add("offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; });
     }
-    if (own && own->nonlinear)
+    if (as_kind<QuasiStaticSpec>(solid_->body()).nonlinear)
       add("correction", "off", [b](Scene& scene) { as_quasi_static(scene.bodies[b]).nonlinear.reset(); });
     return all;
   }
@@ -98,7 +97,9 @@ class QuasiStatic : public Method {
     const auto& presses = solid_->presses();
     const int samples = (solid_->quick() ? 600 : 2400) / static_cast<int>(presses.patches.size());
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      HapticPress press(solid_->press_scene(scene, static_cast<int>(p)), {archive}, presses.patches[p], presses.radius);
+      const Scene alone = solid_->press_scene(scene, static_cast<int>(p));
+      if (p == 0) row.memory_bytes = static_cast<double>(owner_bytes(alone, archive));
+      BallPress press(alone, archive, presses.patches[p], presses.radius);
       answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth);
@@ -106,9 +107,8 @@ class QuasiStatic : public Method {
         answer.displacement = renumbered(answer.displacement, archive);
         answers.back().push_back(std::move(answer));
       }
-      const auto times = press.time(samples);
+      const auto times = press.time(200, samples);
       seconds.insert(seconds.end(), times.begin(), times.end());
-      row.memory_bytes = static_cast<double>(press.bytes());
     }
     const StepTime time = summarise(std::move(seconds));
     row.step_us_median = 1e6 * time.median;
@@ -150,10 +150,10 @@ class QuasiStatic : public Method {
   }
 
   /// What the deformer does in single precision, in double; without the quasi non-linear correction.
-  std::vector<Eigen::Vector3d> field_in_double(const Archive& archive, const HapticPress& press) const {
+  std::vector<Eigen::Vector3d> field_in_double(const Archive& archive, BallPress& press) const {
     const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
     std::vector<Eigen::Vector3d> u(archive.surface.size(), Eigen::Vector3d::Zero());
-    press.haptic().body(0).law().for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
+    press.rig().haptic().part(0)->held()->for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
       if (node >= compliance.column_nodes()) return;
       for (int axis = 0; axis < 3; ++axis)
         for (std::size_t n = 0; n < u.size(); ++n)

@@ -10,10 +10,11 @@
 
 #include "common/models/content_hash.hpp"
 #include "common/models/solid/precompute.hpp"
+#include "tools/study/ball_press.hpp"
+#include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
 #include "tools/study/reference/graded.hpp"
 #include "tools/study/reference/newton.hpp"
-#include "tools/study/solid_kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -31,12 +32,6 @@ void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   for (const Eigen::Vector3d& u : answer.displacement) numbers.insert(numbers.end(), u.begin(), u.end());
 }
 
-/// Empty unless the body has a second mesh.
-std::string second_mesh(const Body& body) {
-  const auto* hybrid = as<HybridSpec>(body);
-  return hybrid && !hybrid->hybrid.mesh.empty() ? content_hash(body) : "";
-}
-
 Scene with_body(Scene scene, int index, Body body) {
   scene.bodies[index] = std::move(body);
   return scene;
@@ -45,8 +40,9 @@ Scene with_body(Scene scene, int index, Body body) {
 }  // namespace
 
 SolidCase::SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache, Say say)
-    : second_mesh_(second_mesh(scene.bodies[body])),
+    : second_mesh_(whole.joined ? content_hash(scene.bodies[body]) : ""),
       scene_(with_body(scene, body, std::move(whole.body))),
+      solid_(std::move(whole.solid)),
       body_(body),
       quick_(quick),
       cache_(std::move(cache)),
@@ -60,30 +56,9 @@ std::string SolidCase::name(const std::string& model) const {
 }
 
 Scene SolidCase::press_scene(const Scene& from, int patch) const {
-  const Patch& at = presses().patches[patch];
-  Scene scene;
-  scene.file = from.file;
-  scene.bodies = {from.bodies[body_]};
-  if (auto* moving = as<MovingSpec>(scene.bodies[0])) {
-    moving->dynamic.gravity.setZero();
-    moving->tearing.reset();
-  }
-  scene.contact = from.contact;
-  scene.contact.friction = 0;
-  scene.rates = from.rates;
-  scene.passivity.controller = false;
-  Tool ball;
-  ball.name = "ball";
-  ball.axis = at.inward;
-  ball.up = at.inward.unitOrthogonal();
-  ball.probe()->radius = presses().radius;
-  ball.shaft_radius = 0.3 * presses().radius;
-  ball.shaft_length = 0.4 * presses().radius;
-  ball.pivot = at.point - 0.3 * at.inward;
-  ball.max_force = 1e9;
-  ball.max_force_rate = 1e15;
-  scene.tools = {ball};
-  return scene;
+  Body body = from.bodies[body_];
+  std::visit([](auto& spec) { prepare_for_press(spec); }, body);
+  return ball_scene(from, std::move(body), presses().patches[patch], presses().radius);
 }
 
 double SolidCase::reach() const {

@@ -17,7 +17,7 @@ class SolidCase {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  /// `whole`: the body on one mesh, by which it stands in scene() too.
+  /// `whole`: the body on one mesh, as which it stands in scene() too.
   SolidCase(
       const Scene& scene, int body, OneMesh whole, bool quick, ReferenceCache cache = {},
       Say say = [](const std::string&) {});
@@ -25,7 +25,7 @@ class SolidCase {
   const Scene& scene() const { return scene_; }
   int index() const { return body_; }
   const Body& body() const { return scene_.bodies[body_]; }
-  const SolidSpec& solid() const { return *as<SolidSpec>(body()); }
+  const SolidSpec& solid() const { return solid_; }
   bool has_two_meshes() const { return !second_mesh_.empty(); }  ///< in the scene's files
   bool quick() const { return quick_; }
   const TetMesh& mesh() const { return problem_.mesh; }
@@ -82,6 +82,7 @@ class SolidCase {
 
   const std::string second_mesh_;  // content hash with it; empty unless a hybrid has one
   Scene scene_;
+  const SolidSpec solid_;
   int body_;
   bool quick_;
   ReferenceCache cache_;

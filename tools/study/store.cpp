@@ -8,6 +8,7 @@
 
 #include "common/describe/digest.hpp"
 #include "common/models/content_hash.hpp"
+#include "tools/study/kinds.hpp"
 
 namespace palpate::study {
 namespace {
@@ -59,11 +60,8 @@ std::string study_key(const Scene& scene, bool quick) {
   constexpr int definitions = 3;  // changes with every change of what the figures mean
   std::string key =
       fmt::format("{} {} {} {}", PALPATE_VERSION, definitions, quick ? "quick" : "whole", scene_hash(scene));
-  for (const Body& body : scene.bodies) {
-    key += " " + content_hash(body);
-    if (const auto* wire = as<CatheterSpec>(body); wire && !wire->catheter.inside.empty()) key += " with insertion";
-    if (const auto* hybrid = as<HybridSpec>(body); hybrid && !hybrid->hybrid.mesh.empty()) key += " on one mesh";
-  }
+  for (const Body& body : scene.bodies)
+    key += " " + content_hash(body) + std::visit([](const auto& spec) { return key_of(spec); }, body);
   return key;
 }
 

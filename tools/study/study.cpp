@@ -8,59 +8,14 @@
 
 #include "common/fem/dense.hpp"
 #include "tools/study/budget.hpp"
-#include "tools/study/catheter.hpp"
-#include "tools/study/dynamic.hpp"
+#include "tools/study/kinds.hpp"
 #include "tools/study/machine.hpp"
 #include "tools/study/measure.hpp"
-#include "tools/study/modal.hpp"
 #include "tools/study/output_folder.hpp"
-#include "tools/study/quasi_static.hpp"
 #include "tools/study/store.hpp"
 
 namespace palpate::study {
 namespace {
-
-/// A hybrid body whose two meshes meet at some nodes only: see on_one_mesh().
-class JoinedAtNodes : public Method {
- public:
-  JoinedAtNodes(int body, std::string name) : body_(body), name_(std::move(name)) {}
-  int body() const override { return body_; }
-  std::vector<Point> points() const override { return {{name_, "connection", "at some nodes", {}, false}}; }
-  Result evaluate(const Point&) override {
-    throw std::runtime_error(
-        "the two meshes meet at some nodes only, and there is no converged solution to compare with: not assessed");
-  }
-
- private:
-  int body_;
-  std::string name_;
-};
-
-void add_methods(const Scene& scene, int b, const StudyOptions& options, Methods& methods) {
-  const bool quick = options.quick;
-  const Body& body = scene.bodies[b];
-  if (as<CatheterSpec>(body)) {
-    methods.push_back(make_catheter(scene, b, quick));
-    return;
-  }
-  if (as<ModalShellSpec>(body)) {
-    methods.push_back(make_modal(scene, b, quick));
-    return;
-  }
-  auto whole = on_one_mesh(body);
-  if (!whole) {
-    methods.push_back(
-        std::make_unique<JoinedAtNodes>(b, scene.bodies.size() == 1 ? "hybrid" : name_of(body) + ":hybrid"));
-    return;
-  }
-  auto solid =
-      std::make_shared<SolidCase>(scene, b, *std::move(whole), quick, ReferenceCache(options.references), options.say);
-  methods.push_back(make_quasi_static(solid));
-  methods.push_back(make_linearity(solid));
-  std::vector<std::string> models{"tensor_mass", "spring_mass"};
-  if (as<HybridSpec>(body)) models.insert(models.begin(), "hybrid");
-  for (const std::string& model : models) methods.push_back(make_dynamic(solid, model));
-}
 
 /// A refused point is a row without figures, and its reason.
 Result refused(const Scene& scene, const Point& point, const std::string& why) {
@@ -102,7 +57,11 @@ void spend(const Scene& scene, const Methods& methods, const Result& result, con
 
 Methods make_methods(const Scene& scene, const StudyOptions& options) {
   Methods methods;
-  for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) add_methods(scene, b, options, methods);
+  for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
+    const StudiedBody body{scene, b, options};
+    for (auto& m : std::visit([&](const auto& spec) { return methods_of(spec, body); }, scene.bodies[b]))
+      methods.push_back(std::move(m));
+  }
   return methods;
 }
 

@@ -1,0 +1,52 @@
+#pragma once
+#include "common/models/catheter/catheter_body.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/stability/case.hpp"
+
+namespace palpate::stability {
+
+/// Follows a haptic step and says how it went.
+class Watch {
+ public:
+  /// [N m] to a hand, beyond which it counts as unbounded: contacts that pull against one another add up to little
+  /// force.
+  static constexpr double kMaxTorque = 100;
+
+  /// Looks at the step that has just been made.
+  void look(const HapticStep& haptic);
+  /// The outcome so far: regularised as soon as any flag was up.
+  Result result() const;
+  double largest() const { return largest_; }
+
+ private:
+  double largest_ = 0, torque_ = 0, max_lost_ = 0;
+  bool finite_ = true;
+  int steps_ = 0, regularised_ = 0, limited_ = 0, slewed_ = 0, faults_ = 0, stale_ = 0, damped_ = 0;
+};
+
+/// What happens to moving tissue, tick by tick.
+class TissueWatch {
+ public:
+  void look(const DynamicOrgan& organ);
+  /// Failed unless every position has stayed within a kilometre; max_force the largest contact force on the tissue that
+  /// moves [N]; energy_growth how far the tissue's own energy has risen above the largest of its first 200 ticks.
+  Result result() const;
+
+ private:
+  int ticks_ = 0;
+  double largest_ = 0, first_energy_ = 0, late_energy_ = 0, reach_ = 0;
+};
+
+/// What happens to a catheter, tick by tick.
+class CatheterWatch {
+ public:
+  void look(const CatheterBody& body);
+  /// Failed if a place or a force was not a number or the catheter went more than 10 m away; max_force is that of a
+  /// tool [N].
+  Result result(double energy_growth) const;
+
+ private:
+  double force_ = 0, reach_ = 0;
+};
+
+}  // namespace palpate::stability
