@@ -51,7 +51,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
   }
 
   ToolInput at(double depth) const {
-    return {testing::tip_at(scene_.tools[0], {0, 0, kPlate + kHeight - depth})};
+    return {tip_at(scene_.tools[0], {0, 0, kPlate + kHeight - depth})};
   }
   /// [m] mean outward displacement on the circle at mid-height, as it is shown.
   double widening(Simulator& simulator) const {

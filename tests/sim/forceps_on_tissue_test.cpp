@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/sim/simulator.hpp"
+#include "common/mesh/generators.hpp"
 #include "tests/sim/played_scenes.hpp"
 
 namespace palpate::sim {
@@ -38,7 +39,7 @@ class ForcepsOnAFin : public ::testing::Test {
   }
 
   std::array<ToolInput, 1> input() const {
-    ToolDofs d = testing::tip_at(scene_.tools[0], {0, 0, height_});
+    ToolDofs d = tip_at(scene_.tools[0], {0, 0, height_});
     d.grip = grip_;
     return {ToolInput{d}};
   }
