@@ -5,7 +5,7 @@
 #include "bench/report.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/models/modal_shell/precompute.hpp"
-#include "common/sim/haptic_step.hpp"
+#include "common/sim/step_messages.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
@@ -58,7 +58,7 @@ Timed run(const Insertion& whole, int modes, int particles, int every) {
     const auto begin = std::chrono::steady_clock::now();
     haptic.step(dofs);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const double inserted = haptic.task(0).inserted;
+    const double inserted = task_records(haptic)[0].inserted;
     if (inserted > 0.005) timed.inside.add(seconds);
     timed.by_depth[static_cast<int>(1e3 * inserted)].add(seconds);
   }

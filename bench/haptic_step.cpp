@@ -46,13 +46,13 @@ void one_contact(const Scene& scene, const std::vector<Archive>& archives, bool 
 
 int held_nodes(const HapticStep& haptic) {
   int held = 0;
-  for (const TouchContact& c : haptic.body(0).law().contacts()) held += c.touch != Touch::open;
+  for (const TouchContact& c : haptic.law(0).contacts()) held += c.touch != Touch::open;
   return held;
 }
 
 int held_by(const HapticStep& haptic, int tool) {
   int held = 0;
-  for (const TouchContact& c : haptic.body(0).law().contacts()) held += c.touch != Touch::open && c.tool == tool;
+  for (const TouchContact& c : haptic.law(0).contacts()) held += c.touch != Touch::open && c.tool == tool;
   return held;
 }
 

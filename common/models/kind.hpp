@@ -13,6 +13,7 @@ struct MeshedSpec;
 struct MovingSpec;
 struct StepSettings;
 class BodyPart;
+class BodyShape;
 class DynamicOrgan;
 
 /// What programs ask of every kind of tissue are functions of its spec, declared beside it and defined in the kind's
@@ -26,6 +27,10 @@ using ArchiveJob = std::function<Archive()>;
 /// state the deformation node owns. `archive` is read with ArchivePart::touchable.
 std::unique_ptr<BodyPart> make_haptic_part(const MovingSpec& body, const Archive& archive,
                                            const StepSettings& settings);
+
+/// make_shape(spec, archive): its visible surface as it follows from what the haptic node says of the body. `archive` is
+/// read with ArchivePart::surface.
+std::unique_ptr<BodyShape> make_shape(const MovingSpec& body, const Archive& archive);
 
 /// make_organ(spec, archive, settings): the body as the deformation node advances it; null for a body that the haptic
 /// step owns. Throws std::runtime_error naming the body if the scene's step is not stable.

@@ -27,10 +27,9 @@ Simulator::Simulator(const Scene& scene, const std::vector<Archive>& archives)
       local_models_(world_, archives, LocalStiffness::Worker::caller),
       deformer_(scene_, archives),
       dofs_(scene_.tools.size()),
-      contacts_(scene_.tools.size(), ContactState{.run = kRun}),
-      modal_(modal_states(haptic_, kRun)),
-      catheters_(catheter_states(haptic_, kRun)) {
+      contacts_(scene_.tools.size(), ContactState{.run = kRun}) {
   prepare_record(haptic_, record_);
+  for (BodyNews& news : record_.news) std::visit([](auto& m) { m.run = kRun; }, news.message);
 }
 
 void Simulator::start(std::span<const ToolInput> inputs) {
@@ -55,11 +54,8 @@ void Simulator::show() {
     describe_contacts(record_, t, contacts_[t]);
     deformer_.take(contacts_[t]);
   }
-  if (!record_.has_shapes) return;
-  describe_shapes(record_, modal_);
-  describe_shapes(record_, catheters_);
-  for (const ModalState& m : modal_) deformer_.take(m);
-  for (const CatheterState& m : catheters_) deformer_.take(m);
+  for (const BodyNews& news : record_.news)
+    if (news.due(steps_)) deformer_.take(news.message);
 }
 
 // The tissue follows the tools, and the next step feels how it then is.

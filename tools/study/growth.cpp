@@ -93,7 +93,7 @@ void over_contacts(Growth& growth) {
     HapticPress press(press_scene(block_body(), radius, kTop.point), {archive}, kTop, radius);
     press.to(0.3 * radius);
     int held = 0;
-    for (const TouchContact& c : press.haptic().body(0).law().contacts()) held += c.touch != Touch::open;
+    for (const TouchContact& c : press.haptic().law(0).contacts()) held += c.touch != Touch::open;
     growth.add("haptic step of many contacts", "held contacts", held, press.time(growth.samples()));
   }
 }

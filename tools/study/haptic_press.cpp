@@ -47,7 +47,7 @@ ContactState HapticPress::contacts() const {
   m.seq = m.step = count_;
   m.sense_ns = static_cast<std::int64_t>(count_);
   Eigen::Map<Eigen::Vector3d>(m.press.data()) = haptic_.press(0);
-  for (const TouchContact& c : haptic_.body(0).law().contacts()) {
+  for (const TouchContact& c : haptic_.law(0).contacts()) {
     if (c.touch == Touch::open) continue;
     HeldContact held;
     for (int v = 0; v < 3; ++v) held.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
@@ -56,27 +56,25 @@ ContactState HapticPress::contacts() const {
     Eigen::Map<Eigen::Vector3d>(held.force.data()) = c.force;
     m.contacts.push_back(held);
   }
-  haptic_.body(0).law().for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
+  haptic_.law(0).for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
     m.forces.push_back({0, static_cast<std::uint32_t>(node), {f[0], f[1], f[2]}});
   });
   return m;
 }
 
-ModalState HapticPress::modal() const {
-  ModalState m;
-  m.run = 1;
-  m.seq = m.step = count_;
-  m.sense_ns = static_cast<std::int64_t>(count_);
-  m.coordinates.resize(haptic_.modal(0).modes());
-  haptic_.modal(0).show(m.coordinates.data(), [&](int node, const Eigen::Vector3d& f) {
-    const Eigen::Vector3f single = f.cast<float>();
-    m.forces.push_back({static_cast<std::uint32_t>(node), {single[0], single[1], single[2]}});
-  });
-  return m;
-}
-
 std::vector<Eigen::Vector3d> HapticPress::shown() {
-  !haptic_.modal_bodies().empty() ? deformer_.take(modal()) : deformer_.take(contacts());
+  deformer_.take(contacts());
+  for (BodyNews& news : haptic_.news()) {
+    std::visit(
+        [&](auto& m) {
+          m.run = 1;
+          m.seq = m.step = count_;
+          m.sense_ns = static_cast<std::int64_t>(count_);
+        },
+        news.message);
+    haptic_.tell(news.message);
+    deformer_.take(news.message);
+  }
   deformer_.deform();
   std::vector<Eigen::Vector3d> u;
   for (const Eigen::Vector3f& d : deformer_.surface(0).displacement) u.push_back(d.cast<double>());

@@ -27,7 +27,6 @@ class HapticPress {
 
  private:
   ContactState contacts() const;
-  ModalState modal() const;
 
   Scene scene_;
   Patch patch_;

@@ -153,7 +153,7 @@ class QuasiStatic : public Method {
   std::vector<Eigen::Vector3d> field_in_double(const Archive& archive, const HapticPress& press) const {
     const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
     std::vector<Eigen::Vector3d> u(archive.surface.size(), Eigen::Vector3d::Zero());
-    press.haptic().body(0).law().for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
+    press.haptic().law(0).for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
       if (node >= compliance.column_nodes()) return;
       for (int axis = 0; axis < 3; ++axis)
         for (std::size_t n = 0; n < u.size(); ++n)

@@ -64,4 +64,6 @@ std::optional<Archive> made_archive(const CatheterSpec& body);
 std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
+std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive);
+
 }  // namespace palpate
