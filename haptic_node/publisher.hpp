@@ -48,7 +48,7 @@ class Publisher {
   std::unique_ptr<Writer<HapticKeyframe>> keyframe_;
   std::uint64_t run_, keyframe_seq_ = 0;
   std::vector<OfTool> of_tool_;
-  std::vector<BodyNews> news_;          ///< the newest, in the order of the records
+  std::vector<BodyNews> news_;           ///< the newest, in the order of the records
   WritersOf<BodyMessage>::All writers_;  ///< null where no body tells such a message
 };
 

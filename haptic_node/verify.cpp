@@ -228,7 +228,8 @@ VerifyReport verify_log(const std::filesystem::path& file) {
 
   std::vector<Archive> archives;
   for (const Body& body : scene.bodies)
-    archives.push_back(as<MovingSpec>(body) ? Archive{} : find_archive(scene, body, ArchivePart::touchable));
+    archives.push_back(owner_of(body) == Owner::haptic_node ? find_archive(scene, body, ArchivePart::touchable)
+                                                            : Archive{});
   RunVerifier verifier(scene, archives, report);
   for (const auto& [id, run] : runs) {
     if (run.keyframes.empty() || !report.mismatch.empty()) continue;

@@ -28,7 +28,8 @@ template <class F>
 void for_each_body_message(F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (f(std::variant_alternative_t<I, BodyMessage>{}), ...);
-  }(std::make_index_sequence<std::variant_size_v<BodyMessage>>{});
+  }
+  (std::make_index_sequence<std::variant_size_v<BodyMessage>>{});
 }
 
 /// Which body a message is of, by its place in the scene.

@@ -11,8 +11,8 @@
 namespace palpate {
 
 /// Brings contacts and reduced states from the bus to a deformer: those of haptic nodes with the same scene, and no
-/// others; of what bodies tell beside their contacts, only what some body of the scene follows. When the haptic node dies in contact, it
-/// keeps the last contacts on the bus for the one that returns.
+/// others; of what bodies tell beside their contacts, only what some body of the scene follows. When the haptic node
+/// dies in contact, it keeps the last contacts on the bus for the one that returns.
 class ContactFeed {
  public:
   ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer);

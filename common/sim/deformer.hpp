@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-/// Rebuilds the shape of the bodies that the haptic node owns, in single precision, from what it says of them: contacts,
-/// and the messages that bodies tell beside them. Bodies of moving tissue stay at rest.
+/// Rebuilds the shape of the bodies that the haptic node owns, in single precision, from what it says of them:
+/// contacts, and the messages that bodies tell beside them. Bodies of moving tissue stay at rest.
 class Deformer {
  public:
   /// One archive per body, read with ArchivePart::surface.

@@ -39,7 +39,7 @@ class ModalBody : public TouchBody, public CatheterWall {
 
   int modes() const { return static_cast<int>(x_.size()); }
   std::span<const double> coordinates() const override { return x_; }  ///< X [kg^1/2 m]
-  double energy() const;                                      ///< [J] kinetic and elastic, of the modes
+  double energy() const;                                               ///< [J] kinetic and elastic, of the modes
 
   CatheterWall* wall() override { return this; }
   std::vector<BodyNews> news() const override;

@@ -22,4 +22,8 @@ std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Arc
 
 std::unique_ptr<BodyShape> make_shape(const ModalShellSpec& body, const Archive& archive);
 
+void check(const ModalShellSpec& body, const CheckSettings& settings, CheckReport& report);
+
+DirectProblem direct_problem(const ModalShellSpec& body);
+
 }  // namespace palpate

@@ -60,4 +60,13 @@ std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Ar
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive);
 
+constexpr bool stores_inertia(const QuasiStaticSpec&) {
+  return false;
+}
+
+void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report);
+std::vector<std::string> locking_warnings(const QuasiStaticSpec& body);
+DirectProblem direct_problem(const QuasiStaticSpec& body);
+StaticCorrection static_correction(const QuasiStaticSpec& body);
+
 }  // namespace palpate
