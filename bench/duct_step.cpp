@@ -63,7 +63,7 @@ Timed run(const Insertion& whole, int modes, int particles, int every) {
     const auto begin = std::chrono::steady_clock::now();
     rig.press(dofs);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const double inserted = rig.simulator().task(0).inserted;
+    const double inserted = rig.simulator().tasks()[0].inserted;
     if (inserted > 0.005) timed.inside.add(seconds);
     timed.by_depth[static_cast<int>(1e3 * inserted)].add(seconds);
   }

@@ -8,6 +8,7 @@
 #include "common/contact/held_points.hpp"
 #include "common/fem/direct.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/sim/deformer.hpp"
 

@@ -43,7 +43,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
   presence_.set_clock(&clock_);
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies)
-    moves_.push_back(as<MovingSpec>(body) != nullptr), names_.push_back(name_of(body));
+    moves_.push_back(owner_of(body) == Owner::deform_node), names_.push_back(name_of(body));
 }
 
 void DynamicLoop::take_tools() {

@@ -86,8 +86,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
 void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::surface);
   Deformer deformer(loaded.scene, loaded.archives);
-  const bool moves =
-      std::ranges::any_of(loaded.scene.bodies, [](const Body& body) { return as<MovingSpec>(body) != nullptr; });
+  const bool moves = has_moving_tissue(loaded.scene);
   if (!moves) loaded.archives.clear();
   const nlohmann::json summary = moves ? advance(o, loaded, deformer) : superpose(o, loaded, deformer);
   if (o.supervised) fmt::print("{}\n", summary.dump());

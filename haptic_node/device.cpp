@@ -62,7 +62,8 @@ class BusDevice : public Device {
   DeviceSample read(double) override { return newest_.get(); }
   bool finished(double) const override { return false; }
   bool ready() const override { return ready_.load(std::memory_order_acquire); }
-  void put(const DeviceSample& sample) {
+  bool on_bus() const override { return true; }
+  void put(const DeviceSample& sample) override {
     newest_.put(sample);
     ready_.store(true, std::memory_order_release);
   }
@@ -91,19 +92,11 @@ std::unique_ptr<Device> make_device(const Scene& scene, int tool) {
   return std::visit([&](const auto& spec) { return make_device(spec, place); }, place.tool.device);
 }
 
-struct BusDevices::Target {
-  std::uint32_t tool;
-  BusDevice* device;
-};
-
 BusDevices::BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices) {
   for (std::size_t t = 0; t < devices.size(); ++t)
-    if (auto* device = dynamic_cast<BusDevice*>(devices[t].get()))
-      targets_.push_back({static_cast<std::uint32_t>(t), device});
+    if (devices[t]->on_bus()) targets_.push_back({static_cast<std::uint32_t>(t), devices[t].get()});
   if (needed()) reader_ = bus.reader(topics::device_state);
 }
-
-BusDevices::~BusDevices() = default;
 
 bool BusDevices::needed() const {
   return !targets_.empty();

@@ -27,6 +27,9 @@ class Device {
   virtual bool finished(double seconds) const = 0;
   /// False until the first pose is known (a driver elsewhere has not spoken yet).
   virtual bool ready() const { return true; }
+  /// Whether its samples come from a driver elsewhere, by put(), which is called on a thread of its own.
+  virtual bool on_bus() const { return false; }
+  virtual void put(const DeviceSample&) {}
 };
 
 /// The tool that a device moves.
@@ -43,13 +46,15 @@ std::unique_ptr<Device> make_device(const Scene& scene, int tool);
 class BusDevices {
  public:
   BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices);
-  ~BusDevices();
   /// Takes what has come.
   void take();
   bool needed() const;  ///< some tool waits for a driver elsewhere
 
  private:
-  struct Target;
+  struct Target {
+    std::uint32_t tool;
+    Device* device;
+  };
   std::unique_ptr<Reader<DeviceState>> reader_;
   std::vector<Target> targets_;
 };

@@ -8,6 +8,7 @@
 #include "common/kernels/code_path.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/sim/step_messages.hpp"
 #include "haptic_node/haptic_loop.hpp"
 
 namespace palpate {
@@ -57,16 +58,15 @@ void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bu
   }
 }
 
-/// How the tasks of a scene ended, one entry a catheter.
+/// How the tasks of a scene ended, one entry a body that has one.
 nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
   nlohmann::json tasks = nlohmann::json::array();
-  for (std::size_t i = 0; i < haptic.catheters().size(); ++i) {
-    const Task& task = haptic.task(static_cast<int>(i));
-    const std::string& body = name_of(scene.bodies[haptic.catheters()[i].body]);
+  for (const TaskRecord& task : task_records(haptic)) {
+    const std::string& body = name_of(scene.bodies[task.body]);
     tasks.push_back({{"body", body},
                      {"inserted_m", task.inserted},
                      {"deepest_m", task.deepest},
-                     {"inserting_s", task.inserting_s()},
+                     {"inserting_s", task.inserting_s},
                      {"force_max_n", task.max_force},
                      {"wall_contacts", task.wall_contacts},
                      {"grasps", task.grasps},
@@ -76,7 +76,7 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
         "task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} "
         "N, {} wall contacts, "
         "{} grasps, {} drops, held for {:.1f} s",
-        body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s(), task.max_force, task.wall_contacts,
+        body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s, task.max_force, task.wall_contacts,
         task.grasps, task.drops, task.held_s);
   }
   return tasks;
@@ -141,16 +141,14 @@ void run(const NodeOptions& o) {
     bus->wait(20ms);
   }
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
-  for (const auto& c : haptic.catheters())
-    spdlog::info("body '{}': {} particles, {}", name_of(scene.bodies[c.body]), c.part->body().size(),
-                 as<CatheterSpec>(scene.bodies[c.body])->catheter.integrator == "implicit"
-                     ? std::string("implicit, one step a tick")
-                     : fmt::format("semi-implicit, {} substeps a tick", c.part->body().substeps()));
+  for (const HapticStep::Entry& entry : haptic.entries())
+    if (const std::string said = entry.part->introduction(); !said.empty())
+      spdlog::info("body '{}': {}", name_of(scene.bodies[entry.body]), said);
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
   if (topology) loop.set_topology(&*topology);
   const LoopReport& report = loop.run(o.seconds);
   nlohmann::json summary = summary_of(report);
-  if (!haptic.catheters().empty()) summary["tasks"] = tasks_of(haptic, scene);
+  if (const nlohmann::json tasks = tasks_of(haptic, scene); !tasks.empty()) summary["tasks"] = tasks;
   if (report.damped > 0)
     spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
                  report.damped, -1e3 * report.min_energy);

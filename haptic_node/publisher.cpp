@@ -1,8 +1,24 @@
 #include "haptic_node/publisher.hpp"
 
+#include "common/bus/topic_of.hpp"
 #include "common/sim/step_messages.hpp"
 
 namespace palpate {
+namespace {
+
+/// The contents of a record's message, under this publisher's numbers.
+void take(const BodyMessage& from, BodyMessage& to) {
+  std::visit(
+      [&]<class M>(M& m) {
+        const auto run = m.run, seq = m.seq;
+        m = std::get<M>(from);
+        m.run = run;
+        m.seq = seq;
+      },
+      to);
+}
+
+}  // namespace
 
 Publisher::Publisher(Bus& bus, const HapticStep& haptic, std::uint64_t run)
     : tool_(bus.writer(topics::tool_state)),
@@ -10,15 +26,16 @@ Publisher::Publisher(Bus& bus, const HapticStep& haptic, std::uint64_t run)
       force_(bus.writer(topics::force_state)),
       keyframe_(bus.writer(topics::haptic_keyframe)),
       run_(run),
-      of_tool_(haptic.tools()) {
-  if (!haptic.modal_bodies().empty()) modal_ = bus.writer(topics::modal_state);
-  modal_states_ = modal_states(haptic, run);
-  if (haptic.catheters().empty()) return;
-  catheter_ = bus.writer(topics::catheter_state);
-  task_ = bus.writer(topics::task_record);
-  catheter_states_ = catheter_states(haptic, run);
-  for (const auto& c : haptic.catheters())
-    task_records_.push_back({.body = static_cast<std::uint32_t>(c.body), .run = run});
+      of_tool_(haptic.tools()),
+      news_(haptic.news()) {
+  for (BodyNews& news : news_)
+    std::visit(
+        [&]<class M>(M& message) {
+          message.run = run;
+          auto& writer = std::get<std::unique_ptr<Writer<M>>>(writers_);
+          if (!writer) writer = bus.writer(topic_of<M>());
+        },
+        news.message);
 }
 
 void Publisher::publish(const StepRecord& r) {
@@ -34,38 +51,30 @@ void Publisher::publish(const StepRecord& r) {
     tool.seq = ++state.tool_seq;
     tool_->write(tool);
   }
-  if (r.has_shapes) publish_shapes(r);
-  if (!task_) return;
-  take_tasks(r);
-  if (r.step % kTaskInterval == 0) finish();
+  publish_news(r);
 }
 
-void Publisher::publish_shapes(const StepRecord& r) {
-  describe_shapes(r, modal_states_);
-  describe_shapes(r, catheter_states_);
-  for (ModalState& m : modal_states_) {
-    ++m.seq;
-    modal_->write(m);
-  }
-  for (CatheterState& m : catheter_states_) {
-    ++m.seq;
-    catheter_->write(m);
+void Publisher::publish_news(const StepRecord& r) {
+  for (std::size_t i = 0; i < news_.size(); ++i) {
+    const bool due = r.news[i].due(r.step);
+    if (!due && !news_[i].to_the_end) continue;
+    take(r.news[i].message, news_[i].message);
+    if (due) write(news_[i].message);
   }
 }
 
-void Publisher::take_tasks(const StepRecord& r) {
-  for (std::size_t i = 0; i < task_records_.size(); ++i) {
-    task_records_[i].step = r.step;
-    task_records_[i].sense_ns = r.sense_ns;
-    describe(r.tasks[i], task_records_[i]);
-  }
+void Publisher::write(BodyMessage& message) {
+  std::visit(
+      [&]<class M>(M& m) {
+        ++m.seq;
+        std::get<std::unique_ptr<Writer<M>>>(writers_)->write(m);
+      },
+      message);
 }
 
 void Publisher::finish() {
-  for (TaskRecord& m : task_records_) {
-    ++m.seq;
-    task_->write(m);
-  }
+  for (BodyNews& news : news_)
+    if (news.to_the_end) write(news.message);
 }
 
 void Publisher::publish_contacts(const StepRecord& r, int t) {

@@ -70,6 +70,16 @@ Recorded read_log(LogReader& log) {
   return recorded;
 }
 
+/// What a task record says, under another one's numbers and times.
+TaskRecord numbered_like(const TaskRecord& other, TaskRecord record) {
+  record.run = other.run;
+  record.seq = other.seq;
+  record.step = other.step;
+  record.sense_ns = other.sense_ns;
+  record.publish_ns = other.publish_ns;
+  return record;
+}
+
 bool same_bits(const Eigen::Vector3d& a, const std::array<double, 3>& b) {
   return std::memcmp(a.data(), b.data(), sizeof b) == 0;
 }
@@ -174,11 +184,11 @@ class RunVerifier {
   }
 
   void compare_tasks(const HapticStep& haptic, std::uint64_t step, const RecordedStep& recorded) {
-    for (std::size_t i = 0; i < haptic.catheters().size() && report_.mismatch.empty(); ++i) {
-      const auto found = recorded.task.find(static_cast<std::uint32_t>(haptic.catheters()[i].body));
-      if (found == recorded.task.end()) continue;
-      TaskRecord computed = found->second;
-      describe(haptic.task(static_cast<int>(i)), computed);
+    if (recorded.task.empty()) return;
+    for (const TaskRecord& now : task_records(haptic)) {
+      const auto found = recorded.task.find(now.body);
+      if (found == recorded.task.end() || !report_.mismatch.empty()) continue;
+      const TaskRecord computed = numbered_like(found->second, now);
       if (computed == found->second) {
         ++report_.tasks;
         continue;
@@ -218,7 +228,8 @@ VerifyReport verify_log(const std::filesystem::path& file) {
 
   std::vector<Archive> archives;
   for (const Body& body : scene.bodies)
-    archives.push_back(as<MovingSpec>(body) ? Archive{} : find_archive(scene, body, ArchivePart::touchable));
+    archives.push_back(owner_of(body) == Owner::haptic_node ? find_archive(scene, body, ArchivePart::touchable)
+                                                            : Archive{});
   RunVerifier verifier(scene, archives, report);
   for (const auto& [id, run] : runs) {
     if (run.keyframes.empty() || !report.mismatch.empty()) continue;

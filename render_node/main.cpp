@@ -69,8 +69,7 @@ void summarise(const RenderReport& r, const Film* film, bool supervised) {
 void run(const NodeOptions& o) {
   if (options.threads > 0) ::setenv("LP_NUM_THREADS", fmt::format("{}", options.threads).c_str(), 1);
   LoadedScene loaded = load_for_node(o, options.deform ? ArchivePart::surface : ArchivePart::header);
-  const bool moves =
-      std::ranges::any_of(loaded.scene.bodies, [](const Body& b) { return as<MovingSpec>(b) != nullptr; });
+  const bool moves = has_moving_tissue(loaded.scene);
   if (options.deform && moves)
     throw std::runtime_error(o.scene + ": moving tissue belongs to a deform node; leave --deform out");
   Stage stage = make_stage(loaded);

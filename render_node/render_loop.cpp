@@ -32,6 +32,10 @@ void describe(const TaskRecord& task, std::vector<std::string>& lines) {
                               task.max_force));
 }
 
+bool tells_task(const Body& body) {
+  return std::visit([](const auto& spec) { return has_task(spec); }, body);
+}
+
 }  // namespace
 
 RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence,
@@ -49,8 +53,7 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
       latest_force_(scene.tools.size()) {
   presence_.set_clock(&clock_);
   picture_.node = presence.node();
-  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return as<CatheterSpec>(body) != nullptr; }))
-    tasks_ = bus.reader(topics::task_record);
+  if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
 }
 
 void RenderLoop::take() {
@@ -67,8 +70,8 @@ void RenderLoop::take() {
     report_.refused += !good;
   }
   while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
-    const bool good = task->body < scene_.bodies.size() && as<CatheterSpec>(scene_.bodies[task->body]) &&
-                      presence_.accepts(task->run);
+    const bool good =
+        task->body < scene_.bodies.size() && tells_task(scene_.bodies[task->body]) && presence_.accepts(task->run);
     if (good) latest_task_[task->body] = *task;
     report_.refused += !good;
   }

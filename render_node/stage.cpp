@@ -5,14 +5,15 @@
 #include <numbers>
 
 #include "common/mesh/normals.hpp"
+#include "common/models/appearance.hpp"
 #include "render_node/backdrop.hpp"
 #include "render_node/straighten.hpp"
 
 namespace palpate {
 namespace {
 
-// Of one body after refinement: what 60 frames a second allow. A wall has them twice; a catheter comes smooth.
-constexpr std::size_t kMaxTrianglesOfOrgan = 16000, kMaxTrianglesOfWall = 6000, kMaxTrianglesOfCatheter = 0;
+// Of one body after refinement: what 60 frames a second allow. A wall has them twice; plastic comes smooth.
+constexpr std::size_t kMaxTrianglesOfOrgan = 16000, kMaxTrianglesOfWall = 6000, kMaxTrianglesOfPlastic = 0;
 // Linear RGB.
 constexpr std::array<double, 3> kBoneColour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165},
     duct_colour{0.60, 0.29, 0.23}, mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
@@ -32,13 +33,25 @@ double round_up(double value) {
   return 10 * decade;
 }
 
-/// A catheter's rest shape seen along it: z is minus the distance from the tip.
-std::vector<Eigen::Vector3f> from_tip(const SurfaceMap& map, const Catheter& catheter) {
-  const Eigen::Quaterniond turn =
-      Eigen::Quaterniond::FromTwoVectors(catheter.tip - catheter.tail, Eigen::Vector3d::UnitZ());
-  std::vector<Eigen::Vector3f> out;
-  for (const Eigen::Vector3d& p : map.position) out.push_back((turn * (p - catheter.tip)).cast<float>());
-  return out;
+/// How a material is drawn.
+struct Drawn {
+  Finish finish;
+  std::size_t max_triangles;
+  std::array<double, 3> colour;
+};
+
+/// `render`: whose tissue colour is also a wall's, if it is given.
+Drawn drawn_as(Appearance::Material material, const Render& render) {
+  const bool given = render.tissue_colour != Render{}.tissue_colour;
+  switch (material) {
+    case Appearance::Material::wall:
+      return {Finish::duct, kMaxTrianglesOfWall, given ? render.tissue_colour : duct_colour};
+    case Appearance::Material::plastic:
+      return {Finish::plastic, kMaxTrianglesOfPlastic, plastic_colour};
+    case Appearance::Material::tissue:
+      break;
+  }
+  return {Finish::tissue, kMaxTrianglesOfOrgan, render.tissue_colour};
 }
 
 }  // namespace
@@ -48,14 +61,13 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   if (!scene.render) render_.camera = fit_camera(surfaces);
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const SurfaceMap& map = surfaces[b];
-    const auto* shell = as<ShellSpec>(scene.bodies.at(b));
-    const auto* wire = as<CatheterSpec>(scene.bodies.at(b));
+    const Appearance look = std::visit([&](const auto& spec) { return appearance(spec, map); }, scene.bodies.at(b));
+    const Drawn drawn = drawn_as(look.material, render_);
     Soft body;
     body.coarse = map.position.size();
-    body.max_triangles = shell ? kMaxTrianglesOfWall : wire ? kMaxTrianglesOfCatheter : kMaxTrianglesOfOrgan;
-    body.finish = shell ? Finish::duct : wire ? Finish::plastic : Finish::tissue;
-    const bool given = render_.tissue_colour != Render{}.tissue_colour;
-    body.colour = wire ? plastic_colour : shell && !given ? duct_colour : render_.tissue_colour;
+    body.max_triangles = drawn.max_triangles;
+    body.finish = drawn.finish;
+    body.colour = drawn.colour;
     body.rest = to_float(map.position);
     refine(body, map.triangles);
     body.position = body.rest;
@@ -63,8 +75,8 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
     body.normal.resize(body.refinement.vertices());
     body.refinement.apply(body.position, body.normal);
-    if (shell) add_wall(body, map, shell->shell.thickness);
-    if (wire) body.texture = from_tip(map, wire->catheter);
+    body.texture = look.texture;
+    if (look.material == Appearance::Material::wall) add_wall(body, map, look.thickness);
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);

@@ -1,3 +1,5 @@
+#include "common/models/check/check.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,70 +8,26 @@
 
 #include "common/bus/roles.hpp"
 #include "common/bus/security.hpp"
-#include "common/contact/tool_contacts.hpp"
-#include "common/fem/assembly.hpp"
-#include "common/fem/boundary_conditions.hpp"
-#include "common/fem/selection.hpp"
-#include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/quasi_static/nonlinear.hpp"
-#include "common/models/solid/precompute.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
-#include "tools/check_duct.hpp"
-#include "tools/check_dynamic.hpp"
-#include "tools/check_offline.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
-#include "tools/footprint.hpp"
-#include "tools/words.hpp"
+#include "tools/tool_warnings.hpp"
 
 namespace palpate {
 namespace {
 
-template <class Part>
-bool is_a(const Body& body) {
-  return as<Part>(body) != nullptr;
-}
-
-void print_boundary_conditions(const SolidSpec& body, const TetMesh& mesh) {
-  for (const BoundaryCondition& fixed : body.fixed) {
-    std::string axes;
-    for (int axis = 0; axis < 3; ++axis)
-      if (fixed.axes[axis]) axes += "xyz"[axis];
-    const auto nodes = select_nodes(mesh, fixed.where, fmt::format("body '{}': [[body.fixed]]", body.name));
-    fmt::print("  fixed: {}, {} nodes along {}\n", describe(fixed.where, "nodes"), nodes.size(), axes);
-  }
-}
-
-void print_material(const SolidSpec& body) {
-  fmt::print("  material: young {} Pa, poisson {}, density {} kg/m3\n", body.material.young, body.material.poisson,
-             body.material.density);
-  for (const MaterialRegion& region : body.materials)
-    fmt::print("  in {}: young {} Pa, poisson {}, density {} kg/m3\n", describe(region.where, "elements"),
-               region.material.young, region.material.poisson, region.material.density);
-}
-
-void print_nonlinear(const QuasiStaticSpec& body) {
-  if (!body.nonlinear) return;
-  const Nonlinear& nonlinear = *body.nonlinear;
-  Archive slopes;
-  if (!nonlinear.specimen_mesh.empty()) {
-    const auto pressed =
-        press_specimen(load_tet_mesh(nonlinear.specimen_mesh, nonlinear.specimen_scale), body.material);
-    slopes.specimen_force_slope = pressed.force;
-    slopes.specimen_radial_slope = pressed.radial;
-  }
-  const QuasiNonlinear law = make_quasi_nonlinear(body, slopes);
-  fmt::print(
-      "  quasi non-linear correction: degree {}, {} ends; fitted up to a linear force of {:.3g} N and a "
-      "linear "
-      "radial displacement of {:.3g} m\n",
-      nonlinear.degree, nonlinear.specimen_mesh.empty() ? "sliding" : "stuck", law.force_curve().end(),
-      law.radial_curve().end());
+/// Bytes as a person reads them: "1.2 MB".
+std::string human(std::size_t bytes) {
+  const double b = static_cast<double>(bytes);
+  if (b < 1e6) return fmt::format("{:.1f} kB", b * 1e-3);
+  return b < 1e9 ? fmt::format("{:.1f} MB", b * 1e-6) : fmt::format("{:.2f} GB", b * 1e-9);
 }
 
 void print_archive(const Scene& scene, const Body& body) {
   const auto file = archive_path(body);
+  if (file.empty()) return;
   if (!std::filesystem::exists(file)) {
     fmt::print("  archive: not computed yet, `palpate precompute` does it\n");
     return;
@@ -82,48 +40,37 @@ void print_archive(const Scene& scene, const Body& body) {
   }
 }
 
-void print_memory(const std::vector<MemoryPart>& parts) {
-  for (const MemoryPart& part : parts) fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
-}
-
-SurfaceMap check_solid_body(const Scene& scene, const Body& body, const SolidSpec& solid) {
-  const bool moves = is_a<MovingSpec>(body);
-  const TetMesh mesh = load_tet_mesh(solid.mesh, solid.scale);
-  const DofMap dofs = apply_boundary_conditions(mesh, solid.fixed, fmt::format("body '{}'", solid.name));
-  const MaterialField materials = material_field(solid, mesh);
-  SurfaceMap surface = make_surface_map(solid, mesh, dofs);
-  Archive moving;
-  if (moves) moving = dynamic_archive(scene, body, mesh);
-  fmt::print("body '{}': {} nodes, {} tetrahedra, {} degrees of freedom; model {}\n", solid.name, mesh.nodes.size(),
-             mesh.tetrahedra.size(), dofs.size(), kind_of(body));
-  fmt::print("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable\n", surface.size(),
-             surface.triangles.size(), mean_edge(surface), surface.touchable);
-  print_boundary_conditions(solid, mesh);
-  print_material(solid);
-  if (const auto* still = as<QuasiStaticSpec>(body)) {
-    print_offline(*still, mesh);
-    print_nonlinear(*still);
-  }
-  if (moves) print_dynamic(body, mesh, moving);
-
-  print_archive(scene, body);
-  print_memory(moves ? dynamic_memory(scene, body, moving)
-                     : body_memory(scene, body, surface, materials.of_element.size()));
-  return surface;
-}
-
-/// Loads and validates a body's mesh and everything that refers to it. A catheter has no surface before it
-/// moves.
-SurfaceMap check_body(const Scene& scene, const Body& body) {
-  if (const auto* solid = as<SolidSpec>(body)) return check_solid_body(scene, body, *solid);
-  if (const auto* wire = as<CatheterSpec>(body)) {
-    check_catheter(scene, *wire);
+/// Empty if there is none or it is refused, which print_archive() says.
+std::optional<Archive> stored_archive(const Scene& scene, const Body& body, ArchivePart part) {
+  const auto file = archive_path(body);
+  if (file.empty() || !std::filesystem::exists(file)) return {};
+  try {
+    return find_archive(scene, body, part);
+  } catch (const std::exception&) {
     return {};
   }
-  SurfaceMap surface = check_shell_body(scene, body);
+}
+
+const ShellSpec* find_wall(const Scene& scene, const std::string& name) {
+  const auto body = std::ranges::find_if(scene.bodies, [&](const Body& b) { return name_of(b) == name; });
+  return body == scene.bodies.end() ? nullptr : wall_of(*body);
+}
+
+/// Loads and validates a body's mesh and everything that refers to it.
+CheckReport check_body(const Scene& scene, const Body& body) {
+  const CheckSettings settings{
+      .contact = scene.contact,
+      .tools = scene.tools,
+      .dt = 1 / scene.rates.haptic_hz,
+      .stored = [&](ArchivePart part) { return stored_archive(scene, body, part); },
+      .find_wall = [&](const std::string& name) { return find_wall(scene, name); },
+      .check_guests = [&](const ShellSpec& wall, const ShellMesh& mesh) { check_guests(scene, wall, mesh); }};
+  CheckReport report{.say = [](const std::string& line) { fmt::print("{}\n", line); }};
+  std::visit([&](const auto& spec) { check(spec, settings, report); }, body);
   print_archive(scene, body);
-  print_memory(shell_memory(scene, body, surface));
-  return surface;
+  for (const MemoryPart& part : report.memory)
+    fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
+  return report;
 }
 
 /// Keys are made apart from the scene, and a host may have those of its own nodes alone.
@@ -155,28 +102,28 @@ void print_sections(const Scene& scene) {
              human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
 }
 
-void print_left_out(const Scene& scene) {
-  fmt::print("left out:\n");
-  for (const Body& body : scene.bodies) {
-    const std::string& name = name_of(body);
-    const auto* solid = as<SolidSpec>(body);
-    if (is_a<ShellSpec>(body) || (solid && solid->materials.empty()))
-      fmt::print("  body '{}': one material, nothing per element\n", name);
-    const auto* still = as<QuasiStaticSpec>(body);
-    if (still && !still->nonlinear) fmt::print("  body '{}': no quasi non-linear correction\n", name);
-    const auto* moving = as<MovingSpec>(body);
-    if (moving && !moving->tearing) fmt::print("  body '{}': does not tear by itself\n", name);
-    if (moving) fmt::print("  body '{}': no archive in the haptic node\n", name);
+/// What is left out where no body of the scene is of a kind: a sentence for each, in the order of the table of kinds.
+template <class... Spec>
+std::vector<std::string> absences(const Scene& scene, const std::variant<Spec...>*) {
+  std::vector<std::string> sentences;
+  const auto of_body = [](const Body& b) { return std::visit([](const auto& s) { return absence(s); }, b); };
+  for (const std::string_view sentence : {absence(Spec{})...}) {
+    const bool present = std::ranges::find(scene.bodies, sentence, of_body) != scene.bodies.end();
+    if (sentence.empty() || present || std::ranges::find(sentences, sentence) != sentences.end()) continue;
+    sentences.emplace_back(sentence);
   }
-  if (std::ranges::none_of(scene.bodies, is_a<MovingSpec>))
-    fmt::print("  no dynamic body: no masses, no cutting, no topology topic\n");
-  if (std::ranges::none_of(scene.bodies, is_a<ShellSpec>)) fmt::print("  no shell: no modes\n");
-  if (std::ranges::none_of(scene.bodies, is_a<CatheterSpec>))
-    fmt::print("  no catheter: no particles and no task record\n");
+  return sentences;
+}
+
+void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
+  fmt::print("left out:\n");
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (const std::string& what : bodies[b].left_out) fmt::print("  body '{}': {}\n", name_of(scene.bodies[b]), what);
+  for (const std::string& sentence : absences(scene, static_cast<const Body*>(nullptr))) fmt::print("  {}\n", sentence);
   const auto works = [](const Tool& tool) { return tool.forceps() || tool.probe()->cautery || tool.probe()->jaws; };
   if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
-  const auto driven = [](const Tool& tool) { return std::holds_alternative<BusDeviceSpec>(tool.device); };
+  const auto driven = [](const Tool& tool) { return std::get_if<BusDeviceSpec>(&tool.device) != nullptr; };
   if (std::ranges::none_of(scene.tools, driven))
     fmt::print("  no tool on the bus: no device topic and no thread for it\n");
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
@@ -184,36 +131,25 @@ void print_left_out(const Scene& scene) {
     fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
   if (!scene.render) fmt::print("  no [render]: default picture\n");
   if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
-  if (std::ranges::none_of(scene.bodies, is_a<MovingSpec>))
-    fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
+  if (!has_moving_tissue(scene)) fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
 }
 
-void print_warnings(const Scene& scene, const std::vector<SurfaceMap>& surfaces) {
+void print_warnings(const Scene& scene, std::span<const CheckReport> bodies) {
   std::vector<std::string> warnings;
-  const auto add = [&](const std::vector<std::string>& more) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  };
-  for (std::size_t b = 0; b < surfaces.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (const auto* wire = as<CatheterSpec>(body))
-      add(catheter_warnings(scene, *wire));
-    else
-      add(body_warnings(scene, body, surfaces[b]));
-    add(locking_warnings(body));
-    if (const auto* shell = as<ShellSpec>(body)) add(shell_warnings(*shell, surfaces[b]));
-  }
-  add(cutting_warnings(scene));
+  for (const CheckReport& body : bodies) warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
+  const std::vector<std::string> of_tools = tool_warnings(scene);
+  warnings.insert(warnings.end(), of_tools.begin(), of_tools.end());
   for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);
 }
 
-void check(const Scene& scene) {
+void check_scene(const Scene& scene) {
   fmt::print("{}{}scene {}\n", scene.title, scene.title.empty() ? "" : "\n", scene.file.string());
-  std::vector<SurfaceMap> surfaces;
-  for (const Body& body : scene.bodies) surfaces.push_back(check_body(scene, body));
-  for (const Tool& tool : scene.tools) check_tool(scene, tool, surfaces);
+  std::vector<CheckReport> bodies;
+  for (const Body& body : scene.bodies) bodies.push_back(check_body(scene, body));
+  for (const Tool& tool : scene.tools) check_tool(scene, tool, bodies);
   print_sections(scene);
-  print_left_out(scene);
-  print_warnings(scene, surfaces);
+  print_left_out(scene, bodies);
+  print_warnings(scene, bodies);
   fmt::print("hash {}\n", scene_hash(scene));
 }
 
@@ -223,7 +159,7 @@ void add_check_command(cli::Command& app) {
   cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
   auto file = std::make_shared<std::string>();
   command.add_option("SCENE", *file, "scene file").required();
-  command.does([file] { check(load_scene(*file)); });
+  command.does([file] { check_scene(load_scene(*file)); });
 }
 
 }  // namespace palpate

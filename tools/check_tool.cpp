@@ -2,46 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <stdexcept>
 
-#include "common/contact/tool_contacts.hpp"
-#include "common/contact/touch_surface.hpp"
-#include "common/geometry/segment.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
 
-/// Whether a part of a tool meets the body, or lies inside one that is solid.
-bool meets(const Segment& axis, double radius, const Body& body, const TouchSurface& surface) {
-  const auto* wall = as<ShellSpec>(body);
-  if (!wall && (surface.encloses(axis.start) || surface.encloses(axis.end))) return true;
-  const double reach = radius + (wall ? 0.5 * wall->shell.thickness : 0);
-  for (int t = 0; t < surface.triangle_count(); ++t)
-    if (closest_points(axis, surface.corners(t)).squared_distance < reach * reach) return true;
-  return false;
-}
-
-bool meets(const Segment& axis, double radius, const Catheter& catheter) {
-  const double reach = radius + catheter.radius;
-  return closest_points(axis, Segment{catheter.tail, catheter.tip}).squared_distance < reach * reach;
-}
-
 /// `file`: the tool's trajectory.
 void check_start(const Tool& tool, const std::filesystem::path& file, const ToolDofs& dofs, const Body& body,
-                 const SurfaceMap& map) {
+                 const CheckReport& report) {
   const Eigen::Isometry3d pose = tip_pose(make_trocar(tool.pivot, tool.axis, tool.up), dofs);
-  const auto* wire = as<CatheterSpec>(body);
-  std::optional<TouchSurface> surface;
-  if (!wire) surface.emplace(map, 2 * mean_edge(map));
-  for (const ToolPart& part : tool_parts(tool, dofs.grip)) {
-    const Segment axis = part.axis(pose);
-    if (wire ? meets(axis, part.radius, wire->catheter) : meets(axis, part.radius, body, *surface))
+  for (const ToolPart& part : tool_parts(tool, dofs.grip))
+    if (report.meets(part.axis(pose), part.radius))
       throw std::runtime_error(fmt::format("{}: tool '{}' starts in contact with body '{}' or inside it", file.string(),
                                            tool.name, name_of(body)));
-  }
 }
 
 void print_end(const Tool& tool) {
@@ -63,7 +39,7 @@ void print_end(const Tool& tool) {
 
 }  // namespace
 
-void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceMap>& surfaces) {
+void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies) {
   print_end(tool);
   fmt::print(", device {}", std::visit([](const auto& device) { return device.kKind; }, tool.device));
   const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
@@ -75,8 +51,8 @@ void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceM
   const Trajectory trajectory = load_trajectory(script->trajectory);
   check_grip(trajectory, script->trajectory, tool);
   fmt::print(", {} s of {}\n", trajectory.duration(), script->trajectory.filename().string());
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-    check_start(tool, script->trajectory, trajectory.at(0), scene.bodies[b], surfaces[b]);
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    check_start(tool, script->trajectory, trajectory.at(0), scene.bodies[b], bodies[b]);
 }
 
 }  // namespace palpate

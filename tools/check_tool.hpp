@@ -1,14 +1,13 @@
 #pragma once
-#include <vector>
+#include <span>
 
-#include "common/archive/archive.hpp"
+#include "common/models/check/check.hpp"
 #include "common/scene/scene.hpp"
 
 namespace palpate {
 
 /// Prints a tool and refuses one that cannot start: a malformed trajectory, a grip beyond the jaws' range, a
-/// first pose in contact with a body. `surfaces`: of the scene's bodies (nothing for a catheter). Throws
-/// std::runtime_error.
-void check_tool(const Scene& scene, const Tool& tool, const std::vector<SurfaceMap>& surfaces);
+/// first pose in contact with a body. `bodies`: what was found of the scene's. Throws std::runtime_error.
+void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies);
 
 }  // namespace palpate

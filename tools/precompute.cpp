@@ -44,7 +44,7 @@ void describe_modes(const Archive& archive) {
 void precompute_body(const Scene& scene, const Body& body) {
   const auto state = ensure_archive(scene, body, show_stage);
   if (state.file.empty()) {
-    fmt::print("body '{}': a catheter needs no archive\n", name_of(body));
+    fmt::print("body '{}': a {} needs no archive\n", name_of(body), kind_of(body));
     return;
   }
   if (!state.refused.empty()) fmt::print(stderr, "rebuilt, because {}\n", state.refused);

@@ -131,8 +131,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
   if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o.keys)));
   const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
-  const auto is_moving = [](const Body& b) { return as<MovingSpec>(b) != nullptr; };
-  const bool moves = std::ranges::any_of(scene.bodies, is_moving);  // moving tissue needs the node that owns it
+  const bool moves = has_moving_tissue(scene);  // moving tissue needs the node that owns it
   const bool three = o.processes == 3 || moves;
   if (moves || (drawn && three)) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (drawn) {

@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "common/archive/static_solve.hpp"
-#include "common/fem/fine_problem.hpp"
-#include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/models/static_state.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
 #include "tools/solution_file.hpp"
-#include "tools/solve_nonlinear.hpp"
 
 namespace palpate {
 namespace {
@@ -54,9 +53,8 @@ std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh
 }
 
 Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
-  const SolidSpec& solid = *as<SolidSpec>(body);
-  const auto problem = make_static_problem(solid, load_tet_mesh(solid.mesh, solid.scale));
-  const auto& mesh = problem.mesh;
+  const DirectProblem problem = std::visit([](const auto& spec) { return direct_problem(spec); }, body);
+  const TetMesh& mesh = problem.mesh;
   SolutionTable table;
   table.node.resize(mesh.nodes.size());
   std::iota(table.node.begin(), table.node.end(), 0);
@@ -65,10 +63,7 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  const auto* still = as<QuasiStaticSpec>(body);
-  const auto solution = still && is_finer(still->offline)
-                            ? solve_direct(make_fine_problem(*still, mesh, *still->offline), constraints)
-                            : solve_direct(problem, constraints);
+  const auto solution = problem.solve(constraints);
   table.displacement = solution.displacement;
   table.force = solution.force;
   return {table, constraints};
@@ -104,13 +99,24 @@ Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArgumen
   return {sorted_table(surface, solve_tensors(archive, held)), held};
 }
 
+/// Places of the held nodes in the table, ascending.
+std::vector<int> held_places(const Solved& solved) {
+  std::set<int> numbers;
+  for (const Constraint& constraint : solved.held)
+    for (const Constraint::Term& term : constraint.terms) numbers.insert(term.node);
+  std::vector<int> places;
+  for (std::size_t i = 0; i < solved.table.node.size(); ++i)
+    if (numbers.contains(solved.table.node[i])) places.push_back(static_cast<int>(i));
+  return places;
+}
+
 /// [body.nonlinear], where the body has one.
 void correct(const Scene& scene, const Body& body, Solved& solved) {
-  const auto* still = as<QuasiStaticSpec>(body);
-  if (!still || !still->nonlinear) return;
+  const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
+  if (!correction) return;
   ensure_archive(scene, body);  // it holds the press of the specimen
-  const auto law = make_quasi_nonlinear(*still, find_archive(scene, body, ArchivePart::header));
-  const double scale = correct_solution(law, solved.held, solved.table);
+  const Archive archive = find_archive(scene, body, ArchivePart::header);
+  const double scale = correction(archive, {held_places(solved), solved.table.displacement, solved.table.force});
   fmt::print("corrected by [body.nonlinear]: forces are {:.4g} times the linear ones\n", scale);
 }
 
@@ -125,14 +131,10 @@ void summarise(const SolutionTable& table, const SolveArguments& arguments) {
              table.node.size(), table.displacement[furthest].norm(), table.node[furthest], max_force);
 }
 
-/// A shell's rotations are condensed into its archive, and only there.
-void check_model(const Body& body, const std::string& method) {
-  if (as<CatheterSpec>(body))
+void check_model(const Body& body) {
+  if (!std::visit([](const auto& spec) { return has_static_states(spec); }, body))
     throw std::runtime_error(
-        fmt::format("body '{}' is a catheter, which has no static state to solve for", name_of(body)));
-  if (as<ShellSpec>(body) && method == "direct")
-    throw std::runtime_error(fmt::format(
-        "body '{}' is a shell, and the direct method is for tetrahedra: take --method tensors", name_of(body)));
+        fmt::format("body '{}' is a {}, which has no static state to solve for", name_of(body), kind_of(body)));
 }
 
 void solve(const SolveArguments& arguments) {
@@ -140,7 +142,7 @@ void solve(const SolveArguments& arguments) {
     throw std::runtime_error("nothing is held: give --hold or --touch");
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
-  check_model(body, arguments.method);
+  check_model(body);
   Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
   correct(scene, body, solved);

@@ -27,12 +27,22 @@ std::size_t payload_bytes(const Archive& archive) {
          modal_payload_bytes(archive);
 }
 
+/// What an archive consists of, for its header: a part that is lost shows.
+std::string parts_of(const Archive& archive) {
+  std::string parts = "surface";
+  if (!archive.tetrahedra.empty()) parts += " dynamic";
+  if (archive.hybrid) parts += " hybrid";
+  if (archive.modal) parts += " modal";
+  return parts;
+}
+
 void write_header(Hdf5Writer& file, const Archive& archive) {
   file.attribute("format", kFormat);
   file.attribute("format_version", std::int64_t{kArchiveFormat});
   file.attribute("software", archive.software);
   file.attribute("body", archive.body);
   file.attribute("model", archive.model);
+  file.attribute("parts", parts_of(archive));
   file.attribute("content_hash", archive.content_hash);
   file.attribute("mesh_nodes", std::int64_t{archive.mesh_nodes});
   file.attribute("touchable_nodes", std::int64_t{archive.surface.touchable});
@@ -99,8 +109,8 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
   const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
   bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
                     surface.touchable <= surface.size() && !archive.young.empty() &&
-                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
-                    modal_part_fits(archive, part);
+                    archive.young.size() == archive.poisson.size() && file.text("parts") == parts_of(archive) &&
+                    dynamic_part_fits(archive, part) && modal_part_fits(archive, part);
   if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
     consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;

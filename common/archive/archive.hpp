@@ -41,7 +41,7 @@ struct ModalTensors {
 /// tetrahedra in place of a compliance; hybrid ones have both, each for its part.
 struct Archive {
   std::string body;
-  std::string model = "quasi_static";  ///< quasi_static | tensor_mass | spring_mass | hybrid | modal_shell | catheter
+  std::string model;                   ///< the kind of tissue, as a scene names it
   std::string content_hash;            ///< over mesh, material, boundary conditions, touchable set and format version
   std::string software;                ///< version that computed it
   int mesh_nodes = 0;                  ///< nodes in the mesh file
@@ -65,7 +65,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 3;
+constexpr int kArchiveFormat = 4;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.

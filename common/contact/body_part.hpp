@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/contact/body_message.hpp"
 #include "common/contact/contact_law.hpp"
 #include "common/describe/state.hpp"
 #include "common/tool/grip.hpp"
@@ -14,6 +15,8 @@
 #include "common/tool/spec.hpp"
 
 namespace palpate {
+
+class CatheterWall;
 
 /// What the bodies do to one tool in a step. Linear and corrected forces share their direction of press.
 struct ToolLoad {
@@ -61,6 +64,8 @@ class BodyPart {
   /// Once all parts of a scene are made: `find` gives that of another body by its name, null if there is none.
   using FindPart = std::function<BodyPart*(const std::string& body)>;
   virtual void join(const FindPart& /*find*/) {}
+  /// The wall that another body may be led into; null if it is none.
+  virtual CatheterWall* wall() { return nullptr; }
 
   /// Brings the surface up to date, near the tools at least.
   virtual void update_surface(std::span<const MovingTool>) {}
@@ -92,6 +97,16 @@ class BodyPart {
   virtual const ContactLaw* held() const { return nullptr; }
   /// Whether its shape follows from the contacts' forces alone.
   virtual bool superposed() const { return false; }
+  /// The reduced coordinates from which its shape follows; empty where it follows from the contacts, or is told by
+  /// others.
+  virtual std::span<const double> coordinates() const { return {}; }
+
+  /// What it tells others beside its contacts: messages with room for whatever they will hold.
+  virtual std::vector<BodyNews> news() const { return {}; }
+  /// Fills one of those messages after a step, all but body, run, seq, step and time. Allocates nothing.
+  virtual void tell(BodyMessage&) {}
+  /// What a person may want to know of it when the loop begins; empty: nothing.
+  virtual std::string introduction() const { return {}; }
 
   virtual void forget_factor() {}
   /// What it remembers. `tools`: as they are, where it restores.

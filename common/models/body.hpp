@@ -42,6 +42,14 @@ inline std::string_view kind_of(const Body& body) {
   return std::visit([](const auto& spec) { return std::remove_cvref_t<decltype(spec)>::kKind; }, body);
 }
 
+inline Owner owner_of(const Body& body) {
+  return std::visit([](const auto& spec) { return owner(spec); }, body);
+}
+
+inline const ShellSpec* wall_of(const Body& body) {
+  return std::visit([](const auto& spec) { return wall_of(spec); }, body);
+}
+
 inline void describe(Description& d, Body& body) {
   d.variant({"model", "", "the kind of tissue, see below", Need::optional, Use::stored}, body);
 }

@@ -38,7 +38,7 @@ class StoredText : public TomlWriter {
 
 std::string content_hash(const Body& body) {
   Body copy = body;
-  StoredText text(!as<QuasiStaticSpec>(body));
+  StoredText text(std::visit([](const auto& spec) { return stores_inertia(spec); }, body));
   describe(text, copy);
   return digest(fmt::format("format {}\n{}", kArchiveFormat, text.text()));
 }

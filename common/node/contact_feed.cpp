@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "common/bus/topic_of.hpp"
+
 namespace palpate {
 
 ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
@@ -9,8 +11,10 @@ ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
       deformer_(deformer),
       contacts_(bus.reader(topics::contact_state)),
       held_(bus.writer(topics::held_contacts)) {
-  if (deformer.has_modal_shells()) modes_ = bus.reader(topics::modal_state);
-  if (deformer.has_catheters()) catheters_ = bus.reader(topics::catheter_state);
+  for_each_body_message([&]<class M>(const M& message) {
+    if (deformer.hears(message))
+      take_news_.push_back([this, reader = std::shared_ptr(bus.reader(topic_of<M>()))] { take_all(*reader); });
+  });
 }
 
 template <class M>
@@ -20,8 +24,7 @@ void ContactFeed::take_all(Reader<M>& reader) {
 
 bool ContactFeed::take() {
   take_all(*contacts_);
-  if (modes_) take_all(*modes_);
-  if (catheters_) take_all(*catheters_);
+  for (const auto& take_news : take_news_) take_news();
   return deformer_.fresh();
 }
 

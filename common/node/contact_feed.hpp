@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
@@ -9,8 +11,8 @@
 namespace palpate {
 
 /// Brings contacts and reduced states from the bus to a deformer: those of haptic nodes with the same scene, and no
-/// others; modal states and catheters only where the scene has such bodies. When the haptic node dies in contact, it
-/// keeps the last contacts on the bus for the one that returns.
+/// others; of what bodies tell beside their contacts, only what some body of the scene follows. When the haptic node
+/// dies in contact, it keeps the last contacts on the bus for the one that returns.
 class ContactFeed {
  public:
   ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer);
@@ -28,8 +30,7 @@ class ContactFeed {
   const Presence& presence_;
   Deformer& deformer_;
   std::unique_ptr<Reader<ContactState>> contacts_;
-  std::unique_ptr<Reader<ModalState>> modes_;         ///< null: no modal shell
-  std::unique_ptr<Reader<CatheterState>> catheters_;  ///< null: no catheter
+  std::vector<std::function<void()>> take_news_;  ///< one a type of BodyMessage that some body follows
   std::unique_ptr<Writer<ContactState>> held_;
   bool haptic_alive_ = false;
   std::uint64_t refused_ = 0;

@@ -36,7 +36,8 @@ LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchiveP
   LoadedScene loaded{.scene = load_scene(options.scene)};
   loaded.scene_hash = scene_hash(loaded.scene);
   for (const Body& body : loaded.scene.bodies) {
-    loaded.archives.push_back(find_archive(loaded.scene, body, as<MovingSpec>(body) ? of_dynamic : part));
+    const ArchivePart needed = owner_of(body) == Owner::deform_node ? of_dynamic : part;
+    loaded.archives.push_back(find_archive(loaded.scene, body, needed));
     loaded.archive_hash += loaded.archives.back().content_hash;
   }
   return loaded;

@@ -6,7 +6,6 @@
 
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/shell_file.hpp"
-#include "common/models/catheter/check_duct.hpp"
 #include "common/models/content_hash.hpp"
 #include "common/scene/find_archive.hpp"
 
@@ -23,31 +22,21 @@ std::string refusal(const std::filesystem::path& file, const std::string& hash) 
   }
 }
 
-/// Bodies that are led into this one may have changed, of which its archive knows nothing.
-template <class Wall>
-void check_guests(const Scene& scene, const Body& body, Wall&& wall) {
-  const auto* duct = as<ShellSpec>(body);
-  if (!duct) return;
-  for (const Body& other : scene.bodies)
-    if (const auto* wire = as<CatheterSpec>(other); wire && wire->catheter.inside == duct->name)
-      check_duct(*wire, *duct, wall(*duct));
+/// Bodies that are led into this one may have changed, of which its archive knows nothing. `mesh`: gives its wall.
+template <class Mesh>
+void check_guests_of(const Scene& scene, const Body& body, Mesh&& mesh) {
+  if (const ShellSpec* wall = wall_of(body)) check_guests(scene, *wall, mesh(*wall));
 }
 
-ShellMesh wall_of(const Archive& archive) {
+ShellMesh stored_wall(const Archive& archive) {
   return {archive.surface.position, archive.surface.triangles, {}};
 }
 
-/// Empty for a body without a mesh.
-ArchiveJob load_job(const Body& body, const Progress& progress) {
-  const auto load = [&](const auto& spec) -> ArchiveJob {
-    if constexpr (std::derived_from<std::remove_cvref_t<decltype(spec)>, MeshedSpec>)
-      return archive_job(spec, progress);
-    return {};
-  };
-  return std::visit(load, body);
-}
-
 }  // namespace
+
+void check_guests(const Scene& scene, const ShellSpec& wall, const ShellMesh& mesh) {
+  for (const Body& body : scene.bodies) std::visit([&](const auto& spec) { check_guest(spec, wall, mesh); }, body);
+}
 
 ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress) {
   ArchiveState state{archive_path(body), false, {}, 0};
@@ -56,12 +45,12 @@ ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress
   if (std::filesystem::exists(state.file)) {
     state.refused = refusal(state.file, hash);
     state.up_to_date = state.refused.empty();
-    const auto stored = [&](const ShellSpec&) { return wall_of(find_archive(scene, body, ArchivePart::header)); };
-    if (state.up_to_date) check_guests(scene, body, stored);
+    const auto stored = [&](const ShellSpec&) { return stored_wall(find_archive(scene, body, ArchivePart::header)); };
+    if (state.up_to_date) check_guests_of(scene, body, stored);
     if (state.up_to_date) return state;
   }
-  const ArchiveJob job = load_job(body, progress);
-  check_guests(scene, body, [](const ShellSpec& duct) { return load_shell_mesh(duct.mesh, duct.scale); });
+  const ArchiveJob job = std::visit([&](const auto& spec) { return archive_job(spec, progress); }, body);
+  check_guests_of(scene, body, [](const ShellSpec& duct) { return load_shell_mesh(duct.mesh, duct.scale); });
   const auto begin = std::chrono::steady_clock::now();
   auto archive = job();
   archive.content_hash = hash;

@@ -8,13 +8,9 @@
 
 namespace palpate {
 
-std::optional<Archive> made_archive(const MeshedSpec&) {
-  return {};
-}
-
 std::filesystem::path archive_path(const Body& body) {
-  const MeshedSpec* meshed = as<MeshedSpec>(body);
-  return meshed ? archive_path(meshed->mesh, meshed->name, content_hash(body)) : std::filesystem::path();
+  const std::filesystem::path mesh = std::visit([](const auto& spec) { return mesh_file(spec); }, body);
+  return mesh.empty() ? mesh : archive_path(mesh, name_of(body), content_hash(body));
 }
 
 Archive find_archive(const Scene& scene, const Body& body, ArchivePart part) {

@@ -7,28 +7,29 @@
 namespace palpate {
 namespace {
 
-/// A catheter is led into a shell.
-void require_ducts(Description& d, const Scene& scene) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const auto* wire = as<CatheterSpec>(scene.bodies[b]);
-    if (!wire || wire->catheter.inside.empty()) continue;
-    const std::string& inside = wire->catheter.inside;
-    const auto duct = std::ranges::find_if(scene.bodies, [&](const Body& body) { return name_of(body) == inside; });
-    const bool found = duct != scene.bodies.end();
-    const std::string reason =
-        !found ? "the scene has no such body" : fmt::format("that body's model is '{}'", kind_of(*duct));
-    d.require(found && as<ShellSpec>(*duct), fmt::format("body.{}.catheter.inside", b),
-              fmt::format("inside must name a body of the model 'modal_shell', and is '{}': {}", inside, reason));
-  }
+/// What bodies ask of one another.
+void require_neighbours(Description& d, const Scene& scene) {
+  const auto find = [&](const std::string& name) -> std::optional<Neighbour> {
+    const auto body = std::ranges::find_if(scene.bodies, [&](const Body& b) { return name_of(b) == name; });
+    if (body == scene.bodies.end()) return {};
+    return Neighbour{kind_of(*body), wall_of(*body)};
+  };
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    std::visit([&](const auto& spec) { require_neighbours(d, fmt::format("body.{}", b), spec, find); },
+               scene.bodies[b]);
 }
 
 }  // namespace
+
+bool has_moving_tissue(const Scene& scene) {
+  return std::ranges::any_of(scene.bodies, [](const Body& body) { return owner_of(body) == Owner::deform_node; });
+}
 
 void describe(Description& d, Scene& scene) {
   d.text({"title", "", "what a person reads", Need::optional, Use::local}, scene.title);
   d.named_tables({"body", "", "the soft bodies", Need::required}, "body", scene.bodies);
   d.require(!scene.bodies.empty(), "", "the scene has no [[body]]");
-  require_ducts(d, scene);
+  require_neighbours(d, scene);
   d.named_tables({"tool", "", "the instruments"}, "tool", scene.tools);
   d.table({"contact", "", "the law of contact", Need::optional, Use::agreed, "defaults"}, scene.contact);
   d.table({"passivity", "", "watch over the energy in the loop", Need::optional, Use::agreed, "on"}, scene.passivity);

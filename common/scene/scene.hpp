@@ -31,6 +31,9 @@ struct Scene {
   std::optional<Render> render;
 };
 
+/// Whether the state of some body is the deformation node's.
+bool has_moving_tissue(const Scene& scene);
+
 /// The top of a scene file.
 void describe(Description& d, Scene& scene);
 

@@ -58,14 +58,26 @@ HapticStep::~HapticStep() = default;
 
 void HapticStep::add(int body, std::unique_ptr<BodyPart> part) {
   entries_.push_back({body, part.get()});
-  if (auto* modal = dynamic_cast<ModalBody*>(part.get())) modal_.push_back({body, modal});
-  if (auto* wire = dynamic_cast<CatheterPart*>(part.get())) wires_.push_back({body, wire});
   parts_.push_back(std::move(part));
 }
 
 const BodyPart* HapticStep::part(int body) const {
   const auto entry = std::ranges::find(entries_, body, &Entry::body);
   return entry == entries_.end() ? nullptr : entry->part;
+}
+
+std::vector<BodyNews> HapticStep::news() const {
+  std::vector<BodyNews> all;
+  for (const Entry& entry : entries_)
+    for (BodyNews& news : entry.part->news()) {
+      std::visit([&](auto& m) { m.body = static_cast<std::uint32_t>(entry.body); }, news.message);
+      all.push_back(std::move(news));
+    }
+  return all;
+}
+
+void HapticStep::tell(BodyMessage& message) const {
+  std::ranges::find(entries_, static_cast<int>(body_of(message)), &Entry::body)->part->tell(message);
 }
 
 void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {

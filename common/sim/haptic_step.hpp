@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
-#include "common/models/catheter/catheter_part.hpp"
-#include "common/models/modal_shell/modal_body.hpp"
+#include "common/contact/touch_body.hpp"
 #include "common/models/moving/local_part.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/tool_rig.hpp"
@@ -58,22 +57,12 @@ class HapticStep {
 
   /// What the step knows of a body; null where the tissue moves, which tools feel by its local models.
   const BodyPart* part(int body) const;
-  /// The same, of bodies whose contacts this step solves.
-  const TouchBody& body(int body) const { return dynamic_cast<const TouchBody&>(*part(body)); }
-  const ModalBody& modal(int body) const { return dynamic_cast<const ModalBody&>(*part(body)); }
-  const CatheterBody& catheter(int body) const { return dynamic_cast<const CatheterPart&>(*part(body)).body(); }
-  /// Bodies that move with inertia and whose state this node owns, in the order of the scene.
-  struct Modal {
-    int body;
-    ModalBody* part;
-  };
-  struct Wire {
-    int body;
-    CatheterPart* part;
-  };
-  std::span<const Modal> modal_bodies() const { return modal_; }
-  std::span<const Wire> catheters() const { return wires_; }
-  const Task& task(int i) const { return wires_[i].part->task(); }  ///< of catheters()[i]
+  /// The contacts of a body that are solved for here.
+  const ContactLaw& law(int body) const { return *part(body)->held(); }
+  /// What the bodies tell others beside their contacts, each named as its message's body, with room for it.
+  std::vector<BodyNews> news() const;
+  /// Fills one of those messages, all but run, seq, step and time. Allocates nothing.
+  void tell(BodyMessage& message) const;
   /// Every body that the tools meet here, in order.
   struct Entry {
     int body;
@@ -107,8 +96,6 @@ class HapticStep {
   std::vector<std::unique_ptr<ToolRig>> rigs_;
   std::vector<std::unique_ptr<BodyPart>> parts_;
   std::vector<Entry> entries_;  ///< which body each of parts_ is of, moving tissue's left out
-  std::vector<Modal> modal_;
-  std::vector<Wire> wires_;
   LocalPart* local_ = nullptr;  ///< one of parts_; null without moving tissue
   PassivityGuard passivity_;
   std::uint64_t step_ = 0;

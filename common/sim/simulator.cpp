@@ -18,18 +18,18 @@ const Scene& checked(const Scene& scene) {
   return scene;
 }
 
-/// What the deformer rebuilds the bodies of the haptic step from.
-void show(const StepRecord& record, std::vector<ContactState>& contacts, std::vector<ModalState>& modal,
-          std::vector<CatheterState>& catheters, Deformer& deformer) {
+// What the deformer rebuilds the bodies of the haptic step from.
+void show(const StepRecord& record, std::vector<ContactState>& contacts, Deformer& deformer) {
   for (std::size_t t = 0; t < contacts.size(); ++t) {
     describe_contacts(record, static_cast<int>(t), contacts[t]);
     deformer.take(contacts[t]);
   }
-  if (!record.has_shapes) return;
-  describe_shapes(record, modal);
-  describe_shapes(record, catheters);
-  for (const ModalState& m : modal) deformer.take(m);
-  for (const CatheterState& m : catheters) deformer.take(m);
+  for (const BodyNews& news : record.news)
+    if (news.due(record.step)) deformer.take(news.message);
+}
+
+void stamp(StepRecord& record) {
+  for (BodyNews& news : record.news) std::visit([](auto& m) { m.run = kRun; }, news.message);
 }
 
 }  // namespace
@@ -41,10 +41,9 @@ Simulator::Simulator(const Scene& scene, const std::vector<Archive>& archives)
       local_models_(world_, archives, LocalStiffness::Worker::caller),
       deformer_(scene_, archives),
       dofs_(scene_.tools.size()),
-      contacts_(scene_.tools.size(), ContactState{.run = kRun}),
-      modal_(modal_states(haptic_, kRun)),
-      catheters_(catheter_states(haptic_, kRun)) {
+      contacts_(scene_.tools.size(), ContactState{.run = kRun}) {
   prepare_record(haptic_, record_);
+  stamp(record_);
 }
 
 void Simulator::start(std::span<const ToolInput> inputs) {
@@ -58,7 +57,7 @@ void Simulator::step(std::span<const ToolInput> inputs) {
   haptic_.step(dofs_);
   const auto now_ns = static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(steps_) * dt()));
   fill_record(haptic_, inputs, steps_, now_ns, record_);
-  show(record_, contacts_, modal_, catheters_, deformer_);
+  show(record_, contacts_, deformer_);
   if (world_.organs() > 0) move_tissue();
   ++steps_;
 }
@@ -117,11 +116,10 @@ SurfaceView Simulator::surface(int body) {
 void Simulator::show_now() {
   StepRecord record{};
   prepare_record(haptic_, record);
+  stamp(record);
   fill_record(haptic_, std::vector<ToolInput>(dofs_.size()), 0, 0, record);
   std::vector<ContactState> contacts(dofs_.size(), ContactState{.run = kRun});
-  auto modal = modal_states(haptic_, kRun);
-  auto catheters = catheter_states(haptic_, kRun);
-  show(record, contacts, modal, catheters, deformer_);
+  show(record, contacts, deformer_);
   deformer_.deform();
 }
 

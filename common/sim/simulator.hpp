@@ -67,10 +67,10 @@ class Simulator {
   ToolView tool(int t) const;
   double energy() const { return haptic_.energy(); }  ///< [J] that all tools have put into what they touch
   const ContactState& contacts(int tool) const { return contacts_[tool]; }
-  const Task& task(int i) const { return haptic_.task(i); }  ///< of haptic().catheters()[i]
+  std::vector<TaskRecord> tasks() const { return task_records(haptic_); }
   std::vector<ChangeView> changes() const;
   /// Rebuilt when it is asked for, and valid until the next call or step. Walls and catheters are shown
-  /// as they were in the newest of every StepRecord::kShapeInterval steps.
+  /// as they were in the newest of every kShapeInterval steps.
   SurfaceView surface(int body);
   /// [m] of each node of a body's surface map, as its owner has it now; surface() shows that too until the next step.
   std::vector<Eigen::Vector3d> displacement(int body);
@@ -107,8 +107,6 @@ class Simulator {
   std::vector<ToolDofs> dofs_;
   StepRecord record_{};
   std::vector<ContactState> contacts_;  ///< per tool
-  std::vector<ModalState> modal_;
-  std::vector<CatheterState> catheters_;
   LocalContactModel model_;
   std::vector<Eigen::Vector3f> position_, normal_;  ///< of the moving body that surface() was last asked for
 };

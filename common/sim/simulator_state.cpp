@@ -9,13 +9,11 @@ namespace palpate::sim {
 namespace {
 
 template <class M>
-void visit(State& s, std::vector<M>& messages) {
-  for (M& m : messages) {
-    Bytes bytes;
-    if (!s.restoring()) encode(m, bytes);
-    s.list(bytes);
-    s.require(!s.restoring() || decode(bytes, m), "the recorded state holds no such message");
-  }
+void visit(State& s, M& message) {
+  Bytes bytes;
+  if (!s.restoring()) encode(message, bytes);
+  s.list(bytes);
+  s.require(!s.restoring() || decode(bytes, message), "the recorded state holds no such message");
 }
 
 }  // namespace
@@ -25,9 +23,8 @@ void Simulator::state(State& s) {
   haptic_.state(s);
   world_.state(s);
   local_models_.state(s);
-  visit(s, contacts_);
-  visit(s, modal_);
-  visit(s, catheters_);
+  for (ContactState& contacts : contacts_) visit(s, contacts);
+  for (BodyNews& news : record_.news) std::visit([&](auto& message) { visit(s, message); }, news.message);
 }
 
 void Simulator::forget_factors() {
@@ -49,8 +46,7 @@ void Simulator::restore(std::span<const std::uint8_t> from) {
   state(s);
   if (s.size() != from.size()) throw std::runtime_error("the recorded state is of another scene");
   for (const ContactState& m : contacts_) deformer_.take(m);
-  for (const ModalState& m : modal_) deformer_.take(m);
-  for (const CatheterState& m : catheters_) deformer_.take(m);
+  for (const BodyNews& news : record_.news) deformer_.take(news.message);
 }
 
 std::uint64_t Simulator::hash() const {
@@ -68,8 +64,7 @@ std::uint64_t Simulator::hash() const {
   for (const ContactState& m : contacts_) encode(m, contacts);
   digest.add(std::span<const std::uint8_t>(contacts));
   digest.add(world_.hash());
-  for (const auto& m : haptic_.modal_bodies()) digest.add(m.part->coordinates());
-  for (const auto& c : haptic_.catheters()) digest.add(std::span<const Eigen::Vector3d>(c.part->body().positions()));
+  for (const HapticStep::Entry& entry : haptic_.entries()) digest.add(entry.part->coordinates());
   return digest.value();
 }
 

@@ -4,17 +4,6 @@
 
 namespace palpate {
 
-void describe(const Task& task, TaskRecord& record) {
-  record.inserted = task.inserted;
-  record.deepest = task.deepest;
-  record.inserting_s = task.inserting_s();
-  record.max_force = task.max_force;
-  record.wall_contacts = task.wall_contacts;
-  record.grasps = task.grasps;
-  record.drops = task.drops;
-  record.held_s = task.held_s;
-}
-
 ToolState tool_state(const StepRecord& r, int tool) {
   const StepRecord::OfTool& from = r.of_tool[tool];
   return {.tool = static_cast<std::uint32_t>(tool),
@@ -59,51 +48,15 @@ void describe_contacts(const StepRecord& r, int tool, ContactState& m) {
     if (r.nodal_tool[i] == tool) m.forces.push_back(r.nodal[i]);
 }
 
-std::vector<ModalState> modal_states(const HapticStep& haptic, std::uint64_t run) {
-  std::vector<ModalState> messages;
-  for (const auto& m : haptic.modal_bodies()) {
-    messages.push_back({.body = static_cast<std::uint32_t>(m.body), .run = run});
-    messages.back().coordinates.resize(m.part->coordinates().size());
+std::vector<TaskRecord> task_records(const HapticStep& haptic) {
+  std::vector<TaskRecord> records;
+  for (BodyNews& news : haptic.news()) {
+    auto* record = std::get_if<TaskRecord>(&news.message);
+    if (!record) continue;
+    haptic.tell(news.message);
+    records.push_back(*record);
   }
-  return messages;
-}
-
-std::vector<CatheterState> catheter_states(const HapticStep& haptic, std::uint64_t run) {
-  std::vector<CatheterState> messages;
-  for (const auto& c : haptic.catheters()) {
-    messages.push_back({.body = static_cast<std::uint32_t>(c.body), .run = run});
-    messages.back().position.resize(3 * c.part->body().positions().size());
-  }
-  return messages;
-}
-
-void describe_shapes(const StepRecord& r, std::vector<ModalState>& messages) {
-  const double* from = r.coordinates.data();
-  for (ModalState& m : messages) {
-    m.step = r.step;
-    m.sense_ns = r.sense_ns;
-    std::copy_n(from, m.coordinates.size(), m.coordinates.begin());
-    from += m.coordinates.size();
-    m.forces.clear();
-    for (const StepRecord::OnShell& f : r.on_shell) {
-      if (f.body != m.body) continue;
-      const auto same = std::ranges::find(m.forces, f.force.node, &ShellForce::node);
-      if (same == m.forces.end())
-        m.forces.push_back(f.force);
-      else
-        for (int axis = 0; axis < 3; ++axis) same->force[axis] += f.force.force[axis];
-    }
-  }
-}
-
-void describe_shapes(const StepRecord& r, std::vector<CatheterState>& messages) {
-  const double* from = r.particles.data();
-  for (CatheterState& m : messages) {
-    m.step = r.step;
-    m.sense_ns = r.sense_ns;
-    std::copy_n(from, m.position.size(), m.position.begin());
-    from += m.position.size();
-  }
+  return records;
 }
 
 }  // namespace palpate

@@ -12,32 +12,17 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 }  // namespace
 
 void prepare_record(const HapticStep& haptic, StepRecord& r) {
-  std::size_t modes = 0, particles = 0;
-  for (const auto& m : haptic.modal_bodies()) modes += m.part->coordinates().size();
-  for (const auto& c : haptic.catheters()) particles += c.part->body().positions().size();
-  r.coordinates.resize(modes);
-  r.particles.resize(3 * particles);
-  r.tasks.resize(haptic.catheters().size());
-  if (modes > 0) r.on_shell.reserve(StepRecord::kMaxShellForces);
+  r.news = haptic.news();
 }
 
 namespace {
 
-void fill_shapes(const HapticStep& haptic, StepRecord& r) {
-  double* coordinates = r.coordinates.data();
-  r.on_shell.clear();
-  for (const auto& m : haptic.modal_bodies()) {
-    m.part->show(coordinates, [&](int node, const Eigen::Vector3d& f) {
-      if (r.on_shell.size() == r.on_shell.capacity()) return;
-      r.on_shell.push_back({static_cast<std::uint32_t>(m.body),
-                            {static_cast<std::uint32_t>(node),
-                             {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])}}});
-    });
-    coordinates += m.part->coordinates().size();
+void fill_news(const HapticStep& haptic, StepRecord& r) {
+  for (BodyNews& news : r.news) {
+    if (!news.due(r.step) && !news.to_the_end) continue;
+    std::visit([&](auto& m) { m.step = r.step, m.sense_ns = r.sense_ns; }, news.message);
+    haptic.tell(news.message);
   }
-  double* particles = r.particles.data();
-  for (const auto& c : haptic.catheters())
-    for (const Eigen::Vector3d& p : c.part->body().positions()) particles = std::copy_n(p.data(), 3, particles);
 }
 
 }  // namespace
@@ -87,10 +72,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
       r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool);
     });
   }
-  for (std::size_t i = 0; i < r.tasks.size(); ++i) r.tasks[i] = haptic.task(static_cast<int>(i));
-  r.has_shapes = !haptic.modal_bodies().empty() || !haptic.catheters().empty();
-  r.has_shapes &= step % StepRecord::kShapeInterval == 0;
-  if (r.has_shapes) fill_shapes(haptic, r);
+  fill_news(haptic, r);
 }
 
 }  // namespace palpate

@@ -37,17 +37,8 @@ struct StepRecord {
   std::array<NodalForce, kMaxForces> nodal;
   std::array<std::uint8_t, kMaxForces> nodal_tool;
 
-  // Bodies whose state this node owns, in the order of ReducedBodies. Shapes every shape_interval steps.
-  static constexpr std::uint64_t kShapeInterval = 4;
-  static constexpr int kMaxShellForces = 3 * (kMaxContacts + ModalBody::kMaxWallForces);
-  struct OnShell {
-    std::uint32_t body;
-    ShellForce force;
-  };
-  bool has_shapes = false;
-  std::vector<double> coordinates, particles;  ///< of all modal bodies; of all catheters
-  std::vector<OnShell> on_shell;
-  std::vector<Task> tasks;  ///< one a catheter
+  /// What bodies tell beside their contacts; of this step where it is due, else of an earlier one.
+  std::vector<BodyNews> news;
 };
 
 /// Makes room in a slot of the ring for the bodies of a scene.

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "common/models/catheter/catheter_part.hpp"
+#include "common/models/modal_shell/modal_body.hpp"
 #include "common/models/modal_shell/modal_shape.hpp"
 #include "tests/haptic/duct_scene.hpp"
 #include "tests/tool/count_allocations.hpp"
@@ -113,9 +115,10 @@ struct Theatre {
       haptic->step(dofs);
     }
   }
-  const CatheterBody& catheter() const { return haptic->catheter(1); }
-  const ModalBody& wall() const { return haptic->modal(0); }
-  const Task& task() const { return haptic->task(0); }
+  const CatheterPart& guest() const { return dynamic_cast<const CatheterPart&>(*haptic->part(1)); }
+  const CatheterBody& catheter() const { return guest().body(); }
+  const ModalBody& wall() const { return dynamic_cast<const ModalBody&>(*haptic->part(0)); }
+  const Task& task() const { return guest().task(); }
 
   /// The feeding stroke: comes down on the catheter 20 mm before the mouth, takes it, and leads it in by 15 mm.
   void feed() {

@@ -60,7 +60,7 @@ TEST_F(HapticStepTest, APressPushesTheToolBackAndReleasesWithoutAdhesion) {
   }
   EXPECT_GE(least, -1e-9);
   EXPECT_EQ(haptic.force(0).norm(), 0);
-  EXPECT_TRUE(haptic.body(0).law().contacts().empty() || haptic.body(0).law().contacts()[0].force.isZero(0));
+  EXPECT_TRUE(haptic.law(0).contacts().empty() || haptic.law(0).contacts()[0].force.isZero(0));
 }
 
 TEST_F(HapticStepTest, TheTouchedSurfaceLiesOnTheTip) {
@@ -72,7 +72,7 @@ TEST_F(HapticStepTest, TheTouchedSurfaceLiesOnTheTip) {
   sweep(haptic, tool, {0.003, 0.004, 0.02}, end, 200);
   for (int i = 0; i < 5; ++i) haptic.step(std::array{tip_at(tool, end)});
   int touching = 0;
-  for (const TouchContact& c : haptic.body(0).law().contacts())
+  for (const TouchContact& c : haptic.law(0).contacts())
     if (c.touch != Touch::open) {
       ++touching;
       EXPECT_NEAR((c.position - end).norm(), kRadius, 2e-5);

@@ -70,7 +70,7 @@ class Ticks {
         ring_.commit_push();
       }
       if (ring_.begin_pop()) ring_.commit_pop();
-      contacts_ += haptic_.body(0).law().contacts().size();
+      contacts_ += haptic_.law(0).contacts().size();
     }
   }
   long contacts() const { return contacts_; }

@@ -53,7 +53,7 @@ TEST(RandomMotion, ForcesStayFiniteWithinTheirLimitsAndNeverPull) {
           ASSERT_LE(haptic.force(t).norm(), 20 * (1 + 1e-12)) << rule << " step " << i;
           ASSERT_FALSE(haptic.flags(t) & fault) << rule << " step " << i;
         }
-        for (const TouchContact& c : haptic.body(0).law().contacts()) {
+        for (const TouchContact& c : haptic.law(0).contacts()) {
           if (c.touch == Touch::open) continue;
           const double pressing = c.force.dot(c.normal);
           ASSERT_GE(pressing, -1e-6 * (1 + c.force.norm())) << rule << " step " << i;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/archive/compliance.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/node/contact_feed.hpp"
 #include "tests/models/duct_scene.hpp"

@@ -64,8 +64,8 @@ void add_bodies(Simulator& simulator, Hashes& h, Course& course) {
   h.energy.add(simulator.energy());
   h.tissue.add(simulator.tissue().hash());
   const HapticStep& haptic = simulator.haptic();
-  for (const auto& m : haptic.modal_bodies()) h.modes.add(m.part->coordinates());
-  for (const auto& c : haptic.catheters()) h.particles.add(c.part->body().positions());
+  for (const HapticStep::Entry& entry : haptic.entries())
+    (entry.part->wall() ? h.modes : h.particles).add(entry.part->coordinates());
   for (const ChangeView& change : simulator.changes()) course.removed += change.removed.size();
   if (simulator.steps() % kSurfaceInterval != 0) return;
   for (int b = 0; b < simulator.bodies(); ++b) {

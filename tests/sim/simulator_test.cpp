@@ -161,8 +161,8 @@ TEST(Simulator, ACatheterIsLedInAndTheTaskIsKept) {
   Simulator simulator(played.scene, played.archives);
   simulator.start(played.inputs(0));
   play(simulator, played, 0, 600);
-  EXPECT_EQ(simulator.task(0).grasps, 1u);
-  EXPECT_GT(simulator.task(0).inserted, 0.008);
+  EXPECT_EQ(simulator.tasks()[0].grasps, 1u);
+  EXPECT_GT(simulator.tasks()[0].inserted, 0.008);
   EXPECT_GT(simulator.tool(0).grip_torque, 0);
 }
 

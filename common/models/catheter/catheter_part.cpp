@@ -1,11 +1,15 @@
 #include "common/models/catheter/catheter_part.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
+
+constexpr std::uint64_t kTaskInterval = 100;  // [steps] from one task record to the next
 
 // A probe meets a catheter with its tip and its shaft; a forceps with its three segments.
 int parts_against_catheters(bool forceps) {
@@ -23,6 +27,17 @@ CatheterTool part_of(const MovingTool& tool, int part, bool forceps) {
   out.now = {now.start, now.end};
   out.radius = tool.radius(part);
   return out;
+}
+
+void describe(const Task& task, TaskRecord& record) {
+  record.inserted = task.inserted;
+  record.deepest = task.deepest;
+  record.inserting_s = task.inserting_s();
+  record.max_force = task.max_force;
+  record.wall_contacts = task.wall_contacts;
+  record.grasps = task.grasps;
+  record.drops = task.drops;
+  record.held_s = task.held_s;
 }
 
 }  // namespace
@@ -45,7 +60,8 @@ CatheterPart::CatheterPart(const CatheterSpec& spec, const StepSettings& setting
 }
 
 void CatheterPart::join(const FindPart& find) {
-  duct_ = dynamic_cast<CatheterWall*>(find(inside_));
+  BodyPart* duct = find(inside_);
+  duct_ = duct ? duct->wall() : nullptr;
   body_ = std::make_unique<CatheterBody>(settings_, duct_);
 }
 
@@ -108,6 +124,29 @@ void CatheterPart::state(State& s, std::span<const MovingTool>) {
   body_->state(s);
   s.value(task_);
   s.value(wall_contacts_);
+}
+
+std::span<const double> CatheterPart::coordinates() const {
+  const auto x = body_->positions();
+  return {x.data()->data(), 3 * x.size()};
+}
+
+std::vector<BodyNews> CatheterPart::news() const {
+  CatheterState state;
+  state.position.resize(coordinates().size());
+  return {{.message = std::move(state)}, {.message = TaskRecord{}, .interval = kTaskInterval, .to_the_end = true}};
+}
+
+void CatheterPart::tell(BodyMessage& message) {
+  if (auto* state = std::get_if<CatheterState>(&message)) std::ranges::copy(coordinates(), state->position.begin());
+  if (auto* record = std::get_if<TaskRecord>(&message)) describe(task_, *record);
+}
+
+std::string CatheterPart::introduction() const {
+  const std::string steps = settings_.shape.integrator == "implicit"
+                                ? "implicit, one step a tick"
+                                : fmt::format("semi-implicit, {} substeps a tick", body_->substeps());
+  return fmt::format("{} particles, {}", body_->size(), steps);
 }
 
 std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& spec, const Archive&, const StepSettings& settings) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/contact/body_part.hpp"
@@ -20,6 +21,10 @@ class CatheterPart : public BodyPart {
   const Task& task() const { return task_; }
 
   void join(const FindPart& find) override;
+  std::span<const double> coordinates() const override;  ///< [m] x, y, z of each particle, from tail to tip
+  std::vector<BodyNews> news() const override;
+  void tell(BodyMessage& message) override;
+  std::string introduction() const override;
   bool move(std::span<const MovingTool> tools, std::span<ToolLoad> loads) override;
   void finish(std::span<const double> force, double time) override;
   BetweenJaws between(const OpenJaws& jaws) override;

@@ -25,4 +25,8 @@ void check_duct(const CatheterSpec& wire, const ShellSpec& duct, const ShellMesh
                     duct.mesh.string(), wire.name, 2e3 * wire.catheter.radius, duct.name, 2e3 * std::max(0.0, lumen)));
 }
 
+void check_guest(const CatheterSpec& body, const ShellSpec& wall, const ShellMesh& mesh) {
+  if (body.catheter.inside == wall.name) check_duct(body, wall, mesh);
+}
+
 }  // namespace palpate

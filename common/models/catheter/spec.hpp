@@ -64,4 +64,25 @@ std::optional<Archive> made_archive(const CatheterSpec& body);
 std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
+std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive);
+
+ArchiveJob archive_job(const CatheterSpec& body, const Progress& progress);
+
+constexpr bool has_task(const CatheterSpec&) {
+  return true;
+}
+constexpr bool has_static_states(const CatheterSpec&) {
+  return false;
+}
+constexpr std::string_view absence(const CatheterSpec&) {
+  return "no catheter: no particles and no task record";
+}
+Appearance appearance(const CatheterSpec& body, const SurfaceMap& surface);
+
+/// The duct must be a wall of the scene.
+void require_neighbours(Description& d, const std::string& place, const CatheterSpec& body, const FindNeighbour& find);
+void check_guest(const CatheterSpec& body, const ShellSpec& wall, const ShellMesh& mesh);
+
+void check(const CatheterSpec& body, const CheckSettings& settings, CheckReport& report);
+
 }  // namespace palpate

@@ -43,4 +43,6 @@ inline void describe(Description& d, HybridSpec& b) {
 
 ArchiveJob archive_job(const HybridSpec& body, const Progress& progress);
 
+void check(const HybridSpec& body, const CheckSettings& settings, CheckReport& report);
+
 }  // namespace palpate

@@ -58,6 +58,7 @@ ModalBody::ModalBody(const Archive& archive, const ShellSpec& body, const StepSe
   pushed_.reserve(kMaxWallForces);
   all_.assign(rows, 0.0);
   displacement_.reserve(rows);
+  place_.assign(archive.surface.position.size(), -1);
   near_displacement_.reserve(rows);
   columns_.reserve(modes + 27 * kMaxContacts);
   coefficients_.reserve(modes + 27 * kMaxContacts);

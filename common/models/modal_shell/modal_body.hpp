@@ -38,8 +38,12 @@ class ModalBody : public TouchBody, public CatheterWall {
   std::span<const std::vector<int>> mouths() const override { return mouths_; }
 
   int modes() const { return static_cast<int>(x_.size()); }
-  std::span<const double> coordinates() const { return x_; }  ///< X [kg^1/2 m]
-  double energy() const;                                      ///< [J] kinetic and elastic, of the modes
+  std::span<const double> coordinates() const override { return x_; }  ///< X [kg^1/2 m]
+  double energy() const;                                               ///< [J] kinetic and elastic, of the modes
+
+  CatheterWall* wall() override { return this; }
+  std::vector<BodyNews> news() const override;
+  void tell(BodyMessage& message) override;
 
   /// What the full field is rebuilt from, u = Phi X' + C f: fills X' = X - Omega^-2 Phi^T f (one number a mode) and
   /// calls visit(node, f) for every node that carries a force [N]. Without residual flexibility X' = X, and there are
@@ -86,6 +90,7 @@ class ModalBody : public TouchBody, public CatheterWall {
   std::vector<double> free_, moved_;  ///< y of the coming step without the tools' new forces; x + y
   std::vector<double> all_, near_displacement_, displacement_, coefficients_;
   std::vector<const double*> columns_;
+  std::vector<int> place_;  ///< per node: of its force in the message that is filled; -1: it has none
 };
 
 }  // namespace palpate

@@ -20,4 +20,10 @@ ArchiveJob archive_job(const ModalShellSpec& body, const Progress& progress);
 std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
+std::unique_ptr<BodyShape> make_shape(const ModalShellSpec& body, const Archive& archive);
+
+void check(const ModalShellSpec& body, const CheckSettings& settings, CheckReport& report);
+
+DirectProblem direct_problem(const ModalShellSpec& body);
+
 }  // namespace palpate

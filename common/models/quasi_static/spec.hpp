@@ -58,4 +58,15 @@ ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
+std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive);
+
+constexpr bool stores_inertia(const QuasiStaticSpec&) {
+  return false;
+}
+
+void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report);
+std::vector<std::string> locking_warnings(const QuasiStaticSpec& body);
+DirectProblem direct_problem(const QuasiStaticSpec& body);
+StaticCorrection static_correction(const QuasiStaticSpec& body);
+
 }  // namespace palpate

@@ -22,4 +22,10 @@ ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress);
 std::unique_ptr<DynamicOrgan> make_organ(const SpringMassSpec& body, const Archive& archive,
                                          const StepSettings& settings);
 
+void check(const SpringMassSpec& body, const CheckSettings& settings, CheckReport& report);
+/// Springs have a Poisson's ratio of their own.
+inline std::vector<std::string> locking_warnings(const SpringMassSpec&) {
+  return {};
+}
+
 }  // namespace palpate

@@ -17,4 +17,6 @@ inline void describe(Description& d, TensorMassSpec& b) {
 
 ArchiveJob archive_job(const TensorMassSpec& body, const Progress& progress);
 
+void check(const TensorMassSpec& body, const CheckSettings& settings, CheckReport& report);
+
 }  // namespace palpate

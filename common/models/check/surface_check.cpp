@@ -1,4 +1,4 @@
-#include "tools/footprint.hpp"
+#include "common/models/check/surface_check.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,16 @@
 
 #include "common/archive/compliance.hpp"
 #include "common/contact/tool_contacts.hpp"
+#include "common/contact/touch_surface.hpp"
 #include "common/geometry/buckets.hpp"
 
 namespace palpate {
+namespace {
+
+/// Free degrees of freedom of the touchable and of the other visible nodes.
+struct DofCounts {
+  std::size_t touchable = 0, other = 0;
+};
 
 DofCounts count_dofs(const SurfaceMap& surface) {
   DofCounts counts;
@@ -17,14 +24,28 @@ DofCounts count_dofs(const SurfaceMap& surface) {
   return counts;
 }
 
-std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const SurfaceMap& surface,
-                                    std::size_t elements) {
+}  // namespace
+
+std::string describe(const Selector& where, const char* list) {
+  if (!where.group.empty()) return fmt::format("group '{}'", where.group);
+  return where.box ? "a box" : fmt::format("a list of {}", list);
+}
+
+std::string letters(const std::array<bool, 3>& axes) {
+  std::string held;
+  for (int axis = 0; axis < 3; ++axis)
+    if (axes[axis]) held += "xyz"[axis];
+  return held;
+}
+
+std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const SurfaceMap& surface,
+                                          std::size_t elements, int fields) {
   const DofCounts dofs = count_dofs(surface);
   const std::size_t nodes = surface.position.size(), triangles = surface.triangles.size();
   const std::size_t triangle_entries = dofs.touchable * (dofs.touchable + 1) / 2;
   const std::size_t numbering = nodes * (3 * sizeof(double) + 4 * sizeof(int)) + triangles * 3 * sizeof(int) +
                                 2 * sizeof(int) * (dofs.touchable + dofs.other) + elements * sizeof(int);
-  const double size = scene.contact.bucket_size > 0 ? scene.contact.bucket_size : 2 * mean_edge(surface);
+  const double size = settings.contact.bucket_size > 0 ? settings.contact.bucket_size : 2 * mean_edge(surface);
   const Buckets buckets(surface.position, surface.triangles, size);
   const auto cells = buckets.cells();
 
@@ -36,7 +57,7 @@ std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const 
   if (dofs.other > 0)
     add("disk", "archive: compliance of the rest of the surface", sizeof(double) * dofs.other * dofs.touchable);
   add("disk", "archive: surface and numbering", numbering);
-  if (!scene.tools.empty()) {
+  if (!settings.tools.empty()) {
     add("haptic_node", "compliance, double precision",
         Compliance<double>::bytes_of(surface.touchable, surface.touchable));
     add("haptic_node", fmt::format("buckets of {:.3g} m, {} x {} x {}", size, cells[0], cells[1], cells[2]),
@@ -46,24 +67,22 @@ std::vector<MemoryPart> body_memory(const Scene& scene, const Body& body, const 
   }
   add("render_node --deform", "compliance, single precision",
       Compliance<float>::bytes_of(surface.size(), surface.touchable));
-  const auto* still = as<QuasiStaticSpec>(body);
-  const int fields =
-      still && still->nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   add("render_node --deform", "visible surface",
       nodes * (fields * sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector3d)) + triangles * 3 * sizeof(int));
   return parts;
 }
 
-std::vector<std::string> body_warnings(const Scene& scene, const Body& body, const SurfaceMap& surface) {
+std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
+                                       const SurfaceMap& surface) {
   std::vector<std::string> warnings;
   const double h = mean_edge(surface);
-  for (const Tool& tool : scene.tools) {
+  for (const Tool& tool : settings.tools) {
     const ForcepsSpec* forceps = tool.forceps();
     const double radius = forceps ? forceps->jaws.radius : tool.probe()->radius;
     const auto warn = [&](const char* than, const char* so) {
       warnings.push_back(
           fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
-                      forceps ? "jaws with a radius" : "a radius", radius, than, h, name_of(body), so));
+                      forceps ? "jaws with a radius" : "a radius", radius, than, h, body, so));
     };
     if (radius < h)
       warn("", "the force is the mesh's, not the tissue's");
@@ -74,8 +93,19 @@ std::vector<std::string> body_warnings(const Scene& scene, const Body& body, con
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double across = (high - low).norm();
   if (across > 3 || across < 1e-3)
-    warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", name_of(body), across));
+    warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body, across));
   return warnings;
+}
+
+std::function<bool(const Segment&, double)> meets_surface(const SurfaceMap& map, bool solid, double thickness) {
+  const auto surface = std::make_shared<const TouchSurface>(map, 2 * mean_edge(map));
+  return [=](const Segment& axis, double radius) {
+    if (solid && (surface->encloses(axis.start) || surface->encloses(axis.end))) return true;
+    const double reach = radius + 0.5 * thickness;
+    for (int t = 0; t < surface->triangle_count(); ++t)
+      if (closest_points(axis, surface->corners(t)).squared_distance < reach * reach) return true;
+    return false;
+  };
 }
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
-#include "tools/check_offline.hpp"
-
 #include <gtest/gtest.h>
+
+#include "common/models/body.hpp"
 
 namespace palpate {
 namespace {

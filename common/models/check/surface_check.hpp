@@ -1,0 +1,28 @@
+#pragma once
+#include <array>
+
+#include "common/mesh/selector.hpp"
+#include "common/models/check/check.hpp"
+
+namespace palpate {
+
+/// Which kind of selector it is: "group 'top'", "a box", "a list of nodes"; `list` names what a list holds.
+std::string describe(const Selector& where, const char* list);
+
+/// The axes that are held: "xz".
+std::string letters(const std::array<bool, 3>& axes);
+
+/// What a body takes whose shape follows from a compliance of its surface, computed by the classes that take it or by
+/// their own formulas. `elements`: entries of the material field, 0 with one material; `fields`: what the deformation
+/// node keeps of each surface node.
+std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const SurfaceMap& surface,
+                                          std::size_t elements, int fields);
+
+/// A tool smaller than the elements, a scale that is off. `body`: its name.
+std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
+                                       const SurfaceMap& surface);
+
+/// CheckReport::meets of a surface: `solid` bodies hold what is inside them, walls have a thickness [m].
+std::function<bool(const Segment&, double)> meets_surface(const SurfaceMap& surface, bool solid, double thickness = 0);
+
+}  // namespace palpate

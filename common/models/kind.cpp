@@ -1,0 +1,29 @@
+#include "common/models/kind.hpp"
+
+#include "common/archive/archive.hpp"
+#include "common/models/appearance.hpp"
+#include "common/shell/spec.hpp"
+
+namespace palpate {
+
+Appearance appearance(const NamedSpec&, const SurfaceMap&) {
+  return {};
+}
+
+Appearance appearance(const ShellSpec& body, const SurfaceMap&) {
+  return {.material = Appearance::Material::wall, .thickness = body.shell.thickness, .texture = {}};
+}
+
+std::filesystem::path mesh_file(const NamedSpec&) {
+  return {};
+}
+
+std::filesystem::path mesh_file(const MeshedSpec& body) {
+  return body.mesh;
+}
+
+std::optional<Archive> made_archive(const MeshedSpec&) {
+  return {};
+}
+
+}  // namespace palpate

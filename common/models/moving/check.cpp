@@ -1,0 +1,142 @@
+#include "common/models/moving/check.hpp"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "common/contact/cut_surface.hpp"
+#include "common/contact/tool_contacts.hpp"
+#include "common/dynamics/hybrid_part.hpp"
+#include "common/mesh/cut_mesh.hpp"
+#include "common/models/kind.hpp"
+#include "common/models/moving/precompute.hpp"
+
+namespace palpate {
+namespace {
+
+std::size_t edge_count(const Archive& archive) {
+  std::set<std::array<int, 2>> edges;
+  for (const auto& t : archive.tetrahedra)
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) edges.insert({std::min(t[a], t[b]), std::max(t[a], t[b])});
+  return edges.size();
+}
+
+std::size_t moving_nodes(const Archive& archive) {
+  std::set<int> nodes;
+  for (const auto& t : archive.tetrahedra) nodes.insert(t.begin(), t.end());
+  return nodes.size();
+}
+
+void say_extent(const MovingKind& kind, const TetMesh& mesh, const Archive& archive, CheckReport& report) {
+  const std::size_t moving = archive.tetrahedra.size();
+  std::string extent =
+      fmt::format("  moving: {} nodes, {} tetrahedra, {} edges", moving_nodes(archive), moving, edge_count(archive));
+  if (archive.hybrid) {
+    const double whole = static_cast<double>(mesh.tetrahedra.size() + (kind.own_mesh ? moving : 0));
+    extent += fmt::format(", {:.1f} % of the tetrahedra; joined to the quasi-static part at {} nodes",
+                          100 * static_cast<double>(moving) / whole, archive.hybrid->connection.size());
+    if (kind.own_mesh) extent += fmt::format(", gap at rest {:.3g} m", archive.hybrid->max_gap);
+  }
+  report.say(extent);
+}
+
+std::unique_ptr<HybridPart> make_rest(const MovingSpec& body, const Archive& archive, double friction) {
+  if (!archive.hybrid) return nullptr;
+  return std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == "single");
+}
+
+void say_step(const MovingSpec& body, const MovingKind& kind, const Archive& archive, CheckReport& report) {
+  const auto model = kind.make_model(elastic_mesh(archive), body.dynamic);
+  const auto rest = make_rest(body, archive, 0);
+  if (rest) rest->couple(*model);
+  const double bound = model->frequency_bound();
+  const Dynamic& motion = body.dynamic;
+  const double largest = max_step(integrator_of(motion), bound, motion.damping);
+  if (motion.step > largest)
+    throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
+                                         body.name, motion.step, largest));
+  const std::string taken = motion.step > 0 ? fmt::format("{} s is taken", motion.step) : "one below is taken";
+  report.say(
+      fmt::format("  step: stable up to {:.4g} s, for frequencies up to {:.4g} rad/s; {}", largest, bound, taken));
+}
+
+/// Bytes that the process has from its heap.
+std::size_t heap_in_use() {
+  const auto heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
+
+/// What a dynamic body takes; the deformation node's parts are built here and measured.
+std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings,
+                               const Archive& archive) {
+  std::vector<MemoryPart> parts;
+  const auto add = [&](const char* owner, const char* what, std::size_t bytes) {
+    parts.push_back({owner, what, bytes});
+  };
+  const std::size_t nodes = archive.surface.size(), triangles = archive.surface.triangles.size();
+  const std::size_t tetrahedra = archive.tetrahedra.size();
+  add("disk", "archive: tetrahedra, surface and numbering",
+      nodes * (3 * sizeof(double) + 4 * sizeof(int)) + 3 * triangles * sizeof(int) + 4 * tetrahedra * sizeof(int));
+  if (archive.hybrid) {
+    const HybridTensors& h = *archive.hybrid;
+    add("disk", "archive: tensors of the connection nodes",
+        sizeof(double) * (h.stiffness.size() + h.follow.size() + h.reaction.size() + h.sag.size()));
+    add("disk", "archive: compliance of the quasi-static part",
+        sizeof(double) * (archive.touchable_compliance.size() + archive.other_compliance.size()));
+  }
+  std::size_t before = heap_in_use();
+  const auto measured = [&] {
+    const std::size_t now = heap_in_use(), grown = now > before ? now - before : 0;
+    before = now;
+    return grown;
+  };
+  const ElasticMesh mesh = elastic_mesh(archive);
+  measured();
+  const auto model = kind.make_model(mesh, body.dynamic);
+  add("deform_node", "masses, tensors and motion", measured());
+  const auto rest = make_rest(body, archive, settings.contact.friction);
+  if (rest) add("deform_node", "quasi-static part", measured());
+  const CutMesh topology(mesh.tetrahedra, mesh.nodes());
+  const std::size_t of_topology = measured();
+  add("deform_node", "topology that is cut", of_topology);
+  const double size = settings.contact.bucket_size > 0 ? settings.contact.bucket_size : 2 * mean_edge(archive.surface);
+  const CutSurface surface(topology, mesh.rest, size);
+  add("deform_node", "surface and buckets", measured());
+  add("render_node", "topology that is cut", of_topology);
+  add("render_node", "visible surface", nodes * 2 * sizeof(Eigen::Vector3f) + 3 * triangles * sizeof(int));
+  return parts;
+}
+
+}  // namespace
+
+void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, CheckReport& report) {
+  const CheckedSolid solid = load_solid(body);
+  const auto stored = settings.stored(ArchivePart::surface);
+  const Archive archive = stored ? *stored : kind.precompute();
+  check_solid(body, kind.name, solid, settings, report);
+  say_extent(kind, solid.mesh, archive, report);
+  const Dynamic& d = body.dynamic;
+  report.say(fmt::format("  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}", d.integrator,
+                         d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
+                         d.corotational ? ", corotational" : ""));
+  say_step(body, kind, archive, report);
+  if (body.tearing)
+    report.say(fmt::format("  tearing: {} above {}", body.tearing->criterion, body.tearing->threshold));
+  else
+    report.left_out.emplace_back("does not tear by itself");
+  report.left_out.emplace_back("no archive in the haptic node");
+  report.memory = memory(body, kind, settings, archive);
+}
+
+std::vector<std::string> locking_warnings(const MovingSpec& body) {
+  return locking_warnings(
+      body,
+      fmt::format("take {} for tissue that moves, which true incompressibility stiffens by 4 % only", kLockingPoisson));
+}
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+// What a check says of a quasi-static body.
+#include "common/models/solid/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+
+#include "common/fem/fine_space.hpp"
+#include "common/fem/specimen.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
+
+namespace palpate {
+namespace {
+
+bool has_linear_displacement(const std::optional<Offline>& offline) {
+  return !offline || (offline->element == "p1" && offline->formulation == "displacement");
+}
+
+/// What the tensors come from where that is not the mesh itself.
+void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, CheckReport& report) try {
+  if (!is_finer(body.offline)) return;
+  const auto space = make_fine_space(mesh, *body.offline);
+  report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}", space.elements.size(),
+                         space.per_element == 4 ? "linear" : "quadratic", space.nodes.size(),
+                         body.offline->formulation == "locking_free" ? "locking-free" : "displacement formulation"));
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));
+}
+
+void say_nonlinear(const QuasiStaticSpec& body, CheckReport& report) {
+  if (!body.nonlinear) {
+    report.left_out.emplace_back("no quasi non-linear correction");
+    return;
+  }
+  const Nonlinear& nonlinear = *body.nonlinear;
+  Archive slopes;
+  if (!nonlinear.specimen_mesh.empty()) {
+    const auto pressed =
+        press_specimen(load_tet_mesh(nonlinear.specimen_mesh, nonlinear.specimen_scale), body.material);
+    slopes.specimen_force_slope = pressed.force;
+    slopes.specimen_radial_slope = pressed.radial;
+  }
+  const QuasiNonlinear law = make_quasi_nonlinear(body, slopes);
+  report.say(
+      fmt::format("  quasi non-linear correction: degree {}, {} ends; fitted up to a linear force of {:.3g} N and a "
+                  "linear radial displacement of {:.3g} m",
+                  nonlinear.degree, nonlinear.specimen_mesh.empty() ? "sliding" : "stuck", law.force_curve().end(),
+                  law.radial_curve().end()));
+}
+
+}  // namespace
+
+void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
+  const CheckedSolid solid = load_solid(body);
+  check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
+  say_offline(body, solid.mesh, report);
+  say_nonlinear(body, report);
+  const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
+  report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
+  std::ranges::copy(locking_warnings(body), std::back_inserter(report.warnings));
+}
+
+std::vector<std::string> locking_warnings(const QuasiStaticSpec& body) {
+  if (!has_linear_displacement(body.offline)) return {};
+  return locking_warnings(body, "give it a [body.offline] with element = \"p2\" and formulation = \"locking_free\"");
+}
+
+}  // namespace palpate

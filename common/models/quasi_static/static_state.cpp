@@ -1,0 +1,44 @@
+#include "common/models/static_state.hpp"
+
+#include "common/fem/fine_problem.hpp"
+#include "common/fem/fine_space.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
+
+namespace palpate {
+namespace {
+
+/// The quasi non-linear correction of a linear static state, as the nodes apply it to one tool's press (TVCG99 sec.
+/// 4-3): all that is held presses along the direction of its resultant force F; every force is scaled by Q(F)/F, the
+/// part of every displacement across the press by P, and what is held stays where it is held. Returns Q(F)/F; 1, and
+/// nothing has changed, where the resultant is zero.
+double correct(const QuasiNonlinear& law, const StaticField& state) {
+  Eigen::Vector3d resultant = Eigen::Vector3d::Zero();
+  for (const int place : state.held) resultant += state.force[place];
+  const double size = resultant.norm();
+  if (!(size > 0)) return 1;
+  const std::span<double> field(state.displacement.data()->data(), 3 * state.displacement.size());
+  correct_radial<double>(law, field, resultant / size, state.held, field);
+  const double scale = law.force_scale(size);
+  for (Eigen::Vector3d& force : state.force) force *= scale;
+  return scale;
+}
+
+}  // namespace
+
+DirectProblem direct_problem(const QuasiStaticSpec& body) {
+  DirectProblem problem = direct_problem(static_cast<const SolidSpec&>(body));
+  if (is_finer(body.offline))
+    problem.solve = [&body, mesh = problem.mesh](const std::vector<Constraint>& constraints) {
+      return solve_direct(make_fine_problem(body, mesh, *body.offline), constraints);
+    };
+  return problem;
+}
+
+StaticCorrection static_correction(const QuasiStaticSpec& body) {
+  if (!body.nonlinear) return {};
+  return [&body](const Archive& archive, const StaticField& state) {
+    return correct(make_quasi_nonlinear(body, archive), state);
+  };
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+#pragma once
+#include <optional>
+
+#include "common/archive/compliance.hpp"
+#include "common/models/body_shape.hpp"
+#include "common/models/quasi_static/nonlinear.hpp"
+
+namespace palpate {
+
+/// The shape of a quasi-static body from the contacts: u = sum over contacts of C f (TVCG99 eq. 9 in compliance form)
+/// over the whole visible surface, then the quasi non-linear correction per tool (TVCG99 eq. 3-4).
+class SuperposedShape : public BodyShape {
+ public:
+  /// `archive`: read with ArchivePart::surface.
+  SuperposedShape(const QuasiStaticSpec& body, const Archive& archive);
+
+  bool superposed() const override { return true; }
+
+ private:
+  void displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) override;
+  void correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total);
+  void add_columns(const ContactState& contacts, std::uint32_t body);
+  void combine(std::vector<Eigen::Vector3f>& out) const;
+
+  Compliance<float> compliance_;
+  std::optional<QuasiNonlinear> nonlinear_;
+  std::vector<const float*> columns_;
+  std::vector<float> coefficients_;
+  std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
+  std::vector<Eigen::Vector3f> of_tool_;
+};
+
+/// Unit direction of one tool's press on one body: the sum of the contacts' normal forces; zero without contact.
+Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body);
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+#include "common/models/static_state.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "common/mesh/mesh_file.hpp"
+#include "common/models/kind.hpp"
+
+namespace palpate {
+
+DirectProblem direct_problem(const NamedSpec& body) {
+  throw std::runtime_error(fmt::format("body '{}' is not of tetrahedra, which the direct method is for", body.name));
+}
+
+DirectProblem direct_problem(const SolidSpec& body) {
+  StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
+  TetMesh mesh = problem.mesh;
+  return {std::move(mesh), [problem = std::move(problem)](const std::vector<Constraint>& constraints) {
+            return solve_direct(problem, constraints);
+          }};
+}
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "common/fem/direct.hpp"
+#include "common/mesh/tet_mesh.hpp"
+
+namespace palpate {
+
+/// The full system of a body.
+struct DirectProblem {
+  TetMesh mesh;
+  std::function<StaticSolution(const std::vector<Constraint>&)> solve;
+};
+
+/// A static state as lists with one entry a node.
+struct StaticField {
+  const std::vector<int>& held;                ///< places in the lists, ascending
+  std::vector<Eigen::Vector3d>& displacement;  ///< [m]
+  std::vector<Eigen::Vector3d>& force;         ///< [N] on the tissue
+};
+
+}  // namespace palpate
