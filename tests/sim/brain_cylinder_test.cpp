@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRadius = 0.015, kHeight = 0.013, kDeepest = 0.0039;
-constexpr double kPlate = 200;   // [m] radius of a ball that is a plate to the cylinder: 0.6 um lower in its middle
-constexpr int kRings = 5;        // the top's 91 nodes are all held
+constexpr double kPlate = 200;  // [m] radius of a ball that is a plate to the cylinder: 0.6 um lower in its middle
+constexpr int kRings = 5;       // the top's 91 nodes are all held
 constexpr int kSides = 6 * kRings;
 
 class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
@@ -50,9 +50,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     archives_.push_back(precompute(body_, mesh_));
   }
 
-  ToolInput at(double depth) const {
-    return {tip_at(scene_.tools[0], {0, 0, kPlate + kHeight - depth})};
-  }
+  ToolInput at(double depth) const { return {tip_at(scene_.tools[0], {0, 0, kPlate + kHeight - depth})}; }
   /// [m] mean outward displacement on the circle at mid-height, as it is shown.
   double widening(Simulator& simulator) const {
     const auto shown = simulator.surface(0).position;

@@ -1,8 +1,8 @@
 // A forceps on moving tissue is one as on a duct: its jaws stop at what is between them, hold it, slip and let go.
 #include <gtest/gtest.h>
 
-#include "common/sim/simulator.hpp"
 #include "common/mesh/generators.hpp"
+#include "common/sim/simulator.hpp"
 #include "tests/sim/played_scenes.hpp"
 
 namespace palpate::sim {
@@ -31,8 +31,7 @@ class ForcepsOnAFin : public ::testing::Test {
     tool.max_force = 20;
     tool.max_force_rate = 1e5;
     scene_.tools.push_back(tool);
-    const TetMesh mesh =
-        make_block({-0.015, -kThickness / 2, 0}, {0.015, kThickness / 2, kHeight}, {15, 2, 10});
+    const TetMesh mesh = make_block({-0.015, -kThickness / 2, 0}, {0.015, kThickness / 2, kHeight}, {15, 2, 10});
     archives_.push_back(precompute_moving(fin, kind_of(scene_.bodies[0]), mesh));
     simulator_.emplace(scene_, archives_);
     simulator_->start(input());
