@@ -61,7 +61,7 @@ TEST_F(HapticStepTest, APressPushesTheToolBackAndReleasesWithoutAdhesion) {
   }
   EXPECT_GE(least, -1e-9);
   EXPECT_EQ(haptic.force(0).norm(), 0);
-  EXPECT_TRUE(haptic.law(0).contacts().empty() || haptic.body(0).law().contacts()[0].force.isZero(0));
+  EXPECT_TRUE(haptic.law(0).contacts().empty() || haptic.law(0).contacts()[0].force.isZero(0));
 }
 
 TEST_F(HapticStepTest, TheTouchedSurfaceLiesOnTheTip) {
