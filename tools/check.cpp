@@ -102,16 +102,21 @@ void print_sections(const Scene& scene) {
              human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
 }
 
-/// What is left out where no body of the scene is of a kind: a sentence for each, in the order of the table of kinds.
-template <class... Spec>
-std::vector<std::string> absences(const Scene& scene, const std::variant<Spec...>*) {
-  std::vector<std::string> sentences;
-  const auto of_body = [](const Body& b) { return std::visit([](const auto& s) { return absence(s); }, b); };
-  for (const std::string_view sentence : {absence(Spec{})...}) {
-    const bool present = std::ranges::find(scene.bodies, sentence, of_body) != scene.bodies.end();
-    if (sentence.empty() || present || std::ranges::find(sentences, sentence) != sentences.end()) continue;
-    sentences.emplace_back(sentence);
+/// Sentences on what is left out where no body of the scene is of a kind, in the order of the table of kinds.
+std::vector<std::string_view> absences(const Scene& scene) {
+  std::vector<std::string_view> present, sentences;
+  const auto known = [](const std::vector<std::string_view>& list, std::string_view sentence) {
+    return std::ranges::find(list, sentence) != list.end();
+  };
+  for (const Body& body : scene.bodies)
+    present.push_back(std::visit([](const auto& spec) { return absence(spec); }, body));
+  const auto add = [&](std::string_view sentence) {
+    if (!sentence.empty() && !known(present, sentence) && !known(sentences, sentence)) sentences.push_back(sentence);
+  };
+  [&]<std::size_t... Kind>(std::index_sequence<Kind...>) {
+    (add(absence(std::variant_alternative_t<Kind, Body>{})), ...);
   }
+  (std::make_index_sequence<std::variant_size_v<Body>>{});
   return sentences;
 }
 
@@ -119,7 +124,7 @@ void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
   fmt::print("left out:\n");
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (const std::string& what : bodies[b].left_out) fmt::print("  body '{}': {}\n", name_of(scene.bodies[b]), what);
-  for (const std::string& sentence : absences(scene, static_cast<const Body*>(nullptr))) fmt::print("  {}\n", sentence);
+  for (const std::string_view sentence : absences(scene)) fmt::print("  {}\n", sentence);
   const auto works = [](const Tool& tool) { return tool.forceps() || tool.probe()->cautery || tool.probe()->jaws; };
   if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");

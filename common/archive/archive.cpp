@@ -27,22 +27,15 @@ std::size_t payload_bytes(const Archive& archive) {
          modal_payload_bytes(archive);
 }
 
-/// What an archive consists of, for its header: a part that is lost shows.
-std::string parts_of(const Archive& archive) {
-  std::string parts = "surface";
-  if (!archive.tetrahedra.empty()) parts += " dynamic";
-  if (archive.hybrid) parts += " hybrid";
-  if (archive.modal) parts += " modal";
-  return parts;
-}
-
 void write_header(Hdf5Writer& file, const Archive& archive) {
   file.attribute("format", kFormat);
   file.attribute("format_version", std::int64_t{kArchiveFormat});
   file.attribute("software", archive.software);
   file.attribute("body", archive.body);
   file.attribute("model", archive.model);
-  file.attribute("parts", parts_of(archive));
+  file.attribute("has_dynamic", std::int64_t{archive.parts.dynamic});
+  file.attribute("has_hybrid", std::int64_t{archive.parts.hybrid});
+  file.attribute("has_modal", std::int64_t{archive.parts.modal});
   file.attribute("content_hash", archive.content_hash);
   file.attribute("mesh_nodes", std::int64_t{archive.mesh_nodes});
   file.attribute("touchable_nodes", std::int64_t{archive.surface.touchable});
@@ -109,8 +102,8 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
   const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
   bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
                     surface.touchable <= surface.size() && !archive.young.empty() &&
-                    archive.young.size() == archive.poisson.size() && file.text("parts") == parts_of(archive) &&
-                    dynamic_part_fits(archive, part) && modal_part_fits(archive, part);
+                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
+                    modal_part_fits(archive, part);
   if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
     consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;
@@ -146,6 +139,9 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   Archive archive;
   archive.body = reader.text("body");
   archive.model = reader.text("model");
+  archive.parts = {.dynamic = reader.integer("has_dynamic") != 0,
+                   .hybrid = reader.integer("has_hybrid") != 0,
+                   .modal = reader.integer("has_modal") != 0};
   archive.content_hash = reader.text("content_hash");
   archive.software = reader.text("software");
   archive.mesh_nodes = static_cast<int>(reader.integer("mesh_nodes"));

@@ -36,12 +36,20 @@ struct ModalTensors {
   bool operator==(const ModalTensors&) const = default;
 };
 
+/// What an archive has beside a surface and its compliance, as the kind of tissue says; its data must agree.
+struct ArchiveParts {
+  bool dynamic = false;  ///< tetrahedra that move with inertia
+  bool hybrid = false;   ///< tensors that join them to a quasi-static part
+  bool modal = false;    ///< modes
+};
+
 /// Tensors of one body as stored in the HDF5 archive. Compliance only: T^f_k = C_kk^-1 and
 /// T^u_nk = C_nk C_kk^-1 (TVCG99 sec. 4-1) are views computed from it. Bodies that move with inertia have their
 /// tetrahedra in place of a compliance; hybrid ones have both, each for its part.
 struct Archive {
   std::string body;
-  std::string model;                   ///< the kind of tissue, as a scene names it
+  std::string model;  ///< the kind of tissue, as a scene names it
+  ArchiveParts parts;
   std::string content_hash;            ///< over mesh, material, boundary conditions, touchable set and format version
   std::string software;                ///< version that computed it
   int mesh_nodes = 0;                  ///< nodes in the mesh file

@@ -106,7 +106,7 @@ void read_dynamic_part(const Hdf5Reader& file, ArchivePart part, Archive& archiv
 
 bool dynamic_part_fits(const Archive& archive, ArchivePart part) {
   const auto count = archive.tetrahedra.size();
-  bool fits = true;
+  bool fits = archive.hybrid.has_value() == archive.parts.hybrid && (count > 0) == archive.parts.dynamic;
   if (count > 0)
     fits &= archive.density.size() == archive.young.size() &&
             (archive.material_of_element.empty() || archive.material_of_element.size() == count);

@@ -26,6 +26,7 @@ void read_modal_part(const Hdf5Reader& file, ArchivePart part, Archive& archive)
 }
 
 bool modal_part_fits(const Archive& archive, ArchivePart part) {
+  if (archive.modal.has_value() != archive.parts.modal) return false;
   if (!archive.modal) return true;
   const ModalTensors& modal = *archive.modal;
   const std::size_t nodes = archive.surface.position.size();

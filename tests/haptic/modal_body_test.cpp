@@ -22,6 +22,8 @@ struct Pressed {
   DuctScene duct;
   std::unique_ptr<HapticStep> haptic;
 
+  const ModalBody& wall() const { return dynamic_cast<const ModalBody&>(*haptic->part(0)); }
+
   explicit Pressed(int modes, bool residual = true) : duct(modes) {
     duct.add_probe();
     as<ShellSpec>(duct.scene.bodies[0])->shell.residual = residual;
@@ -91,29 +93,29 @@ TEST(ModalBody, LetGoItSwingsOutAndItsEnergyFalls) {
   Pressed p(30);
   p.move(0.002, -0.0015, 300);
   p.move(-0.0015, 0.05, 2);  // away at once
-  double before = p.haptic->modal(0).energy();
+  double before = p.wall().energy();
   EXPECT_GT(before, 0);
   for (int i = 0; i < 200; ++i) {
     p.move(0.05, 0.05, 1);
-    const double now = p.haptic->modal(0).energy();
+    const double now = p.wall().energy();
     EXPECT_LE(now, before * (1 + 1e-12));
     before = now;
   }
   for (int i = 0; i < 3000; ++i) p.move(0.05, 0.05, 1);
-  EXPECT_LT(p.haptic->modal(0).energy(), 1e-9);
+  EXPECT_LT(p.wall().energy(), 1e-9);
 }
 
 TEST(ModalBody, TappingDoesNotFeedItsEnergy) {
   Pressed p(30);
   p.move(0.002, -0.001, 100);
   for (int i = 0; i < 500; ++i) p.move(-0.001, -0.001, 1);
-  const double held = p.haptic->modal(0).energy();
+  const double held = p.wall().energy();
   double largest = 0, down = -0.001;
   for (int tap = 0; tap < 200; ++tap) {
     const double up = tap % 2 ? 0.0005 : 0.002;
     p.move(down, up, 3 + tap % 5);
     p.move(up, down, 3 + tap % 7);
-    largest = std::max(largest, p.haptic->modal(0).energy());
+    largest = std::max(largest, p.wall().energy());
   }
   // A tip that comes at up to 1 m/s throws the wall about, but no more from tap to tap.
   EXPECT_LT(largest, 60 * held);
@@ -140,16 +142,16 @@ TEST(ModalBody, ItsShownFieldIsTheFullOne) {
   for (int i = 0; i < 800; ++i) p.move(-0.001, -0.001, 1);
   const Archive& archive = p.duct.archives[0];
   const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
-  std::vector<double> coordinates(p.haptic->modal(0).modes());
+  std::vector<double> coordinates(p.wall().modes());
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * archive.surface.size());
-  p.haptic->modal(0).show(coordinates.data(), [&](int node, const Vector3d& f) {
+  p.wall().show(coordinates.data(), [&](int node, const Vector3d& f) {
     for (int axis = 0; axis < 3; ++axis)
       u += f[axis] * Eigen::Map<const Eigen::VectorXd>(compliance.column(node, axis), u.size());
   });
   for (std::size_t m = 0; m < coordinates.size(); ++m)
     u += coordinates[m] * Eigen::Map<const Eigen::VectorXd>(archive.modal->shape.data() + u.size() * m, u.size());
   int touching = 0;
-  for (const TouchContact& c : p.haptic->body(0).law().contacts()) {
+  for (const TouchContact& c : p.haptic->law(0).contacts()) {
     if (c.touch == Touch::open || c.face) continue;
     const int node = c.anchor.nodes[0];
     ++touching;

@@ -84,6 +84,7 @@ inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1)
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   archive.model = "hybrid";
+  archive.parts = {.dynamic = true, .hybrid = true};
   archive.density = {1000, 1200};
   archive.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}};
   auto& hybrid = archive.hybrid.emplace();
@@ -110,6 +111,7 @@ inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1)
 inline Archive make_modal_archive(int touchable, int others, int modes, unsigned seed = 1) {
   auto archive = make_archive(touchable, others, seed);
   archive.model = "modal_shell";
+  archive.parts.modal = true;
   archive.density = {1050};
   archive.material_of_element.clear();
   auto& modal = archive.modal.emplace();

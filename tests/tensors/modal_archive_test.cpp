@@ -66,7 +66,7 @@ TEST(ModalArchive, PartsThatDoNotFitTogetherAreRefused) {
       [](Archive& a) { std::swap(a.modal->omega[0], a.modal->omega[1]); },
       [](Archive& a) { a.modal->omega[0] = 0; },
       [](Archive& a) { a.modal.reset(); },
-      [](Archive& a) { a.model = "quasi_static"; },
+      [](Archive& a) { a.parts.modal = false; },
   };
   for (const auto& damage : damages) {
     auto archive = make_modal_archive(20, 8, 6);

@@ -95,6 +95,7 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
   watch.lap("condensation on the connection nodes");
   add_compliance(split, materials, progress, archive);
   archive.hybrid = std::move(tensors);
+  archive.parts.hybrid = true;
 }
 
 /// The dynamic tetrahedra and, at a partial connection, what the two meshes make together.

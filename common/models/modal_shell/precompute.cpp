@@ -112,6 +112,7 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   Archive archive;
   archive.body = body.name;
   archive.model = ModalShellSpec::kKind;
+  archive.parts.modal = true;
   archive.software = "palpate " PALPATE_VERSION;
   archive.mesh_nodes = static_cast<int>(mesh.nodes.size());
   archive.young = {body.material.young};

@@ -38,6 +38,7 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
     const auto& t = mesh.tetrahedra[e];
     archive.tetrahedra.push_back({index[t[0]], index[t[1]], index[t[2]], index[t[3]]});
   }
+  archive.parts.dynamic = true;
   archive.material_of_element = materials_of(materials, elements).of_element;
   for (const auto& material : materials.materials) archive.density.push_back(material.density);
   return index;
