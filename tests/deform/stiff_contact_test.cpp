@@ -1,4 +1,5 @@
-// A ball at rest in stiff, thin or coarse tissue feels a force at rest: it grows with Young's modulus and does not chatter.
+// A ball at rest in stiff, thin or coarse tissue feels a force at rest: it grows with Young's modulus and does not
+// chatter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,15 +15,15 @@ using testing::block_scene;
 
 struct Held {
   const char* name;
-  double young;                  ///< [Pa]
-  double tip = 0.005;            ///< [m] radius
+  double young;        ///< [Pa]
+  double tip = 0.005;  ///< [m] radius
   double friction = 0;
   const char* integrator = "rk4";
-  bool slab = false;             ///< cells of 10 x 10 x 1 mm, ten deep, in place of cubes of 10 mm
+  bool slab = false;  ///< cells of 10 x 10 x 1 mm, ten deep, in place of cubes of 10 mm
 };
 
-/// [N] mean and rms of the force at a ball that is pressed 2 mm deep off any node within 0.2 s and held, and how far the
-/// tissue has moved anywhere [m].
+/// [N] mean and rms of the force at a ball that is pressed 2 mm deep off any node within 0.2 s and held, and how far
+/// the tissue has moved anywhere [m].
 struct Felt {
   double mean = 0, rms = 0, far = 0;
 };

@@ -101,8 +101,10 @@ TEST_F(QuasiNonlinearLaw, FieldKeepsWhatIsHeld) {
   const std::vector<int> held = {1};
   std::vector<double> out(9);
   std::vector<float> out_single(9);
-  correct_radial<double>(q, linear, press, held, out);
-  correct_radial<float>(q, single, press, held, out_single);
+  add_corrected<double>(q, linear, press, out);
+  keep_held<double>(held, linear, out);
+  add_corrected<float>(q, single, press, out_single);
+  keep_held<float>(held, single, out_single);
   for (int n : {0, 2}) {
     const Eigen::Vector3d u(linear.data() + 3 * n), corrected(out.data() + 3 * n);
     EXPECT_EQ(corrected, q.correct(u, press));
@@ -111,9 +113,9 @@ TEST_F(QuasiNonlinearLaw, FieldKeepsWhatIsHeld) {
   EXPECT_TRUE(std::equal(out.begin() + 3, out.begin() + 6, linear.begin() + 3));
   EXPECT_TRUE(std::equal(out_single.begin() + 3, out_single.begin() + 6, single.begin() + 3));
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(out_single[i], out[i], 1e-9);
-  std::vector<double> in_place = linear;
-  correct_radial<double>(q, in_place, press, held, in_place);
-  EXPECT_EQ(in_place, out);
+  add_corrected<double>(q, linear, press, out);  // a second tool's
+  for (int n : {0, 2})
+    EXPECT_EQ(Eigen::Vector3d(out.data() + 3 * n), 2 * q.correct(Eigen::Vector3d(linear.data() + 3 * n), press));
 }
 
 TEST_F(QuasiNonlinearLaw, AForceThatFallsIsRefusedWithItsPlace) {

@@ -77,20 +77,23 @@ QuasiNonlinear make_quasi_nonlinear(const QuasiStaticSpec& body, const Archive& 
 }
 
 template <class Scalar>
-void correct_radial(const QuasiNonlinear& law, std::span<const Scalar> linear, const Eigen::Vector3d& press,
-                    std::span<const int> held, std::span<Scalar> corrected) {
+void add_corrected(const QuasiNonlinear& law, std::span<const Scalar> linear, const Eigen::Vector3d& press,
+                   std::span<Scalar> total) {
   using Vector = Eigen::Matrix<Scalar, 3, 1>;
   for (std::size_t i = 0; i + 2 < linear.size(); i += 3) {
     const Vector u = Eigen::Map<const Vector>(linear.data() + i);
-    const bool is_held = std::ranges::binary_search(held, static_cast<int>(i / 3));
-    Eigen::Map<Vector> out(corrected.data() + i);
-    out = is_held ? u : Vector(law.correct(u.template cast<double>(), press).template cast<Scalar>());
+    Eigen::Map<Vector>(total.data() + i) += law.correct(u.template cast<double>(), press).template cast<Scalar>();
   }
 }
 
-template void correct_radial(const QuasiNonlinear&, std::span<const float>, const Eigen::Vector3d&,
-                             std::span<const int>, std::span<float>);
-template void correct_radial(const QuasiNonlinear&, std::span<const double>, const Eigen::Vector3d&,
-                             std::span<const int>, std::span<double>);
+template <class Scalar>
+void keep_held(std::span<const int> held, std::span<const Scalar> linear, std::span<Scalar> total) {
+  for (const int n : held) std::copy_n(linear.begin() + 3 * n, 3, total.begin() + 3 * n);
+}
+
+template void add_corrected(const QuasiNonlinear&, std::span<const float>, const Eigen::Vector3d&, std::span<float>);
+template void add_corrected(const QuasiNonlinear&, std::span<const double>, const Eigen::Vector3d&, std::span<double>);
+template void keep_held(std::span<const int>, std::span<const float>, std::span<float>);
+template void keep_held(std::span<const int>, std::span<const double>, std::span<double>);
 
 }  // namespace palpate

@@ -56,15 +56,22 @@ class QuasiNonlinear {
 /// (stuck ends), otherwise from the closed forms. `body.nonlinear` must be there.
 QuasiNonlinear make_quasi_nonlinear(const QuasiStaticSpec& body, const Archive& archive);
 
-/// Applies P to the field of one tool: `corrected` becomes the corrected `linear`, three entries [m] a node,
-/// except at the `held` nodes (ascending), which keep theirs. The two fields may be the same memory.
-template <class Scalar>
-void correct_radial(const QuasiNonlinear& law, std::span<const Scalar> linear, const Eigen::Vector3d& press,
-                    std::span<const int> held, std::span<Scalar> corrected);
+/// A body's corrected field: add_corrected() for each tool's own linear field, then keep_held() with the linear field
+/// of all together. Fields have three entries [m] a node.
 
-extern template void correct_radial(const QuasiNonlinear&, std::span<const float>, const Eigen::Vector3d&,
-                                    std::span<const int>, std::span<float>);
-extern template void correct_radial(const QuasiNonlinear&, std::span<const double>, const Eigen::Vector3d&,
-                                    std::span<const int>, std::span<double>);
+/// Adds P of one tool's field to `total`.
+template <class Scalar>
+void add_corrected(const QuasiNonlinear& law, std::span<const Scalar> linear, const Eigen::Vector3d& press,
+                   std::span<Scalar> total);
+/// What is held stays where it is held: `held` nodes of `total` become those of `linear`.
+template <class Scalar>
+void keep_held(std::span<const int> held, std::span<const Scalar> linear, std::span<Scalar> total);
+
+extern template void add_corrected(const QuasiNonlinear&, std::span<const float>, const Eigen::Vector3d&,
+                                   std::span<float>);
+extern template void add_corrected(const QuasiNonlinear&, std::span<const double>, const Eigen::Vector3d&,
+                                   std::span<double>);
+extern template void keep_held(std::span<const int>, std::span<const float>, std::span<float>);
+extern template void keep_held(std::span<const int>, std::span<const double>, std::span<double>);
 
 }  // namespace palpate

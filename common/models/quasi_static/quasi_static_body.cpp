@@ -18,6 +18,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   coefficients_.reserve(27 * kMaxContacts);
   displacement_.reserve(3 * map().size());
   of_tool_.reserve(3 * map().size());
+  held_.reserve(map().size());
   whole_.assign(compliance().stride(), 0.0);
 }
 
@@ -30,20 +31,22 @@ void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
     for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
       superpose(t, of_tool_);
       const Eigen::Vector3d press = press_of(t);
-      for (std::size_t i = 0; i < marked.size(); ++i) {
-        const Eigen::Vector3d u = Eigen::Map<const Eigen::Vector3d>(of_tool_.data() + 3 * i);
-        Eigen::Map<Eigen::Vector3d>(displacement_.data() + 3 * i) += nonlinear_->correct(u, press);
-      }
+      add_corrected<double>(*nonlinear_, of_tool_, press, displacement_);
     }
-    // What is held stays where it is held.
     superpose(-1, of_tool_);
-    for (std::size_t i = 0; i < marked.size(); ++i)
-      for (const TouchContact& c : law().contacts())
-        if (c.touch != Touch::open && (c.anchor.nodes[0] == marked[i] ||
-                                       (c.face && (c.anchor.nodes[1] == marked[i] || c.anchor.nodes[2] == marked[i]))))
-          std::copy_n(of_tool_.begin() + 3 * i, 3, displacement_.begin() + 3 * i);
+    held_.clear();
+    for (int i = 0; i < static_cast<int>(marked.size()); ++i)
+      if (is_held(marked[i])) held_.push_back(i);
+    keep_held<double>(held_, of_tool_, displacement_);
   }
   move_marked(displacement_);
+}
+
+bool QuasiStaticBody::is_held(int node) const {
+  return std::ranges::any_of(law().contacts(), [&](const TouchContact& c) {
+    const auto& n = c.anchor.nodes;
+    return c.touch != Touch::open && (n[0] == node || (c.face && (n[1] == node || n[2] == node)));
+  });
 }
 
 // u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.

@@ -16,11 +16,13 @@ class QuasiStaticBody : public TouchBody {
   bool superposed() const override { return true; }
 
  private:
+  bool is_held(int node) const;
   void superpose(int tool, std::vector<double>& displacement);
 
   std::optional<QuasiNonlinear> nonlinear_;
   std::vector<const double*> columns_;
   std::vector<double> coefficients_, displacement_, of_tool_, whole_;
+  std::vector<int> held_;  ///< places among the marked nodes
 };
 
 }  // namespace palpate

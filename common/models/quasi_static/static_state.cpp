@@ -1,5 +1,7 @@
 #include "common/models/static_state.hpp"
 
+#include <algorithm>
+
 #include "common/fem/fine_problem.hpp"
 #include "common/fem/fine_space.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
@@ -17,7 +19,10 @@ double correct(const QuasiNonlinear& law, const StaticField& state) {
   const double size = resultant.norm();
   if (!(size > 0)) return 1;
   const std::span<double> field(state.displacement.data()->data(), 3 * state.displacement.size());
-  correct_radial<double>(law, field, resultant / size, state.held, field);
+  const std::vector<double> linear(field.begin(), field.end());
+  std::ranges::fill(field, 0.0);
+  add_corrected<double>(law, linear, resultant / size, field);
+  keep_held<double>(state.held, linear, field);
   const double scale = law.force_scale(size);
   for (Eigen::Vector3d& force : state.force) force *= scale;
   return scale;

@@ -5,6 +5,13 @@
 #include "common/kernels/kernels.hpp"
 
 namespace palpate {
+namespace {
+
+std::span<float> flat(std::vector<Eigen::Vector3f>& field) {
+  return {field.data()->data(), 3 * field.size()};
+}
+
+}  // namespace
 
 Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -60,13 +67,13 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
     if (columns_.empty()) continue;
     combine(of_tool_);
     const Eigen::Vector3d press = press_direction(state, contacts.body);
-    for (std::size_t n = 0; n < total.size(); ++n)
-      total[n] += nonlinear_->correct(of_tool_[n].cast<double>(), press).cast<float>();
+    add_corrected<float>(*nonlinear_, flat(of_tool_), press, flat(total));
   }
-  // What is held stays where it is held.
+  held_.clear();
   for (const auto& [tool, state] : contacts.of_tool)
     for (const NodalForce& f : state.forces)
-      if (f.body == contacts.body) total[f.node] = linear_[f.node];
+      if (f.body == contacts.body) held_.push_back(static_cast<int>(f.node));
+  keep_held<float>(held_, flat(linear_), flat(total));
 }
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive) {

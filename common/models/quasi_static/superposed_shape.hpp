@@ -26,6 +26,7 @@ class SuperposedShape : public BodyShape {
   std::optional<QuasiNonlinear> nonlinear_;
   std::vector<const float*> columns_;
   std::vector<float> coefficients_;
+  std::vector<int> held_;
   std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
   std::vector<Eigen::Vector3f> of_tool_;
 };
