@@ -34,6 +34,7 @@ std::vector<Kind> kinds() {
 
 /// Sources that work with kinds of their own choice.
 const std::set<std::string> kPermitted{
+    "tools/rig",        // example bodies of known kinds for the next two, tests and benchmarks
     "tools/study",      // measures the methods of known kinds against references
     "tools/stability",  // stiff and extreme cases of known kinds
     "tools/generate",   // makes the meshes and motions of the scenes that come with the project

@@ -116,7 +116,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
       model_->step(dt / steps);
     if (still_) still_->take();
   }
-  contacts_.end_tick(moving_);
+  if (touched) contacts_.end_tick(moving_, dt);
   if (still_) still_->end_tick(moving_);
   update_positions();
   cut(tools);

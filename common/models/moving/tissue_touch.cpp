@@ -73,7 +73,16 @@ void TissueTouch::step(std::span<const MovingTool> tools, double dt) {
   model_.step_semi_implicit(dt);
   solve(tools);
   put_right(dt);
+  for (TouchContact& c : law_.contacts()) c.impulse += dt * c.force;
   contacts_.slide(tools);
+}
+
+void TissueTouch::end_tick(std::span<const MovingTool> tools, double dt) {
+  for (TouchContact& c : law_.contacts()) {
+    c.force = c.impulse / dt;
+    c.impulse.setZero();
+  }
+  contacts_.settle(tools);
 }
 
 }  // namespace palpate

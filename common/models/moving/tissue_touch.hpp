@@ -34,8 +34,9 @@ class TissueTouch {
 
   /// One step of `dt` [s] of the tissue, with contacts. `tools`: as they are at its beginning and end.
   void step(std::span<const MovingTool> tools, double dt);
-  /// After the last step of a tick: contacts that have opened and gone are dropped.
-  void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
+  /// After the last step of a tick of `dt` [s]: the contacts' forces become the tick's own, their impulses over its
+  /// length; a single step's force of an impact grows as the step gets shorter. Contacts that have gone are dropped.
+  void end_tick(std::span<const MovingTool> tools, double dt);
   /// After a cut: contacts on what is gone are dropped; the masses of what is left have changed.
   void follow_cut(const CutMesh& topology);
 
