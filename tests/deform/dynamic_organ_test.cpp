@@ -307,7 +307,7 @@ TEST(DynamicOrgan, AToolThatComesAnewWithinTheTissueStrikesNoBlow) {
     largest = std::max(largest, now);
     before = now;
   }
-  EXPECT_NEAR(before, held, 0.02 * held);
+  EXPECT_NEAR(before, held, 0.05 * held);  // friction remembers the way there
   EXPECT_LT(largest, 1.5 * held);
   EXPECT_LT(max_jump, 0.3 * held);
 }

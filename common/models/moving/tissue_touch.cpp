@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kWayOut = 0.1;  // [m/s] at which tissue that is found deep within a tool is led out of it
+constexpr double kWayOut = 0.02;  // [m/s] at which tissue that is found deep within a tool is led out of it
 
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
