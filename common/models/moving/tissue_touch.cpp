@@ -68,10 +68,8 @@ void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
   const Eigen::Vector3d came = c.at - tool.before * (tool.now.inverse() * c.at);
   const double depth = c.plane - c.normal.dot(came + anchor_position(c.anchor, surface_.positions()));
-  const double left = depth - kWayOut * dt_;
-  if (left <= 0) return;
-  c.plane -= left;
-  c.target -= left * c.normal;
+  c.plane -= std::max(0.0, depth - kWayOut * dt_);
+  c.target += (c.plane - c.normal.dot(c.target)) * c.normal;  // what sticks keeps where it has been led
 }
 
 void TissueTouch::put_right(double dt) {
