@@ -5,8 +5,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kWayOut = 0.02;  // [m/s] at which tissue that is found deep within a tool is led out of it
-
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
   for (const TouchContact& c : contacts)
@@ -59,17 +57,7 @@ void TissueTouch::follow_response(double dt) {
 void TissueTouch::solve(std::span<const MovingTool> tools) {
   for_each_node(contacts(), [&](int node) { free_[node] = mesh_.rest[node] + model_.displacement(node); });
   contacts_.aim(tools);
-  for (TouchContact& c : law_.contacts()) lead_out(c, tools[c.tool]);
   law_.solve();
-}
-
-// A tool that comes anew may stand in the tissue: put right within one step, that would be a blow.
-void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
-  if (c.grasped) return;
-  const Eigen::Vector3d came = c.at - tool.before * (tool.now.inverse() * c.at);
-  const double depth = c.plane - c.normal.dot(came + anchor_position(c.anchor, surface_.positions()));
-  c.plane -= std::max(0.0, depth - kWayOut * dt_);
-  c.target += (c.plane - c.normal.dot(c.target)) * c.normal;  // what sticks keeps where it has been led
 }
 
 void TissueTouch::put_right(double dt) {

@@ -46,7 +46,6 @@ class TissueTouch {
  private:
   void follow_response(double dt);
   void solve(std::span<const MovingTool> tools);
-  void lead_out(TouchContact& contact, const MovingTool& tool) const;
   void put_right(double dt);
 
   const ElasticMesh& mesh_;
