@@ -5,9 +5,4 @@ cd "$(dirname "$0")/.."
 ./scripts/build.sh release
 ./scripts/format.sh --check
 # One more than there are cores: tests that start nodes mostly wait.
-run=(ctest --preset release --timeout 300 --parallel $(($(nproc) + 1)))
-[ $# -eq 0 ] || exec "${run[@]}" "$@"
-# A known fault: the force of moving tissue may stand wrong after ticks that came late. This suite alone may try again.
-known=TissueOverRelay
-"${run[@]}" --tests-regex "$known" --repeat until-pass:3
-"${run[@]}" --exclude-regex "$known"
+ctest --preset release --timeout 300 --parallel $(($(nproc) + 1)) "$@"

@@ -179,10 +179,10 @@ void ToolContacts::follow(int contact, const MovingTool& moving, std::span<const
   const TouchContact& c = law_.contacts()[contact];
   const Segment axis = moving.axis(c.part);
   const double length = moving.parts[c.part].length;
-  if (length == 0) return follow(contact, axis.start, near);
   const double size = radius(moving, c.part);
   const Eigen::Vector3d slipped = moving.to_world(c.part, c.offset) - moving.to_world_before(c.part, c.offset);
-  follow(contact, axis.at(std::clamp(c.offset.z(), 0.0, length) / length), near);
+  const double share = length > 0 ? std::clamp(c.offset.z(), 0.0, length) / length : 0.0;
+  follow(contact, axis.at(share), near);
   TouchContact& followed = law_.contacts().back();
   const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + slipped;
   const Eigen::Vector3d centre = nearest_point(axis, on_tool);

@@ -78,6 +78,7 @@ void DynamicWorld::tick() {
   for (int t = 0; t < tools(); ++t) {
     ToolInTick& tool = tools_[t];
     tool.moving.before = tool.moving.now;
+    tool.moving.ticks = 1;
     parts_before_[t] = parts_[t];
     anew_[t] = waiting_[t];
     if (!waiting_[t]) continue;
@@ -93,6 +94,8 @@ void DynamicWorld::tick() {
     if (!tool.present || state.run != consumed_[t].run) {
       tool.moving.before = tool.moving.now;
       parts_before_[t] = parts_[t];
+    } else if (state.step > consumed_[t].step) {
+      tool.moving.ticks = static_cast<double>(state.step - consumed_[t].step);
     }
     tool.present = true;
     consumed_[t] = state;

@@ -289,6 +289,29 @@ TEST(DynamicOrgan, AnUnstableStepIsRefusedWithTheBound) {
   }
 }
 
+// Its node was gone for a while, or is a new one: the tool stands where the tissue has sprung back to.
+TEST(DynamicOrgan, AToolThatComesAnewWithinTheTissueStrikesNoBlow) {
+  Bench bench(block_scene());
+  const double deep = kTop + kRadius - 0.004;
+  for (int i = 0; i < 1000; ++i) bench.tick(from_above(i, 300, kTop + kRadius + 0.001, deep));
+  const double held = bench.force().norm();
+  ASSERT_GT(held, 0.05);
+  bench.world().leave(0);
+  for (int i = 0; i < 500; ++i) bench.world().tick();
+  EXPECT_TRUE(bench.force().isZero(0));
+  double before = 0, max_jump = 0, largest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    bench.tick(deep);
+    const double now = bench.force().norm();
+    max_jump = std::max(max_jump, std::abs(now - before));
+    largest = std::max(largest, now);
+    before = now;
+  }
+  EXPECT_NEAR(before, held, 0.05 * held);  // friction remembers the way there
+  EXPECT_LT(largest, 1.5 * held);
+  EXPECT_LT(max_jump, 0.3 * held);
+}
+
 TEST(DynamicOrgan, RandomManipulationStaysFinite) {
   for (Scene scene : {block_scene(), block_scene(SpringMassSpec{})}) {
     scene.tools[0].probe()->cautery = Cautery{0.0065};

@@ -5,6 +5,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kWayOut = 0.02;  // [m/s] at which tissue that is found deep within a tool is led out of it
+
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
   for (const TouchContact& c : contacts)
@@ -22,7 +24,9 @@ TissueTouch::TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicMo
       free_(mesh.rest),
       response_(mesh, model),
       law_(response_, free_, ContactLaw::Rule::barycentric, friction, kMaxContacts),
-      contacts_(surface, law_, parts) {}
+      contacts_(surface, law_, parts) {
+  aimed_.reserve(kMaxContacts);
+}
 
 void TissueTouch::find(std::span<const MovingTool> tools) {
   contacts_.look(tools);
@@ -57,7 +61,26 @@ void TissueTouch::follow_response(double dt) {
 void TissueTouch::solve(std::span<const MovingTool> tools) {
   for_each_node(contacts(), [&](int node) { free_[node] = mesh_.rest[node] + model_.displacement(node); });
   contacts_.aim(tools);
+  aimed_.clear();
+  for (TouchContact& c : law_.contacts()) {
+    aimed_.push_back(c.target);
+    lead_out(c, tools[c.tool]);
+  }
   law_.solve();
+  for (std::size_t c = 0; c < contacts().size(); ++c) law_.contacts()[c].target = aimed_[c];
+}
+
+// A tool that comes anew may stand in the tissue, one whose motion was missed may have gone on in it, and the surface
+// that a point slides over has corners: put right within one step, that would be a blow.
+void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
+  if (c.grasped) return;
+  const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
+  const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion / tool.ticks;
+  const double depth = c.plane - c.normal.dot(carried), led = kWayOut * dt_;
+  if (depth <= led) return;
+  const double share = led / depth;
+  c.plane -= (1 - share) * depth;
+  c.target += (1 - share) * (carried - c.target);
 }
 
 void TissueTouch::put_right(double dt) {

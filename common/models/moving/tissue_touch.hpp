@@ -46,12 +46,14 @@ class TissueTouch {
  private:
   void follow_response(double dt);
   void solve(std::span<const MovingTool> tools);
+  void lead_out(TouchContact& contact, const MovingTool& tool) const;
   void put_right(double dt);
 
   const ElasticMesh& mesh_;
   DynamicModel& model_;
   CutSurface& surface_;
-  std::vector<Eigen::Vector3d> free_;  ///< [m] per node: where it is at a step's end without contacts
+  std::vector<Eigen::Vector3d> free_;   ///< [m] per node: where it is at a step's end without contacts
+  std::vector<Eigen::Vector3d> aimed_;  ///< [m] per contact: its target, however deep it lies within the tool
   InertialResponse response_;
   ContactLaw law_;
   ToolContacts contacts_;
