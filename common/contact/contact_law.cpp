@@ -17,12 +17,12 @@ using ConstVec = Eigen::Map<const Eigen::Vector3d>;
 
 }  // namespace
 
-ContactLaw::ContactLaw(const Response& response, std::span<const Eigen::Vector3d> unloaded, Rule rule, double friction,
-                       int capacity)
-    : unloaded_(unloaded),
+ContactLaw::ContactLaw(const ContactBody& body, Rule rule, double friction, int capacity, std::optional<ContactBody> by)
+    : body_(body),
+      by_(by),
       rule_(rule),
       friction_(friction),
-      held_(response, rule == Rule::alpha ? 3 * capacity : capacity) {
+      held_(body.response, rule == Rule::alpha ? 3 * capacity : capacity, by ? &by->response : nullptr) {
   contacts_.reserve(capacity);
   expansions_.reserve(capacity);
   const int points = held_.capacity();
@@ -42,6 +42,13 @@ int ContactLaw::first_point(int contact) const {
   int first = 0;
   for (int c = 0; c < contact; ++c) first += expansions_[c].points;
   return first;
+}
+
+// [m] where the anchor is without contact forces, as what presses sees it.
+Eigen::Vector3d ContactLaw::unloaded(const TouchContact& contact) const {
+  const Eigen::Vector3d own = anchor_position(contact.anchor, body_.unloaded);
+  const Anchor* by = std::get_if<Anchor>(&contact.by);
+  return by ? Eigen::Vector3d(own - anchor_position(*by, by_->unloaded)) : own;
 }
 
 // A vertex that an older contact prescribes already is left to it: the newer contact falls back to its anchor.
@@ -70,14 +77,15 @@ void ContactLaw::add_points(const TouchContact& contact, int points) {
   std::array<Anchor, 3> anchors;
   const Expansion e = expand(contact, points, anchors);
   const int first = held_.size();
-  for (int k = 0; k < e.points; ++k) held_.add(anchors[k], contact.softness);
+  for (int k = 0; k < e.points; ++k) held_.add(anchors[k], contact.by);
   std::fill_n(forces_.begin() + 3 * first, 3 * e.points, 0.0);
   contacts_.push_back(contact);
   expansions_.push_back(e);
 }
 
 void ContactLaw::add(const TouchContact& contact) {
-  const bool spread = rule_ == Rule::alpha && contact.face && !shares_vertex(contact);
+  const bool by_tool = std::holds_alternative<ToolPoint>(contact.by);
+  const bool spread = rule_ == Rule::alpha && by_tool && contact.face && !shares_vertex(contact);
   add_points(contact, spread ? 3 : 1);
 }
 
@@ -123,11 +131,11 @@ Eigen::Vector3d ContactLaw::displacement(int contact) const {
 // Where the anchor is now: what holds it has given way by a part of the displacement.
 void ContactLaw::place(int c) {
   TouchContact& contact = contacts_[c];
-  contact.position = anchor_position(contact.anchor, unloaded_) + displacement(c);
-  if (contact.softness == 0) return;
+  contact.position = unloaded(contact) + displacement(c);
+  if (contact.softness() == 0) return;
   const int first = first_point(c);
   for (int k = 0; k < expansions_[c].points; ++k)
-    contact.position -= contact.softness * expansions_[c].share[k] * ConstVec(forces_.data() + 3 * (first + k));
+    contact.position -= contact.softness() * expansions_[c].share[k] * ConstVec(forces_.data() + 3 * (first + k));
 }
 
 // One linear solve for the present states. Friction of sliding contacts is taken from the last known normal force.
@@ -136,7 +144,7 @@ int ContactLaw::solve_held() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const TouchContact& contact = contacts_[c];
     const Expansion& e = expansions_[c];
-    const Eigen::Vector3d rest = anchor_position(contact.anchor, unloaded_);
+    const Eigen::Vector3d rest = unloaded(contact);
     const bool sliding = contact.touch == Touch::sliding;
     const Eigen::Vector3d wanted = sliding
                                        ? Eigen::Vector3d(contact.normal * (contact.plane - contact.normal.dot(rest)))
@@ -252,7 +260,7 @@ void ContactLaw::relax() {
 double ContactLaw::relax_point(const TouchContact& contact, double gain, int p) {
   const Eigen::Vector3d& n = contact.normal;
   const Eigen::Matrix3d own = held_.block(p, p);
-  const Eigen::Vector3d rest = anchor_position(contact.anchor, unloaded_);
+  const Eigen::Vector3d rest = unloaded(contact);
   Eigen::Map<Eigen::Vector3d> force(forces_.data() + 3 * p);
   const Eigen::Vector3d before = force;
   const double softest = held_.floor_of(own.trace() / 3);

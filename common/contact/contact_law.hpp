@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,17 +16,15 @@ enum class Touch : std::uint8_t {
   sticking,  ///< all three displacements are held
 };
 
-/// One contact between a part of a tool and a point of the surface. It pushes and never pulls, unless jaws hold it.
+/// One contact: what presses, and the point of a body's surface that is pressed. It pushes and never pulls, unless jaws
+/// hold it. Where another body's surface presses, `target`, `plane` and `position` are of the pressed point as seen
+/// from the pressing one.
 struct TouchContact {
-  int tool = 0;
-  int part = 0;          ///< which part of the tool
+  ContactSide by = ToolPoint{};
   bool face = false;     ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
   bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
-  double softness = 0;  ///< [m/N] by which what holds the anchor gives way to the force
   Anchor anchor;
-  Eigen::Vector3d offset =
-      Eigen::Vector3d::Zero();  ///< [m] touching point in the part's own frame; of what jaws hold, in the tip frame
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();     ///< unit or zero: direction of friction on the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue, world; conjugate to the anchor's motion
@@ -37,8 +36,21 @@ struct TouchContact {
   // Set by solve:
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m] world: the deformed anchor
 
-  /// [m] world: where the tool, had it not given way, would hold the anchor now.
-  Eigen::Vector3d held_at() const { return position + softness * force; }
+  // What presses, where that is a tool.
+  const ToolPoint& tool_point() const { return std::get<ToolPoint>(by); }
+  ToolPoint& tool_point() { return std::get<ToolPoint>(by); }
+  bool is_by(int tool) const {
+    const ToolPoint* point = std::get_if<ToolPoint>(&by);
+    return point && point->tool == tool;
+  }
+  bool is_by(int tool, int part) const { return is_by(tool) && tool_point().part == part; }
+  /// [m/N] by which the tool gives way; of another body its response says so.
+  double softness() const {
+    const ToolPoint* point = std::get_if<ToolPoint>(&by);
+    return point ? point->softness : 0.0;
+  }
+  /// [m] where what presses, had it not given way, would hold the anchor now.
+  Eigen::Vector3d held_at() const { return position + softness() * force; }
 };
 
 struct LawOutcome {
@@ -48,7 +60,13 @@ struct LawOutcome {
   bool finite = true;     ///< false: all forces were set to zero
 };
 
-/// Unilateral contact with Coulomb friction between tools and one body:
+/// A body as its contacts see it.
+struct ContactBody {
+  const Response& response;
+  std::span<const Eigen::Vector3d> unloaded;  ///< [m] of its nodes without contact forces
+};
+
+/// Unilateral contact with Coulomb friction between one body and tools, or another body:
 /// 0 <= normal force, gap >= 0, one of them zero; |tangential| <= mu * normal. The gap is that to the tool where its
 /// force has pushed it back: (J C J^T + c I) f = gap. Solved by an active set that starts from the last step's and
 /// changes in a fixed order, at most max_passes times; where that does not settle, a bounded relaxation goes on from
@@ -61,9 +79,8 @@ class ContactLaw {
   /// (TVCG99 sec. 5 with the sign mended; stiffer).
   enum class Rule { barycentric, alpha };
 
-  /// `unloaded`: positions [m] of the body's nodes without contact forces; outlives this object, as `response` does.
-  ContactLaw(const Response& response, std::span<const Eigen::Vector3d> unloaded, Rule rule, double friction,
-             int capacity);
+  /// What the bodies name outlives this object. `by`: the one whose surface presses, if there is one.
+  ContactLaw(const ContactBody& body, Rule rule, double friction, int capacity, std::optional<ContactBody> by = {});
 
   std::span<TouchContact> contacts() { return contacts_; }
   std::span<const TouchContact> contacts() const { return contacts_; }
@@ -94,6 +111,16 @@ class ContactLaw {
           if (a.weights[v] != 0) visit(static_cast<int>(c), a.nodes[v], Eigen::Vector3d(a.weights[v] * f));
       }
   }
+  /// The same for the nodes of the body that presses, and the force on it.
+  template <class Visit>
+  void for_each_reaction(Visit&& visit) const {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const Anchor* a = std::get_if<Anchor>(&contacts_[c].by);
+      for (int v = 0; a && v < 3; ++v)
+        if (a->weights[v] != 0)
+          visit(static_cast<int>(c), a->nodes[v], Eigen::Vector3d(-a->weights[v] * contacts_[c].force));
+    }
+  }
 
  private:
   /// The held points that stand for one contact.
@@ -107,6 +134,7 @@ class ContactLaw {
   static Expansion expand(const TouchContact& contact, int points, std::array<Anchor, 3>& anchors);
   void add_points(const TouchContact& contact, int points);
   int first_point(int contact) const;
+  Eigen::Vector3d unloaded(const TouchContact& contact) const;
   int solve_held();
   Eigen::Vector3d displacement(int contact) const;
   void place(int contact);
@@ -115,7 +143,8 @@ class ContactLaw {
   void relax();
   double relax_point(const TouchContact& contact, double gain, int point);
 
-  std::span<const Eigen::Vector3d> unloaded_;
+  ContactBody body_;
+  std::optional<ContactBody> by_;
   Rule rule_;
   double friction_;
   HeldPoints held_;

@@ -7,10 +7,10 @@
 
 namespace palpate {
 
-HeldPoints::HeldPoints(const Response& response, int capacity)
-    : response_(response), capacity_(capacity), stride_(kernels::leading_dimension(3 * capacity)) {
+HeldPoints::HeldPoints(const Response& response, int capacity, const Response* by)
+    : response_(response), by_(by), capacity_(capacity), stride_(kernels::leading_dimension(3 * capacity)) {
   anchors_.reserve(capacity);
-  softness_.reserve(capacity);
+  sides_.reserve(capacity);
   full_.reserve(capacity);
   raised_.reserve(capacity);
   normals_.reserve(capacity);
@@ -34,23 +34,26 @@ Eigen::Matrix3d HeldPoints::block(int i, int j) const {
   return b;
 }
 
-void HeldPoints::add(const Anchor& anchor, double softness) {
+void HeldPoints::add(const Anchor& anchor, const ContactSide& by) {
   anchors_.push_back(anchor);
-  softness_.push_back(softness);
+  sides_.push_back(by);
   fill(size() - 1);
 }
 
 // The blocks of a point with those before it and with itself.
 void HeldPoints::fill(int p) {
+  const Anchor* by = std::get_if<Anchor>(&sides_[p]);
   for (int q = 0; q <= p; ++q) {
-    const Eigen::Matrix3d b = response_.block(anchors_[q], anchors_[p]);
+    Eigen::Matrix3d b = response_.block(anchors_[q], anchors_[p]);
+    if (const Anchor* other = std::get_if<Anchor>(&sides_[q]); by && other) b += by_->block(*other, *by);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) {
         column(3 * p + c)[3 * q + r] = b(r, c);
         column(3 * q + r)[3 * p + c] = b(r, c);
       }
   }
-  for (int c = 0; c < 3; ++c) column(3 * p + c)[3 * p + c] += softness_[p];
+  const ToolPoint* tool = std::get_if<ToolPoint>(&sides_[p]);
+  for (int c = 0; tool && c < 3; ++c) column(3 * p + c)[3 * p + c] += tool->softness;
 }
 
 void HeldPoints::follow_response() {
@@ -77,12 +80,12 @@ void HeldPoints::remove(int point) {
     std::memmove(to + first, from + first + 3, (n - first - 3) * sizeof(double));
   }
   anchors_.erase(anchors_.begin() + point);
-  softness_.erase(softness_.begin() + point);
+  sides_.erase(sides_.begin() + point);
 }
 
 void HeldPoints::clear() {
   anchors_.clear();
-  softness_.clear();
+  sides_.clear();
   forget_factor();
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/contact_side.hpp"
 #include "common/contact/response.hpp"
 #include "common/geometry/anchor.hpp"
 #include "common/kernels/kernels.hpp"
@@ -20,7 +21,8 @@ enum class Hold : unsigned char {
 /// The compliance among a few surface points, and the Cholesky factor of what is held of it.
 ///
 /// Displacements of the points are u = A f, A = J C J^T + c I (3n x 3n), with J C J^T the body's response and c each
-/// point's own softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Fully held points
+/// point's own softness: what holds it gives way by c f, so that the tissue itself moves by u - c f. Where another body
+/// holds points, its response to them stands in place of c I. Fully held points
 /// come first in the factor and stay there while they are held, so that a new contact costs one append and a lost one a
 /// rank-three update; rows held along a normal are appended anew each time since normals turn. Nothing is allocated
 /// after construction.
@@ -31,15 +33,15 @@ class HeldPoints {
   /// between contradictory ones stays bounded by 50 times a single point's.
   static constexpr double kPivotShare = 0.02;
 
-  /// `response` outlives this object.
-  HeldPoints(const Response& response, int capacity);
+  /// `by`: of the body that holds points, if one does. Both outlive this object.
+  HeldPoints(const Response& response, int capacity, const Response* by = nullptr);
 
   int size() const { return static_cast<int>(anchors_.size()); }
   int capacity() const { return capacity_; }
   const Anchor& anchor(int point) const { return anchors_[point]; }
 
-  /// Becomes the last point. `softness` [m/N] >= 0 of what holds it.
-  void add(const Anchor& anchor, double softness = 0);
+  /// Becomes the last point, held by a side of softness >= 0 or by a point of the other body.
+  void add(const Anchor& anchor, const ContactSide& by = ToolPoint{});
   void remove(int point);  ///< the points after it move down by one
   void clear();
   /// The body gives way otherwise than it did: after a cut, or for another step.
@@ -71,11 +73,12 @@ class HeldPoints {
   int append_normal(int point, std::span<const Eigen::Vector3d> normal);
 
   const Response& response_;
+  const Response* by_;
   int capacity_;
   std::ptrdiff_t stride_;
   std::vector<Anchor> anchors_;
-  std::vector<double> softness_;  ///< [m/N] per point
-  std::vector<double> a_;         ///< A, column-major, both triangles
+  std::vector<ContactSide> sides_;  ///< per point: what holds it
+  std::vector<double> a_;           ///< A, column-major, both triangles
   kernels::Buffer factor_;
   std::vector<int> full_;     ///< fully held points in the order of the factor
   std::vector<int> raised_;   ///< pivots raised when full_[i] was appended

@@ -90,23 +90,25 @@ double ToolContacts::thrust(const MovingTool& moving, int part) const {
 Touching ToolContacts::touch_of(const TouchContact& c, const MovingTool& moving, const Segment& axis,
                                 const Eigen::Vector3d& into) const {
   const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
-  const double size = radius(moving, c.part), most = thrust(moving, c.part);
+  const int part = c.tool_point().part;
+  const double size = radius(moving, part), most = thrust(moving, part);
   const Touching touch = touching(axis, size, anchor, into, most);
   // A segment that has passed over the anchor within this step, across the surface's own direction, does not come round
   // it.
-  const bool passed = moving.parts[c.part].length > 0 && touch.normal.dot(c.normal) < 0;
+  const bool passed = moving.parts[part].length > 0 && touch.normal.dot(c.normal) < 0;
   return passed ? touching(axis, size, anchor, c.normal, most) : touch;
 }
 
 void ToolContacts::aim(TouchContact& c, const MovingTool& moving) const {
+  const ToolPoint& by = c.tool_point();
   if (c.grasped) {
-    c.at = c.target = moving.now * c.offset;
+    c.at = c.target = moving.now * by.offset;
     return;
   }
-  const Segment axis = moving.axis(c.part);
-  const Eigen::Vector3d into = inward(c, moving.parts[c.part].length > 0);
-  const double size = radius(moving, c.part);
-  c.target = moving.to_world(c.part, c.offset);
+  const Segment axis = moving.axis(by.part);
+  const Eigen::Vector3d into = inward(c, moving.parts[by.part].length > 0);
+  const double size = radius(moving, by.part);
+  c.target = moving.to_world(by.part, by.offset);
   Touching touch{nearest_point(axis, c.target), Eigen::Vector3d::Zero()};
   touch.normal = (c.target - touch.centre).normalized();
   if (c.touch != Touch::sticking || touch.normal.dot(into) <= kMinFacing) {
@@ -120,29 +122,30 @@ void ToolContacts::aim(TouchContact& c, const MovingTool& moving) const {
 }
 
 void ToolContacts::aim(std::span<const MovingTool> tools) {
-  for (TouchContact& c : law_.contacts()) aim(c, tools[c.tool]);
+  for (TouchContact& c : law_.contacts()) aim(c, tools[c.tool_point().tool]);
 }
 
 void ToolContacts::slide(TouchContact& c, const MovingTool& moving) const {
   if (c.grasped || c.touch == Touch::open) return;
+  ToolPoint& by = c.tool_point();
   Eigen::Vector3d touched = c.target;
   if (c.touch == Touch::sliding) {
-    const Eigen::Vector3d held = c.held_at(), centre = nearest_point(moving.axis(c.part), held);
-    touched = centre + radius(moving, c.part) * (held - centre).normalized();
+    const Eigen::Vector3d held = c.held_at(), centre = nearest_point(moving.axis(by.part), held);
+    touched = centre + radius(moving, by.part) * (held - centre).normalized();
   }
-  c.offset = moving.to_part(c.part, touched);
+  by.offset = moving.to_part(by.part, touched);
 }
 
 // Within its own triangle: the search for others comes with the next step of the surface.
 void ToolContacts::slide(std::span<const MovingTool> tools) {
-  for (TouchContact& c : law_.contacts()) slide(c, tools[c.tool]);
+  for (TouchContact& c : law_.contacts()) slide(c, tools[c.tool_point().tool]);
   int at = 0;
   for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
     const TouchContact& c = law_.contacts()[at];
     if (!c.face || c.grasped || c.touch == Touch::sticking)
       ++at;
     else
-      follow(at, standing(tools[c.tool]), {});
+      follow(at, standing(tools[c.tool_point().tool]), {});
   }
 }
 
@@ -150,13 +153,14 @@ void ToolContacts::settle(std::span<const MovingTool> tools) {
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
     TouchContact& c = law_.contacts()[i];
     if (c.grasped) continue;
-    const MovingTool& moving = tools[c.tool];
+    const int part = c.tool_point().part;
+    const MovingTool& moving = tools[c.tool_point().tool];
     if (c.touch == Touch::open) {
       const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
-      const bool gone = (anchor - nearest_point(moving.axis(c.part), anchor)).norm() >
-                        reach(moving, c.part) + margin(radius(moving, c.part));
+      const bool gone = (anchor - nearest_point(moving.axis(part), anchor)).norm() >
+                        reach(moving, part) + margin(radius(moving, part));
       if (c.face || gone) law_.remove(i);
-    } else if (moving.parts[c.part].length > 0 && inside_out(c)) {
+    } else if (moving.parts[part].length > 0 && inside_out(c)) {
       law_.remove(i);
     } else {
       slide(c, moving);
@@ -165,15 +169,16 @@ void ToolContacts::settle(std::span<const MovingTool> tools) {
 }
 
 void ToolContacts::adopt(TouchContact contact) {
-  contact.softness = softness(contact.tool);
+  contact.tool_point().softness = softness(contact.tool_point().tool);
   law_.add(contact, std::span<const double>(contact.force.data(), 3));
 }
 
 bool ToolContacts::take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face) {
   if (law_.full()) return false;
-  TouchContact c{.tool = tool, .face = face, .grasped = true, .touch = Touch::sticking, .softness = softness(tool)};
+  TouchContact c{.by = ToolPoint{.tool = tool, .softness = softness(tool)}, .face = face, .grasped = true};
+  c.touch = Touch::sticking;
   c.anchor = anchor;
-  c.offset = pose.inverse() * anchor_position(anchor, surface_.positions());
+  c.tool_point().offset = pose.inverse() * anchor_position(anchor, surface_.positions());
   c.normal = pose.linear().col(2);
   law_.add(c);
   return true;
@@ -196,7 +201,7 @@ bool ToolContacts::grasp_nearest(int tool, const Eigen::Isometry3d& pose, double
 
 void ToolContacts::let_go(int tool) {
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i)
-    if (law_.contacts()[i].grasped && law_.contacts()[i].tool == tool) law_.remove(i);
+    if (law_.contacts()[i].grasped && law_.contacts()[i].is_by(tool)) law_.remove(i);
 }
 
 }  // namespace palpate

@@ -59,8 +59,8 @@ const TouchContact* ToolContacts::held_near(const MovingTool& moving, int tool, 
                                             double within) const {
   const TouchContact* nearest = nullptr;
   for (const TouchContact& c : law_.contacts()) {
-    if (c.tool != tool || c.part != part || c.grasped || c.touch == Touch::open) continue;
-    const double away = std::abs(std::clamp(c.offset.z(), 0.0, moving.parts[part].length) - place);
+    if (!c.is_by(tool, part) || c.grasped || c.touch == Touch::open) continue;
+    const double away = std::abs(std::clamp(c.tool_point().offset.z(), 0.0, moving.parts[part].length) - place);
     if (away > within || (nearest && away >= within)) continue;
     nearest = &c;
     within = away;
@@ -84,9 +84,9 @@ bool ToolContacts::add_at(const Crossing& crossing, const MovingTool& moving, in
   const TouchContact* held =
       held_near(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]));
   if (held && held->normal.dot(into) > 0) return false;
-  TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
+  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
   c.anchor = {surface_.triangle(crossing.triangle), crossing.weights};
-  c.offset = {0, 0, place};
+  c.tool_point().offset = {0, 0, place};
   c.normal = into;
   law_.add(c);
   return true;
@@ -99,7 +99,8 @@ void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, st
   const double size = radius(moving, part), within = reach(moving, part), length = moving.parts[part].length;
   ++vertex_clock_;
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && (c.part == part || c.grasped) && !c.face) vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
+    if ((c.is_by(tool, part) || (c.is_by(tool) && c.grasped)) && !c.face)
+      vertex_stamp_[c.anchor.nodes[0]] = vertex_clock_;
   for (int t : near)
     for (int node : surface_.triangle(t)) {
       const bool seen = !surface_.touchable(node) || vertex_stamp_[node] == vertex_clock_;
@@ -117,7 +118,7 @@ void ToolContacts::add_vertices(const MovingTool& moving, int tool, int part, st
         if (!held || (length > 0 ? !pushed_through(node, *held, size) : out.dot(held->normal) >= 0)) continue;
         normal = held->normal;
       }
-      TouchContact c{.tool = tool, .part = part, .softness = softness(tool)};
+      TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}};
       c.anchor = {{node, node, node}, Eigen::Vector3d::UnitX()};
       c.normal = normal;
       law_.add(c);
@@ -134,7 +135,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
   bool vertices_carry = false;
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (c.tool != tool || c.part != part || c.grasped) continue;
+    if (!c.is_by(tool, part) || c.grasped) continue;
     if (c.face) face = i;
     vertices_carry |= !c.face && c.touch != Touch::open;
   }
@@ -159,7 +160,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
     weights = p.weights;
   }
   if (nearest < 0) return;
-  TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
+  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
   c.anchor = {surface_.triangle(nearest), weights};
   c.normal = -surface_.triangle_normal(nearest).normalized();
   law_.add(c);
@@ -169,24 +170,23 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
 bool ToolContacts::triangle_taken(int tool, const std::array<int, 3>& nodes, int besides) const {
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (i != besides && c.tool == tool && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
+    if (i != besides && c.is_by(tool) && c.face && !c.grasped && c.anchor.nodes == nodes) return true;
   }
   return false;
 }
 
-// The anchor comes along with the tool. How far a segment has slipped over it in this step is kept in the offset.
+// The anchor comes along with the tool. How far the tool has slipped over it in this step is kept in the offset.
 void ToolContacts::follow(int contact, const MovingTool& moving, std::span<const int> near) {
-  const TouchContact& c = law_.contacts()[contact];
-  const Segment axis = moving.axis(c.part);
-  const double length = moving.parts[c.part].length;
-  const double size = radius(moving, c.part);
-  const Eigen::Vector3d slipped = moving.to_world(c.part, c.offset) - moving.to_world_before(c.part, c.offset);
-  const double share = length > 0 ? std::clamp(c.offset.z(), 0.0, length) / length : 0.0;
+  const ToolPoint by = law_.contacts()[contact].tool_point();
+  const Segment axis = moving.axis(by.part);
+  const double length = moving.parts[by.part].length, size = radius(moving, by.part);
+  const Eigen::Vector3d slipped = moving.to_world(by.part, by.offset) - moving.to_world_before(by.part, by.offset);
+  const double share = length > 0 ? std::clamp(by.offset.z(), 0.0, length) / length : 0.0;
   follow(contact, axis.at(share), near);
   TouchContact& followed = law_.contacts().back();
   const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + slipped;
   const Eigen::Vector3d centre = nearest_point(axis, on_tool);
-  followed.offset = moving.to_part(followed.part, centre + size * (on_tool - centre).normalized());
+  followed.tool_point().offset = moving.to_part(by.part, centre + size * (on_tool - centre).normalized());
 }
 
 // A sliding contact keeps to the nearest point of its triangle and goes over to a neighbour only across the border
@@ -202,7 +202,7 @@ void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<
     bool across = own.weights.minCoeff() <= 0 && nodes != now.nodes;
     for (int v = 0; v < 3; ++v)
       across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
-    if (!across || triangle_taken(law_.contacts()[contact].tool, nodes, contact)) continue;
+    if (!across || triangle_taken(law_.contacts()[contact].tool_point().tool, nodes, contact)) continue;
     const ClosestPoint p = closest_point(centre, surface_.corners(t));
     if (p.squared_distance >= least) continue;
     least = p.squared_distance;

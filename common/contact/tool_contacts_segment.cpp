@@ -114,8 +114,8 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
 // or a vertex that carries force.
 bool ToolContacts::place_taken(const MovingTool& moving, int tool, int part, double place, double within) const {
   return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
-    if (c.tool != tool || c.part != part || c.grasped || (!c.face && c.touch == Touch::open)) return false;
-    return std::abs(std::clamp(c.offset.z(), 0.0, moving.parts[part].length) - place) < within;
+    if (!c.is_by(tool, part) || c.grasped || (!c.face && c.touch == Touch::open)) return false;
+    return std::abs(std::clamp(c.tool_point().offset.z(), 0.0, moving.parts[part].length) - place) < within;
   });
 }
 
@@ -132,9 +132,9 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
     const double share = touches ? level_share(axis, corners, candidate.share, margin(size)) : candidate.share;
     if (place_taken(moving, tool, part, share * length, std::max(size, kApartShare * mean_edge_[candidate.triangle])))
       continue;
-    TouchContact c{.tool = tool, .part = part, .face = true, .softness = softness(tool)};
+    TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
     c.anchor = {surface_.triangle(candidate.triangle), closest_point(axis.at(share), corners).weights};
-    c.offset = {0, 0, share * length};
+    c.tool_point().offset = {0, 0, share * length};
     c.normal = -outward(surface_.triangle(candidate.triangle));
     law_.add(c);
   }
@@ -146,16 +146,16 @@ void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std:
   const double size = radius(moving, part), length = moving.parts[part].length;
   const auto vertex_carries = [&](double place) {
     return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
-      const bool carries = c.tool == tool && c.part == part && !c.grasped && !c.face && c.touch != Touch::open;
-      return carries && std::abs(std::clamp(c.offset.z(), 0.0, length) - place) < size;
+      const bool carries = c.is_by(tool, part) && !c.grasped && !c.face && c.touch != Touch::open;
+      return carries && std::abs(std::clamp(c.tool_point().offset.z(), 0.0, length) - place) < size;
     });
   };
   // One that moves goes to the end of the list: the next one takes its place.
   int at = 0;
   for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
     const TouchContact& c = law_.contacts()[at];
-    const bool own = c.tool == tool && c.part == part && c.face && !c.grasped;
-    const double place = std::clamp(c.offset.z(), 0.0, length);
+    const bool own = c.is_by(tool, part) && c.face && !c.grasped;
+    const double place = std::clamp(c.tool_point().offset.z(), 0.0, length);
     if (own && vertex_carries(place)) {
       law_.remove(at);
     } else if (own && c.touch != Touch::sticking) {

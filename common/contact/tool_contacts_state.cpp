@@ -25,14 +25,14 @@ Eigen::Vector3d get(const double* from) {
 
 StoredContact stored(const TouchContact& c, std::span<const double> forces) {
   StoredContact s{};
-  s.tool = c.tool;
-  s.part = c.part;
+  s.tool = c.tool_point().tool;
+  s.part = c.tool_point().part;
   std::copy(c.anchor.nodes.begin(), c.anchor.nodes.end(), s.nodes);
   s.face = c.face;
   s.grasped = c.grasped;
   s.touch = static_cast<unsigned char>(c.touch);
   put(s.weights, c.anchor.weights);
-  put(s.offset, c.offset);
+  put(s.offset, c.tool_point().offset);
   put(s.normal, c.normal);
   put(s.slip, c.slip);
   put(s.force, c.force);
@@ -42,13 +42,11 @@ StoredContact stored(const TouchContact& c, std::span<const double> forces) {
 }
 
 TouchContact contact_of(const StoredContact& s) {
-  TouchContact c{.tool = s.tool,
-                 .part = s.part,
+  TouchContact c{.by = ToolPoint{.tool = s.tool, .part = s.part, .offset = get(s.offset)},
                  .face = s.face != 0,
                  .grasped = s.grasped != 0,
                  .touch = static_cast<Touch>(s.touch)};
   c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
-  c.offset = get(s.offset);
   c.normal = get(s.normal);
   c.slip = get(s.slip);
   c.force = get(s.force);
@@ -76,7 +74,7 @@ void ToolContacts::state(State& s, std::span<const MovingTool> tools) {
     if (!s.restoring()) continue;
     s.require(can_be(c, tools, surface_.nodes()), "the state holds a contact that this scene cannot have");
     TouchContact contact = contact_of(c);
-    contact.softness = softness(contact.tool);
+    contact.tool_point().softness = softness(contact.tool_point().tool);
     law_.add(contact, std::span(c.point_force).first(3 * c.points));
   }
   s.skip((static_cast<std::size_t>(law_.capacity()) - static_cast<std::size_t>(count)) * sizeof(StoredContact));

@@ -24,7 +24,7 @@ TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const
       unloaded_(map_.position),
       response_(compliance_),
       surface_(map_, bucket_size(map_, settings.contact)),
-      law_(response_, unloaded_, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
+      law_({response_, unloaded_}, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
       contacts_(surface_, law_, parts_of(settings.tools), std::move(options)),
       own_(settings.tools.size()) {}
 
@@ -64,14 +64,14 @@ void TouchBody::grasp(const OpenJaws& jaws) {
 double TouchBody::grasp_load(int tool) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.grasped) sum += c.force;
+    if (c.is_by(tool) && c.grasped) sum += c.force;
   return sum.norm();
 }
 
 Eigen::Vector3d TouchBody::press_of(int tool) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const TouchContact& c : law_.contacts())
-    if (c.tool == tool && c.touch != Touch::open && !c.grasped) sum += c.force.dot(c.normal) * c.normal;
+    if (c.is_by(tool) && c.touch != Touch::open && !c.grasped) sum += c.force.dot(c.normal) * c.normal;
   const double size = sum.norm();
   return size > 0 ? Eigen::Vector3d(sum / size) : Eigen::Vector3d::Zero();
 }
@@ -80,7 +80,7 @@ void TouchBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> load
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
     loads[t] = {.press = press_of(t)};
     for (const TouchContact& c : law_.contacts()) {
-      if (c.tool != t || c.touch == Touch::open) continue;
+      if (!c.is_by(t) || c.touch == Touch::open) continue;
       loads[t].force -= c.force;
       loads[t].torque -= (c.at - tools[t].now.translation()).cross(c.force);
     }

@@ -60,7 +60,7 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
       free_(rest_),
       position_(rest_),
       response_(compliance_),
-      law_(response_, free_, ContactLaw::Rule::barycentric, friction, kMaxContacts),
+      law_({response_, free_}, ContactLaw::Rule::barycentric, friction, kMaxContacts),
       factor_(kernels::leading_dimension(kRows) * kRows, 0.0),
       floor_(kRows, 0.0),
       held_(static_cast<std::size_t>(size_) * kRows, 0.0),

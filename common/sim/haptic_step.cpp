@@ -100,11 +100,11 @@ void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
   const auto entry = std::ranges::find(entries_, static_cast<int>(held.body), &Entry::body);
   const bool fits = tool < rigs_.size() && entry != entries_.end() && held.sample < rigs_[tool]->end().parts().size();
   if (!fits) throw std::runtime_error("a peer keeps a contact of a tool or body that this scene does not have");
-  TouchContact c{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)};
+  TouchContact c{.by = ToolPoint{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)}};
   for (int v = 0; v < 3; ++v) {
     c.anchor.nodes[v] = static_cast<int>(held.nodes[v]);
     c.anchor.weights[v] = held.weights[v];
-    c.offset[v] = held.offset[v];
+    c.tool_point().offset[v] = held.offset[v];
     c.normal[v] = held.normal[v];
     c.force[v] = held.force[v];
   }

@@ -112,7 +112,8 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   const auto contacts = organ.contacts();
   std::vector<std::array<int, 5>> shape;
   for (const TouchContact& c : contacts)
-    shape.push_back({c.tool, static_cast<int>(c.touch), c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
+    shape.push_back(
+        {c.tool_point().tool, static_cast<int>(c.touch), c.anchor.nodes[0], c.anchor.nodes[1], c.anchor.nodes[2]});
   if (shape == own.shape && ++own.age < kCondensedFor) return;
   own.shape = std::move(shape);
   own.age = 0;
@@ -142,7 +143,7 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(rows, rows));
   for (std::size_t i = 0; i < contacts.size(); ++i)
     for (std::size_t j = 0; j < contacts.size(); ++j) {
-      if (contacts[i].tool != contacts[j].tool) continue;
+      if (!contacts[i].is_by(contacts[j].tool_point().tool)) continue;
       const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
       own.contact[i] += p.transpose() * inverse.block(first[i], first[j], p.rows(), q.rows()) * q;
     }
@@ -165,11 +166,11 @@ void LocalModels::add_origin(int tool, LocalContactModel& model) const {
 void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
   OfOrgan& own = organs_[i];
   const auto contacts = world_.organ(i).contacts();
-  if (std::ranges::none_of(contacts, [&](const TouchContact& c) { return c.tool == tool; })) return;
+  if (std::ranges::none_of(contacts, [&](const TouchContact& c) { return c.is_by(tool); })) return;
   condense(own, world_.organ(i));
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const TouchContact& c = contacts[k];
-    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
+    if (!c.is_by(tool) || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;
@@ -239,7 +240,7 @@ void LocalModels::add_still_contacts(int tool, int i, LocalContactModel& model) 
   const HybridTouch& still = *world_.organ(i).still_part();
   for (std::size_t k = 0; k < still.contacts().size(); ++k) {
     const TouchContact& c = still.contacts()[k];
-    if (c.tool != tool || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
+    if (!c.is_by(tool) || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;

@@ -58,18 +58,18 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
       to.body = static_cast<std::uint32_t>(b);
       for (int v = 0; v < 3; ++v) to.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
       to.weights = plain(c.anchor.weights);
-      to.offset = plain(c.offset);
+      to.offset = plain(c.tool_point().offset);
       to.normal = plain(c.normal);
       to.force = plain(c.force);
-      to.sample = static_cast<std::uint32_t>(c.part);
+      to.sample = static_cast<std::uint32_t>(c.tool_point().part);
       to.sticking = c.touch == Touch::sticking;
-      r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool);
+      r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool_point().tool);
     }
     if (!part->superposed()) continue;  // its shape follows from its own state
     law->for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
       if (r.forces == StepRecord::kMaxForces) return;
       r.nodal[r.forces] = {static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(node), plain(f)};
-      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool);
+      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool_point().tool);
     });
   }
   fill_news(haptic, r);

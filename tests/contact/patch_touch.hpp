@@ -51,7 +51,7 @@ class PatchTouch : public Stateful<PatchTouch> {
         compliance_(archive_, Compliance<double>::Rows::touchable),
         response_(compliance_),
         surface_(archive_.surface, 2 * mean_edge(archive_.surface)),
-        law_(response_, archive_.surface.position, ContactLaw::Rule::barycentric, friction, 96),
+        law_({response_, archive_.surface.position}, ContactLaw::Rule::barycentric, friction, 96),
         contacts_(surface_, law_, parts, std::move(options)) {
     displacement_.reserve(3 * archive_.surface.position.size());
   }
@@ -78,20 +78,20 @@ class PatchTouch : public Stateful<PatchTouch> {
   Eigen::Vector3d pressure(int tool) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const TouchContact& c : law_.contacts())
-      if (c.tool == tool) sum -= c.force.dot(c.normal) * c.normal;
+      if (c.is_by(tool)) sum -= c.force.dot(c.normal) * c.normal;
     return sum;
   }
   /// [N], [N m] on a tool, about its tip frame's origin.
   Eigen::Vector3d force(int tool) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const TouchContact& c : law_.contacts())
-      if (c.tool == tool) sum -= c.force;
+      if (c.is_by(tool)) sum -= c.force;
     return sum;
   }
   Eigen::Vector3d torque(int tool, const Eigen::Vector3d& about) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const TouchContact& c : law_.contacts())
-      if (c.tool == tool) sum -= (c.at - about).cross(c.force);
+      if (c.is_by(tool)) sum -= (c.at - about).cross(c.force);
     return sum;
   }
   int pressing() const {

@@ -143,12 +143,12 @@ TEST(SegmentContact, WhatSticksToAJawTurnsWithIt) {
   ASSERT_GT(touch.pressing(), 0);
   const auto find = [&]() -> const TouchContact* {
     for (const TouchContact& c : touch.law().contacts())
-      if (c.part == jaw && c.touch == Touch::sticking) return &c;
+      if (c.tool_point().part == jaw && c.touch == Touch::sticking) return &c;
     return nullptr;
   };
   ASSERT_NE(find(), nullptr);
   const Anchor anchor = find()->anchor;
-  const Vector3d in_jaw = find()->offset;
+  const Vector3d in_jaw = find()->tool_point().offset;
   for (int i = 1; i <= 20; ++i) {
     tool.stay();
     tool.open(0.56 + 0.004 * i);
@@ -156,7 +156,7 @@ TEST(SegmentContact, WhatSticksToAJawTurnsWithIt) {
     const TouchContact* c = find();
     ASSERT_NE(c, nullptr);
     ASSERT_EQ(c->anchor.nodes, anchor.nodes);
-    ASSERT_LT((c->offset - in_jaw).norm(), 1e-9);
+    ASSERT_LT((c->tool_point().offset - in_jaw).norm(), 1e-9);
     ASSERT_LT((c->position - tool.moving().to_world(jaw, in_jaw)).norm(), 1e-9) << i;
   }
 }

@@ -27,7 +27,7 @@ class ContactLawTest : public ::testing::Test {
     return c;
   }
   ContactLaw law(double friction, ContactLaw::Rule rule = ContactLaw::Rule::barycentric) const {
-    return {response_, archive_.surface.position, rule, friction, 64};
+    return {{response_, archive_.surface.position}, rule, friction, 64};
   }
   Archive archive_ = testing::flat_patch(12, 0.01, 1e-2);
   Compliance<double> compliance_{archive_, Compliance<double>::Rows::touchable};
@@ -146,7 +146,7 @@ TEST_F(ContactLawTest, WhatASoftToolHoldsGivesWayByItsComplianceTimesTheForce) {
     ContactLaw soft = law(friction);
     for (const int node : {40, 66, 70}) {
       TouchContact c = press(vertex(node), 1e-3, {2e-4, -1e-4, 0});
-      c.softness = softness;
+      c.tool_point().softness = softness;
       soft.add(c);
     }
     ASSERT_TRUE(soft.solve().converged);
@@ -165,7 +165,7 @@ TEST_F(ContactLawTest, WhatASoftToolHoldsGivesWayByItsComplianceTimesTheForce) {
 TEST_F(ContactLawTest, ASlidingContactOfASoftToolRubsByMuTimesItsPressure) {
   ContactLaw soft = law(0.3);
   TouchContact c = press(vertex(66), 1e-3, {8e-3, 0, 0});
-  c.softness = 3e-3;
+  c.tool_point().softness = 3e-3;
   soft.add(c);
   soft.solve();
   const TouchContact& slid = soft.contacts()[0];
@@ -178,7 +178,7 @@ TEST_F(ContactLawTest, UnderTheAlphaRuleASoftToolGivesWayToo) {
   ContactLaw rigid = law(1.0, ContactLaw::Rule::alpha), soft = law(1.0, ContactLaw::Rule::alpha);
   TouchContact c = press({{70, 71, 83}, Vector3d(0.5, 0.2, 0.3)}, 1e-3);
   rigid.add(c);
-  c.softness = 3e-3;
+  c.tool_point().softness = 3e-3;
   soft.add(c);
   rigid.solve();
   soft.solve();
@@ -190,6 +190,45 @@ TEST_F(ContactLawTest, UnderTheAlphaRuleASoftToolGivesWayToo) {
     for (int v = 0; v < 3; ++v) z += anchor.weights[v] * compliance_.column(node, 2)[3 * anchor.nodes[v] + 2] * f.z();
   });
   EXPECT_NEAR(soft.contacts()[0].position.z(), z, 1e-12);
+}
+
+// Two bodies whose surfaces lie on each other, the upper one pushed down: at each pair of points the gap closes and
+// both carry the same force, which a direct solve with both compliances gives.
+TEST_F(ContactLawTest, TwoBodiesPressEachOtherWithOneForce) {
+  const double depth = 1e-3;
+  Archive upper = testing::flat_patch(12, 0.01, 3e-2);
+  for (Vector3d& x : upper.surface.position) x.z() -= depth;
+  const Compliance<double> upper_compliance{upper, Compliance<double>::Rows::touchable};
+  const CompliantResponse upper_response{upper_compliance};
+  const ContactBody body{response_, archive_.surface.position}, presses{upper_response, upper.surface.position};
+  for (const double friction : {0.0, 0.3}) {
+    ContactLaw law(body, ContactLaw::Rule::barycentric, friction, 16, presses);
+    const std::array<int, 3> nodes{66, 70, 83};
+    for (const int node : nodes) law.add({.by = vertex(node), .anchor = vertex(node), .normal = -Vector3d::UnitZ()});
+    const LawOutcome outcome = law.solve();
+    EXPECT_TRUE(outcome.converged);
+
+    Eigen::Matrix3d normal;  // of the normal directions alone: friction has nothing to hold here
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        normal(i, j) = response_.block(vertex(nodes[i]), vertex(nodes[j]))(2, 2) +
+                       upper_response.block(vertex(nodes[i]), vertex(nodes[j]))(2, 2);
+    const Vector3d force = normal.inverse() * Vector3d::Constant(depth);
+    Vector3d on_body = Vector3d::Zero(), on_upper = Vector3d::Zero();
+    std::vector<Vector3d> moved = archive_.surface.position, moved_upper = upper.surface.position;
+    law.for_each_nodal_force([&](int c, int node, const Vector3d& f) {
+      EXPECT_NEAR(f.z(), -force[c], 1e-6 * force[c]);
+      on_body += f;
+      for (const int n : nodes) moved[n] += response_.block(vertex(n), vertex(node)) * f;
+    });
+    law.for_each_reaction([&](int, int node, const Vector3d& f) {
+      on_upper += f;
+      for (const int n : nodes) moved_upper[n] += upper_response.block(vertex(n), vertex(node)) * f;
+    });
+    EXPECT_LT((on_body + on_upper).norm(), 1e-12);
+    EXPECT_GT(on_upper.z(), 0);
+    for (const int n : nodes) EXPECT_NEAR(moved[n].z(), moved_upper[n].z(), 1e-9);
+  }
 }
 
 }  // namespace

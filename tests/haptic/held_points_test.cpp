@@ -129,8 +129,8 @@ TEST_F(HeldPointsTest, ASoftHoldGivesThePointsTargetLessSoftnessTimesForce) {
   const double softness[] = {0, 2e-3, 7e-3, 1e-3};
   HeldPoints held(response_, 8);
   std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
-  held.add(vertex(80), 5e-3);
-  for (int p = 0; p < 4; ++p) held.add(anchors[p], softness[p]);
+  held.add(vertex(80), ToolPoint{.softness = 5e-3});
+  for (int p = 0; p < 4; ++p) held.add(anchors[p], ToolPoint{.softness = softness[p]});
   held.remove(0);  // the others keep their own
   const std::vector<Hold> hold{Hold::all, Hold::normal, Hold::all, Hold::normal};
   std::vector<Vector3d> normal(4, Vector3d(0.6, 0, 0.8)), target;

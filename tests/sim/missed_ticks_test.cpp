@@ -12,7 +12,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kRadius = 0.008;        // [m] of the tip; the block's cells are 12.5 mm wide
+constexpr double kRadius = 0.008;         // [m] of the tip; the block's cells are 12.5 mm wide
 constexpr int kDown = 500, kAside = 800;  // ticks by which the tip is down, and has slid
 
 class MissedTicks : public ::testing::Test {
@@ -38,7 +38,8 @@ class MissedTicks : public ::testing::Test {
 
   /// The tip goes down to 5 mm within the block's top and then 11 mm aside, towards `kAlong`.
   static Eigen::Vector3d tip(int k) {
-    const double down = std::min(k, kDown) / double{kDown}, aside = std::clamp((k - kDown) / double{kAside - kDown}, 0.0, 1.0);
+    const double down = std::min(k, kDown) / double{kDown},
+                 aside = std::clamp((k - kDown) / double{kAside - kDown}, 0.0, 1.0);
     return Eigen::Vector3d(0, 0, kRadius + 0.019 - 0.024 * down) + 0.011 * aside * along();
   }
   static Eigen::Vector3d along() { return Eigen::Vector3d(-0.9, -0.4, 0).normalized(); }
@@ -57,7 +58,8 @@ class MissedTicks : public ::testing::Test {
     for (int k = first; k < kAside + 2000; ++k) {
       if (k < kAside + 200 && missed(k)) continue;
       const ToolDofs d = tip_at(scene_.tools[0], tip(k));
-      rig.tissue().take({.tool = 0, .run = 1, .step = std::uint64_t(k), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth});
+      rig.tissue().take(
+          {.tool = 0, .run = 1, .step = std::uint64_t(k), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth});
       rig.tissue().tick();
       felt.end = rig.force().norm();
       felt.largest = std::max(felt.largest, felt.end);

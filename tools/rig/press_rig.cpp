@@ -44,7 +44,7 @@ Eigen::Vector3d force_on(const DynamicOrgan& organ) {
 
 int held_points(const HapticStep& haptic, int body, int tool) {
   return static_cast<int>(std::ranges::count_if(haptic.part(body)->held()->contacts(), [&](const TouchContact& c) {
-    return c.touch != Touch::open && (tool < 0 || c.tool == tool);
+    return c.touch != Touch::open && (tool < 0 || c.is_by(tool));
   }));
 }
 

@@ -32,12 +32,12 @@ HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, b
 }
 
 bool HybridTouch::grasping(int tool) const {
-  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.tool == tool; });
+  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
 }
 
 void HybridTouch::drop_tool(int tool) {
   for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
-    if (contacts()[i].tool == tool) part_.law().remove(i);
+    if (contacts()[i].is_by(tool)) part_.law().remove(i);
 }
 
 void HybridTouch::find(std::span<const MovingTool> tools) {

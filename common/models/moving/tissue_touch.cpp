@@ -23,7 +23,7 @@ TissueTouch::TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicMo
       surface_(surface),
       free_(mesh.rest),
       response_(mesh, model),
-      law_(response_, free_, ContactLaw::Rule::barycentric, friction, kMaxContacts),
+      law_({response_, free_}, ContactLaw::Rule::barycentric, friction, kMaxContacts),
       contacts_(surface, law_, parts) {
   aimed_.reserve(kMaxContacts);
 }
@@ -35,11 +35,11 @@ void TissueTouch::find(std::span<const MovingTool> tools) {
 
 void TissueTouch::drop_tool(int tool) {
   for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
-    if (contacts()[i].tool == tool) law_.remove(i);
+    if (contacts()[i].is_by(tool)) law_.remove(i);
 }
 
 bool TissueTouch::grasping(int tool) const {
-  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.tool == tool; });
+  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
 }
 
 void TissueTouch::follow_cut(const CutMesh& topology) {
@@ -64,7 +64,7 @@ void TissueTouch::solve(std::span<const MovingTool> tools) {
   aimed_.clear();
   for (TouchContact& c : law_.contacts()) {
     aimed_.push_back(c.target);
-    lead_out(c, tools[c.tool]);
+    lead_out(c, tools[c.tool_point().tool]);
   }
   law_.solve();
   for (std::size_t c = 0; c < contacts().size(); ++c) law_.contacts()[c].target = aimed_[c];

@@ -54,7 +54,7 @@ void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
   columns_.clear();
   coefficients_.clear();
   law().for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
-    if (node >= compliance().column_nodes() || (tool >= 0 && law().contacts()[contact].tool != tool)) return;
+    if (node >= compliance().column_nodes() || (tool >= 0 && !law().contacts()[contact].is_by(tool))) return;
     for (int axis = 0; axis < 3; ++axis) {
       columns_.push_back(compliance().column(node, axis));
       coefficients_.push_back(f[axis]);
