@@ -4,4 +4,4 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 how=(-i)
 [ "${1:-}" = --check ] && how=(--dry-run -Werror)
-git ls-files -z '*.cpp' '*.hpp' | xargs -0 clang-format "${how[@]}"
+git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' | xargs -0 clang-format "${how[@]}"

@@ -9,8 +9,8 @@ namespace palpate {
 /// A point of a tool's part. It goes where the hand takes the tool.
 struct ToolPoint {
   int tool = 0;
-  int part = 0;         ///< which part of the tool
-  double softness = 0;  ///< [m/N] by which what holds the point gives way to the force
+  int part = 0;                                      ///< which part of the tool
+  double softness = 0;                               ///< [m/N] by which what holds the point gives way to the force
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] in the part's own frame; of jaws' hold, in the tip frame
 };
 

@@ -17,12 +17,13 @@ std::string digest_of(const std::filesystem::path& file) {
   return digest(bytes);
 }
 
-std::string text_of(const BusDeviceSpec& device) {
-  return std::string(device.kKind);
-}
-template <class Recorded>
-std::string text_of(const Recorded& device) {
-  return std::string(device.kKind) + (device.trajectory.empty() ? "" : digest_of(device.trajectory));
+// What runs with a device depend on: its kind, and the file that moves it if there is one.
+template <class Spec>
+std::string text_of(const Spec& device) {
+  std::string text(device.kKind);
+  if constexpr (requires { device.trajectory; })
+    if (!device.trajectory.empty()) text += digest_of(device.trajectory);
+  return text;
 }
 
 std::string digest_of(const Scene& scene) {
