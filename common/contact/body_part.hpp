@@ -93,8 +93,14 @@ class BodyPart {
   virtual void before_grip(int /*tool*/) {}
   virtual void after_grip(int /*tool*/, GripEvent) {}
 
-  /// The contacts that it holds; null for a body that keeps them to itself.
+  /// The law of its contacts; null for a body that keeps them to itself.
   virtual const ContactLaw* held() const { return nullptr; }
+  /// Visits every contact that others are told of.
+  using VisitContact = std::function<void(const TouchContact& contact)>;
+  virtual void for_each_contact(const VisitContact&) const {}
+  /// Visits the forces [N] on the tissue at its nodes, with the tool that each is of.
+  using VisitForce = std::function<void(int tool, int node, const Eigen::Vector3d& force)>;
+  virtual void for_each_force(const VisitForce&) const {}
   /// Whether its shape follows from the contacts' forces alone.
   virtual bool superposed() const { return false; }
   /// The reduced coordinates from which its shape follows; empty where it follows from the contacts, or is told by

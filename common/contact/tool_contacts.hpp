@@ -24,6 +24,7 @@ class ToolContacts {
   struct Options {
     double offset = 0;  ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
+    bool tips = true;              ///< false: others see to the spheres of probes' tips
   };
 
   /// `parts`: of all tools. Surface and law outlive this object.

@@ -47,6 +47,7 @@ void ToolContacts::collide(std::span<const MovingTool> tools) {
 
 void ToolContacts::collide_part(const MovingTool& moving, int tool, int part, std::span<const int> near) {
   const bool sphere = moving.parts[part].length == 0;
+  if (sphere && part == 0 && !options_.tips) return;
   const bool crossed = sphere ? add_crossing(moving, tool, part) : add_crossings(moving, tool, part);
   if (near.empty() || (sphere && crossed)) return;
   add_vertices(moving, tool, part, near);

@@ -43,6 +43,17 @@ LawOutcome TouchBody::touch(const ToolsInStep& in, std::span<ToolLoad> loads) {
   return outcome;
 }
 
+void TouchBody::for_each_contact(const VisitContact& visit) const {
+  for (const TouchContact& c : law_.contacts())
+    if (c.touch != Touch::open) visit(c);
+}
+
+void TouchBody::for_each_force(const VisitForce& visit) const {
+  law_.for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
+    visit(law_.contacts()[contact].tool_point().tool, node, f);
+  });
+}
+
 bool TouchBody::adopt(const TouchContact& contact) {
   const int nodes = static_cast<int>(surface().positions().size());
   if (!std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n < nodes; })) return false;

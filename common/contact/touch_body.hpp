@@ -30,6 +30,8 @@ class TouchBody : public BodyPart {
   const TouchSurface& surface() const { return surface_; }
   const ContactLaw& law() const { return law_; }
   const ContactLaw* held() const override { return &law_; }
+  void for_each_contact(const VisitContact& visit) const override;
+  void for_each_force(const VisitForce& visit) const override;
   bool adopt(const TouchContact& contact) override;
   void pinch(int tool, const Eigen::Isometry3d& pose, const ProbeJaws& jaws) override {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });
@@ -70,7 +72,7 @@ class TouchBody : public BodyPart {
   void move_rest(int node, const Eigen::Vector3d& displacement) {
     unloaded_[node] = map_.position[node] + displacement;
   }
-  Eigen::Vector3d press_of(int tool) const;
+  virtual Eigen::Vector3d press_of(int tool) const;
 
  private:
   const SurfaceMap map_;

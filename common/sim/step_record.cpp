@@ -25,6 +25,20 @@ void fill_news(const HapticStep& haptic, StepRecord& r) {
   }
 }
 
+void add_contact(const TouchContact& c, std::uint32_t body, StepRecord& r) {
+  if (r.contacts == StepRecord::kMaxContacts) return;
+  HeldContact& to = r.contact[r.contacts];
+  to.body = body;
+  for (int v = 0; v < 3; ++v) to.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
+  to.weights = plain(c.anchor.weights);
+  to.offset = plain(c.tool_point().offset);
+  to.normal = plain(c.normal);
+  to.force = plain(c.force);
+  to.sample = static_cast<std::uint32_t>(c.tool_point().part);
+  to.sticking = c.touch == Touch::sticking;
+  r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool_point().tool);
+}
+
 }  // namespace
 
 void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step,
@@ -50,26 +64,13 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
                     .model_seq = moving ? haptic.local(t).model().seq : 0};
   }
   for (const auto& [b, part] : haptic.entries()) {
-    const ContactLaw* law = part->held();
-    if (!law) continue;
-    for (const TouchContact& c : law->contacts()) {
-      if (c.touch == Touch::open || r.contacts == StepRecord::kMaxContacts) continue;
-      HeldContact& to = r.contact[r.contacts];
-      to.body = static_cast<std::uint32_t>(b);
-      for (int v = 0; v < 3; ++v) to.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
-      to.weights = plain(c.anchor.weights);
-      to.offset = plain(c.tool_point().offset);
-      to.normal = plain(c.normal);
-      to.force = plain(c.force);
-      to.sample = static_cast<std::uint32_t>(c.tool_point().part);
-      to.sticking = c.touch == Touch::sticking;
-      r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool_point().tool);
-    }
+    const auto body = static_cast<std::uint32_t>(b);
+    part->for_each_contact([&r, body](const TouchContact& c) { add_contact(c, body, r); });
     if (!part->superposed()) continue;  // its shape follows from its own state
-    law->for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
+    part->for_each_force([&r, body](int tool, int node, const Eigen::Vector3d& f) {
       if (r.forces == StepRecord::kMaxForces) return;
-      r.nodal[r.forces] = {static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(node), plain(f)};
-      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(law->contacts()[contact].tool_point().tool);
+      r.nodal[r.forces] = {body, static_cast<std::uint32_t>(node), plain(f)};
+      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(tool);
     });
   }
   fill_news(haptic, r);

@@ -58,7 +58,8 @@ class QuasiStatic : public Method {
                      serves});
     };
     add("scene", "as it is", [](Scene&) {});
-    add("rule", other_rule(), [rule = other_rule()](Scene& scene) { scene.contact.rule = rule; });
+    for (const char* rule : {"barycentric", "alpha", "patch"})
+      if (rule != solid_->scene().contact.rule) add("rule", rule, [rule](Scene& scene) { scene.contact.rule = rule; });
     for (const int count : tensor_counts())
       add("tensors", std::to_string(count), [b, nodes = nearest_nodes(*solid_, count)](Scene& scene) {
         as_quasi_static(scene.bodies[b]).touchable = NodeSelector{{.indices = nodes, .box = {}, .group = {}}};
@@ -119,8 +120,6 @@ class QuasiStatic : public Method {
   }
 
  private:
-  std::string other_rule() const { return solid_->scene().contact.rule == "alpha" ? "barycentric" : "alpha"; }
-
   std::vector<int> tensor_counts() const {
     const int all = solid_->surface().touchable;
     std::vector<int> counts{all / 2, all / 4, all / 10};
@@ -153,7 +152,7 @@ class QuasiStatic : public Method {
   std::vector<Eigen::Vector3d> field_in_double(const Archive& archive, BallPress& press) const {
     const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
     std::vector<Eigen::Vector3d> u(archive.surface.size(), Eigen::Vector3d::Zero());
-    press.rig().haptic().part(0)->held()->for_each_nodal_force([&](int, int node, const Eigen::Vector3d& f) {
+    press.rig().haptic().part(0)->for_each_force([&](int, int node, const Eigen::Vector3d& f) {
       if (node >= compliance.column_nodes()) return;
       for (int axis = 0; axis < 3; ++axis)
         for (std::size_t n = 0; n < u.size(); ++n)

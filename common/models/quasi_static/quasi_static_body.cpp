@@ -7,15 +7,23 @@
 namespace palpate {
 namespace {
 
+bool by_patch(const StepSettings& settings) {
+  return settings.contact.rule == "patch";
+}
+
 constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
 }  // namespace
 
 QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings)
-    : TouchBody(archive.surface, Compliance<double>(archive, Compliance<double>::Rows::touchable), settings) {
+    : TouchBody(archive.surface, Compliance<double>(archive, Compliance<double>::Rows::touchable), settings,
+                {.tips = !by_patch(settings)}) {
+  const HalfSpace material{archive.young[0], archive.poisson[0]};
+  if (by_patch(settings)) patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings);
   if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
-  columns_.reserve(27 * kMaxContacts);
-  coefficients_.reserve(27 * kMaxContacts);
+  const std::size_t forces = 9 * kMaxContacts + (patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0);
+  columns_.reserve(3 * forces);
+  coefficients_.reserve(3 * forces);
   displacement_.reserve(3 * map().size());
   of_tool_.reserve(3 * map().size());
   held_.reserve(map().size());
@@ -53,8 +61,8 @@ bool QuasiStaticBody::is_held(int node) const {
 void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
   columns_.clear();
   coefficients_.clear();
-  law().for_each_nodal_force([&](int contact, int node, const Eigen::Vector3d& f) {
-    if (node >= compliance().column_nodes() || (tool >= 0 && !law().contacts()[contact].is_by(tool))) return;
+  for_each_force([this, tool](int of_tool, int node, const Eigen::Vector3d& f) {
+    if (node >= compliance().column_nodes() || (tool >= 0 && of_tool != tool)) return;
     for (int axis = 0; axis < 3; ++axis) {
       columns_.push_back(compliance().column(node, axis));
       coefficients_.push_back(f[axis]);
@@ -74,8 +82,46 @@ void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
     std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
 }
 
+// The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches
+// leave it.
+LawOutcome QuasiStaticBody::hold(std::span<const MovingTool> tools) {
+  if (!patch_) return TouchBody::hold(tools);
+  patch_->touch(tools, [this](const VisitForce& visit) { TouchBody::for_each_force(visit); });
+  for (const TouchContact& c : law().contacts())
+    for (const int node : c.anchor.nodes) move_rest(node, patch_->displacement(node));
+  return TouchBody::hold(tools);
+}
+
+void QuasiStaticBody::for_each_contact(const VisitContact& visit) const {
+  TouchBody::for_each_contact(visit);
+  if (patch_) patch_->for_each_contact(visit);
+}
+
+void QuasiStaticBody::for_each_force(const VisitForce& visit) const {
+  TouchBody::for_each_force(visit);
+  if (patch_) patch_->for_each_force(visit);
+}
+
+bool QuasiStaticBody::adopt(const TouchContact& contact) {
+  return (patch_ && !contact.grasped && patch_->adopt(contact)) || TouchBody::adopt(contact);
+}
+
+Eigen::Vector3d QuasiStaticBody::press_of(int tool) const {
+  if (!patch_) return TouchBody::press_of(tool);
+  Eigen::Vector3d sum = patch_->pressing(tool);
+  for (const TouchContact& c : law().contacts())
+    if (c.is_by(tool) && c.touch != Touch::open && !c.grasped) sum += c.force.dot(c.normal) * c.normal;
+  return sum.isZero(0) ? sum : sum.normalized();
+}
+
+void QuasiStaticBody::state(State& s, std::span<const MovingTool> tools) {
+  TouchBody::state(s, tools);
+  if (patch_) patch_->state(s);
+}
+
 void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {
   TouchBody::load(tools, loads);
+  if (patch_) patch_->load(tools, loads);
   if (!nonlinear_) return;
   for (ToolLoad& load : loads) {
     const double scale = nonlinear_->force_scale(-load.force.dot(load.press));

@@ -1,0 +1,32 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+
+#include "common/geometry/triangle.hpp"
+
+namespace palpate {
+
+/// An elastic half-space under tractions on its plane surface (Boussinesq 1885, Cerruti 1882). A normal traction moves
+/// the surface along the normal, a shear one within the surface; what each does across, in proportion to 1 - 2 nu, is
+/// left out.
+struct HalfSpace {
+  double young = 1;    ///< [Pa]
+  double poisson = 0;  ///< [1]
+
+  /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
+  Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
+
+  /// [m/Pa] along the normal, at (x, y) [m] from the middle of a square of edge `a` [m] under unit pressure (Love 1929).
+  double pressed(double x, double y, double a) const;
+  /// [m/Pa] within the surface, likewise, per unit shear along x and y.
+  Eigen::Matrix2d sheared(double x, double y, double a) const;
+};
+
+/// Moments of the half-space's kernel between two triangles of a surface.
+/// [a][b] = integral over s of L_a(x), integral over t of L_b(y), K(x - y) dy dx [m^5/N], L being the barycentric
+/// coordinates. `normal`: unit, of the surface about both. Where the triangles are near each other the inner integral
+/// is taken in polar coordinates about x, in which 1/r is no singularity.
+std::array<std::array<Eigen::Matrix3d, 3>, 3> kernel_moments(const HalfSpace& half_space, const Triangle& s,
+                                                             const Triangle& t, const Eigen::Vector3d& normal);
+
+}  // namespace palpate

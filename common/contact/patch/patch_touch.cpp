@@ -1,0 +1,115 @@
+#include "common/contact/patch/patch_touch.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kTip = 0;  // among a probe's parts
+
+// [m] of a node under a force on another one; zero beyond the touchable ones.
+Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3d& force) {
+  Vector3d sum = Vector3d::Zero();
+  if (node >= c.row_nodes() || from >= c.column_nodes()) return sum;
+  for (int axis = 0; axis < 3; ++axis)
+    sum += force[axis] * Eigen::Map<const Vector3d>(c.column(from, axis) + 3 * node);
+  return sum;
+}
+
+}  // namespace
+
+PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
+                       const StepSettings& settings)
+    : compliance_(compliance), friction_(settings.contact.friction), surface_(map) {
+  double largest = 0;
+  for (std::size_t t = 0; t < settings.tools.size(); ++t) {
+    const ProbeSpec* probe = settings.tools[t].probe();
+    if (!probe) continue;
+    auto grid = std::ranges::find(grids_, probe->radius, [](const auto& g) { return g->radius(); });
+    if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(probe->radius, half_space));
+    tips_.push_back({static_cast<int>(t), Patch(**grid)});
+    largest = std::max(largest, probe->radius);
+  }
+  near_field_ = std::make_unique<NearField>(map, compliance, half_space, 2 * largest);
+  moved_.reserve(Patch::kMaxNodes);
+}
+
+void PatchTouch::for_each_force(const VisitForce& visit) const {
+  for (const Tip& p : tips_)
+    for (const PatchForce& f : p.patch.forces()) visit(p.tool, f.node, f.force);
+}
+
+Vector3d PatchTouch::displacement(int node) const {
+  Vector3d sum = Vector3d::Zero();
+  for (const Tip& p : tips_)
+    for (const PatchForce& f : p.patch.forces()) sum += moved_by(compliance_, node, f.node, f.force);
+  return sum;
+}
+
+void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<const int> nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) moved_[i] += moved_by(compliance_, nodes[i], from, force);
+}
+
+// One patch after another, each against the others' newest forces.
+void PatchTouch::touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others) {
+  const Patch::Ground ground{surface_, *near_field_, friction_};
+  for (Tip& own : tips_) {
+    const MovingTool& tool = tools[own.tool];
+    const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(kTip).start);
+    if (nodes.empty()) continue;
+    moved_.assign(nodes.size(), Vector3d::Zero());
+    others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
+    for (const Tip& other : tips_)
+      for (const PatchForce& f : other.patch.forces())
+        if (&other != &own) add_displacement(f.node, f.force, nodes);
+    own.patch.press(ground, moved_);
+    own.offset = tool.to_part(kTip, own.patch.at());
+  }
+}
+
+Vector3d PatchTouch::pressing(int tool) const {
+  Vector3d sum = Vector3d::Zero();
+  for (const Tip& p : tips_)
+    if (p.tool == tool && p.patch.touches()) sum += p.patch.pressing() * p.patch.normal();
+  return sum;
+}
+
+void PatchTouch::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {
+  for (const Tip& p : tips_) {
+    if (!p.patch.touches()) continue;
+    loads[p.tool].force -= p.patch.force();
+    loads[p.tool].torque -= (p.patch.at() - tools[p.tool].now.translation()).cross(p.patch.force());
+  }
+}
+
+void PatchTouch::for_each_contact(const BodyPart::VisitContact& visit) const {
+  for (const Tip& p : tips_) {
+    if (!p.patch.touches()) continue;
+    TouchContact c{.by = ToolPoint{.tool = p.tool, .part = kTip, .offset = p.offset}, .face = true};
+    c.touch = p.patch.sticks() ? Touch::sticking : Touch::sliding;
+    c.anchor = p.patch.anchor();
+    c.normal = p.patch.normal();
+    c.force = p.patch.force();
+    c.at = c.target = p.patch.at();
+    visit(c);
+  }
+}
+
+bool PatchTouch::adopt(const TouchContact& contact) {
+  const auto found = std::ranges::find_if(tips_, [&](const Tip& p) { return contact.is_by(p.tool, kTip); });
+  if (found == tips_.end()) return false;
+  found->patch.resume(contact.force);
+  return true;
+}
+
+void PatchTouch::state(State& s) {
+  for (Tip& p : tips_) {
+    p.patch.state(s);
+    s.value(p.offset);
+    s.require(p.patch.fits(surface_.map().size()), "the state holds a patch that this body cannot have");
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,57 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "common/contact/body_part.hpp"
+#include "common/contact/patch/patch.hpp"
+#include "common/contact/step_settings.hpp"
+
+namespace palpate {
+
+/// The patches of all probes' tips on one body at rest under its loads. Nothing is allocated after
+/// construction.
+class PatchTouch {
+ public:
+  /// `map` and `compliance` outlive this object; `half_space`: the material at the surface.
+  PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
+             const StepSettings& settings);
+
+  /// Visits (tool, node, force [N] on the tissue).
+  using VisitForce = BodyPart::VisitForce;
+  void for_each_force(const VisitForce& visit) const;
+  /// [m] of a node by all patches.
+  Eigen::Vector3d displacement(int node) const;
+
+  /// Solves for the forces of one step. `others` visits what else acts on the body.
+  void touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others);
+  /// Sum over a tool's patches of their pressures' forces [N] on the tissue, without shear.
+  Eigen::Vector3d pressing(int tool) const;
+  /// Adds what they do to the tools.
+  void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const;
+
+  /// Visits the patches that touch as one contact each.
+  void for_each_contact(const BodyPart::VisitContact& visit) const;
+  /// Goes on from a contact that a peer kept; false if that is of no tip.
+  bool adopt(const TouchContact& contact);
+
+  void state(State& s);
+
+ private:
+  struct Tip {
+    int tool;
+    Patch patch;
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  };
+
+  void add_displacement(int from, const Eigen::Vector3d& force, std::span<const int> nodes);
+
+  const Compliance<double>& compliance_;
+  double friction_;
+  SmoothSurface surface_;
+  std::unique_ptr<NearField> near_field_;
+  std::vector<std::unique_ptr<PatchGrid>> grids_;
+  std::vector<Tip> tips_;
+  std::vector<Eigen::Vector3d> moved_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,54 @@
+#include "common/contact/patch/smooth_surface.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+double mean_edge_of(const SurfaceMap& map) {
+  double sum = 0;
+  for (const auto& t : map.triangles)
+    for (int v = 0; v < 3; ++v) sum += (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm();
+  return sum / (3.0 * static_cast<double>(map.triangles.size()));
+}
+
+}  // namespace
+
+SmoothSurface::SmoothSurface(const SurfaceMap& map)
+    : map_(map),
+      node_normal_(map.size(), Vector3d::Zero()),
+      buckets_(map.position, map.triangles, 2 * mean_edge_of(map)),
+      found_(map.triangles.size()) {
+  for (std::size_t t = 0; t < map.triangles.size(); ++t) {
+    const Triangle c = corners(static_cast<int>(t));
+    facet_normal_.push_back((c[1] - c[0]).cross(c[2] - c[0]).normalized());
+    for (int v = 0; v < 3; ++v) {
+      const Vector3d a = (c[(v + 1) % 3] - c[v]).normalized(), b = (c[(v + 2) % 3] - c[v]).normalized();
+      node_normal_[map.triangles[t][v]] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * facet_normal_.back();
+    }
+  }
+  for (Vector3d& n : node_normal_) n.normalize();
+}
+
+Vector3d SmoothSurface::normal(int t, const Vector3d& weights) const {
+  const auto& n = map_.triangles[t];
+  return (weights[0] * node_normal_[n[0]] + weights[1] * node_normal_[n[1]] + weights[2] * node_normal_[n[2]])
+      .normalized();
+}
+
+std::span<const int> SmoothSurface::near(const Vector3d& point, double radius) const {
+  const int candidates = buckets_.query(point, point, radius, found_);
+  int kept = 0;
+  for (int i = 0; i < candidates; ++i) {
+    const Triangle c = corners(found_[i]);
+    const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]), high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    const Vector3d apart = (low - point).cwiseMax(point - high).cwiseMax(0.0);
+    if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
+  }
+  std::sort(found_.begin(), found_.begin() + kept);
+  return std::span(found_).first(kept);
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "common/archive/archive.hpp"
+#include "common/geometry/buckets.hpp"
+#include "common/geometry/triangle.hpp"
+
+namespace palpate {
+
+/// A body's surface at rest, with a normal that turns evenly from corner to corner.
+class SmoothSurface {
+ public:
+  /// `map` outlives this object.
+  explicit SmoothSurface(const SurfaceMap& map);
+
+  const SurfaceMap& map() const { return map_; }
+  Triangle corners(int t) const {
+    const auto& n = map_.triangles[t];
+    return {map_.position[n[0]], map_.position[n[1]], map_.position[n[2]]};
+  }
+  const Eigen::Vector3d& facet_normal(int t) const { return facet_normal_[t]; }  ///< outward, unit
+  Eigen::Vector3d normal(int t, const Eigen::Vector3d& weights) const;           ///< outward, unit, continuous
+
+  /// Triangles that come within `radius` of a point; ascending, a few others among them. Valid until the next call.
+  std::span<const int> near(const Eigen::Vector3d& point, double radius) const;
+
+ private:
+  const SurfaceMap& map_;
+  std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
+  Buckets buckets_;
+  mutable std::vector<int> found_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,228 @@
+// The patch rule: what a probe's tip feels of an organ whose triangles are twice as long as the tip's radius.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/mesh/generators.hpp"
+#include "common/models/quasi_static/precompute.hpp"
+#include "tests/tool/count_allocations.hpp"
+#include "tools/rig/press_rig.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRadius = 0.006, kYoung = 6000, kPoisson = 0.3;
+const Vector3d kAlong = Vector3d(2, 1, 0).normalized();
+
+/// Block 16 x 16 x 8 radii of cells of two radii, top in the plane z = 0, base fixed.
+class PatchRule : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    QuasiStaticSpec block;
+    block.name = "block";
+    block.material = {kYoung, kPoisson, 1000};
+    block.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
+    block.offline = Offline{.refine = 0, .element = "p2"};
+    const double side = 16 * kRadius;
+    const TetMesh mesh = make_block({-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, 0}, {8, 8, 4});
+    archive_ = std::make_unique<Archive>(precompute(block, mesh));
+    scene_ = std::make_unique<Scene>();
+    scene_->bodies.push_back(block);
+    scene_->contact.rule = "patch";
+  }
+  static void TearDownTestSuite() {
+    archive_.reset();
+    scene_.reset();
+  }
+
+  /// Under tools that come down from above, each by its own tip's place.
+  static PressRig rig(double friction, int tools = 1, const char* rule = "patch") {
+    Scene scene = *scene_;
+    scene.contact.friction = friction;
+    scene.contact.rule = rule;
+    for (int t = 0; t < tools; ++t) {
+      Tool tool;
+      tool.name = "probe" + std::to_string(t);
+      tool.pivot = {0.02 * t, 0, 0.3};
+      tool.axis = -Vector3d::UnitZ();
+      tool.up = Vector3d::UnitY();
+      tool.probe()->radius = kRadius;
+      tool.max_force = 100;
+      tool.max_force_rate = 1e6;
+      scene.tools.push_back(tool);
+    }
+    return {scene, {*archive_}};
+  }
+  static Vector3d at(double x, double y, double depth) { return {x, y, kRadius - depth}; }
+  static double hertz(double depth) {
+    return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(depth, 1.5);
+  }
+
+  static std::unique_ptr<Archive> archive_;
+  static std::unique_ptr<Scene> scene_;
+};
+std::unique_ptr<Archive> PatchRule::archive_;
+std::unique_ptr<Scene> PatchRule::scene_;
+
+// Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh gives
+// two to three times Hertz.
+TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
+  for (const double depth : {0.25 * kRadius, 0.5 * kRadius})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, 0.001}, {0.006, 0.006}, {-0.011, 0.003}}) {
+      PressRig rig = PatchRule::rig(0);
+      rig.start(at(x, y, -0.001));
+      for (int i = 1; i <= 100; ++i) rig.step(at(x, y, -0.001 + (depth + 0.001) * i / 100));
+      EXPECT_NEAR(-rig.force().z() / hertz(depth), 1.1, 0.1) << x << " " << y << " " << depth;
+    }
+}
+
+TEST_F(PatchRule, ASlideIsSmoothAndFrictionHoldsBack) {
+  for (const double friction : {0.0, 0.3}) {
+    SCOPED_TRACE(friction);
+    PressRig rig = PatchRule::rig(friction);
+    Vector3d tip = at(-0.012, -0.005, 0);
+    rig.start(tip + Vector3d(0, 0, 0.001));
+    const double depth = 0.5 * kRadius;
+    for (int i = 0; i <= 100; ++i) rig.step(tip - Vector3d(0, 0, depth * i / 100));
+    tip.z() -= depth;
+    double before = rig.force().norm(), sum = 0, of_squares = 0;
+    int count = 0;
+    for (int i = 0; i < 500; ++i) {
+      tip += 5e-5 * kAlong;
+      rig.step(tip);
+      const double now = rig.force().norm(), along = rig.force().dot(kAlong);
+      EXPECT_LT(std::abs(now - before), 0.005 * before) << i;
+      EXPECT_GT(along, -0.002 * now) << "the tissue is drawn along, the tool held back";
+      if (i > 100) {
+        EXPECT_NEAR(along, friction * -rig.force().z(), 0.01 * now);
+        sum += now;
+        of_squares += now * now;
+        ++count;
+      }
+      before = now;
+    }
+    const double mean = sum / count;
+    EXPECT_LT(std::sqrt(of_squares / count - mean * mean), 0.03 * mean);
+  }
+}
+
+TEST_F(PatchRule, TheForceComesAndGoesWithoutAStep) {
+  PressRig rig = PatchRule::rig(0.3);
+  rig.start(at(0.003, 0.002, -0.001));
+  double before = 0;
+  for (int i = 0; i <= 2000; ++i) {
+    const double depth = -0.001 + 0.015 * std::pow(std::sin(M_PI * i / 2000), 2);
+    rig.step(at(0.003, 0.002, depth));  // 2.3 radii deep
+    const double now = rig.force().norm();
+    EXPECT_LT(std::abs(now - before), 0.005) << i;
+    if (depth <= 0) EXPECT_EQ(now, 0) << i;
+    if (depth > 0.02 * kRadius) EXPECT_GT(now, 0) << i;  // the innermost squares are that far from the tip's own middle
+    before = now;
+  }
+  EXPECT_EQ(before, 0);
+}
+
+TEST_F(PatchRule, AHeldTipIsHeldByTheSameForce) {
+  PressRig rig = PatchRule::rig(0.3);
+  rig.start(at(0, 0, -0.001));
+  for (int i = 0; i <= 100; ++i) rig.step(at(1e-5 * i, 0, 3e-5 * i));
+  const Vector3d held = rig.force();
+  for (int i = 0; i < 100; ++i) {
+    rig.step(at(1e-3, 0, 3e-3));
+    EXPECT_LT((rig.force() - held).norm(), 1e-6 * held.norm());
+  }
+}
+
+TEST_F(PatchRule, TwoTipsThatComeCloseFeelEachOtherSmoothly) {
+  PressRig rig = PatchRule::rig(0, 2);
+  const auto tips = [&](double apart, double depth) {
+    return std::array{tip_at(rig.scene().tools[0], at(-apart / 2, 0.001, depth)),
+                      tip_at(rig.scene().tools[1], at(apart / 2, 0.001, depth))};
+  };
+  rig.start(tips(0.05, -0.001));
+  for (int i = 0; i <= 100; ++i) rig.step(tips(0.05, 3e-5 * i));
+  const double alone = rig.haptic().force(0).z();
+  double before = alone;
+  for (int i = 0; i < 1000; ++i) {
+    rig.step(tips(0.05 - 0.037 * i / 1000, 3e-3));
+    const double now = rig.haptic().force(0).z();
+    EXPECT_LT(std::abs(now - before), 0.005 * alone) << i;
+    before = now;
+  }
+  EXPECT_LT(before, 0.97 * alone) << "what the other one presses down it need not";
+}
+
+TEST_F(PatchRule, TheTissueIsWhereTheNodesForcesPutIt) {
+  PressRig rig = PatchRule::rig(0.3);
+  rig.start(at(0.002, 0.001, -0.001));
+  for (int i = 0; i <= 100; ++i) rig.step(at(0.002 + 1e-5 * i, 0.001, 3e-5 * i));
+  Vector3d sum = Vector3d::Zero();
+  int contacts = 0;
+  const BodyPart& part = *rig.haptic().part(0);
+  part.for_each_force([&](int, int, const Vector3d& f) { sum += f; });
+  part.for_each_contact([&](const TouchContact& c) {
+    EXPECT_LT((c.force - sum).norm(), 1e-12);
+    ++contacts;
+  });
+  EXPECT_EQ(contacts, 1);
+  EXPECT_LT((sum - rig.force()).norm(), 1e-9);
+  double deepest = 0;
+  for (const Vector3d& u : rig.displacement()) deepest = std::min(deepest, u.z());
+  EXPECT_LT(deepest, -3e-4);
+}
+
+TEST_F(PatchRule, GoesOnBitForBitFromASavedState) {
+  const auto tip = [](int i) { return at(1e-5 * i, 4e-6 * i, 0.003 * std::sin(0.01 * i)); };
+  PressRig rig = PatchRule::rig(0.3);
+  rig.start(at(0, 0, -0.001));
+  for (int i = 0; i < 120; ++i) rig.step(tip(i));
+  const std::vector<std::uint8_t> state = rig.simulator().save();
+  PressRig other = PatchRule::rig(0.3);
+  other.start(at(0, 0, -0.001));
+  other.simulator().restore(state);
+  for (int i = 120; i < 240; ++i) {
+    rig.step(tip(i));
+    other.step(tip(i));
+    ASSERT_EQ(rig.simulator().hash(), other.simulator().hash()) << i;
+  }
+}
+
+TEST_F(PatchRule, AHapticNodeThatReturnsFeelsTheSameForce) {
+  PressRig rig = PatchRule::rig(0.3);
+  rig.start(at(0, 0, -0.001));
+  for (int i = 0; i <= 100; ++i) rig.step(at(2e-5 * i, 0, 3e-5 * i));
+  const Vector3d held = rig.force();
+  std::vector<TouchContact> contacts;
+  rig.haptic().part(0)->for_each_contact([&](const TouchContact& c) { contacts.push_back(c); });
+  ASSERT_EQ(contacts.size(), 1u);
+  PressRig anew = PatchRule::rig(0.3);
+  anew.start(at(2e-3, 0, -0.001));
+  HeldContact kept{.body = 0};
+  for (int v = 0; v < 3; ++v) {
+    kept.nodes[v] = contacts[0].anchor.nodes[v];
+    kept.weights[v] = contacts[0].anchor.weights[v];
+    kept.force[v] = contacts[0].force[v];
+    kept.normal[v] = contacts[0].normal[v];
+  }
+  anew.haptic().adopt(0, kept);
+  anew.step(at(2e-3, 0, 3e-3));
+  EXPECT_LT((anew.force() - held).norm(), 0.02 * held.norm());
+}
+
+TEST_F(PatchRule, AStepTakesNoMemory) {
+  PressRig rig = PatchRule::rig(0.3, 2);
+  const auto tips = [&](int i) {
+    return std::array{tip_at(rig.scene().tools[0], at(1e-5 * i, 0, 2e-5 * i)),
+                      tip_at(rig.scene().tools[1], at(0.02, 1e-5 * i, 2e-5 * i))};
+  };
+  rig.start(tips(-100));
+  for (int i = -100; i < 50; ++i) rig.haptic().step(tips(i));
+  const auto before = allocations();
+  for (int i = 50; i < 200; ++i) rig.haptic().step(tips(i));
+  EXPECT_EQ(allocations(), before);
+}
+
+}  // namespace
+}  // namespace palpate
