@@ -80,7 +80,7 @@ TEST(Direct, EqualsTheAugmentedSystemOfAnotherLibrary) {
 TEST(Direct, EqualsTheAugmentedSystemForConditionsOverSeveralNodes) {
   const auto problem = make_static_problem(testing::make_body(), testing::make_organ({5, 4, 3}));
   auto constraints = some_holds(problem, 2);
-  const auto& triangle = extract_surface(problem.mesh).triangles.back();
+  const std::array<int, 3> triangle = extract_surface(problem.mesh).triangles.back();
   for (int axis = 0; axis < 3; ++axis)
     constraints.push_back(
         {{{triangle[0], axis, 0.2}, {triangle[1], axis, 0.5}, {triangle[2], axis, 0.3}}, 1e-3 * (axis + 1)});
