@@ -73,8 +73,7 @@ TEST(HalfSpace, TheNearAndTheFarQuadratureMeet) {
   };
   const auto near = at(2.999), far = at(3.001);
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      EXPECT_LT((near[a][b] - far[a][b]).norm(), 3e-3 * near[a][b].norm()) << a << " " << b;
+    for (int b = 0; b < 3; ++b) EXPECT_LT((near[a][b] - far[a][b]).norm(), 3e-3 * near[a][b].norm()) << a << " " << b;
 }
 
 }  // namespace

@@ -66,8 +66,8 @@ class PatchRule : public ::testing::Test {
 std::unique_ptr<Archive> PatchRule::archive_;
 std::unique_ptr<Scene> PatchRule::scene_;
 
-// Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh gives
-// two to three times Hertz.
+// Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh
+// gives two to three times Hertz.
 TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
   for (const double depth : {0.25 * kRadius, 0.5 * kRadius})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, 0.001}, {0.006, 0.006}, {-0.011, 0.003}}) {

@@ -16,7 +16,8 @@ struct HalfSpace {
   /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
   Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
 
-  /// [m/Pa] along the normal, at (x, y) [m] from the middle of a square of edge `a` [m] under unit pressure (Love 1929).
+  /// [m/Pa] along the normal, at (x, y) [m] from the middle of a square of edge `a` [m] under unit pressure (Love
+  /// 1929).
   double pressed(double x, double y, double a) const;
   /// [m/Pa] within the surface, likewise, per unit shear along x and y.
   Eigen::Matrix2d sheared(double x, double y, double a) const;

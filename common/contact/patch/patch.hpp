@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// The squares of a sphere's patch: their middles about the patch's own, and what the half-space makes of them. The same
-/// for all patches of one radius on one material.
+/// The squares of a sphere's patch: their middles about the patch's own, and what the half-space makes of them. The
+/// same for all patches of one radius on one material.
 class PatchGrid {
  public:
   static constexpr int kMaxPoints = 64;
@@ -21,10 +21,10 @@ class PatchGrid {
   PatchGrid(double radius, const HalfSpace& half_space);
 
   int size() const { return static_cast<int>(middle_.size()); }
-  double radius() const { return radius_; }                               ///< [m] of the sphere
-  double edge() const { return edge_; }                                   ///< [m] of a square
-  const Eigen::Vector2d& middle(int p) const { return middle_[p]; }       ///< [m]
-  double rise(int p) const { return rise_[p]; }                           ///< [m] of the sphere's middle over it there
+  double radius() const { return radius_; }                                ///< [m] of the sphere
+  double edge() const { return edge_; }                                    ///< [m] of a square
+  const Eigen::Vector2d& middle(int p) const { return middle_[p]; }        ///< [m]
+  double rise(int p) const { return rise_[p]; }                            ///< [m] of the sphere's middle over it there
   double pressed(int p, int q) const { return pressed_[size() * p + q]; }  ///< [m/N]
   const Eigen::Matrix2d& sheared(int p, int q) const { return sheared_[size() * p + q]; }  ///< [m/N]
 
@@ -59,7 +59,8 @@ class Patch {
     const NearField& near_field;
     double friction;
   };
-  /// The nodes that lie under the sphere now, found by where it stands; empty: it does not touch, and forgets its shear.
+  /// The nodes that lie under the sphere now, found by where it stands; empty: it does not touch, and forgets its
+  /// shear.
   std::span<const int> lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
                            const Eigen::Vector3d& middle);
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces.
@@ -69,11 +70,11 @@ class Patch {
   void resume(const Eigen::Vector3d& force) { resumed_ = force; }
 
   bool touches() const { return pressing_ > 0; }
-  double pressing() const { return pressing_; }               ///< [N]
-  const Eigen::Vector3d& force() const { return force_; }     ///< [N] on the tissue
-  const Eigen::Vector3d& at() const { return at_; }           ///< [m] world: where it acts on the tool
-  const Eigen::Vector3d& normal() const { return normal_; }   ///< unit, into the tissue
-  const Anchor& anchor() const { return anchor_; }            ///< of the surface, at its middle
+  double pressing() const { return pressing_; }              ///< [N]
+  const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
+  const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
+  const Eigen::Vector3d& normal() const { return normal_; }  ///< unit, into the tissue
+  const Anchor& anchor() const { return anchor_; }           ///< of the surface, at its middle
   bool sticks() const { return sticks_; }
   /// On the nodes under it.
   std::span<const PatchForce> forces() const { return std::span(forces_).first(loaded_); }
@@ -106,12 +107,12 @@ class Patch {
   bool sticks_ = true;
   double pressing_ = 0, depth_ = 0;
   std::span<const int> near_;  ///< triangles, of lay() alone
-  std::vector<Foot> feet_;           ///< per square
-  std::vector<int> nodes_;           ///< under the patch
+  std::vector<Foot> feet_;     ///< per square
+  std::vector<int> nodes_;     ///< under the patch
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
-  std::vector<int> known_;                  ///< nodes that near_field_ is of
+  std::vector<int> known_;                   ///< nodes that near_field_ is of
   std::vector<Eigen::Matrix3d> near_field_;  ///< K between nodes_, kMaxNodes a row
   std::vector<double> k_, k_phi_;
   std::array<PatchForce, kMaxNodes> forces_;

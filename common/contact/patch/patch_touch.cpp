@@ -13,8 +13,7 @@ constexpr int kTip = 0;  // among a probe's parts
 Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3d& force) {
   Vector3d sum = Vector3d::Zero();
   if (node >= c.row_nodes() || from >= c.column_nodes()) return sum;
-  for (int axis = 0; axis < 3; ++axis)
-    sum += force[axis] * Eigen::Map<const Vector3d>(c.column(from, axis) + 3 * node);
+  for (int axis = 0; axis < 3; ++axis) sum += force[axis] * Eigen::Map<const Vector3d>(c.column(from, axis) + 3 * node);
   return sum;
 }
 
