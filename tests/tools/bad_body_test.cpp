@@ -38,6 +38,19 @@ TEST_F(ToolsBadBody, TheSceneIsGoodBeforeItIsSpoiled) {
   EXPECT_EQ(testing::run_program(program("palpate check") + " " + scene_.scene()).status, 0);
 }
 
+TEST_F(ToolsBadBody, APatchOnTensorsOfLinearElementsIsWarnedOf) {
+  const auto warned = [&] {
+    const auto said = testing::run_program(program("palpate check") + " " + scene_.scene());
+    EXPECT_EQ(said.status, 0) << said.err;
+    return (said.out + said.err).find("contact.rule = \"patch\" with tensors") != std::string::npos;
+  };
+  EXPECT_FALSE(warned());
+  replace("[render]\n", "[contact]\nrule = \"patch\"\n[render]\n");
+  EXPECT_TRUE(warned());
+  replace("[[tool]]\n", "[body.offline]\nelement = \"p2\"\n[[tool]]\n");
+  EXPECT_FALSE(warned());
+}
+
 TEST_F(ToolsBadBody, AMissingMeshIsNamedWithItsLine) {
   std::filesystem::remove(scene_.folder() / "block.msh");
   expect_scene_refused({"scene.toml:4:8: ", "block.msh", "is not a file that can be read"});
