@@ -117,8 +117,12 @@ TEST_F(PatchRule, TheForceComesAndGoesWithoutAStep) {
     rig.step(at(0.003, 0.002, depth));  // 2.3 radii deep
     const double now = rig.force().norm();
     EXPECT_LT(std::abs(now - before), 0.005) << i;
-    if (depth <= 0) EXPECT_EQ(now, 0) << i;
-    if (depth > 0.02 * kRadius) EXPECT_GT(now, 0) << i;  // the innermost squares are that far from the tip's own middle
+    if (depth <= 0) {
+      EXPECT_EQ(now, 0) << i;
+    }
+    if (depth > 0.02 * kRadius) {
+      EXPECT_GT(now, 0) << i;  // the innermost squares are that far from the tip's own middle
+    }
     before = now;
   }
   EXPECT_EQ(before, 0);

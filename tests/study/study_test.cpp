@@ -61,7 +61,9 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   ASSERT_TRUE(as_is);
   EXPECT_GT(as_is->step_us_median, 0);
   EXPECT_LE(as_is->step_us_median, as_is->step_us_p99);
-  if (kMemoryCounts) EXPECT_GT(as_is->memory_bytes, 8.0 * 300 * 300);
+  if (kMemoryCounts) {
+    EXPECT_GT(as_is->memory_bytes, 8.0 * 300 * 300);
+  }
   EXPECT_GT(as_is->offline_s, 0);
   // Rounded tensors are not quite the same.
   const Row* single = find(result, "quasi_static", "precision", "single", "fine_linear");
@@ -72,7 +74,9 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   const Row* few = find(result, "quasi_static", "tensors", "", "fine_linear");
   ASSERT_TRUE(few);
   EXPECT_NEAR(few->err_f_rel, as_is->err_f_rel, 1e-6);
-  if (kMemoryCounts) EXPECT_LT(few->memory_bytes, 0.8 * as_is->memory_bytes);
+  if (kMemoryCounts) {
+    EXPECT_LT(few->memory_bytes, 0.8 * as_is->memory_bytes);
+  }
 
   // The reference knows its own error, and it is less than that of what it judges.
   const Row* rest = find(result, "reference", "mesh", "coarser", "fine_linear");
@@ -296,7 +300,9 @@ TEST(Study, ACathetersErrorFallsWithItsParticles) {
   ASSERT_TRUE(coarse && own && fine);
   EXPECT_LT(own->err_f_rel, coarse->err_f_rel);
   EXPECT_LT(fine->err_f_rel, own->err_f_rel);
-  if (kMemoryCounts) EXPECT_LT(own->memory_bytes, fine->memory_bytes);
+  if (kMemoryCounts) {
+    EXPECT_LT(own->memory_bytes, fine->memory_bytes);
+  }
 }
 
 TEST(Study, MovingTissueComesNearerToItsOwnSmallStepsWithSmallerStepsAndAfterACutToAFreshSolve) {
