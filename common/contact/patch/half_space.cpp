@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/geometry/barycentric.hpp"
+
 namespace palpate {
 namespace {
 
@@ -52,14 +54,6 @@ Vector3d place(const Triangle& t, const Vector3d& weights) {
   return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
 }
 
-// Barycentric coordinates in the triangle's plane, also outside of it.
-Vector3d coordinates(const Triangle& t, const Vector3d& p) {
-  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double all = n.squaredNorm();
-  const double w1 = (p - t[0]).cross(t[2] - t[0]).dot(n) / all, w2 = (t[1] - t[0]).cross(p - t[0]).dot(n) / all;
-  return {1 - w1 - w2, w1, w2};
-}
-
 // The integral over t of L_b(y) K(x - y), for x on or near its plane: t is the signed sum of three triangles with a
 // corner below x, and in each, y = foot + s (edge point - foot), dy = 2 area s ds du takes the 1/r away.
 std::array<Matrix3d, 3> near_integral(const HalfSpace& half_space, const Vector3d& x, const Triangle& t,
@@ -67,13 +61,13 @@ std::array<Matrix3d, 3> near_integral(const HalfSpace& half_space, const Vector3
   std::array<Matrix3d, 3> sum{Matrix3d::Zero(), Matrix3d::Zero(), Matrix3d::Zero()};
   const Vector3d up = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
   const Vector3d foot = x - up.dot(x - t[0]) * up;
-  const Vector3d of_foot = coordinates(t, foot);
+  const Vector3d of_foot = plane_coordinates(t, foot);
   for (int e = 0; e < 3; ++e) {
     const Vector3d &a = t[e], &b = t[(e + 1) % 3];
     const double twice = up.dot((a - foot).cross(b - foot));
     if (std::abs(twice) < 1e-12 * (b - a).squaredNorm()) continue;
     for (const auto& [u, weight_u] : kAcross) {
-      const Vector3d edge = a + u * (b - a), of_edge = coordinates(t, edge);
+      const Vector3d edge = a + u * (b - a), of_edge = plane_coordinates(t, edge);
       for (const double s : kAlong) {
         const Vector3d y = foot + s * (edge - foot), weights = of_foot + s * (of_edge - of_foot);
         const Matrix3d k = 0.5 * weight_u * s * twice * half_space.at(x - y, normal);

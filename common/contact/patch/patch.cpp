@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/barycentric.hpp"
+
 namespace palpate {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSquaresPerRadius = 4;  // finer squares change the force by less than a hundredth
+constexpr double kSquaresPerRadius = 4;  // 44 squares in all
 constexpr double kWidth = 0.95;          // of the radius: beyond it the sphere is too steep to press
 constexpr double kLookAround = 1.5;      // radii about the sphere's middle, and as much more as it is deep,
 constexpr double kDeepest = 4;           // up to so many radii
@@ -23,14 +25,6 @@ constexpr double kPivotShare = 1e-9;     // of a square's own compliance, to whi
 // takes its z axis into the tissue.
 Vector3d across_of(const Eigen::Isometry3d& tool, const Vector3d& normal) {
   return Eigen::Quaterniond::FromTwoVectors(tool.linear().col(2), normal) * tool.linear().col(0);
-}
-
-// Barycentric, of a point in the triangle's plane.
-Vector3d plane_coordinates(const Triangle& t, const Vector3d& p) {
-  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double w1 = (p - t[0]).cross(t[2] - t[0]).dot(n) / n.squaredNorm();
-  const double w2 = (t[1] - t[0]).cross(p - t[0]).dot(n) / n.squaredNorm();
-  return {1 - w1 - w2, w1, w2};
 }
 
 }  // namespace

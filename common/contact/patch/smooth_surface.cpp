@@ -1,25 +1,18 @@
 #include "common/contact/patch/smooth_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "common/contact/tool_contacts.hpp"
 
 namespace palpate {
-namespace {
 
 using Eigen::Vector3d;
-
-double mean_edge_of(const SurfaceMap& map) {
-  double sum = 0;
-  for (const auto& t : map.triangles)
-    for (int v = 0; v < 3; ++v) sum += (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(map.triangles.size()));
-}
-
-}  // namespace
 
 SmoothSurface::SmoothSurface(const SurfaceMap& map)
     : map_(map),
       node_normal_(map.size(), Vector3d::Zero()),
-      buckets_(map.position, map.triangles, 2 * mean_edge_of(map)),
+      buckets_(map.position, map.triangles, 2 * mean_edge(map)),
       found_(map.triangles.size()) {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const Triangle c = corners(static_cast<int>(t));
