@@ -46,7 +46,9 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   ToolLoad load;
   stale_ = false;
   const double age = step > m.tool_step ? static_cast<double>(step - m.tool_step) * dt_ : 0.0;
-  age_weight(age);
+  const bool fresh = m.seq != 0 && age <= kOldest;
+  const double change = dt_ / kFadeSeconds;
+  state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
   if (m.seq == 0) return load;
   const int held = hold(tool, load);
   extrapolate(std::min(age, kExtrapolated));
@@ -56,16 +58,12 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
     const Segment axis = tool.axis(p);
     if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
   }
-  stale_ = state_.weight < 1 && !load.force.isZero(0);
+  const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
+  if (fresh && !felt) state_.weight = 1;  // what begins from nothing needs no fading
+  stale_ = state_.weight < 1 && felt;
   load.force *= state_.weight;
   load.torque *= state_.weight;
   return load;
-}
-
-void LocalBody::age_weight(double age) {
-  const bool fresh = state_.model.seq != 0 && age <= kOldest;
-  const double change = dt_ / kFadeSeconds;
-  state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
 }
 
 void LocalBody::add(const Vector3d& at, const Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const {

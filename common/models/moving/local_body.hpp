@@ -16,7 +16,7 @@ namespace palpate {
 class LocalBody {
  public:
   static constexpr double kOldest = 0.15;        ///< [s] age of a model at which its force begins to fade
-  static constexpr double kFadeSeconds = 0.005;  ///< [s] from full force to none, and back
+  static constexpr double kFadeSeconds = 0.05;   ///< [s] from full force to none, and back
   static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
 
   /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
@@ -51,7 +51,6 @@ class LocalBody {
     Eigen::Vector3d at, force;  ///< [m], [N] on the tissue
   };
 
-  void age_weight(double age);
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
   void extrapolate(double seconds);
