@@ -19,6 +19,7 @@ ToolDofs dofs_of(const ToolState& s) {
 DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archives)
     : dt_(1.0 / scene.rates.haptic_hz),
       tools_(scene.tools.size()),
+      playback_(scene.tools.size()),
       newest_(scene.tools.size()),
       consumed_(scene.tools.size()),
       waiting_(scene.tools.size(), 0),
@@ -71,35 +72,40 @@ void DynamicWorld::turn_jaws(int t) {
   if (forceps_[t]) set_opening(std::clamp(tools_[t].opening, 0.0, forceps_[t]->max_open), parts_[t]);
 }
 
+void DynamicWorld::move(int t) {
+  ToolInTick& tool = tools_[t];
+  tool.moving.before = tool.moving.now;
+  parts_before_[t] = parts_[t];
+  anew_[t] = std::exchange(waiting_[t], 0);
+  const ToolState& newest = newest_[t];
+  // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
+  const bool begins = anew_[t] && (!tool.present || newest.run != consumed_[t].run);
+  if (begins)
+    playback_[t].begin(newest);
+  else if (tool.present)
+    playback_[t].tick(anew_[t] ? &newest : nullptr);
+  else
+    return;
+  if (anew_[t]) {
+    heard_[t] = ticks_;
+    tool.holding = newest.holding != 0;
+    tool.present = true;
+    consumed_[t] = newest;
+  }
+  tool.dofs = playback_[t].dofs();
+  tool.opening = playback_[t].opening();
+  tool.moving.now = tip_pose(trocars_[t], tool.dofs);
+  turn_jaws(t);
+  if (!begins) return;
+  tool.moving.before = tool.moving.now;
+  parts_before_[t] = parts_[t];
+}
+
 void DynamicWorld::tick() {
   drop_absent();
   if (ticks_ % keyframe_interval() == 0)
     for (auto& organ : organs_) organ->forget_factors();
-  for (int t = 0; t < tools(); ++t) {
-    ToolInTick& tool = tools_[t];
-    tool.moving.before = tool.moving.now;
-    tool.moving.ticks = 1;
-    parts_before_[t] = parts_[t];
-    anew_[t] = waiting_[t];
-    if (!waiting_[t]) continue;
-    waiting_[t] = 0;
-    heard_[t] = ticks_;
-    const ToolState& state = newest_[t];
-    tool.dofs = dofs_of(state);
-    tool.opening = state.opening;
-    tool.holding = state.holding != 0;
-    tool.moving.now = tip_pose(trocars_[t], tool.dofs);
-    turn_jaws(t);
-    // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
-    if (!tool.present || state.run != consumed_[t].run) {
-      tool.moving.before = tool.moving.now;
-      parts_before_[t] = parts_[t];
-    } else if (state.step > consumed_[t].step) {
-      tool.moving.ticks = static_cast<double>(state.step - consumed_[t].step);
-    }
-    tool.present = true;
-    consumed_[t] = state;
-  }
+  for (int t = 0; t < tools(); ++t) move(t);
   for (auto& organ : organs_) organ->tick(tools_, dt_);
   ++ticks_;
 }
@@ -111,6 +117,7 @@ void DynamicWorld::state(State& s) {
     ToolInTick& tool = tools_[t];
     s.value(tool.moving.now.matrix());
     s.value(tool.dofs);
+    playback_[t].state(s);
     s.value(tool.opening);
     s.value(tool.holding);
     s.value(consumed_[t]);

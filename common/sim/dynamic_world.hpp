@@ -8,6 +8,7 @@
 
 #include "common/models/moving/dynamic_organ.hpp"
 #include "common/scene/scene.hpp"
+#include "common/sim/tool_playback.hpp"
 #include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
 
@@ -51,6 +52,7 @@ class DynamicWorld {
 
  private:
   void drop_absent();
+  void move(int tool);
   void turn_jaws(int tool);
 
   double dt_;
@@ -58,6 +60,7 @@ class DynamicWorld {
   std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
   std::vector<std::optional<ForcepsJaws>> forceps_;          ///< per tool; none for other kinds
   std::vector<ToolInTick> tools_;
+  std::vector<ToolPlayback> playback_;  ///< per tool
   std::vector<ToolState> newest_, consumed_;
   std::vector<char> waiting_, anew_, leaving_, left_;
   std::vector<std::uint64_t> heard_;  ///< tick of the last state, per tool

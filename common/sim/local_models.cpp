@@ -152,15 +152,16 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
 // Of which moment the model is, and the pose that the tool had.
 void LocalModels::add_origin(int tool, LocalContactModel& model) const {
   const ToolState& s = world_.consumed(tool);
+  const ToolDofs& pose = world_.tool(tool).dofs;
   model.tool = static_cast<std::uint32_t>(tool);
   model.tool_run = s.run;
   model.tool_step = s.step;
   model.sense_ns = s.sense_ns;
-  model.yaw = s.yaw;
-  model.pitch = s.pitch;
-  model.depth = s.depth;
-  model.roll = s.roll;
-  model.grip = s.grip;
+  model.yaw = pose.yaw;
+  model.pitch = pose.pitch;
+  model.depth = pose.depth;
+  model.roll = pose.roll;
+  model.grip = pose.grip;
 }
 
 void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {

@@ -11,7 +11,6 @@ struct MovingTool {
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d now = Eigen::Isometry3d::Identity();
   std::span<const ToolPart> parts_before, parts;  ///< equally many
-  double ticks = 1;  ///< of the haptic loop that the motion took: more than one where some were missed
 
   int size() const { return static_cast<int>(parts.size()); }
   double radius(int part) const { return parts[part].radius; }

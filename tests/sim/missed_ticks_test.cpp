@@ -2,6 +2,7 @@
 // tip, friction, a press and a slide.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
 
 #include "common/mesh/generators.hpp"
@@ -36,10 +37,14 @@ class MissedTicks : public ::testing::Test {
     undisturbed_ = feel(0, [](int) { return false; });
   }
 
+  /// From 0 to 1 without a jerk at either end.
+  static double eased(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  }
   /// The tip goes down to 5 mm within the block's top and then 11 mm aside, towards `kAlong`.
   static Eigen::Vector3d tip(int k) {
-    const double down = std::min(k, kDown) / double{kDown},
-                 aside = std::clamp((k - kDown) / double{kAside - kDown}, 0.0, 1.0);
+    const double down = eased(k / double{kDown}), aside = eased((k - kDown) / double{kAside - kDown});
     return Eigen::Vector3d(0, 0, kRadius + 0.019 - 0.024 * down) + 0.011 * aside * along();
   }
   static Eigen::Vector3d along() { return Eigen::Vector3d(-0.9, -0.4, 0).normalized(); }
@@ -47,23 +52,31 @@ class MissedTicks : public ::testing::Test {
   struct Felt {
     double end = 0, largest = 0, jump = 0;  ///< [N]
     double with = 0;                        ///< [N] largest on the tool along its motion while it slides
+    double changes = 0;                     ///< [N^2] sum of squares of changes in a tick
     double drift = 0;                       ///< [N] from a second after the motion's end to the next
   };
-  /// The deformation node's part from tick `first` on. A tick is missed if `missed` says so.
+  /// The deformation node's part from tick `first` on. A tick is missed if `missed` says so; in tick k the tool's
+  /// newest state is late(k) steps old.
   template <class Missed>
-  Felt feel(int first, Missed&& missed) {
+  Felt feel(
+      int first, Missed&& missed, const std::function<int(int)>& late = [](int) { return 0; }) {
     PressRig rig(scene_, archives_);
     Felt felt;
     double before = 0, settled = 0;
+    int taken = -1;
     for (int k = first; k < kAside + 2000; ++k) {
       if (k < kAside + 200 && missed(k)) continue;
-      const ToolDofs d = tip_at(scene_.tools[0], tip(k));
-      rig.tissue().take(
-          {.tool = 0, .run = 1, .step = std::uint64_t(k), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth});
+      if (const int step = k - late(k); step > taken) {
+        const ToolDofs d = tip_at(scene_.tools[0], tip(step));
+        rig.tissue().take(
+            {.tool = 0, .run = 1, .step = std::uint64_t(step), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth});
+        taken = step;
+      }
       rig.tissue().tick();
       felt.end = rig.force().norm();
       felt.largest = std::max(felt.largest, felt.end);
       felt.jump = std::max(felt.jump, std::abs(felt.end - before));
+      felt.changes += (felt.end - before) * (felt.end - before);
       if (k > kDown && k < kAside) felt.with = std::max(felt.with, -rig.force().dot(along()));
       before = felt.end;
       if (k == kAside + 1000) settled = felt.end;
@@ -109,6 +122,18 @@ TEST_F(MissedTicks, WhatWasMissedComesInSlowly) {
                      return k < until;
                    }),
               undisturbed_);
+  }
+}
+
+TEST_F(MissedTicks, StatesThatComeUnevenlyAreNotFelt) {
+  const auto never = [](int) { return false; };
+  const Felt by_turns = feel(0, never, [](int k) { return k % 2; });
+  std::mt19937 random(7);
+  const Felt at_random = feel(0, never, [&](int) { return static_cast<int>(random() % 3); });
+  for (const Felt& felt : {by_turns, at_random}) {
+    expect_as(felt, undisturbed_);
+    EXPECT_LT(felt.jump, 1.5 * undisturbed_.jump);
+    EXPECT_LT(felt.changes, 1.5 * undisturbed_.changes);
   }
 }
 

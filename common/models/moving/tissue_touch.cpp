@@ -70,12 +70,12 @@ void TissueTouch::solve(std::span<const MovingTool> tools) {
   for (std::size_t c = 0; c < contacts().size(); ++c) law_.contacts()[c].target = aimed_[c];
 }
 
-// A tool that comes anew may stand in the tissue, one whose motion was missed may have gone on in it, and the surface
-// that a point slides over has corners: put right within one step, that would be a blow.
+// A tool that comes anew may stand in the tissue, and the surface that a point slides over has corners: put right
+// within one step, that would be a blow.
 void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
   const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
-  const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion / tool.ticks;
+  const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion;
   const double depth = c.plane - c.normal.dot(carried), led = kWayOut * dt_;
   if (depth <= led) return;
   const double share = led / depth;

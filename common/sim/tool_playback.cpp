@@ -1,0 +1,70 @@
+#include "common/sim/tool_playback.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kNothing = 1e-9;  // [m] or [rad]
+
+}  // namespace
+
+ToolPlayback::Values ToolPlayback::values(const ToolState& s) {
+  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.opening};
+}
+
+void ToolPlayback::begin(const ToolState& state) {
+  *this = {};
+  newest_ = now_ = values(state);
+  step_ = state.step;
+  pedal_ = state.pedal;
+}
+
+ToolPlayback::Values ToolPlayback::place(double along) const {
+  Values at = newest_;
+  for (std::size_t i = 0; along != 0 && i < at.size(); ++i) at[i] += along * pace_[i];
+  return at;
+}
+
+void ToolPlayback::tick(const ToolState* arrived) {
+  along_ = std::min<double>(along_ + 1, kAhead);
+  for (double& m : missed_) m = std::abs(m) < kNothing ? 0 : (1 - 1 / kMakeUpTicks) * m;
+  if (arrived && arrived->step > step_) {
+    const Values expected = place(along_), next = values(*arrived);
+    const auto steps = static_cast<double>(arrived->step - step_);
+    for (std::size_t i = 0; i < next.size(); ++i) pace_[i] = (next[i] - newest_[i]) / steps;
+    newest_ = next;
+    step_ = arrived->step;
+    pedal_ = arrived->pedal;
+    along_ -= steps;
+    if (along_ < -kAhead) {
+      along_ = 0;
+      for (std::size_t i = 0; i < next.size(); ++i) missed_[i] += expected[i] - next[i];
+    }
+    along_ -= along_ / kMakeUpTicks;
+  }
+  now_ = place(along_);
+  for (std::size_t i = 0; i < now_.size(); ++i)
+    if (missed_[i] != 0) now_[i] += missed_[i];
+  if (std::ranges::all_of(now_, [](double v) { return std::isfinite(v); })) return;
+  pace_ = missed_ = {};
+  along_ = 0;
+  now_ = newest_;
+}
+
+ToolDofs ToolPlayback::dofs() const {
+  return {now_[0], now_[1], now_[2], now_[3], now_[4], pedal_};
+}
+
+void ToolPlayback::state(State& s) {
+  s.value(newest_);
+  s.value(pace_);
+  s.value(missed_);
+  s.value(now_);
+  s.value(step_);
+  s.value(along_);
+  s.value(pedal_);
+}
+
+}  // namespace palpate

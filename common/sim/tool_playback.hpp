@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "common/describe/state.hpp"
+#include "common/tool/kinematics.hpp"
+#include "idl/messages.hpp"
+
+namespace palpate {
+
+/// A tool's motion at an even pace, from states that come over a network unevenly: none in one tick, two in the next.
+/// Tissue that is stopped and pushed on by turns strikes back. While none comes the tool goes on as it moved last, for
+/// a few steps; what was missed for longer is made up for gradually. If one state comes each tick it is where that
+/// state says, in all bits.
+class ToolPlayback {
+ public:
+  static constexpr int kAhead = 4;            ///< steps for which the motion goes on, or is taken back, without a state
+  static constexpr double kMakeUpTicks = 50;  ///< in which all but 1/e of what was missed is made up for
+
+  /// The tool stands where this state says.
+  void begin(const ToolState& state);
+  /// A tick in which a newer state of the same run came, or none did (null).
+  void tick(const ToolState* arrived);
+
+  ToolDofs dofs() const;
+  double opening() const { return now_[5]; }  ///< [rad] of a forceps' jaws
+
+  void state(State& s);
+
+ private:
+  using Values = std::array<double, 6>;  ///< yaw, pitch, depth, roll, grip, opening
+  static Values values(const ToolState& state);
+  Values place(double along) const;
+
+  Values newest_{}, pace_{};  ///< of the newest state; change from one step to the next
+  Values missed_{};           ///< by which the tool is still behind what the states say
+  Values now_{};
+  std::uint64_t step_ = 0;  ///< of the newest state
+  double along_ = 0;        ///< steps from the newest state to what is played
+  double pedal_ = 0;
+};
+
+}  // namespace palpate
