@@ -1,9 +1,10 @@
 #include "render_node/straighten.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "common/geometry/direction.hpp"
+#include "common/geometry/principal_axes.hpp"
 #include "common/mesh/shell_quality.hpp"
 
 namespace palpate {
@@ -16,7 +17,7 @@ std::vector<Eigen::Vector3f> along_longest_extent(const SurfaceMap& surface) {
   for (const Vector3d& p : surface.position) mean += p / surface.size();
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : surface.position) spread += (p - mean) * (p - mean).transpose();
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  const Eigen::Matrix3d axes = principal_axes(spread).axes;
   std::vector<Eigen::Vector3f> out;
   for (const Vector3d& p : surface.position) out.push_back((axes.transpose() * (p - mean)).cast<float>());
   return out;
@@ -37,9 +38,8 @@ std::vector<Piece> centre_line(const std::vector<TubeSection>& sections) {
     const double length = step.norm();
     if (!(length > 0)) continue;
     const Vector3d along = step / length;
-    const Vector3d x = pieces.empty()
-                           ? along.unitOrthogonal()
-                           : Vector3d(Eigen::Quaterniond::FromTwoVectors(pieces.back().along, along) * pieces.back().x);
+    const Vector3d x =
+        pieces.empty() ? along.unitOrthogonal() : Vector3d(turn_between(pieces.back().along, along) * pieces.back().x);
     pieces.push_back({sections[i].centre, along, length, start, x});
     start += length;
   }

@@ -1,9 +1,9 @@
 #include "common/dynamics/hybrid_part.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/geometry/principal_axes.hpp"
 #include "common/kernels/kernels.hpp"
 
 namespace palpate {
@@ -232,10 +232,9 @@ void HybridPart::superpose(std::span<Eigen::Vector3f> displacement) {
 }
 
 Matrix3d HybridPart::stiffness(int node) const {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(compliance(node, node));
-  const Vector3d& values = eigen.eigenvalues();
+  const auto [values, axes] = principal_axes(compliance(node, node));
   const Vector3d inverse = (values.array() > 1e-9 * values.maxCoeff()).select(values.cwiseInverse(), 0.0);
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  return axes * inverse.asDiagonal() * axes.transpose();
 }
 
 double HybridPart::gap(const DynamicModel& model) const {

@@ -1,10 +1,11 @@
 #include "common/dynamics/stability.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
+
+#include "common/geometry/principal_axes.hpp"
 
 namespace palpate {
 namespace {
@@ -57,13 +58,11 @@ double max_step(Integrator integrator, double bound, double damping) {
 /// energy couples the three F_aa with one another and each F_ab with F_ba alone.
 double element_frequency_squared(const TetGradients& tet, const Lame& lame, double density) {
   const Eigen::Matrix3d gram = tet.gradient.transpose() * tet.gradient;
-  const Eigen::Vector3d square =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(gram, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0);
+  const Eigen::Vector3d square = principal_values(gram).cwiseMax(0);
   const Eigen::Vector3d root = square.cwiseSqrt();
   Eigen::Matrix3d stretch = lame.lambda * root * root.transpose();
   stretch.diagonal() += 2 * lame.mu * square;
-  const double normal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(stretch, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  const double normal = principal_values(stretch)[2];
   const double shear = lame.mu * (square[1] + square[2]);
   constexpr double rounding = 1 + 1e-12;
   return rounding * 4 * std::max(normal, shear) / density;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <stdexcept>
 
 #include "common/fem/selection.hpp"
+#include "common/geometry/rigid_motions.hpp"
 
 namespace palpate {
 
@@ -27,31 +27,14 @@ void DofMap::number() {
 }
 
 int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  int used = 0;
-  for (int node = 0; node < dofs.nodes(); ++node) {
-    if (dofs.index(node, 0) == DofMap::kUnused) continue;
-    centre += mesh.nodes[node];
-    ++used;
-  }
-  centre /= used;
-  double size = 0;
+  std::vector<Eigen::Vector3d> used;
   for (int node = 0; node < dofs.nodes(); ++node)
-    if (dofs.index(node, 0) != DofMap::kUnused) size = std::max(size, (mesh.nodes[node] - centre).norm());
-
-  // Gram matrix of the rows [e_axis, (x - centre)/size x e_axis] that the six motions have at the fixed dofs.
-  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+    if (dofs.index(node, 0) != DofMap::kUnused) used.push_back(mesh.nodes[node]);
+  RigidMotions motions(used);
   for (int node = 0; node < dofs.nodes(); ++node)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (dofs.index(node, axis) != DofMap::kFixed) continue;
-      Eigen::Matrix<double, 6, 1> row;
-      row << Eigen::Vector3d::Unit(axis), ((mesh.nodes[node] - centre) / size).cross(Eigen::Vector3d::Unit(axis));
-      gram += row * row.transpose();
-    }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram, Eigen::EigenvaluesOnly);
-  const double largest = eigen.eigenvalues().maxCoeff();
-  // Eigenvalues are squares: 1e-10 stands for points within 1e-5 of the body's size of a line.
-  return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
+    for (int axis = 0; axis < 3; ++axis)
+      if (dofs.index(node, axis) == DofMap::kFixed) motions.hold(mesh.nodes[node], axis);
+  return motions.free();
 }
 
 DofMap apply_boundary_conditions(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions,

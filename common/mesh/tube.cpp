@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/geometry/direction.hpp"
+
 namespace palpate {
 
 using Eigen::Vector3d;
@@ -42,7 +44,7 @@ TubeSurface::Frame TubeSurface::frame_at(std::span<const Vector3d> x, int sample
   const double length = slope.norm();
   frame.along = length > 1e-12 ? Vector3d(slope / length) : last.along;
   // The smallest rotation that takes the last direction to this one.
-  frame.across = Eigen::Quaterniond::FromTwoVectors(last.along, frame.along) * last.across;
+  frame.across = turn_between(last.along, frame.along) * last.across;
   frame.across = (frame.across - frame.along * frame.along.dot(frame.across)).normalized();
   return frame;
 }

@@ -33,25 +33,15 @@ const Part* as(const Body& body) {
   return as<Part>(const_cast<Body&>(body));
 }
 
-inline const std::string& name_of(const Body& body) {
-  return as<NamedSpec>(body)->name;
-}
+const std::string& name_of(const Body& body);
 
 /// As a scene file writes it: `quasi_static`.
-inline std::string_view kind_of(const Body& body) {
-  return std::visit([](const auto& spec) { return std::remove_cvref_t<decltype(spec)>::kKind; }, body);
-}
+std::string_view kind_of(const Body& body);
 
-inline Owner owner_of(const Body& body) {
-  return std::visit([](const auto& spec) { return owner(spec); }, body);
-}
+Owner owner_of(const Body& body);
 
-inline const ShellSpec* wall_of(const Body& body) {
-  return std::visit([](const auto& spec) { return wall_of(spec); }, body);
-}
+const ShellSpec* wall_of(const Body& body);
 
-inline void describe(Description& d, Body& body) {
-  d.variant({"model", "", "the kind of tissue, see below", Need::optional, Use::stored}, body);
-}
+void describe(Description& d, Body& body);
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/describe/description.hpp"
+#include "common/geometry/direction.hpp"
 
 namespace palpate {
 
@@ -23,9 +24,8 @@ inline void describe(Description& d, Camera& c) {
   d.vector({"up", "", "points up in the picture", Need::optional, Use::local}, c.up);
   d.number({"field_of_view", "degree", "vertical", Need::optional, Use::local}, c.field_of_view, within(1, 170));
   const Eigen::Vector3d view = c.target - c.eye;
-  d.require(view.stableNorm() > 0, "", "the camera's eye and target must not coincide");
-  const bool across = c.up.stableNorm() > 0 && c.up.stableNormalized().cross(view.stableNormalized()).norm() > 1e-6;
-  d.require(across, "up", "up must be a direction across the camera's line of sight");
+  d.require(safe_length(view) > 0, "", "the camera's eye and target must not coincide");
+  d.require(!parallel(c.up, view), "up", "up must be a direction across the camera's line of sight");
 }
 
 /// The picture.

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/geometry/direction.hpp"
+
 namespace palpate {
 namespace {
 
@@ -200,7 +202,7 @@ void SceneReader::colour(const Key& key, std::array<double, 3>& value) {
 // One that has its length to rounding is kept bit for bit, so that a resolved scene reads back the same.
 void SceneReader::direction(const Key& key, Eigen::Vector3d& value) {
   vector(key, value);
-  const double length = value.stableNorm();
+  const double length = safe_length(value);
   require(length > 0, key.name, fmt::format("{} must not be zero", key.name));
   if (std::abs(length - 1) > 1e-14) value /= length;
 }

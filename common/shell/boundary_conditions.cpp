@@ -2,48 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
 
 #include "common/fem/selection.hpp"
+#include "common/geometry/rigid_motions.hpp"
 #include "common/shell/assembly.hpp"
 
 namespace palpate {
 namespace {
 
-/// How many of the six rigid-body motions the fixed dofs leave free: the rank of the rows that the motions (a
-/// translation, and a rotation about the centre times the size) have at them.
 int remaining_rigid_motions(const ShellMesh& mesh, const ShellDofs& dofs) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  int used = 0;
-  for (int node = 0; node < dofs.nodes(); ++node) {
-    if (dofs.index(node, 0) == ShellDofs::kUnused) continue;
-    centre += mesh.nodes[node];
-    ++used;
-  }
-  centre /= used;
-  double size = 0;
+  std::vector<Eigen::Vector3d> used;
   for (int node = 0; node < dofs.nodes(); ++node)
-    if (dofs.index(node, 0) != ShellDofs::kUnused) size = std::max(size, (mesh.nodes[node] - centre).norm());
-
-  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+    if (dofs.index(node, 0) != ShellDofs::kUnused) used.push_back(mesh.nodes[node]);
+  RigidMotions motions(used);
   for (int node = 0; node < dofs.nodes(); ++node)
-    for (int dof = 0; dof < 6; ++dof) {
-      if (dofs.index(node, dof) != ShellDofs::kFixed) continue;
-      const Eigen::Vector3d axis = Eigen::Vector3d::Unit(dof % 3);
-      Eigen::Matrix<double, 6, 1> row;
-      if (dof < 3)
-        row << axis, ((mesh.nodes[node] - centre) / size).cross(axis);
-      else
-        row << Eigen::Vector3d::Zero(), axis;
-      gram += row * row.transpose();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (dofs.index(node, axis) == ShellDofs::kFixed) motions.hold(mesh.nodes[node], axis);
+      if (dofs.index(node, 3 + axis) == ShellDofs::kFixed) motions.hold_rotation(axis);
     }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram, Eigen::EigenvaluesOnly);
-  const double largest = eigen.eigenvalues().maxCoeff();
-  // Eigenvalues are squares: 1e-10 stands for points within 1e-5 of the body's size of a line.
-  return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());
+  return motions.free();
 }
 
 void fix_region(const ShellBoundaryCondition& region, const std::vector<int>& nodes, ShellDofs& dofs) {

@@ -14,21 +14,15 @@ struct MovingTool {
 
   int size() const { return static_cast<int>(parts.size()); }
   double radius(int part) const { return parts[part].radius; }
-  Segment axis(int part) const { return parts[part].axis(now); }
-  Segment axis_before(int part) const { return parts_before[part].axis(before); }
+  Segment axis(int part) const;
+  Segment axis_before(int part) const;
 
   /// Between the world and a part's own frame now: what sticks to a jaw turns with it.
-  Eigen::Vector3d to_world(int part, const Eigen::Vector3d& p) const { return now * (parts[part].pose * p); }
-  Eigen::Vector3d to_part(int part, const Eigen::Vector3d& p) const {
-    return parts[part].pose.inverse() * (now.inverse() * p);
-  }
+  Eigen::Vector3d to_world(int part, const Eigen::Vector3d& p) const;
+  Eigen::Vector3d to_part(int part, const Eigen::Vector3d& p) const;
   /// The same for the poses before.
-  Eigen::Vector3d to_world_before(int part, const Eigen::Vector3d& p) const {
-    return before * (parts_before[part].pose * p);
-  }
-  Eigen::Vector3d to_part_before(int part, const Eigen::Vector3d& p) const {
-    return parts_before[part].pose.inverse() * (before.inverse() * p);
-  }
+  Eigen::Vector3d to_world_before(int part, const Eigen::Vector3d& p) const;
+  Eigen::Vector3d to_part_before(int part, const Eigen::Vector3d& p) const;
 };
 
 }  // namespace palpate

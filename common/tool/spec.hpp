@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "common/describe/description.hpp"
+#include "common/geometry/direction.hpp"
 
 namespace palpate {
 
@@ -150,10 +151,6 @@ struct Tool {
 
 inline const std::string& name_of(const Tool& tool) {
   return tool.name;
-}
-
-inline bool parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return a.stableNormalized().cross(b.stableNormalized()).norm() < 1e-6;
 }
 
 inline void describe(Description& d, Tool& t) {

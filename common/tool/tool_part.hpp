@@ -13,11 +13,7 @@ struct ToolPart {
   double radius = 0;                  ///< [m]
 
   /// The segment in the world for a pose of the tip frame.
-  Segment axis(const Eigen::Isometry3d& tip) const {
-    const Eigen::Vector3d start = tip * pose.translation();
-    if (length == 0) return {start, start};
-    return {start, start + length * (tip.linear() * pose.linear().col(2))};
-  }
+  Segment axis(const Eigen::Isometry3d& tip) const;
 };
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/geometry/barycentric.hpp"
+#include "common/geometry/direction.hpp"
 
 namespace palpate {
 namespace {
@@ -24,7 +25,7 @@ constexpr double kPivotShare = 1e-9;     // of a square's own compliance, to whi
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
 // takes its z axis into the tissue.
 Vector3d across_of(const Eigen::Isometry3d& tool, const Vector3d& normal) {
-  return Eigen::Quaterniond::FromTwoVectors(tool.linear().col(2), normal) * tool.linear().col(0);
+  return turn_between(tool.linear().col(2), normal) * tool.linear().col(0);
 }
 
 }  // namespace

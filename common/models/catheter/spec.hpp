@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/fem/solid_spec.hpp"
+#include "common/geometry/direction.hpp"
 #include "common/models/kind.hpp"
 
 namespace palpate {
@@ -27,7 +28,7 @@ inline void describe(Description& d, Catheter& c) {
          c.inside);
   d.vector({"tail", "m", "first particle at rest", Need::required, Use::stored}, c.tail);
   d.vector({"tip", "m", "last particle at rest: what goes in first", Need::required, Use::stored}, c.tip);
-  const double length = (c.tip - c.tail).stableNorm();
+  const double length = safe_length(c.tip - c.tail);
   d.require(length > 0, "tip", "the catheter's tail and tip must not coincide");
   d.number({"radius", "m", "of the tube", Need::optional, Use::stored}, c.radius, above(0));
   d.integer({"particles", "", "evenly along it", Need::optional, Use::stored}, c.particles, 4, 10000);
