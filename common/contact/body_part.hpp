@@ -73,8 +73,8 @@ class BodyPart {
   virtual bool move(std::span<const MovingTool>, std::span<ToolLoad>) { return true; }
   /// Finds what the tools touch, solves for the contacts' forces and adds them to the loads, one entry per tool.
   virtual LawOutcome touch(const ToolsInStep&, std::span<ToolLoad>) { return {}; }
-  /// After the hands' forces [N] are known, one entry per tool. `time` [s]: when the step ends.
-  virtual void finish(std::span<const double> /*force*/, double /*time*/) {}
+  /// After the hands' forces are known: the largest of them [N]. `time` [s]: when the step ends.
+  virtual void finish(double /*max_force*/, double /*time*/) {}
 
   /// Depth [m] to which a part of a tool reaches into the rest shape; 0 if it does not touch it.
   virtual double penetration(const Segment&, double /*radius*/) const { return 0; }

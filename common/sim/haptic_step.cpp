@@ -21,14 +21,28 @@ double min_slew(const Scene& scene) {
   return least;
 }
 
+using Rigs = std::vector<std::unique_ptr<ToolRig>>;
+
+Rigs make_rigs(const Scene& scene, double dt) {
+  Rigs rigs;
+  for (const Tool& tool : scene.tools)
+    rigs.push_back(std::make_unique<ToolRig>(static_cast<int>(rigs.size()), tool, dt));
+  return rigs;
+}
+
+std::vector<Port*> ports_of(const Rigs& rigs) {
+  std::vector<Port*> ports;
+  for (const auto& rig : rigs) ports.push_back(&rig->port());
+  return ports;
+}
+
 }  // namespace
 
 HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     : dt_(1.0 / scene.rates.haptic_hz),
       bodies_(static_cast<int>(scene.bodies.size())),
-      passivity_(scene.passivity, static_cast<int>(scene.tools.size()), sum_of_force_limits(scene), min_slew(scene),
-                 dt_) {
-  for (const Tool& tool : scene.tools) rigs_.push_back(std::make_unique<ToolRig>(tools(), tool, dt_));
+      rigs_(make_rigs(scene, dt_)),
+      passivity_(scene.passivity, ports_of(rigs_), sum_of_force_limits(scene), min_slew(scene), dt_) {
   const StepSettings settings{scene.contact, scene.tools, dt_};
   for (int b = 0; b < bodies_; ++b) {
     names_.push_back(name_of(scene.bodies[b]));
@@ -49,9 +63,6 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     });
   seen_.resize(rigs_.size());
   loads_.resize(rigs_.size());
-  motion_.resize(rigs_.size());
-  asked_.resize(rigs_.size());
-  given_.resize(rigs_.size());
 }
 
 HapticStep::~HapticStep() = default;
@@ -126,13 +137,14 @@ void HapticStep::step(std::span<const ToolDofs> dofs) {
   healthy &= meet_bodies();
   give_forces(healthy);
   ++step_;
-  for (auto& part : parts_) part->finish(given_, static_cast<double>(step_) * dt_);
+  const double largest = largest_force();
+  for (auto& part : parts_) part->finish(largest, static_cast<double>(step_) * dt_);
 }
 
 // The last output was held while the tools moved to where they are.
 void HapticStep::count_energy() {
-  std::ranges::transform(rigs_, motion_.begin(), [](const auto& rig) { return rig->take_motion(); });
-  passivity_.observe(motion_);
+  for (auto& rig : rigs_) rig->count_motion();
+  passivity_.observe();
 }
 
 // Fills loads_ with what the bodies do to the tools. False if one of them is lost.
@@ -155,13 +167,15 @@ bool HapticStep::meet_bodies() {
 // damps, and before the slew limit and a second force limit, which have the last word; the energy counts what they
 // leave.
 void HapticStep::give_forces(bool healthy) {
-  for (int t = 0; t < tools(); ++t) asked_[t] = rigs_[t]->ask(loads_[t]);
-  passivity_.control(asked_);
-  for (int t = 0; t < tools(); ++t) {
-    const PortForce given = rigs_[t]->give(asked_[t], passivity_.limited(t), healthy);
-    passivity_.hold(t, given);
-    given_[t] = given.force.norm();
-  }
+  for (int t = 0; t < tools(); ++t) rigs_[t]->ask(loads_[t]);
+  passivity_.control();
+  for (auto& rig : rigs_) rig->give(healthy);
+}
+
+double HapticStep::largest_force() const {
+  double largest = 0;
+  for (const auto& rig : rigs_) largest = std::max(largest, rig->output().force.norm());
+  return largest;
 }
 
 bool HapticStep::consume(const LocalContactModel& message) {

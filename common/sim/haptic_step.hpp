@@ -88,23 +88,21 @@ class HapticStep {
   void count_energy();
   bool meet_bodies();
   void give_forces(bool healthy);
+  double largest_force() const;  ///< [N] of those that the hands get
 
   double dt_;
   int bodies_;
   std::vector<std::string> names_;  ///< of the bodies
   std::vector<std::uint8_t> dynamic_;
-  std::vector<std::unique_ptr<ToolRig>> rigs_;
+  std::vector<std::unique_ptr<ToolRig>> rigs_;  ///< whose ports passivity_ watches
   std::vector<std::unique_ptr<BodyPart>> parts_;
   std::vector<Entry> entries_;  ///< which body each of parts_ is of, moving tissue's left out
   LocalPart* local_ = nullptr;  ///< one of parts_; null without moving tissue
   PassivityGuard passivity_;
   std::uint64_t step_ = 0;
-  // What the bodies and the watch over the energy see of the tools in a step.
+  // What the bodies see of the tools in a step, and what they do to them.
   std::vector<MovingTool> seen_;
   std::vector<ToolLoad> loads_;
-  std::vector<PortMotion> motion_;
-  std::vector<PortForce> asked_;
-  std::vector<double> given_;  ///< [N] sizes
 };
 
 }  // namespace palpate

@@ -28,28 +28,26 @@ bool ToolRig::sense(const ToolDofs& dofs) {
   return finite;
 }
 
-PortMotion ToolRig::take_motion() {
+void ToolRig::count_motion() {
   const double handle = end_->handle();
-  const PortMotion motion = motion_between(before_, now_, handle - handle_);
+  port_.motion = motion_between(before_, now_, handle - handle_);
   handle_ = handle;
-  return motion;
 }
 
-PortForce ToolRig::ask(const ToolLoad& load) {
-  PortForce asked{load.force, load.torque, end_->torque()};
+void ToolRig::ask(const ToolLoad& load) {
+  port_.asked = {load.force, load.torque, end_->torque()};
   output_ = {.press = load.press, .flags = load.flags};
-  output_.flags |= safety_.limit(asked.force, asked.torque);
-  return asked;
+  output_.flags |= safety_.limit(port_.asked.force, port_.asked.torque);
 }
 
-PortForce ToolRig::give(PortForce given, bool limited, bool healthy) {
-  if (limited) output_.flags |= passivity_limited;
+void ToolRig::give(bool healthy) {
+  PortForce& given = port_.held = port_.asked;
+  if (port_.limited) output_.flags |= passivity_limited;
   output_.flags |= safety_.apply(given.force, given.torque, healthy);
   output_.force = given.force;
   output_.torque = given.torque;
   output_.grip = given.grip;
   output_.trocar = trocar_reaction(trocar_, dofs_, shaft_length_, given.force, given.torque).trocar;
-  return given;
 }
 
 void ToolRig::state(State& s) {

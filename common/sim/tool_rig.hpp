@@ -39,14 +39,16 @@ class ToolRig {
   bool sense(const ToolDofs& dofs);
   /// Its jaws follow the handle.
   void work(BodyParts bodies) { end_->work(dofs_.grip, before_, bodies); }
-  /// Of the hand's port since the last step.
-  PortMotion take_motion();
 
-  /// What the tissue asks for, within the limits of force and torque.
-  PortForce ask(const ToolLoad& load);
-  /// What the hand gets of it after the watch over the energy: slew limits and a second force limit have the last word.
-  /// `healthy` false reports a fault of this step.
-  PortForce give(PortForce given, bool limited, bool healthy);
+  /// What the watch over the energy sees; it comes between the next two, and between the two after them.
+  Port& port() { return port_; }
+  /// Tells the port of the motion since the last step.
+  void count_motion();
+  /// The port asks for what the tissue asks for, within the limits of force and torque.
+  void ask(const ToolLoad& load);
+  /// The hand gets what the watch left of it: slew limits and a second force limit have the last word. `healthy` false
+  /// reports a fault of this step.
+  void give(bool healthy);
   void trip() { safety_.trip(); }
 
   void state(State& s);
@@ -60,6 +62,7 @@ class ToolRig {
   ToolDofs dofs_{};
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
   double handle_ = 0;  ///< [rad] in the last step
+  Port port_;
   Output output_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -52,74 +52,73 @@ PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry
   return {now.translation() - before.translation(), 0.5 * twice, opening};
 }
 
-PassivityGuard::PassivityGuard(const Passivity& settings, int tools, double max_force, double slew, double dt)
+PassivityGuard::PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double slew,
+                               double dt)
     : controller_(settings.controller),
       reserve_(settings.reserve),
       slew_(slew * dt),
       max_per_shift_(kMaxDamping / (dt * dt)),
       fade_(std::exp(-dt / kMemory)),
-      held_(tools),
-      motion_(tools),
-      resisting_(tools, 0.0),
-      limited_(tools, 0) {
+      ports_(std::move(ports)) {
   const double shift = std::min(kMaxAcceleration * dt * dt, max_force > 0 ? settings.reserve / (2 * max_force) : 0.0);
   min_reach_ = {shift, shift / kLever, shift / kLever};
-  reach_.assign(tools, min_reach_);
+  for (Port* port : ports_) port->reach = min_reach_;
 }
 
-void PassivityGuard::observe(std::span<const PortMotion> motion) {
+void PassivityGuard::observe() {
   // What has cost energy is not forgotten until it is paid.
   const double fade = energy_ < -reserve_ / 2 ? 1.0 : fade_;
-  for (std::size_t t = 0; t < held_.size(); ++t) {
-    const PortForce& f = held_[t];
-    const PortMotion &m = motion[t], &before = motion_[t];
+  for (Port* port : ports_) {
+    const PortForce& f = port->held;
+    const PortMotion &m = port->motion, &before = port->last;
     energy_ -= f.force.dot(m.shift) + f.torque.dot(m.turn) + f.grip * m.opening;
-    Reach& r = reach_[t];
+    Port::Reach& r = port->reach;
     r.shift = grown(r.shift, fade, min_reach_.shift, (m.shift - before.shift).norm());
     r.turn = grown(r.turn, fade, min_reach_.turn, (m.turn - before.turn).norm());
     r.opening = grown(r.opening, fade, min_reach_.opening, std::abs(m.opening - before.opening));
     // What goes to and fro from tick to tick is no motion to resist: the next one would come back along it.
-    resisting_[t] = m.shift.dot(before.shift) > 0 ? max_per_shift_ * m.shift.norm() : 0.0;
-    motion_[t] = m;
+    port->resisting = m.shift.dot(before.shift) > 0 ? max_per_shift_ * m.shift.norm() : 0.0;
+    port->last = m;
   }
 }
 
-double PassivityGuard::risk(int tool, const PortForce& f) const {
-  const Reach& r = reach_[tool];
+double PassivityGuard::risk(const Port& port) const {
+  const PortForce& f = port.asked;
+  const Port::Reach& r = port.reach;
   const double size = f.force.norm();
-  const double next = work(f, motion_[tool]) + size * r.shift + f.torque.norm() * r.turn + std::abs(f.grip) * r.opening;
+  const double next = work(f, port.motion) + size * r.shift + f.torque.norm() * r.turn + std::abs(f.grip) * r.opening;
   return next > 0 ? next * (1 + size / (2 * slew_)) : next;
 }
 
-PassivityGuard::Outlook PassivityGuard::outlook(std::span<const PortForce> asked) const {
+PassivityGuard::Outlook PassivityGuard::outlook() const {
   Outlook sum;
-  for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!finite(asked[t])) continue;
-    const double r = risk(static_cast<int>(t), asked[t]);
+  for (const Port* port : ports_) {
+    if (!finite(port->asked)) continue;
+    const double r = risk(*port);
     (r > 0 ? sum.risk : sum.income) += std::abs(r);
   }
   return sum;
 }
 
-void PassivityGuard::control(std::span<PortForce> asked) {
-  std::ranges::fill(limited_, 0);
+void PassivityGuard::control() {
+  for (Port* port : ports_) port->limited = false;
   if (!controller_) return;
   const double left = energy_ + reserve_, spare = left - kForResisting * reserve_;
-  const Outlook before = outlook(asked);
+  const Outlook before = outlook();
   if (before.risk <= spare + before.income) return;
   const double affordable = affordable_resistance(left);
-  for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!finite(asked[t]) || !(risk(static_cast<int>(t), asked[t]) > 0)) continue;
-    limited_[t] = 1;
-    resisting_[t] *= affordable;
-    const double along = work(asked[t].force, motion_[t].shift);
+  for (Port* port : ports_) {
+    if (!finite(port->asked) || !(risk(*port) > 0)) continue;
+    port->limited = true;
+    port->resisting *= affordable;
+    const double along = work(port->asked.force, port->motion.shift);
     // What stands against the motion may go on doing so, and what pushes makes good what has been taken too much.
-    const double against = along < 0 ? -along / motion_[t].shift.norm() : 0.0;
-    if (along <= 0 || left >= 0) resisting_[t] = std::min(resisting_[t], against);
+    const double against = along < 0 ? -along / port->motion.shift.norm() : 0.0;
+    if (along <= 0 || left >= 0) port->resisting = std::min(port->resisting, against);
   }
-  damp_pushes(asked, before.risk - before.income - spare);
-  shrink(asked, spare);
-  resist(asked);
+  damp_pushes(before.risk - before.income - spare);
+  shrink(spare);
+  resist();
 }
 
 // A damper d that is turned round within the reach r gives at most d r^2 / 4. After a jump that no one could foresee it
@@ -127,61 +126,64 @@ void PassivityGuard::control(std::span<PortForce> asked) {
 double PassivityGuard::affordable_resistance(double left) const {
   if (left < 0) return 1;
   double worst = 0;
-  for (const Reach& r : reach_)
-    worst += max_per_shift_ * r.shift * r.shift / 4 * (1 + max_per_shift_ * r.shift / (2 * slew_));
+  for (const Port* port : ports_) {
+    const double shift = port->reach.shift;
+    worst += max_per_shift_ * shift * shift / 4 * (1 + max_per_shift_ * shift / (2 * slew_));
+  }
   const double kept = std::min(left, kForResisting * reserve_);
   return worst > kept ? kept / worst : 1;
 }
 
 // Takes away what pushes along its motion, as far as energy is missing.
-void PassivityGuard::damp_pushes(std::span<PortForce> asked, double missing) {
+void PassivityGuard::damp_pushes(double missing) {
   double pushed = 0;
-  for (std::size_t t = 0; t < asked.size(); ++t)
-    if (limited_[t] && work(asked[t], motion_[t]) > 0) pushed += push(asked[t], motion_[t]);
+  for (const Port* port : ports_)
+    if (port->limited && work(port->asked, port->motion) > 0) pushed += push(port->asked, port->motion);
   if (!(pushed > 0)) return;
   const double share = std::min(1.0, missing / pushed);
-  for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!limited_[t] || !(work(asked[t], motion_[t]) > 0)) continue;
-    damp(asked[t].force, motion_[t].shift, share);
-    damp(asked[t].torque, motion_[t].turn, share);
-    if (work(asked[t].grip, motion_[t].opening) > 0) asked[t].grip *= 1 - share;
+  for (Port* port : ports_) {
+    PortForce& asked = port->asked;
+    if (!port->limited || !(work(asked, port->motion) > 0)) continue;
+    damp(asked.force, port->motion.shift, share);
+    damp(asked.torque, port->motion.turn, share);
+    if (work(asked.grip, port->motion.opening) > 0) asked.grip *= 1 - share;
   }
 }
 
 // Makes the forces so small that even a motion that turns round leaves the energy above -reserve.
-void PassivityGuard::shrink(std::span<PortForce> asked, double spare) {
-  const Outlook left = outlook(asked);
+void PassivityGuard::shrink(double spare) {
+  const Outlook left = outlook();
   if (left.risk <= spare + left.income) return;
   const double share = std::max(0.0, (spare + left.income) / left.risk);
-  for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!limited_[t] || !(risk(static_cast<int>(t), asked[t]) > 0)) continue;
-    asked[t].force *= share;
-    asked[t].torque *= share;
-    asked[t].grip *= share;
+  for (Port* port : ports_) {
+    if (!port->limited || !(risk(*port) > 0)) continue;
+    port->asked.force *= share;
+    port->asked.torque *= share;
+    port->asked.grip *= share;
   }
 }
 
-void PassivityGuard::resist(std::span<PortForce> asked) {
-  for (std::size_t t = 0; t < asked.size(); ++t) {
-    if (!limited_[t] || !(resisting_[t] > 0)) continue;
-    const Eigen::Vector3d along = motion_[t].shift.stableNormalized();
-    const double now = asked[t].force.dot(along);
-    if (now > -resisting_[t]) asked[t].force -= (now + resisting_[t]) * along;
+void PassivityGuard::resist() {
+  for (Port* port : ports_) {
+    if (!port->limited || !(port->resisting > 0)) continue;
+    const Eigen::Vector3d along = port->motion.shift.stableNormalized();
+    const double now = port->asked.force.dot(along);
+    if (now > -port->resisting) port->asked.force -= (now + port->resisting) * along;
   }
 }
 
 void PassivityGuard::state(State& s) {
   s.value(energy_);
-  for (std::size_t t = 0; t < held_.size(); ++t) {
-    s.value(held_[t].force);
-    s.value(held_[t].torque);
-    s.value(held_[t].grip);
-    s.value(motion_[t].shift);
-    s.value(motion_[t].turn);
-    s.value(motion_[t].opening);
-    s.value(reach_[t].shift);
-    s.value(reach_[t].turn);
-    s.value(reach_[t].opening);
+  for (Port* port : ports_) {
+    s.value(port->held.force);
+    s.value(port->held.torque);
+    s.value(port->held.grip);
+    s.value(port->last.shift);
+    s.value(port->last.turn);
+    s.value(port->last.opening);
+    s.value(port->reach.shift);
+    s.value(port->reach.turn);
+    s.value(port->reach.opening);
   }
 }
 

@@ -27,6 +27,23 @@ struct PortMotion {
 /// The motion between two poses of the tip frame.
 PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double opening);
 
+/// The port of one tool under the watch: what its tool and the guard say to each other within a tick, and what the
+/// guard remembers of it.
+struct Port {
+  /// By how much the next motion may differ from the last one.
+  struct Reach {
+    double shift = 0, turn = 0, opening = 0;  ///< [m], [rad], [rad]
+  };
+  PortMotion motion;     ///< of this tick, before PassivityGuard::observe()
+  PortForce asked;       ///< before PassivityGuard::control(), which leaves of it what may be given
+  PortForce held;        ///< what the hand really gets until the next tick
+  bool limited = false;  ///< by the last control()
+
+  PortMotion last;       ///< the motion that was observed before
+  Reach reach;
+  double resisting = 0;  ///< [N] that may stand against the motion whatever the energy is
+};
+
 /// Passivity observer and controller in the time domain (B. Hannaford and J.-H. Ryu, "Time-domain passivity control of
 /// haptic interfaces", IEEE Trans. Robotics and Automation 18(1), 2002) over the ports of all tools together: one tool
 /// may take out what another has put in.
@@ -51,51 +68,39 @@ class PassivityGuard : public Stateful<PassivityGuard> {
       0.05;                                ///< share of the reserve that is kept for resisting while all else is gone
   static constexpr double kStill = 1e-12;  ///< [m, rad] less is no motion
 
-  /// Of all tools together: the sum of the force limits [N] and the least slew limit [N/s]. The reach is
-  /// max_acceleration dt^2, or less where that times max_force were over half the reserve, or the largest change seen
-  /// lately.
-  PassivityGuard(const Passivity& settings, int tools, double max_force, double slew, double dt);
+  /// `ports`: of all tools, which outlive the guard. Of all together: the sum of the force limits [N] and the least slew
+  /// limit [N/s]. The reach is max_acceleration dt^2, or less where that times max_force were over half the reserve, or
+  /// the largest change seen lately.
+  PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double slew, double dt);
 
-  /// A tick begins: counts the energy of what hold() gave over this motion, one entry per tool.
-  void observe(std::span<const PortMotion> motion);
-  /// Damps and limits what is asked for, one entry per tool, where the energy could fall too low. Entries that are not
-  /// finite are left.
-  void control(std::span<PortForce> asked);
-  /// What the tool's hand really gets until the next tick.
-  void hold(int tool, const PortForce& given) { held_[tool] = given; }
+  /// A tick begins: counts the energy of what the ports held over their motion.
+  void observe();
+  /// Damps and limits what the ports ask for where the energy could fall too low. What is not finite is left.
+  void control();
 
-  double energy() const { return energy_; }                     ///< [J] put in by all tools; negative: taken out
-  bool limited(int tool) const { return limited_[tool] != 0; }  ///< by the last control()
+  double energy() const { return energy_; }  ///< [J] put in by all tools; negative: taken out
 
   /// Everything that the next tick depends on, as bytes.
   void state(State& s);
 
  private:
-  /// By how much the next motion may differ from the last one.
-  struct Reach {
-    double shift = 0, turn = 0, opening = 0;  ///< [m], [rad], [rad]
-  };
   /// Energy of all tools until the next tick [J]: at most taken out by some, surely put in by the others.
   struct Outlook {
     double risk = 0, income = 0;
   };
 
-  double risk(int tool, const PortForce& f) const;
-  Outlook outlook(std::span<const PortForce> asked) const;
+  double risk(const Port& port) const;
+  Outlook outlook() const;
   double affordable_resistance(double left) const;
-  void damp_pushes(std::span<PortForce> asked, double missing);
-  void shrink(std::span<PortForce> asked, double spare);
-  void resist(std::span<PortForce> asked);
+  void damp_pushes(double missing);
+  void shrink(double spare);
+  void resist();
 
   bool controller_;
   double reserve_, slew_, max_per_shift_, fade_,
       energy_ = 0;  ///< slew_ [N] per tick; max_per_shift_ [N/m] on the motion of a tick
-  Reach min_reach_;
-  std::vector<PortForce> held_;
-  std::vector<PortMotion> motion_;
-  std::vector<Reach> reach_;
-  std::vector<double> resisting_;  ///< [N] that may stand against the motion whatever the energy is
-  std::vector<std::uint8_t> limited_;
+  Port::Reach min_reach_;
+  std::vector<Port*> ports_;
 };
 
 }  // namespace palpate

@@ -21,23 +21,26 @@ using testing::BlockScene;
 constexpr double kDt = 1e-3;
 
 /// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
-struct Port {
-  explicit Port(bool controller = true, double reserve = 0.01)
-      : guard({.controller = controller, .reserve = reserve}, 1, 20, 1e5, kDt) {}
+struct OnePort {
+  explicit OnePort(bool controller = true, double reserve = 0.01)
+      : guard({.controller = controller, .reserve = reserve}, {&port}, 20, 1e5, kDt) {}
+  OnePort(const OnePort&) = delete;
+  OnePort& operator=(const OnePort&) = delete;
 
   PortForce tick(const Vector3d& to, const PortForce& asked) {
-    const PortMotion motion{.shift = to - at};
+    port.motion = {.shift = to - at};
     at = to;
-    guard.observe({&motion, 1});
+    guard.observe();
     least = std::min(least, guard.energy());
-    PortForce given = asked;
-    guard.control({&given, 1});
-    guard.hold(0, given);
-    limited += guard.limited(0);
-    return given;
+    port.asked = asked;
+    guard.control();
+    port.held = port.asked;
+    limited += port.limited;
+    return port.held;
   }
   Vector3d tick(const Vector3d& to, const Vector3d& force) { return tick(to, PortForce{.force = force}).force; }
 
+  Port port;
   PassivityGuard guard;
   Vector3d at = Vector3d::Zero();
   double least = 0;
@@ -45,7 +48,7 @@ struct Port {
 };
 
 TEST(Passivity, ASpringRoundAClosedPathGivesNoMoreThanItsSamplingDoes) {
-  Port port(false);
+  OnePort port(false);
   const Eigen::Matrix3d k = Vector3d(100, 250, 400).asDiagonal();
   double bound = 0;
   for (int i = 1; i <= 2000; ++i) {
@@ -60,20 +63,21 @@ TEST(Passivity, ASpringRoundAClosedPathGivesNoMoreThanItsSamplingDoes) {
 }
 
 TEST(Passivity, EnergyCountsTheForceThatWasHeldOverTheMotion) {
-  Port port;
+  OnePort port;
   port.tick({0, 0, 0}, Vector3d(0, 0, 2));
   port.tick({0, 0, -0.001}, Vector3d(0, 0, 50));
   EXPECT_NEAR(port.guard.energy(), 0.002, 1e-15) << "2 N over 1 mm against it, whatever comes next";
 }
 
 TEST(Passivity, TorqueAndGripCount) {
-  PassivityGuard guard({}, 1, 10, 1e5, kDt);
-  guard.hold(0, {.torque = {0, 0.1, 0}, .grip = 0.2});
+  Port port;
+  PassivityGuard guard({}, {&port}, 10, 1e5, kDt);
+  port.held = {.torque = {0, 0.1, 0}, .grip = 0.2};
   const Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d now = before;
   now.rotate(Eigen::AngleAxisd(-0.01, Vector3d::UnitY()));
-  const PortMotion motion = motion_between(before, now, 0.005);
-  guard.observe({&motion, 1});
+  port.motion = motion_between(before, now, 0.005);
+  guard.observe();
   EXPECT_NEAR(guard.energy(), 0.1 * 0.01 - 0.2 * 0.005, 1e-7);
 }
 
@@ -83,7 +87,7 @@ TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
   for (const double reserve : {0.001, 0.01, 0.1}) {
     for (const double strength : {0.5, 5.0, 20.0}) {
       for (const bool controller : {true, false}) {
-        Port port(controller, reserve);
+        OnePort port(controller, reserve);
         testing::Hand hand{.mass = 0.55, .damping = 6.5, .stiffness = 135};
         hand.at = {0.001, 0, 0};
         Vector3d force = Vector3d::Zero(), before = hand.at;
@@ -109,7 +113,7 @@ TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
 }
 
 TEST(Passivity, WhereEnergyIsAmpleNothingIsTouched) {
-  Port port(true, 1);
+  OnePort port(true, 1);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> any(-1, 1);
   const auto vector = [&] { return Vector3d(any(random), any(random), any(random)); };
@@ -124,7 +128,7 @@ TEST(Passivity, WhereEnergyIsAmpleNothingIsTouched) {
 // and fro.
 TEST(Passivity, AForceAgainstAMotionThatTurnsRoundTakesOutNoMoreThanTheReserve) {
   for (const bool controller : {true, false}) {
-    Port port(controller);
+    OnePort port(controller);
     for (int i = 0; i < 1000; ++i) port.tick({i % 2 ? 2e-5 : 0, 0, 0}, Vector3d(i % 2 ? -10 : 10, 0, 0));
     if (controller)
       EXPECT_GE(port.least, -0.01);
@@ -135,7 +139,7 @@ TEST(Passivity, AForceAgainstAMotionThatTurnsRoundTakesOutNoMoreThanTheReserve) 
 
 TEST(Passivity, AForceThatWasTakenAwayEarnsItsReturn) {
   for (const double speed : {0.002, 0.02, 0.2}) {
-    Port port;
+    OnePort port;
     for (int i = 0; i < 1000; ++i) port.tick({i % 2 ? 2e-5 : 0, 0, 0}, Vector3d(i % 2 ? -10 : 10, 0, 0));
     double travelled = 0;
     for (Vector3d given = Vector3d::Zero(); given.x() > -5 + 1e-12; travelled += speed * kDt) {
@@ -156,7 +160,8 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
   constexpr double turn = PassivityGuard::kMaxAcceleration * kDt * kDt;
   for (const double slew : {1e5, 2e4})
     for (int run = 0; run < 60; ++run) {
-      PassivityGuard guard({.controller = true, .reserve = 0.01}, 1, 20, slew, kDt);
+      Port port;
+      PassivityGuard guard({.controller = true, .reserve = 0.01}, {&port}, 20, slew, kDt);
       SafetyChain chain(20, slew, kDt);
       Vector3d motion = Vector3d::Zero(), given = Vector3d::Zero(), asked = Vector3d::Zero();
       double least = 0;
@@ -165,37 +170,39 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
         const Vector3d drawn = vector();
         motion += 0.58 * turn * ((1 - malice) * drawn + malice * std::sqrt(3.0) * given.stableNormalized());
         if (motion.norm() > 5e-4) motion *= 5e-4 / motion.norm();
-        const PortMotion m{.shift = motion};
-        guard.observe({&m, 1});
+        port.motion = {.shift = motion};
+        guard.observe();
         least = std::min(least, guard.energy());
         if (i % (1 + run % 7) == 0)
           asked = run % 2 ? Vector3d(12 * vector()) : Vector3d(-20 * motion.stableNormalized());
-        PortForce f{.force = asked};
-        guard.control({&f, 1});
-        chain.apply(f.force, f.torque, true);
-        guard.hold(0, f);
-        given = f.force;
+        port.asked = {.force = asked};
+        guard.control();
+        port.held = port.asked;
+        chain.apply(port.held.force, port.held.torque, true);
+        given = port.held.force;
       }
       EXPECT_GE(least, -0.01) << "slew " << slew << ", run " << run;
     }
 }
 
 TEST(Passivity, OneToolMayTakeOutWhatAnotherPutIn) {
-  PassivityGuard guard({.controller = true, .reserve = 1e-3}, 2, 20, 1e5, kDt);
+  Port giving, taking;
+  PassivityGuard guard({.controller = true, .reserve = 1e-3}, {&giving, &taking}, 20, 1e5, kDt);
   for (int i = 0; i < 1000; ++i) {
-    const std::array motion{PortMotion{.shift = {1e-4, 0, 0}}, PortMotion{.shift = {1e-4, 0, 0}}};
-    guard.observe(motion);
-    std::array asked{PortForce{.force = {-2, 0, 0}}, PortForce{.force = {1.99, 0, 0}}};
-    guard.control(asked);
-    ASSERT_FALSE(guard.limited(1)) << i;
-    for (int t = 0; t < 2; ++t) guard.hold(t, asked[t]);
+    giving.motion = taking.motion = {.shift = {1e-4, 0, 0}};
+    guard.observe();
+    giving.asked = {.force = {-2, 0, 0}};
+    taking.asked = {.force = {1.99, 0, 0}};
+    guard.control();
+    ASSERT_FALSE(taking.limited) << i;
+    for (Port* port : {&giving, &taking}) port->held = port->asked;
   }
   EXPECT_NEAR(guard.energy(), 999 * 0.01 * 1e-4, 1e-12);
 }
 
 TEST(Passivity, StandingStillAndTinyMotionGiveNoNonsense) {
   for (const double step : {0.0, 1e-300, 1e-160, 1e-13, 1e-11}) {
-    Port port(true, 1e-30);
+    OnePort port(true, 1e-30);
     for (int i = 0; i < 100; ++i) {
       const Vector3d to(step * (i % 2), 0, 0);
       const Vector3d given = port.tick(to, Vector3d(10, -4, 3));
@@ -203,14 +210,14 @@ TEST(Passivity, StandingStillAndTinyMotionGiveNoNonsense) {
       ASSERT_LE(given.norm(), Vector3d(10, -4, 3).norm() + 1e-12);
     }
   }
-  Port port;
+  OnePort port;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  port.guard.hold(0, {.force = {5, 0, 0}});
-  const PortMotion motion{.shift = {0.01, 0, 0}};
-  port.guard.observe({&motion, 1});
-  std::array asked{PortForce{.force = {nan, 0, 0}}};
-  port.guard.control(asked);
-  EXPECT_FALSE(port.guard.limited(0)) << "what is not finite is the safety chain's";
+  port.port.held = {.force = {5, 0, 0}};
+  port.port.motion = {.shift = {0.01, 0, 0}};
+  port.guard.observe();
+  port.port.asked = {.force = {nan, 0, 0}};
+  port.guard.control();
+  EXPECT_FALSE(port.port.limited) << "what is not finite is the safety chain's";
   EXPECT_NEAR(port.guard.energy(), -0.05, 1e-15);
 }
 
@@ -224,7 +231,7 @@ struct DelayedWall {
     int limited;
   };
   Result run(bool controller) const {
-    Port port(controller);
+    OnePort port(controller);
     testing::Hand hand{.mass = 0.55, .damping = 6.5, .stiffness = 135};
     hand.at = {0, 0, 0.01};
     port.at = hand.at;
@@ -324,7 +331,7 @@ TEST_F(PassivityInTheStep, ASavedStateGoesOnBitForBitWhileDamped) {
 }
 
 TEST(Passivity, NothingIsAllocated) {
-  Port port(true, 1e-9);
+  OnePort port(true, 1e-9);
   const long before = allocations();
   for (int i = 0; i < 1000; ++i) port.tick({1e-4 * i, 0, 0}, Vector3d(3, 1, 0));
   EXPECT_EQ(allocations() - before, 0);

@@ -82,16 +82,14 @@ bool CatheterPart::move(std::span<const MovingTool> tools, std::span<ToolLoad> l
   return std::ranges::all_of(body_->positions(), [](const Eigen::Vector3d& x) { return x.allFinite(); });
 }
 
-void CatheterPart::finish(std::span<const double> force, double time) {
+void CatheterPart::finish(double max_force, double time) {
   task_.enter_depth(body_->inserted(), time);
   const int touching = body_->wall_contacts();
   task_.wall_contacts += static_cast<std::uint64_t>(std::max(0, touching - wall_contacts_));
   wall_contacts_ = touching;
+  task_.max_force = std::max(task_.max_force, max_force);
   bool held = false;
-  for (std::size_t t = 0; t < force.size(); ++t) {
-    task_.max_force = std::max(task_.max_force, force[t]);
-    held |= body_->holds(static_cast<int>(t));
-  }
+  for (std::size_t t = 0; t < is_forceps_.size(); ++t) held |= body_->holds(static_cast<int>(t));
   if (held) task_.held_s += dt_;
 }
 

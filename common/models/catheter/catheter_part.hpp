@@ -26,7 +26,7 @@ class CatheterPart : public BodyPart {
   void tell(BodyMessage& message) override;
   std::string introduction() const override;
   bool move(std::span<const MovingTool> tools, std::span<ToolLoad> loads) override;
-  void finish(std::span<const double> force, double time) override;
+  void finish(double max_force, double time) override;
   BetweenJaws between(const OpenJaws& jaws) override;
   void grasp(const OpenJaws& jaws) override;
   void let_go(int tool) override { body_->let_go(tool); }
