@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "common/describe/state.hpp"
+
 namespace palpate {
 
 enum class Integrator { rk4, semi_implicit, forward_euler };
@@ -21,7 +23,7 @@ class Coupling {
 /// Moving tissue of one body: M u'' + a M u' + f_elastic(u) = load. Nodes and tetrahedra are those of the ElasticMesh
 /// it was built from. A node without a tetrahedron and without added mass (see couple) stands still and takes no force.
 /// Displacements of fixed axes stay zero. All arrays are taken at construction: step() and remove() allocate nothing.
-class DynamicModel {
+class DynamicModel : public Stateful<DynamicModel> {
  public:
   virtual ~DynamicModel() = default;
 
@@ -54,9 +56,9 @@ class DynamicModel {
   virtual double energy() const = 0;
   virtual int nodes() const = 0;
 
-  /// u and v of all nodes as plain bytes, for keyframes and state hashes.
-  virtual std::span<const std::byte> state() const = 0;
-  virtual void set_state(std::span<const std::byte> state) = 0;
+  /// What it remembers from step to step, u and v of all nodes first: for keyframes and state hashes. Its size never
+  /// changes.
+  virtual void state(State& s) = 0;
 };
 
 /// Largest stable step [s] for angular frequencies up to `bound` [rad/s] and mass-proportional damping a [1/s].

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "common/dynamics/dynamic_model.hpp"
@@ -9,13 +10,21 @@ namespace palpate {
 
 Integrator integrator_of(const Dynamic& motion);
 
-/// Moving tissue of elements: tensors, or elements that turn, in the precision that is asked for.
+/// Makes a model of one body on a mesh.
+using MakeModel = std::function<std::unique_ptr<DynamicModel>(const ElasticMesh& mesh)>;
+
+/// A Model<float> or Model<double>, as `motion` asks, made from `mesh`, the integrator, the damping and `more`.
+template <template <class> class Model, class... More>
+std::unique_ptr<DynamicModel> make_in_precision(const ElasticMesh& mesh, const Dynamic& motion, const More&... more) {
+  const auto make = [&]<class Scalar>(Scalar) -> std::unique_ptr<DynamicModel> {
+    auto model = std::make_unique<Model<Scalar>>(mesh, integrator_of(motion), motion.damping, more...);
+    model->set_gravity(motion.gravity);
+    return model;
+  };
+  return motion.precision == "double" ? make(double{}) : make(float{});
+}
+
+/// Moving tissue of elements: tensors, or elements that turn.
 std::unique_ptr<DynamicModel> make_element_model(const ElasticMesh& mesh, const Dynamic& motion);
-
-/// Moving tissue of springs along the edges.
-std::unique_ptr<DynamicModel> make_spring_model(const ElasticMesh& mesh, const Dynamic& motion);
-
-/// One of these.
-using MakeDynamicModel = std::unique_ptr<DynamicModel> (*)(const ElasticMesh& mesh, const Dynamic& motion);
 
 }  // namespace palpate

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "common/fem/elasticity.hpp"
@@ -156,12 +155,9 @@ double Staged<Scalar>::energy() const {
 }
 
 template <class Scalar>
-void Staged<Scalar>::set_state(std::span<const std::byte> state) {
-  if (state.size() != state_.size() * sizeof(Scalar))
-    throw std::runtime_error(fmt::format("a state of {} bytes is not one of this model, which has {}", state.size(),
-                                         state_.size() * sizeof(Scalar)));
-  std::memcpy(state_.data(), state.data(), state.size());
-  is_present_ = false;
+void Staged<Scalar>::state(State& s) {
+  s.all(state_);
+  if (s.restoring()) is_present_ = false;
 }
 
 /// Every force on the nodes at displacements `u`, damping excluded.
@@ -190,12 +186,18 @@ void Staged<Scalar>::step(double dt) {
     runge_kutta(static_cast<Scalar>(dt));
   else
     euler(static_cast<Scalar>(dt), integrator_ == Integrator::forward_euler);
-  is_present_ = false;
+  end_step(dt);
 }
 
 template <class Scalar>
 void Staged<Scalar>::step_semi_implicit(double dt) {
   euler(static_cast<Scalar>(dt), false);
+  end_step(dt);
+}
+
+template <class Scalar>
+void Staged<Scalar>::end_step(double dt) {
+  remember(u(), static_cast<Scalar>(dt));
   is_present_ = false;
 }
 

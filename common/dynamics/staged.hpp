@@ -32,8 +32,8 @@ class Staged : public DynamicModel {
   Eigen::Vector3d elastic_force(int node) const final;
   double energy() const final;
   int nodes() const final { return static_cast<int>(mass_.size()); }
-  std::span<const std::byte> state() const final { return std::as_bytes(std::span(state_)); }
-  void set_state(std::span<const std::byte> state) final;
+  /// A model with memory of its own adds it to this.
+  void state(State& s) override;
 
   bool alive(int tetrahedron) const { return alive_[tetrahedron]; }
 
@@ -50,6 +50,8 @@ class Staged : public DynamicModel {
   virtual double elastic_energy() const = 0;
   /// Takes one tetrahedron out of the elastic forces; alive() says so already.
   virtual void take_out(int tetrahedron) = 0;
+  /// At the end of a step of `dt` [s], which moved the nodes to `u`: what the model remembers beside them goes on.
+  virtual void remember(const Scalar* /*u*/, Scalar /*dt*/) {}
 
   /// The model's element bounds [rad^2/s^2], one per tetrahedron; the largest of the remaining ones counts.
   void set_element_bounds(std::vector<double> square) { element_bound_ = std::move(square); }
@@ -73,6 +75,7 @@ class Staged : public DynamicModel {
   void add_coupling(const Scalar* u);
   void runge_kutta(Scalar dt);
   void euler(Scalar dt, bool forward);
+  void end_step(double dt);
 
   Integrator integrator_;
   Scalar damping_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <stdexcept>
 #include <type_traits>
 
 namespace palpate {
@@ -216,13 +214,6 @@ double TensorMass<Scalar>::energy() const {
     if (elements_.alive(t)) sum += elements_.energy(t, displacements(t));
   for (int n = 0; n < nodes(); ++n) sum += 0.5 * mass(n) * velocity(n).squaredNorm();
   return sum;
-}
-
-template <class Scalar>
-void TensorMass<Scalar>::set_state(std::span<const std::byte> state) {
-  if (state.size() != this->state().size())
-    throw std::runtime_error("the state of a tensor-mass body belongs to another mesh or precision");
-  std::memcpy(motion_.data(), state.data(), state.size());
 }
 
 template <class Scalar>

@@ -37,8 +37,7 @@ class TensorMass final : public DynamicModel {
   double energy() const override;
   int nodes() const override { return static_cast<int>(row_.size()); }
 
-  std::span<const std::byte> state() const override { return std::as_bytes(std::span(motion_)); }
-  void set_state(std::span<const std::byte> state) override;
+  void state(State& s) override { s.all(motion_); }
 
   /// The tensors in use [N/m], as stored. An edge that does not exist has zero.
   Eigen::Matrix3d edge_tensor(int i, int j) const;

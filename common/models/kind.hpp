@@ -103,7 +103,6 @@ std::unique_ptr<BodyShape> make_shape(const MovingSpec& body, const Archive& arc
 /// make_organ(spec, archive, settings): the body as the deformation node advances it; null for a body that the haptic
 /// step owns. Throws std::runtime_error naming the body if the scene's step is not stable.
 std::unique_ptr<DynamicOrgan> make_organ(const NamedSpec& body, const Archive& archive, const StepSettings& settings);
-std::unique_ptr<DynamicOrgan> make_organ(const MovingSpec& body, const Archive& archive, const StepSettings& settings);
 
 // Bodies that are led into others.
 

@@ -177,9 +177,9 @@ TEST(SpringMass, FixedAxesStandStillAndStateRestoresTheMotion) {
   SpringMass<float> first(body.mesh, Integrator::semi_implicit, 2), second(body.mesh, Integrator::semi_implicit, 2);
   for (auto* model : {&first, &second}) model->set_gravity({1, 0, -9.81});
   for (int i = 0; i < 50; ++i) first.step(1e-4);
-  second.set_state(first.state());
+  second.restore(testing::saved(first).data());
   for (int i = 0; i < 50; ++i) first.step(1e-4), second.step(1e-4);
-  EXPECT_EQ(std::memcmp(first.state().data(), second.state().data(), first.state().size()), 0);
+  EXPECT_EQ(testing::saved(first), testing::saved(second));
   for (int n = 0; n < body.mesh.nodes(); ++n) {
     if (body.mesh.fixed[n][2]) {
       EXPECT_EQ(first.displacement(n), Vector3d::Zero());
@@ -187,7 +187,6 @@ TEST(SpringMass, FixedAxesStandStillAndStateRestoresTheMotion) {
       EXPECT_NE(first.displacement(n), Vector3d::Zero());
     }
   }
-  EXPECT_THROW(second.set_state(first.state().first(8)), std::runtime_error);
 }
 
 class Anchor : public Coupling {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/dynamics/spring_mass.hpp"
 #include "tools/rig/example_bodies.hpp"
 
 namespace palpate {
@@ -25,9 +26,10 @@ TEST(BodyOfAnyKind, SaysHowItMoves) {
   ASSERT_TRUE(find_motion(moving));
   motion_of(moving).damping = 3;
   EXPECT_EQ(std::get<SpringMassSpec>(moving).dynamic.damping, 3);
-  EXPECT_EQ(model_maker(moving), make_spring_model);
+  const ElasticMesh mesh = elastic_mesh(precompute_on(moving, small_block_mesh()));
+  EXPECT_TRUE(dynamic_cast<SpringMass<float>*>(make_model(moving, mesh).get()));
   EXPECT_FALSE(find_motion(still));
-  EXPECT_EQ(model_maker(still), nullptr);
+  EXPECT_EQ(make_model(still, mesh), nullptr);
   EXPECT_THROW(precompute_on(CatheterSpec{}, small_block_mesh()), std::logic_error);
 }
 

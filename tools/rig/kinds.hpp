@@ -2,7 +2,6 @@
 #include <concepts>
 #include <stdexcept>
 
-#include "common/dynamics/make_model.hpp"
 #include "common/models/body.hpp"
 #include "common/models/hybrid/precompute.hpp"
 #include "common/models/moving/precompute.hpp"
@@ -63,18 +62,12 @@ inline const Dynamic& motion_of(const Body& body) {
   return *find_motion(body);
 }
 
-/// Makes the model of moving tissue; null for a body that does not move.
-inline MakeDynamicModel maker_of(const NamedSpec&) {
+/// The model of moving tissue on a mesh; null for a body that does not move.
+inline std::unique_ptr<DynamicModel> make_model(const NamedSpec&, const ElasticMesh&) {
   return nullptr;
 }
-inline MakeDynamicModel maker_of(const MovingSpec&) {
-  return make_element_model;
-}
-inline MakeDynamicModel maker_of(const SpringMassSpec&) {
-  return make_spring_model;
-}
-inline MakeDynamicModel model_maker(const Body& body) {
-  return std::visit([](const auto& spec) { return maker_of(spec); }, body);
+inline std::unique_ptr<DynamicModel> make_model(const Body& body, const ElasticMesh& mesh) {
+  return std::visit([&](const auto& spec) { return make_model(spec, mesh); }, body);
 }
 
 /// The archive of a body on a mesh of tetrahedra that is at hand, a hybrid's parts being of one mesh. Throws as the

@@ -28,7 +28,7 @@ constexpr const char* kPrecisions[] = {"single", "double"};
 double bound_of(const Scene& scene, const Archive& archive) {
   const Body& body = scene.bodies[0];
   const Dynamic& motion = motion_of(body);
-  const auto model = model_maker(body)(elastic_mesh(archive), motion);
+  const auto model = make_model(body, elastic_mesh(archive));
   return max_step(integrator_of(motion), model->frequency_bound(), motion.damping);
 }
 
@@ -39,7 +39,7 @@ Result pluck(const Scene& scene, double step, int count) {
   Scene asked = scene;
   moving_block_of(asked).dynamic.step = step;
   (void)PressRig(asked, {archive});  // refuses beyond the bound
-  const auto model = model_maker(scene.bodies[0])(elastic_mesh(archive), motion_of(scene.bodies[0]));
+  const auto model = make_model(scene.bodies[0], elastic_mesh(archive));
   double strongest = 0, first = 0, last = 0;
   for (int n = 0; n < model->nodes(); ++n)
     if (model->mass(n) > 0)
@@ -116,7 +116,7 @@ std::vector<Point> cut_points(const Extent& extent) {
     points.push_back({fmt::format("cut down {}", kind), "tetrahedra left", "1 and 0", [body = whole.bodies[0]] {
                         const Archive archive = precompute_on(body, small_block_mesh(2));
                         const Dynamic& motion = motion_of(body);
-                        const auto tissue = model_maker(body)(elastic_mesh(archive), motion);
+                        const auto tissue = make_model(body, elastic_mesh(archive));
                         const double step = 0.5 * max_step(integrator_of(motion), tissue->frequency_bound(), 60);
                         const int count = elastic_mesh(archive).tetrahedra.size();
                         Result r{.note = {}};

@@ -127,7 +127,8 @@ std::size_t owner_bytes(const NamedSpec&, const Scene& scene, const std::vector<
 
 std::size_t owner_bytes(const MovingSpec& spec, const Scene& scene, const std::vector<Archive>& archives) {
   const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
-  return bytes_of([&] { return DynamicOrgan(archives[0], spec, settings, model_maker(scene.bodies[0])); });
+  const auto make = [&](const ElasticMesh& mesh) { return make_model(scene.bodies[0], mesh); };
+  return bytes_of([&] { return DynamicOrgan(archives[0], spec, settings, make); });
 }
 
 }  // namespace palpate::study

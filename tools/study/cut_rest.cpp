@@ -72,9 +72,10 @@ StaticProblem without(const SolidCase& solid, const std::vector<int>& slot) {
 /// Displacements per mesh node once the model rests.
 Field rest_of(const Archive& archive, const Body& body, const std::vector<int>& slot, const Field& load,
               std::vector<double>& seconds) {
-  Dynamic motion = motion_of(body);
+  Body damped = body;
+  Dynamic& motion = motion_of(damped);
   motion.damping = std::max(60.0, motion.damping);
-  const auto model = model_maker(body)(elastic_mesh(archive), motion);
+  const auto model = make_model(damped, elastic_mesh(archive));
   model->remove(slot);
   for (int n = 0; n < archive.surface.size(); ++n) model->set_load(n, load[archive.surface.node_number[n]]);
   const double step = 0.9 * max_step(integrator_of(motion), model->frequency_bound(), motion.damping);

@@ -2,8 +2,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/dynamics/spec.hpp"
-#include "common/models/kind.hpp"
+#include "common/models/moving_kind.hpp"
 
 namespace palpate {
 
@@ -43,6 +42,8 @@ inline void describe(Description& d, HybridSpec& b) {
 
 ArchiveJob archive_job(const HybridSpec& body, const Progress& progress);
 
-void check(const HybridSpec& body, const CheckSettings& settings, CheckReport& report);
+inline bool has_own_mesh(const HybridSpec& body) {
+  return !body.hybrid.mesh.empty();
+}
 
 }  // namespace palpate

@@ -1,5 +1,3 @@
-#include "common/models/moving/check.hpp"
-
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -12,8 +10,8 @@
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
-#include "common/models/kind.hpp"
-#include "common/models/moving/precompute.hpp"
+#include "common/models/moving_kind.hpp"
+#include "common/models/solid/check.hpp"
 
 namespace palpate {
 namespace {
@@ -51,7 +49,7 @@ std::unique_ptr<HybridPart> make_rest(const MovingSpec& body, const Archive& arc
 }
 
 void say_step(const MovingSpec& body, const MovingKind& kind, const Archive& archive, CheckReport& report) {
-  const auto model = kind.make_model(elastic_mesh(archive), body.dynamic);
+  const auto model = kind.make_model(elastic_mesh(archive));
   const auto rest = make_rest(body, archive, 0);
   if (rest) rest->couple(*model);
   const double bound = model->frequency_bound();
@@ -97,7 +95,7 @@ std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, c
   };
   const ElasticMesh mesh = elastic_mesh(archive);
   measured();
-  const auto model = kind.make_model(mesh, body.dynamic);
+  const auto model = kind.make_model(mesh);
   add("deform_node", "masses, tensors and motion", measured());
   const auto rest = make_rest(body, archive, settings.contact.friction);
   if (rest) add("deform_node", "quasi-static part", measured());
@@ -117,7 +115,8 @@ std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, c
 void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, CheckReport& report) {
   const CheckedSolid solid = load_solid(body);
   const auto stored = settings.stored(ArchivePart::surface);
-  const Archive archive = stored ? *stored : kind.precompute();
+  const Progress silent;
+  const Archive archive = stored ? *stored : kind.archive_job(silent)();
   check_solid(body, kind.name, solid, settings, report);
   say_extent(kind, solid.mesh, archive, report);
   const Dynamic& d = body.dynamic;
@@ -131,6 +130,10 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
+}
+
+void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report) {
+  report.warnings.insert(report.warnings.end(), sentences.begin(), sentences.end());
 }
 
 std::vector<std::string> locking_warnings(const MovingSpec& body) {

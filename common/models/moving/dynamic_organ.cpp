@@ -8,10 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/dynamics/make_model.hpp"
 #include "common/geometry/triangle.hpp"
 #include "common/mesh/normals.hpp"
-#include "common/models/kind.hpp"
+#include "common/models/moving_kind.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/jaws.hpp"
 
@@ -32,13 +31,13 @@ double bucket_size(const ContactSpec& contact, const ElasticMesh& mesh) {
 }  // namespace
 
 DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings,
-                           MakeDynamicModel make)
+                           const MakeModel& make)
     : name_(body.name),
       mesh_(elastic_mesh(archive)),
       topology_(mesh_.tetrahedra, mesh_.nodes()),
       shown_(archive.surface.triangles, topology_),
       surface_(topology_, mesh_.rest, bucket_size(settings.contact, mesh_)),
-      model_(make(mesh_, body.dynamic)),
+      model_(make(mesh_)),
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
@@ -263,10 +262,15 @@ void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eig
   vertex_normals(position, shown_.triangles(topology_), normal);
 }
 
+std::vector<std::uint8_t> DynamicOrgan::motion() const {
+  std::vector<std::uint8_t> bytes(model_->state_size());
+  model_->save(bytes.data());
+  return bytes;
+}
+
 DynamicOrgan::Memory DynamicOrgan::memory() const {
-  const auto motion = model_->state();
   return {removed_,
-          {motion.begin(), motion.end()},
+          motion(),
           holding_,
           {surface_.previous().begin(), surface_.previous().end()},
           {surface_.positions().begin(), surface_.positions().end()}};
@@ -286,7 +290,7 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 
 // Whether what was read can be of this body and these tools.
 bool DynamicOrgan::fits(const Memory& m) const {
-  const bool sizes = m.motion.size() == model_->state().size() && m.holding.size() == holding_.size() &&
+  const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == holding_.size() &&
                      m.previous.size() == position_.size() && m.present.size() == position_.size();
   return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
 }
@@ -299,7 +303,7 @@ void DynamicOrgan::recall(const Memory& m) {
   surface_.follow();
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
-  model_->set_state(m.motion);
+  model_->restore(m.motion.data());
   holding_ = m.holding;
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
@@ -308,7 +312,7 @@ void DynamicOrgan::recall(const Memory& m) {
 }
 
 std::uint64_t DynamicOrgan::hash() const {
-  const auto state = model_->state();
+  const std::vector<std::uint8_t> state = motion();
   return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed_.data(), removed_.size() * sizeof(int));
 }
 
@@ -316,8 +320,13 @@ std::unique_ptr<DynamicOrgan> make_organ(const NamedSpec&, const Archive&, const
   return nullptr;
 }
 
-std::unique_ptr<DynamicOrgan> make_organ(const MovingSpec& body, const Archive& archive, const StepSettings& settings) {
-  return std::make_unique<DynamicOrgan>(archive, body, settings, make_element_model);
+std::unique_ptr<DynamicOrgan> make_moving_organ(const MovingSpec& body, const Archive& archive,
+                                                const StepSettings& settings, const MakeModel& make) {
+  return std::make_unique<DynamicOrgan>(archive, body, settings, make);
+}
+
+std::unique_ptr<DynamicModel> make_model(const MovingSpec& body, const ElasticMesh& mesh) {
+  return make_element_model(mesh, body.dynamic);
 }
 
 }  // namespace palpate

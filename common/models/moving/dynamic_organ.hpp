@@ -37,7 +37,7 @@ struct ToolInTick {
 class DynamicOrgan {
  public:
   /// Throws std::runtime_error naming the body if the scene's step is not stable, with the bound.
-  DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings, MakeDynamicModel make);
+  DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings, const MakeModel& make);
   ~DynamicOrgan();
 
   /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
@@ -92,10 +92,11 @@ class DynamicOrgan {
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
     std::vector<int> removed;
-    std::vector<std::byte> motion;
+    std::vector<std::uint8_t> motion;
     std::vector<char> holding;
     std::vector<Eigen::Vector3d> previous, present;
   };
+  std::vector<std::uint8_t> motion() const;  ///< what the model remembers
   Memory memory() const;
   bool fits(const Memory& memory) const;
   void recall(const Memory& memory);

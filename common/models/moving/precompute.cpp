@@ -8,6 +8,7 @@
 
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/moving_kind.hpp"
 #include "common/models/solid/precompute.hpp"
 
 namespace palpate {

@@ -24,7 +24,4 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
 Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,
                           const Progress& progress = {});
 
-/// Loads its mesh.
-ArchiveJob moving_archive_job(const MovingSpec& body, std::string_view kind, const Progress& progress);
-
 }  // namespace palpate

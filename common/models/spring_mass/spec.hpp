@@ -1,8 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "common/dynamics/spec.hpp"
-#include "common/models/kind.hpp"
+#include "common/models/moving_kind.hpp"
 
 namespace palpate {
 
@@ -17,12 +16,8 @@ inline void describe(Description& d, SpringMassSpec& b) {
             "corotational is for elements, and springs turn with the tissue by themselves");
 }
 
-ArchiveJob archive_job(const SpringMassSpec& body, const Progress& progress);
+std::unique_ptr<DynamicModel> make_model(const SpringMassSpec& body, const ElasticMesh& mesh);
 
-std::unique_ptr<DynamicOrgan> make_organ(const SpringMassSpec& body, const Archive& archive,
-                                         const StepSettings& settings);
-
-void check(const SpringMassSpec& body, const CheckSettings& settings, CheckReport& report);
 /// Springs have a Poisson's ratio of their own.
 inline std::vector<std::string> locking_warnings(const SpringMassSpec&) {
   return {};

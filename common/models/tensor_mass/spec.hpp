@@ -1,8 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "common/dynamics/spec.hpp"
-#include "common/models/kind.hpp"
+#include "common/models/moving_kind.hpp"
 
 namespace palpate {
 
@@ -14,9 +13,5 @@ struct TensorMassSpec : MovingSpec {
 inline void describe(Description& d, TensorMassSpec& b) {
   describe(d, static_cast<MovingSpec&>(b));
 }
-
-ArchiveJob archive_job(const TensorMassSpec& body, const Progress& progress);
-
-void check(const TensorMassSpec& body, const CheckSettings& settings, CheckReport& report);
 
 }  // namespace palpate
