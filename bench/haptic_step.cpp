@@ -48,7 +48,7 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
   constexpr double radius = 0.1;
   const Eigen::Vector3d centre(0.007, 0, 0);
   Tool tool = scene.tools[0];
-  tool.probe()->radius = radius;
+  std::get<ProbeSpec>(tool.end).radius = radius;
   tool.shaft_length = 0.5 * radius;
   tool.up = Eigen::Vector3d::UnitZ();
   scene.tools.clear();

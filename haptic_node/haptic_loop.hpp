@@ -14,7 +14,7 @@
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/sim/haptic_step.hpp"
-#include "haptic_node/device.hpp"
+#include "haptic_node/bus_devices.hpp"
 #include "haptic_node/local_feed.hpp"
 #include "haptic_node/publisher.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "common/mesh/normals.hpp"
 #include "common/models/appearance.hpp"
+#include "common/tool/instrument.hpp"
 #include "render_node/backdrop.hpp"
 #include "render_node/straighten.hpp"
 
@@ -86,10 +87,11 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
     instrument.view.shaft_radius = tool.shaft_radius;
     instrument.view.shaft_length = tool.shaft_length;
-    if (const ProbeSpec* probe = tool.probe()) instrument.view.tip_radius = probe->radius;
-    if (const ForcepsSpec* forceps = tool.forceps()) {
-      instrument.view.jaw_length = forceps->jaws.length;
-      instrument.view.jaw_radius = forceps->jaws.radius;
+    const EndAbilities can = abilities_of(tool);
+    if (can.ball) instrument.view.tip_radius = *can.ball;
+    if (can.turning) {
+      instrument.view.jaw_length = can.turning->length;
+      instrument.view.jaw_radius = can.turning->radius;
     }
     tools_.push_back(instrument);
   }

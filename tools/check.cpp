@@ -11,6 +11,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
+#include "common/tool/instrument.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/tool_warnings.hpp"
@@ -102,21 +103,27 @@ void print_sections(const Scene& scene) {
              human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
 }
 
-/// Sentences on what is left out where no body of the scene is of a kind, in the order of the table of kinds.
-std::vector<std::string_view> absences(const Scene& scene) {
+std::vector<DeviceSpec> devices_of(const Scene& scene) {
+  std::vector<DeviceSpec> devices;
+  for (const Tool& tool : scene.tools) devices.push_back(tool.device);
+  return devices;
+}
+
+/// Sentences on what is left out where none of `all` is of a kind, in the order of the table of kinds.
+template <class Table>
+std::vector<std::string_view> absences(const std::vector<Table>& all) {
   std::vector<std::string_view> present, sentences;
   const auto known = [](const std::vector<std::string_view>& list, std::string_view sentence) {
     return std::ranges::find(list, sentence) != list.end();
   };
-  for (const Body& body : scene.bodies)
-    present.push_back(std::visit([](const auto& spec) { return absence(spec); }, body));
+  for (const Table& one : all) present.push_back(std::visit([](const auto& spec) { return absence(spec); }, one));
   const auto add = [&](std::string_view sentence) {
     if (!sentence.empty() && !known(present, sentence) && !known(sentences, sentence)) sentences.push_back(sentence);
   };
   [&]<std::size_t... Kind>(std::index_sequence<Kind...>) {
-    (add(absence(std::variant_alternative_t<Kind, Body>{})), ...);
+    (add(absence(std::variant_alternative_t<Kind, Table>{})), ...);
   }
-  (std::make_index_sequence<std::variant_size_v<Body>>{});
+  (std::make_index_sequence<std::variant_size_v<Table>>{});
   return sentences;
 }
 
@@ -124,13 +131,11 @@ void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
   fmt::print("left out:\n");
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (const std::string& what : bodies[b].left_out) fmt::print("  body '{}': {}\n", name_of(scene.bodies[b]), what);
-  for (const std::string_view sentence : absences(scene)) fmt::print("  {}\n", sentence);
-  const auto works = [](const Tool& tool) { return tool.forceps() || tool.probe()->cautery || tool.probe()->jaws; };
+  for (const std::string_view sentence : absences<Body>(scene.bodies)) fmt::print("  {}\n", sentence);
+  const auto works = [](const Tool& tool) { return abilities_of(tool).works(); };
   if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
   if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
-  const auto driven = [](const Tool& tool) { return std::get_if<BusDeviceSpec>(&tool.device) != nullptr; };
-  if (std::ranges::none_of(scene.tools, driven))
-    fmt::print("  no tool on the bus: no device topic and no thread for it\n");
+  for (const std::string_view sentence : absences<DeviceSpec>(devices_of(scene))) fmt::print("  {}\n", sentence);
   if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
   if (!scene.network.security)
     fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");

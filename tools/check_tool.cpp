@@ -20,39 +20,20 @@ void check_start(const Tool& tool, const std::filesystem::path& file, const Tool
                                            tool.name, name_of(body)));
 }
 
-void print_end(const Tool& tool) {
-  if (const ForcepsSpec* forceps = tool.forceps()) {
-    const ForcepsJaws& jaws = forceps->jaws;
-    fmt::print(
-        "tool '{}': forceps, jaws of {} m that open from 0 to {} rad, linkage {} N m/rad, friction {}, "
-        "compliance {} m/N",
-        tool.name, jaws.length, jaws.max_open, jaws.grip_stiffness, jaws.friction, tool.compliance);
-    return;
-  }
-  const ProbeSpec& probe = *tool.probe();
-  fmt::print("tool '{}': tip radius {} m", tool.name, probe.radius);
-  if (probe.cautery) fmt::print(", cautery of radius {} m", probe.cautery->radius);
-  if (probe.jaws)
-    fmt::print(", jaws {} x {} m that close below {} rad", probe.jaws->length, probe.jaws->width,
-               probe.jaws->closed_below);
-}
-
 }  // namespace
 
 void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies) {
-  print_end(tool);
-  fmt::print(", device {}", std::visit([](const auto& device) { return device.kKind; }, tool.device));
-  const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
+  fmt::print("{}", std::visit([&](const auto& end) { return sentence(end, tool); }, tool.end));
+  fmt::print(", device {}", kind_of(tool.device));
+  const std::filesystem::path file = motion_file_of(tool.device);
+  const std::optional<Trajectory> script = script_of(tool.device);
   if (!script) {
-    const auto* log = std::get_if<LogDeviceSpec>(&tool.device);
-    fmt::print("{}\n", log ? " " + log->trajectory.string() : "");
+    fmt::print("{}\n", file.empty() ? "" : " " + file.string());
     return;
   }
-  const Trajectory trajectory = load_trajectory(script->trajectory);
-  check_grip(trajectory, script->trajectory, tool);
-  fmt::print(", {} s of {}\n", trajectory.duration(), script->trajectory.filename().string());
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    check_start(tool, script->trajectory, trajectory.at(0), scene.bodies[b], bodies[b]);
+  check_grip(*script, file, tool);
+  fmt::print(", {} s of {}\n", script->duration(), file.filename().string());
+  for (std::size_t b = 0; b < bodies.size(); ++b) check_start(tool, file, script->at(0), scene.bodies[b], bodies[b]);
 }
 
 }  // namespace palpate

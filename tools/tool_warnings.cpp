@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/tool/instrument.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
@@ -31,19 +32,17 @@ std::vector<std::string> tool_warnings(const Scene& scene) {
   std::vector<std::string> warnings;
   const bool cuttable = has_moving_tissue(scene);
   for (const Tool& tool : scene.tools) {
-    const ProbeSpec* probe = tool.probe();
-    if (!probe) continue;
-    if (probe->cautery && !cuttable)
+    const EndAbilities can = abilities_of(tool);
+    if (can.cautery && !cuttable)
       warnings.push_back(fmt::format("tool '{}' has a cautery, and no body is dynamic: it cuts nothing", tool.name));
-    const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
+    const std::optional<Trajectory> script = script_of(tool.device);
     if (!script) continue;
-    const Trajectory trajectory = load_trajectory(script->trajectory);
-    if (probe->cautery && pedal_time(trajectory) == 0)
+    if (can.cautery && pedal_time(*script) == 0)
       warnings.push_back(
           fmt::format("tool '{}' has a cautery, and the pedal of its trajectory is never down", tool.name));
-    if (probe->jaws && !ever_closes(trajectory, probe->jaws->closed_below))
+    if (can.closing && !ever_closes(*script, can.closing->closed_below))
       warnings.push_back(fmt::format("tool '{}' has jaws, and the grip of its trajectory never falls below {} rad",
-                                     tool.name, probe->jaws->closed_below));
+                                     tool.name, can.closing->closed_below));
   }
   return warnings;
 }

@@ -82,8 +82,8 @@ class BodyPart {
   virtual bool adopt(const TouchContact&) { return false; }
 
   // Jaws.
-  /// Jaws of a probe that close hold what is between them as displacement constraints until let_go().
-  virtual void pinch(int /*tool*/, const Eigen::Isometry3d& /*pose*/, const ProbeJaws&) {}
+  /// Jaws that close hold what is between them as displacement constraints until let_go().
+  virtual void pinch(int /*tool*/, const Eigen::Isometry3d& /*pose*/, const ClosingJaws&) {}
   virtual BetweenJaws between(const OpenJaws&) { return {}; }
   /// The jaws take hold of what is between them, until let_go().
   virtual void grasp(const OpenJaws&) {}

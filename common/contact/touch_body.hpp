@@ -33,7 +33,7 @@ class TouchBody : public BodyPart {
   void for_each_contact(const VisitContact& visit) const override;
   void for_each_force(const VisitForce& visit) const override;
   bool adopt(const TouchContact& contact) override;
-  void pinch(int tool, const Eigen::Isometry3d& pose, const ProbeJaws& jaws) override {
+  void pinch(int tool, const Eigen::Isometry3d& pose, const ClosingJaws& jaws) override {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });
   }
   BetweenJaws between(const OpenJaws& jaws) override;

@@ -21,20 +21,10 @@ constexpr bool has_own_mesh(const MovingSpec&) {
   return false;
 }
 
-/// A body of one of these kinds, which it refers to.
-struct MovingKind {
-  std::string_view name;
-  MakeModel make_model;
-  std::function<ArchiveJob(const Progress&)> archive_job;
-  bool own_mesh;
-};
-
+/// Makes the body's model, and refers to the body.
 template <std::derived_from<MovingSpec> Spec>
-MovingKind moving_kind(const Spec& body) {
-  return {.name = Spec::kKind,
-          .make_model = [&body](const ElasticMesh& mesh) { return make_model(body, mesh); },
-          .archive_job = [&body](const Progress& progress) { return archive_job(body, progress); },
-          .own_mesh = has_own_mesh(body)};
+MakeModel model_maker(const Spec& body) {
+  return [&body](const ElasticMesh& mesh) { return make_model(body, mesh); };
 }
 
 /// The archive of a body that moves with inertia as a whole.
@@ -48,8 +38,16 @@ std::unique_ptr<DynamicOrgan> make_moving_organ(const MovingSpec& body, const Ar
                                                 const StepSettings& settings, const MakeModel& make);
 template <std::derived_from<MovingSpec> Spec>
 std::unique_ptr<DynamicOrgan> make_organ(const Spec& body, const Archive& archive, const StepSettings& settings) {
-  return make_moving_organ(body, archive, settings, moving_kind(body).make_model);
+  return make_moving_organ(body, archive, settings, model_maker(body));
 }
+
+/// What a check sees of a kind.
+struct MovingKind {
+  std::string_view name;
+  MakeModel make_model;
+  std::function<ArchiveJob(const Progress&)> archive_job;
+  bool own_mesh;
+};
 
 /// Says what moving tissue consists of, its model, step, tearing and connection; the deformation node's parts are built
 /// and measured. Throws std::runtime_error if the scene gives a step that is not stable.
@@ -57,7 +55,11 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
 void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report);
 template <std::derived_from<MovingSpec> Spec>
 void check(const Spec& body, const CheckSettings& settings, CheckReport& report) {
-  check_moving(body, moving_kind(body), settings, report);
+  const MovingKind kind{.name = Spec::kKind,
+                        .make_model = model_maker(body),
+                        .archive_job = [&body](const Progress& progress) { return archive_job(body, progress); },
+                        .own_mesh = has_own_mesh(body)};
+  check_moving(body, kind, settings, report);
   warn_of_locking(locking_warnings(body), report);
 }
 

@@ -30,7 +30,7 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
   for (const Tool& tool : scene.tools) {
     trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
     parts_.push_back(tool_parts(tool));
-    forceps_.push_back(tool.forceps() ? std::optional(tool.forceps()->jaws) : std::nullopt);
+    jaws_.push_back(abilities_of(tool).turning);
   }
   parts_before_ = parts_;
   for (std::size_t t = 0; t < tools_.size(); ++t) {
@@ -69,7 +69,7 @@ void DynamicWorld::drop_absent() {
 }
 
 void DynamicWorld::turn_jaws(int t) {
-  if (forceps_[t]) set_opening(std::clamp(tools_[t].opening, 0.0, forceps_[t]->max_open), parts_[t]);
+  if (jaws_[t]) set_opening(std::clamp(tools_[t].opening, 0.0, jaws_[t]->max_open), parts_[t]);
 }
 
 void DynamicWorld::move(int t) {

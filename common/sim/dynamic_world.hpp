@@ -57,8 +57,8 @@ class DynamicWorld {
 
   double dt_;
   std::vector<Trocar> trocars_;
-  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of a forceps they turn
-  std::vector<std::optional<ForcepsJaws>> forceps_;          ///< per tool; none for other kinds
+  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of jaws they turn
+  std::vector<std::optional<TurningJaws>> jaws_;             ///< per tool, where they turn
   std::vector<ToolInTick> tools_;
   std::vector<ToolPlayback> playback_;  ///< per tool
   std::vector<ToolState> newest_, consumed_;

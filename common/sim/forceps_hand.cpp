@@ -6,13 +6,18 @@
 #include "common/tool/jaws.hpp"
 
 namespace palpate {
+namespace {
+
+GripLaw law_of(const TurningJaws& jaws) {
+  return {.max_open = jaws.max_open, .stiffness = jaws.grip_stiffness, .friction = jaws.friction};
+}
+
+}  // namespace
 
 ForcepsHand::ForcepsHand(int tool, const Tool& settings, double dt)
     : tool_(tool),
       shape_(*forceps_shape(settings)),
-      law_{.max_open = settings.forceps()->jaws.max_open,
-           .stiffness = settings.forceps()->jaws.grip_stiffness,
-           .friction = settings.forceps()->jaws.friction},
+      law_(law_of(*abilities_of(settings).turning)),
       dt_(dt),
       compliance_(settings.compliance) {}
 

@@ -1,11 +1,9 @@
 #pragma once
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/contact/body_part.hpp"
-#include "common/sim/forceps_hand.hpp"
 #include "common/tool/kinematics.hpp"
 
 namespace palpate {
@@ -37,7 +35,11 @@ class ToolEnd {
   std::vector<ToolPart> parts_, parts_before_;
 };
 
-/// The end of the tool number `index`; `dt` [s] of a step.
-std::unique_ptr<ToolEnd> make_tool_end(int index, const Tool& tool, double dt);
+/// The tool at whose end it is.
+struct EndPlace {
+  int index;  ///< of the tool
+  const Tool& tool;
+  double dt;  ///< [s] of a step
+};
 
 }  // namespace palpate

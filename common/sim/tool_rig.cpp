@@ -8,7 +8,11 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
     : name_(tool.name),
       trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       shaft_length_(tool.shaft_length),
-      end_(make_tool_end(index, tool, dt)),
+      end_(std::visit(
+          [&](const auto& end) {
+            return make_tool_end(end, EndPlace{index, tool, dt});
+          },
+          tool.end)),
       safety_(tool.max_force, tool.max_force_rate, dt) {}
 
 bool ToolRig::start(const ToolDofs& dofs) {

@@ -14,21 +14,18 @@ std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double
   return samples;
 }
 
-std::optional<ForcepsShape> forceps_shape(const Tool& tool) {
-  const ForcepsSpec* forceps = tool.forceps();
-  if (!forceps) return std::nullopt;
-  return ForcepsShape{tool.shaft_radius, tool.shaft_length, forceps->jaws.length, forceps->jaws.radius};
+EndAbilities abilities_of(const Tool& tool) {
+  return std::visit([](const auto& end) { return abilities(end); }, tool.end);
 }
 
-JawParts jaw_parts(const Tool& tool) {
-  if (tool.probe()) return {0, 1};
-  return {forceps_jaw_a, kForcepsPartCount};
+std::optional<ForcepsShape> forceps_shape(const Tool& tool) {
+  const EndAbilities can = abilities_of(tool);
+  if (!can.turning) return std::nullopt;
+  return ForcepsShape{tool.shaft_radius, tool.shaft_length, can.turning->length, can.turning->radius};
 }
 
 std::vector<ToolPart> tool_parts(const Tool& tool, double opening) {
-  if (const ProbeSpec* probe = tool.probe()) return sample_tool(probe->radius, tool.shaft_radius, tool.shaft_length);
-  const auto parts = forceps_parts(*forceps_shape(tool), opening);
-  return {parts.begin(), parts.end()};
+  return std::visit([&](const auto& end) { return end_parts(end, tool, opening); }, tool.end);
 }
 
 }  // namespace palpate

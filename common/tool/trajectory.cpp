@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "common/describe/csv.hpp"
-#include "common/tool/spec.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate {
 
@@ -75,14 +75,14 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
 }
 
 void check_grip(const Trajectory& trajectory, const std::filesystem::path& file, const Tool& tool) {
-  const ForcepsSpec* forceps = tool.forceps();
-  if (!forceps) return;
+  const auto jaws = abilities_of(tool).turning;
+  if (!jaws) return;
   for (double time : trajectory.times()) {  // between the rows nothing overshoots
     const double grip = trajectory.at(time).grip;
-    if (grip >= 0 && grip <= forceps->jaws.max_open) continue;
+    if (grip >= 0 && grip <= jaws->max_open) continue;
     throw std::runtime_error(
         fmt::format("{}: the grip of {} rad at {} s is out of range: the jaws of '{}' open from 0 to {} rad",
-                    file.string(), grip, time, tool.name, forceps->jaws.max_open));
+                    file.string(), grip, time, tool.name, jaws->max_open));
   }
 }
 

@@ -38,7 +38,7 @@ class Trajectory {
 /// skipped. Throws std::runtime_error("FILE:LINE: sentence").
 Trajectory load_trajectory(const std::filesystem::path& file);
 
-/// Refuses a forceps' trajectory whose grip leaves what the jaws allow, 0 .. max_open. Throws
+/// Refuses a trajectory whose grip leaves what jaws that turn allow, 0 .. max_open. Throws
 /// std::runtime_error("FILE: sentence"), FILE being where the trajectory comes from.
 void check_grip(const Trajectory& trajectory, const std::filesystem::path& file, const Tool& tool);
 

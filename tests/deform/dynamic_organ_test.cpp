@@ -80,7 +80,7 @@ TEST(DynamicOrgan, ATipNeverTunnelsAtAnySpeed) {
 
 TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
   Scene scene = block_scene();
-  scene.tools[0].probe()->cautery = Cautery{0.0065};
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0065};
   Bench bench(scene);
   for (int i = 0; i < 100; ++i) bench.tick(from_above(i, 50, kTop + 0.01, kTop + kRadius - 0.002));
   EXPECT_TRUE(bench.organ().removed().empty());
@@ -95,7 +95,7 @@ TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
 
 TEST(DynamicOrgan, ACutThroughEverythingLeavesARunningSystem) {
   Scene scene = block_scene();
-  scene.tools[0].probe()->cautery = Cautery{0.2};
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.2};
   Bench bench(scene);
   for (int i = 0; i < 2500; ++i) bench.tick(0.02, 0, 1);
   EXPECT_EQ(bench.organ().topology().alive_count(), 0);
@@ -109,8 +109,8 @@ TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
   moving_block_of(scene).dynamic.damping = 5;
   moving_block_of(scene).fixed[0].where = {
       .indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
-  scene.tools[0].probe()->cautery = Cautery{0.0062};
-  scene.tools[0].probe()->radius = 0.003;
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0062};
+  std::get<ProbeSpec>(scene.tools[0].end).radius = 0.003;
   scene.tools[0].pivot = {-0.2, 0, 0.02};
   scene.tools[0].axis = Vector3d::UnitX();
   scene.tools[0].up = Vector3d::UnitZ();
@@ -134,7 +134,7 @@ TEST(DynamicOrgan, APartCutFreeFallsStaysFiniteAndIsTakenAwayInTheEnd) {
 
 TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
   Scene scene = block_scene();
-  scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
+  std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{0.012, 0.012, 0.1};
   Bench bench(scene);
   const double low = kTop + kRadius - 0.001;
   for (int i = 0; i < 50; ++i) bench.tick(from_above(i, 40, kTop + 0.012, low), 0, 0, 0.6);
@@ -151,7 +151,7 @@ TEST(DynamicOrgan, JawsHoldWhatIsBetweenThemUntilTheyOpen) {
 
 TEST(DynamicOrgan, RestoredStateGoesOnBitForBit) {
   Scene scene = block_scene();
-  scene.tools[0].probe()->cautery = Cautery{0.0065};
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0065};
   moving_block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto z = [](int i) { return kTop + kRadius + 0.002 - 1.5e-5 * i; };
@@ -213,7 +213,7 @@ TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
 
 TEST(DynamicOrgan, TearsBeyondItsThreshold) {
   Scene scene = block_scene();
-  scene.tools[0].probe()->jaws = ProbeJaws{0.012, 0.012, 0.1};
+  std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{0.012, 0.012, 0.1};
   moving_block_of(scene).tearing = Tearing{"max_elongation", 0.5};
   Bench bench(scene);
   const double low = kTop + kRadius - 0.001;
@@ -314,8 +314,8 @@ TEST(DynamicOrgan, AToolThatComesAnewWithinTheTissueStrikesNoBlow) {
 
 TEST(DynamicOrgan, RandomManipulationStaysFinite) {
   for (Scene scene : {block_scene(), block_scene(SpringMassSpec{})}) {
-    scene.tools[0].probe()->cautery = Cautery{0.0065};
-    scene.tools[0].probe()->jaws = ProbeJaws{};
+    std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0065};
+    std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{};
     moving_block_of(scene).dynamic.gravity = {0, 0, -9.81};
     Bench bench(scene);
     std::mt19937 random(5);

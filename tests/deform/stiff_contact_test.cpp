@@ -36,7 +36,7 @@ Felt hold_in(const Held& held) {
   tissue.dynamic.integrator = held.integrator;
   tissue.dynamic.precision = "double";
   scene.contact.friction = held.friction;
-  scene.tools[0].probe()->radius = held.tip;
+  std::get<ProbeSpec>(scene.tools[0].end).radius = held.tip;
   const double top = held.slab ? 0.01 : 0.04, half = held.slab ? 0.05 : 0.03;
   Bench bench(scene, held.slab ? make_block({-half, -half, 0}, {half, half, top}, {10, 10, 10})
                                : make_block({-half, -half, 0}, {half, half, top}, {6, 6, 4}));

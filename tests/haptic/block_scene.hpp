@@ -24,7 +24,7 @@ struct BlockScene {
       Tool tool;
       tool.name = "probe" + std::to_string(t);
       tool.pivot = {0.02 * t, 0, 0.2};
-      tool.probe()->radius = 0.008;
+      std::get<ProbeSpec>(tool.end).radius = 0.008;
       tool.max_force = 100;
       tool.max_force_rate = 1e6;
       scene.tools.push_back(tool);
@@ -43,7 +43,7 @@ inline Scene moving_block_scene(double radius) {
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.2};
-  tool.probe()->radius = radius;
+  std::get<ProbeSpec>(tool.end).radius = radius;
   tool.max_force = 100;
   tool.max_force_rate = 1e6;
   scene.tools.push_back(tool);

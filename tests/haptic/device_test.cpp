@@ -1,5 +1,3 @@
-#include "haptic_node/device.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,6 +6,7 @@
 
 #include "common/bus/log_writer.hpp"
 #include "common/bus/memory_bus.hpp"
+#include "haptic_node/bus_devices.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {

@@ -90,7 +90,7 @@ struct Theatre {
     duct.add_catheter();
     as<CatheterSpec>(duct.scene.bodies[1])->material.young = catheter_young;
     duct.add_forceps().pivot = {0, 0.15, -0.03};
-    ForcepsJaws& long_jaws = duct.add_forceps().forceps()->jaws;
+    TurningJaws& long_jaws = std::get<ForcepsSpec>(duct.add_forceps().end).jaws;
     long_jaws.length = 0.02;
     long_jaws.max_open = 1.6;
     haptic = std::make_unique<HapticStep>(duct.scene, duct.archives);
@@ -167,7 +167,7 @@ TEST(DuctManipulation, OpenedJawsLetGo) {
 
 TEST(DuctManipulation, PulledHarderThanTheJawsCanHoldItSlipsAndCountsAsADrop) {
   Theatre t;
-  t.duct.scene.tools[0].forceps()->jaws.friction = 0.05;
+  std::get<ForcepsSpec>(t.duct.scene.tools[0].end).jaws.friction = 0.05;
   t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);
   t.haptic->start(t.dofs);
   t.feed();
@@ -303,7 +303,7 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   const int steps = whole ? 3'600'000 : 30'000;
   Theatre t(20);
   for (Tool& tool : t.duct.scene.tools)
-    tool.forceps()->jaws.grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
+    std::get<ForcepsSpec>(tool.end).jaws.grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
   // Skin and blood hold it: a flick does not send it across the room.
   as<CatheterSpec>(t.duct.scene.bodies[1])->catheter.damping = 100;
   t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);

@@ -27,7 +27,7 @@ struct DuctScene {
     tool.pivot = {0, 0.15, kLength / 2};
     tool.axis = -Eigen::Vector3d::UnitY();
     tool.up = Eigen::Vector3d::UnitZ();
-    tool.probe()->radius = 0.003;
+    std::get<ProbeSpec>(tool.end).radius = 0.003;
     tool.shaft_length = 0.02;
     tool.max_force = 100;
     tool.max_force_rate = 1e7;

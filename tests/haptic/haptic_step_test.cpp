@@ -160,7 +160,7 @@ TEST_F(HapticStepTest, RestoredStateGoesOnBitForBit) {
   for (const char* rule : {"barycentric", "alpha"}) {
     BlockScene s = two_tools();
     s.scene.contact.rule = rule;
-    for (Tool& tool : s.scene.tools) tool.probe()->radius = 0.005;
+    for (Tool& tool : s.scene.tools) std::get<ProbeSpec>(tool.end).radius = 0.005;
     const auto input = [&](int i) {
       const double t = 1e-3 * i;
       const double z = 0.0075 - 0.012 * std::min(1.0, 2 * t) + 0.004 * std::sin(9 * t);
@@ -240,7 +240,7 @@ TEST_F(HapticStepTest, TheShaftTouchesToo) {
 
 TEST(HapticJaws, HoldQuasiStaticTissueUntilTheyOpen) {
   BlockScene block;
-  block.scene.tools[0].probe()->jaws = ProbeJaws{0.02, 0.03, 0.1};
+  std::get<ProbeSpec>(block.scene.tools[0].end).jaws = ClosingJaws{0.02, 0.03, 0.1};
   HapticStep haptic(block.scene, block.archives);
   const auto at = [&](double height, double grip) {
     ToolDofs d = tip_at(block.scene.tools[0], {0, 0, height});

@@ -55,7 +55,7 @@ TEST(ModalBody, AtRestUnderATipItPushesAsAQuasiStaticBodyDoes) {
   // The same compliance without inertia. Its tools touch the middle surface: they are thicker by half the wall.
   DuctScene still(30);
   Tool& tool = still.add_probe();
-  tool.probe()->radius += DuctScene::kThickness / 2;
+  std::get<ProbeSpec>(tool.end).radius += DuctScene::kThickness / 2;
   QuasiStaticSpec body;
   static_cast<MeshedSpec&>(body) = *as<MeshedSpec>(still.scene.bodies[0]);
   still.scene.bodies[0] = body;

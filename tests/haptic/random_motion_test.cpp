@@ -41,7 +41,7 @@ TEST(RandomMotion, ForcesStayFiniteWithinTheirLimitsAndNeverPull) {
       s.scene.contact.rule = rule;
       s.scene.contact.friction = friction;
       for (Tool& tool : s.scene.tools) tool.max_force = 20;
-      s.scene.tools[1].probe()->radius = 0.016;  // larger than the triangles: touches with vertices
+      std::get<ProbeSpec>(s.scene.tools[1].end).radius = 0.016;  // larger than the triangles: touches with vertices
       HapticStep haptic(s.scene, s.archives);
       Wanderer a(1), b(2);
       haptic.start(std::array{tip_at(s.scene.tools[0], {0, 0, 0.03}), tip_at(s.scene.tools[1], {0.05, 0, 0.03})});

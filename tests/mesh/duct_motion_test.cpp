@@ -28,7 +28,7 @@ class ScriptedForceps {
   double grip(double time) const { return trajectory_.at(time).grip; }
   Eigen::Isometry3d pose(double time) const { return tip_pose(trocar_, trajectory_.at(time)); }
   std::vector<std::pair<Segment, double>> parts(double time) const {
-    const ForcepsJaws& jaws = tool_.forceps()->jaws;
+    const TurningJaws& jaws = std::get<ForcepsSpec>(tool_.end).jaws;
     const ForcepsShape shape{tool_.shaft_radius, tool_.shaft_length, jaws.length, jaws.radius};
     std::vector<std::pair<Segment, double>> parts;
     for (const ToolPart& part : forceps_parts(shape, grip(time)))
@@ -113,7 +113,7 @@ TEST_F(DuctScene, TheFeedingForcepsKeepsClearOfTheDuct) {
 TEST_F(DuctScene, TheFeedingForcepsHasTheCatheterBetweenItsJawsAndClosesOnIt) {
   load("catheter_insertion.toml");
   const Catheter& catheter = std::get<CatheterSpec>(scene.bodies[1]).catheter;
-  const double touching = catheter.radius + scene.tools[0].forceps()->jaws.radius;
+  const double touching = catheter.radius + std::get<ForcepsSpec>(scene.tools[0].end).jaws.radius;
   double fed = 0, before = 0;
   bool held = false;
   for (double t = 0; t <= tools[0].duration(); t += 0.01) {
@@ -124,12 +124,12 @@ TEST_F(DuctScene, TheFeedingForcepsHasTheCatheterBetweenItsJawsAndClosesOnIt) {
     const double to_jaw = middle.z() * std::sin(0.5 * opening);
     if (opening < 0.35) {  // closed on it
       EXPECT_NEAR(middle.y(), 0, 2e-4);
-      EXPECT_NEAR(middle.z(), 0.6 * scene.tools[0].forceps()->jaws.length, 2e-4);
+      EXPECT_NEAR(middle.z(), 0.6 * std::get<ForcepsSpec>(scene.tools[0].end).jaws.length, 2e-4);
       EXPECT_LT(to_jaw, touching);
       if (held) fed += before - here;
-    } else if (opening > 0.85 && middle.z() > 0 && middle.z() < scene.tools[0].forceps()->jaws.length) {
+    } else if (opening > 0.85 && middle.z() > 0 && middle.z() < std::get<ForcepsSpec>(scene.tools[0].end).jaws.length) {
       EXPECT_GT(to_jaw - std::abs(middle.y()),
-                middle.z() > 0.6 * scene.tools[0].forceps()->jaws.length - 1e-4 ? touching : 0);
+                middle.z() > 0.6 * std::get<ForcepsSpec>(scene.tools[0].end).jaws.length - 1e-4 ? touching : 0);
     }
     held = opening < 0.35;
     before = here;

@@ -61,7 +61,7 @@ class Block {
     Tool tool;
     tool.name = "ball";
     tool.pivot = Vector3d(h_ * place[0], h_ * place[1], 0.2);
-    tool.probe()->radius = kTipRadius;
+    std::get<ProbeSpec>(tool.end).radius = kTipRadius;
     tool.max_force = 1e3;
     tool.max_force_rate = 1e9;
     scene_.tools = {tool};

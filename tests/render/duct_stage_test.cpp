@@ -166,7 +166,7 @@ TEST(DuctStage, AForcepsOpensAsFarAsItsJawsReallyAre) {
   const Frame frame = stage.frame();
   ASSERT_EQ(frame.instruments.size(), 1u);
   EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_opening, 0.5);
-  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_length, ForcepsJaws{}.length);
+  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_length, TurningJaws{}.length);
   Frame without = frame;
   without.instruments.clear();
   EXPECT_GT(difference(picture(frame), picture(without), 8), 0.01);

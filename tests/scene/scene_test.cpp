@@ -131,14 +131,14 @@ TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
   EXPECT_EQ(wire.catheter.gravity, Eigen::Vector3d(0, 0, -9.5));
   EXPECT_EQ(wire.catheter.integrator, "semi_implicit");
   const Tool& tool = scene.tools[3];
-  ASSERT_TRUE(tool.forceps());
+  ASSERT_TRUE(std::holds_alternative<ForcepsSpec>(tool.end));
   EXPECT_EQ(tool.compliance, 0.0002);
-  EXPECT_EQ(tool.forceps()->jaws.length, 0.015);
-  EXPECT_EQ(tool.forceps()->jaws.radius, 0.0012);
-  EXPECT_EQ(tool.forceps()->jaws.max_open, 0.9);
-  EXPECT_EQ(tool.forceps()->jaws.grip_stiffness, 0.4);
-  EXPECT_EQ(tool.forceps()->jaws.friction, 0.6);
-  EXPECT_TRUE(scene.tools[0].probe());
+  EXPECT_EQ(std::get<ForcepsSpec>(tool.end).jaws.length, 0.015);
+  EXPECT_EQ(std::get<ForcepsSpec>(tool.end).jaws.radius, 0.0012);
+  EXPECT_EQ(std::get<ForcepsSpec>(tool.end).jaws.max_open, 0.9);
+  EXPECT_EQ(std::get<ForcepsSpec>(tool.end).jaws.grip_stiffness, 0.4);
+  EXPECT_EQ(std::get<ForcepsSpec>(tool.end).jaws.friction, 0.6);
+  EXPECT_TRUE(std::holds_alternative<ProbeSpec>(scene.tools[0].end));
 }
 
 TEST_F(SceneFile, AShellHasOneLawOfDampingAndIsClampedWhereItIsFixed) {
@@ -158,8 +158,10 @@ TEST_F(SceneFile, AShellHasOneLawOfDampingAndIsClampedWhereItIsFixed) {
 
 TEST_F(SceneFile, ACauteryCutsWithTheTipUnlessItsRadiusIsGiven) {
   const std::string tool = "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\nradius = 0.003\n";
-  EXPECT_EQ(parse(kMinimalScene + tool + "cautery = {}\n").tools[0].probe()->cautery->radius, 0.003);
-  EXPECT_EQ(parse(kMinimalScene + tool + "cautery = { radius = 0.001 }\n").tools[0].probe()->cautery->radius, 0.001);
+  EXPECT_EQ(std::get<ProbeSpec>(parse(kMinimalScene + tool + "cautery = {}\n").tools[0].end).cautery->radius, 0.003);
+  EXPECT_EQ(
+      std::get<ProbeSpec>(parse(kMinimalScene + tool + "cautery = { radius = 0.001 }\n").tools[0].end).cautery->radius,
+      0.001);
 }
 
 TEST_F(SceneFile, AbsentSectionsStayEmpty) {
@@ -220,7 +222,7 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->fixed[0].axes[1] = true; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->degree = 6; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear.reset(); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->radius = 0.007; }));
+  EXPECT_TRUE(changed([](Scene& s) { std::get<ProbeSpec>(s.tools[0].end).radius = 0.007; }));
   EXPECT_TRUE(changed([](Scene& s) { s.contact.friction = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.step = 0; }));
@@ -233,8 +235,8 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { as<HybridSpec>(s.bodies[3])->hybrid.regions.pop_back(); }));
   EXPECT_TRUE(changed([](Scene& s) { as<HybridSpec>(s.bodies[4])->hybrid.scale = 1; }));
   EXPECT_TRUE(changed([](Scene& s) { s.bodies[5] = tensor_mass_like(*as<MovingSpec>(s.bodies[5])); }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->cautery->radius = 0.003; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[0].probe()->jaws.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { std::get<ProbeSpec>(s.tools[0].end).cautery->radius = 0.003; }));
+  EXPECT_TRUE(changed([](Scene& s) { std::get<ProbeSpec>(s.tools[0].end).jaws.reset(); }));
   EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.modes = 50; }));
   EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.damping = 2; }));
   EXPECT_TRUE(changed([](Scene& s) { as<ShellSpec>(s.bodies[6])->shell.residual = true; }));
@@ -243,7 +245,7 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { as<CatheterSpec>(s.bodies[7])->catheter.inside.clear(); }));
   EXPECT_TRUE(changed([](Scene& s) { s.tools[3].end = ProbeSpec{}; }));
   EXPECT_TRUE(changed([](Scene& s) { s.tools[3].compliance = 1e-4; }));
-  EXPECT_TRUE(changed([](Scene& s) { s.tools[3].forceps()->jaws.friction = 0.8; }));
+  EXPECT_TRUE(changed([](Scene& s) { std::get<ForcepsSpec>(s.tools[3].end).jaws.friction = 0.8; }));
   EXPECT_FALSE(changed([](Scene& s) { as<HybridSpec>(s.bodies[4])->hybrid.mesh = "/elsewhere/coarse.msh"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.title = "another"; }));
   EXPECT_FALSE(changed([](Scene& s) { s.network.domain = 8; }));

@@ -43,7 +43,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     plate.pivot = {0, 0, 2 * kPlate};
     plate.axis = -Vector3d::UnitZ();
     plate.up = Vector3d::UnitY();
-    plate.probe()->radius = kPlate;
+    std::get<ProbeSpec>(plate.end).radius = kPlate;
     plate.shaft_length = 0.01;
     plate.max_force = plate.max_force_rate = 1e6;
     scene_.tools.push_back(plate);

@@ -70,7 +70,8 @@ TEST_F(ForcepsOnAFin, ItsJawsStopAtTheTissueAndTheHandleFeelsIt) {
   EXPECT_TRUE(holds());
   // Each meets an edge of the fin at 9 mm from the joint: 2 (atan(2/9) + asin(1/9.2)) = 0.65 rad.
   EXPECT_NEAR(tool().opening, 0.65, 0.05);
-  EXPECT_NEAR(tool().grip_torque, scene_.tools[0].forceps()->jaws.grip_stiffness * tool().opening, 0.01);
+  EXPECT_NEAR(tool().grip_torque, std::get<ForcepsSpec>(scene_.tools[0].end).jaws.grip_stiffness * tool().opening,
+              0.01);
 }
 
 TEST_F(ForcepsOnAFin, WhatIsHeldFollowsAndPullsBack) {

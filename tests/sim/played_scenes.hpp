@@ -39,7 +39,7 @@ PlayedScene cut_block() {
     body.hybrid.regions.push_back(right);
   }
   Scene scene = block_scene(body);
-  scene.tools[0].probe()->cautery = Cautery{.radius = 0.006};
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{.radius = 0.006};
   const TetMesh mesh = middle_block_mesh(6);
   std::vector<Archive> archives{precompute_on(scene.bodies[0], mesh)};
   const Tool tool = scene.tools[0];

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <memory>
 
+#include "common/devices/device.hpp"
 #include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/sim/digest.hpp"
 #include "common/sim/simulator.hpp"
-#include "haptic_node/device.hpp"
 
 namespace palpate::sim {
 namespace {

@@ -187,7 +187,7 @@ TEST(Simulator, AFreeDevicePressedIntoAnOrganIsPushedOut) {
     const Tool& tool = played.scene.tools[0];
     const double top = played.scene.tools[0].pivot.z() > 0.25 ? 0.03 : 0;
     const auto at = [&](double height) {
-      return std::array{ToolInput{tip_at(tool, {0, 0, top + tool.probe()->radius + height})}};
+      return std::array{ToolInput{tip_at(tool, {0, 0, top + std::get<ProbeSpec>(tool.end).radius + height})}};
     };
     FreeHandle handle{.height = 0.001, .grip = 0};
     simulator.start(at(handle.height));

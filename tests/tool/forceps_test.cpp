@@ -57,10 +57,10 @@ TEST(Instruments, AProbeIsSpheresAndAForcepsSegments) {
   Tool tool;
   const auto spheres = tool_parts(tool);
   ASSERT_GT(spheres.size(), 10u);
-  EXPECT_EQ(spheres[0].radius, tool.probe()->radius);
+  EXPECT_EQ(spheres[0].radius, std::get<ProbeSpec>(tool.end).radius);
   EXPECT_EQ(spheres[0].axis(Eigen::Isometry3d::Identity()).start, Vector3d::Zero());
   EXPECT_EQ(spheres[2].axis(Eigen::Isometry3d::Identity()).start,
-            Vector3d(0, 0, -(tool.probe()->radius + 1.5 * tool.shaft_radius)));
+            Vector3d(0, 0, -(std::get<ProbeSpec>(tool.end).radius + 1.5 * tool.shaft_radius)));
   for (const ToolPart& s : spheres) EXPECT_EQ(s.length, 0);
   tool.end = ForcepsSpec{{.length = 0.02, .radius = 0.0015}};
   const auto parts = tool_parts(tool, 0.4);

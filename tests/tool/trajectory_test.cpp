@@ -145,7 +145,7 @@ TEST_F(TrajectoryFile, AForcepsGripsWithinTheRangeOfItsJaws) {
             ": the grip of 0.81 rad at 1.5 s is out of range: the jaws of 'hand' open from 0 to 0.8 rad");
   EXPECT_EQ(refusal_of(kHeader + "0,0,0,0.1,0,-0.01\n"),
             ": the grip of -0.01 rad at 0 s is out of range: the jaws of 'hand' open from 0 to 0.8 rad");
-  tool.end = ProbeSpec{.jaws = ProbeJaws{}};  // its jaws have no such range
+  tool.end = ProbeSpec{.jaws = ClosingJaws{}};  // its jaws have no such range
   EXPECT_EQ(refusal_of(kHeader + "0,0,0,0.1,0,1.5\n"), "accepted");
 }
 

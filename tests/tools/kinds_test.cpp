@@ -12,72 +12,112 @@ namespace {
 namespace fs = std::filesystem;
 using testing::text_of;
 
-/// A kind of tissue: its folder below common/models, the name that scene files call it by, and its type.
+/// A kind of something: where its files lie, the name that scene files call it by, and its type.
 struct Kind {
-  std::string folder, name, spec;
+  std::string files, name, spec;
 };
 
-/// Those of the table of kinds.
-std::vector<Kind> kinds() {
-  const fs::path models = fs::path(PALPATE_SOURCE) / "common/models";
-  const std::string table = text_of(models / "body.hpp");
-  const std::regex include(R"-(#include "common/models/(\w+)/spec\.hpp")-");
+/// A table of kinds, and who may name them.
+struct Table {
+  std::string file;   ///< includes their specs
+  std::size_t least;  ///< of kinds in it
+  std::string homes;  ///< regular expression of the folders that are the kinds' own
+  /// Folders of sources that work with kinds of their own choice.
+  std::set<std::string> permitted;
+  std::set<std::string> words = {};  ///< names that stand in quotes for something else, too
+};
+
+const std::vector<Table> kTables{
+    {.file = "common/models/body.hpp",
+     .least = 6,
+     .homes = "common/models/.*",
+     .permitted =
+         {
+             "tools/rig",        // example bodies of known kinds for the next two, tests and benchmarks
+             "tools/study",      // measures the methods of known kinds against references
+             "tools/stability",  // stiff and extreme cases of known kinds
+             "tools/generate",   // makes the meshes and motions of the scenes that come with the project
+         }},
+    {.file = "common/devices/device_spec.hpp",
+     .least = 3,
+     .homes = "common/devices/.*",
+     .permitted = {"tools/generate"},
+     .words = {"log"}},
+    {.file = "common/tool/ends/end_spec.hpp",
+     .least = 2,
+     .homes = "common/(tool|sim)/ends/.*",
+     .permitted = {"tools/rig", "tools/study", "tools/stability", "tools/generate"}},
+};
+
+/// Those of a table, one for each header with a kKind that it includes.
+std::vector<Kind> kinds_in(const Table& table) {
+  const fs::path root = PALPATE_SOURCE;
+  const std::string text = text_of(root / table.file);
+  const std::regex include(R"-(#include "(common/[^"]+)")-");
   const std::regex row(R"-(struct (\w+) [^}]*kKind = "(\w+)")-");
   std::vector<Kind> all;
-  for (std::sregex_iterator at(table.begin(), table.end(), include), end; at != end; ++at) {
-    const std::string spec = text_of(models / (*at)[1].str() / "spec.hpp");
+  for (std::sregex_iterator at(text.begin(), text.end(), include), end; at != end; ++at) {
+    const fs::path header = (*at)[1].str();
+    const std::string spec = text_of(root / header);
     std::smatch found;
-    if (std::regex_search(spec, found, row)) all.push_back({(*at)[1], found[2], found[1]});
+    if (!std::regex_search(spec, found, row)) continue;
+    const bool has_folder = header.filename() == "spec.hpp";
+    all.push_back({has_folder ? header.parent_path().string() + "/" : header.string(), found[2], found[1]});
   }
   return all;
 }
 
-/// Sources that work with kinds of their own choice.
-const std::set<std::string> kPermitted{
-    "tools/rig",        // example bodies of known kinds for the next two, tests and benchmarks
-    "tools/study",      // measures the methods of known kinds against references
-    "tools/stability",  // stiff and extreme cases of known kinds
-    "tools/generate",   // makes the meshes and motions of the scenes that come with the project
-};
-
-/// What of a source names a kind, or asks a body whether it is something.
-std::vector<std::string> names_in(const std::string& text, const std::vector<Kind>& kinds) {
+/// What of a source names a kind, or asks something whether it is one.
+std::vector<std::string> names_in(const std::string& text, const std::vector<Kind>& kinds,
+                                  const std::set<std::string>& words = {}) {
   std::vector<std::string> found;
   const auto look = [&](const std::string& pattern) {
     std::smatch match;
     if (std::regex_search(text, match, std::regex(pattern))) found.push_back(match[0]);
   };
-  look(R"(\b(as|holds_alternative)<\w*Spec>)");
+  look(R"(\b(as|holds_alternative|get_if)<(const )?\w*Spec>)");
   for (const Kind& kind : kinds) {
     look("\\b" + kind.spec + "\\b");
-    look("\"" + kind.name + "\"");
-    look("common/models/" + kind.folder + "/");
+    look((words.contains(kind.name) ? "[!=]= *\"" : "\"") + kind.name + "\"");
+    look(kind.files);
   }
   return found;
 }
 
-TEST(Kinds, NoSourceOutsideTheModelsNamesAKindOfTissue) {
-  const std::vector<Kind> all = kinds();
-  ASSERT_GE(all.size(), 6u);
+class Kinds : public ::testing::TestWithParam<Table> {};
+
+TEST_P(Kinds, NoSourceElsewhereNamesOne) {
+  const Table& table = GetParam();
+  const std::regex homes(table.homes);
+  const std::vector<Kind> all = kinds_in(table);
+  ASSERT_GE(all.size(), table.least);
   int files = 0;
   for (const char* top : {"common", "haptic_node", "deform_node", "render_node", "tools", "idl"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(PALPATE_SOURCE) / top)) {
       const std::string extension = entry.path().extension(), file = fs::relative(entry.path(), PALPATE_SOURCE);
       if (extension != ".cpp" && extension != ".hpp") continue;
-      if (file.starts_with("common/models/") || kPermitted.contains(fs::path(file).parent_path())) continue;
+      if (std::regex_match(file, homes) || table.permitted.contains(fs::path(file).parent_path())) continue;
       ++files;
-      for (const std::string& name : names_in(text_of(entry.path()), all)) ADD_FAILURE() << file << " names " << name;
+      for (const std::string& name : names_in(text_of(entry.path()), all, table.words))
+        ADD_FAILURE() << file << " names " << name;
     }
   EXPECT_GT(files, 250);
 }
 
-TEST(Kinds, ANameIsFoundInCodeAndInText) {
-  const std::vector<Kind> kinds{{"foam", "soft_foam", "FoamSpec"}};
+INSTANTIATE_TEST_SUITE_P(Of, Kinds, ::testing::ValuesIn(kTables), [](const auto& table) {
+  return std::regex_replace(table.param.file, std::regex("\\W"), "_");
+});
+
+TEST(NameOfAKind, IsFoundInCodeAndInText) {
+  const std::vector<Kind> kinds{{"common/models/foam/", "soft_foam", "FoamSpec"}};
   EXPECT_TRUE(names_in("std::visit([](const auto& spec) { return owner(spec); }, body);", kinds).empty());
   EXPECT_EQ(names_in("if (as<SolidSpec>(body)) return;", kinds).size(), 1u);
+  EXPECT_EQ(names_in("if (std::get_if<PenSpec>(&tool.device)) return;", kinds).size(), 1u);
   EXPECT_EQ(names_in("void check(const FoamSpec& body);", kinds).size(), 1u);
   EXPECT_EQ(names_in("if (kind_of(body) == \"soft_foam\") return;", kinds).size(), 1u);
   EXPECT_EQ(names_in("#include \"common/models/foam/part.hpp\"", kinds).size(), 1u);
+  EXPECT_TRUE(names_in("add_option(\"soft_foam\", file);", kinds, {"soft_foam"}).empty());
+  EXPECT_EQ(names_in("if (kind_of(body) == \"soft_foam\") return;", kinds, {"soft_foam"}).size(), 1u);
 }
 
 }  // namespace

@@ -11,6 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+const TurningJaws& jaws_of(const Tool& tool) {
+  return std::get<ForcepsSpec>(tool.end).jaws;
+}
+
 Vector3d along_duct(const DuctShape& duct, double s) {
   return (duct.centre(s + 1e-4) - duct.centre(s - 1e-4)).normalized();
 }
@@ -24,7 +28,7 @@ JawTarget back(JawTarget target, double distance) {
 /// How far before the duct's centre line the joint lies when both jaws, so far open, touch the wall.
 double ahead_at_touch(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness, double s,
                       double opening) {
-  const double wanted = duct.radius_at(s) + 0.5 * thickness + tool.forceps()->jaws.radius;
+  const double wanted = duct.radius_at(s) + 0.5 * thickness + jaws_of(tool).radius;
   return wanted / jaw_distance(trocar, {duct.centre(s), along_duct(duct, s), 1}, opening);
 }
 
@@ -32,7 +36,7 @@ double ahead_at_touch(const Tool& tool, const Trocar& trocar, const DuctShape& d
 double ahead_at_poke(const Tool& tool, const Trocar& trocar, const DuctShape& duct, double thickness, double s) {
   const Vector3d axis = along_duct(duct, s), shaft = (duct.centre(s) - trocar.pivot).normalized();
   const double steep = shaft.cross(axis).norm();  // 1 where the tool comes straight at the wall
-  return tool.forceps()->jaws.length + (duct.radius_at(s) + 0.5 * thickness + tool.forceps()->jaws.radius) / steep;
+  return jaws_of(tool).length + (duct.radius_at(s) + 0.5 * thickness + jaws_of(tool).radius) / steep;
 }
 
 /// The first body of this kind; null if the scene has none.
@@ -48,7 +52,7 @@ const Spec* first(const Scene& scene) {
 std::string feeding_motion(const Tool& tool, const Catheter& catheter, const FeedPlan& plan) {
   const Vector3d inward = (catheter.tip - catheter.tail).normalized();
   const Vector3d mouth = Vector3d::Zero();
-  const double ahead = plan.share * tool.forceps()->jaws.length;
+  const double ahead = plan.share * jaws_of(tool).length;
   const auto at = [&](double before) { return JawTarget{mouth - before * inward, inward, ahead}; };
   const JawTarget far = at(plan.nearest + plan.stroke), near = at(plan.nearest);
 
@@ -92,11 +96,11 @@ std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickn
       [&](double gap) {  // the middle of the jaws, so far from touching the duct's side with their flank
         const Vector3d centre = duct.centre(plan.push_place), axis = along_duct(duct, plan.push_place);
         const Vector3d side = (centre - trocar.pivot).cross(axis).normalized();
-        const double distance = duct.radius_at(plan.push_place) + 0.5 * thickness + tool.forceps()->jaws.radius + gap;
-        return JawTarget{centre + distance * side, axis, 0.5 * tool.forceps()->jaws.length};
+        const double distance = duct.radius_at(plan.push_place) + 0.5 * thickness + jaws_of(tool).radius + gap;
+        return JawTarget{centre + distance * side, axis, 0.5 * jaws_of(tool).length};
       };
   const JawTarget grasp{duct.centre(plan.grasp_place), along_duct(duct, plan.grasp_place),
-                        plan.share * tool.forceps()->jaws.length};
+                        plan.share * jaws_of(tool).length};
 
   ScriptedMotion motion(tool, back(poke, plan.withdrawn), 0);
   motion.wait(0.5);
@@ -124,7 +128,7 @@ std::string poking_motion(const Tool& tool, const DuctShape& duct, double thickn
 std::string duct_motion(const Scene& scene, const Tool& tool) {
   const auto* duct = first<ShellSpec>(scene);
   const auto* wire = first<CatheterSpec>(scene);
-  if (!tool.forceps() || !duct)
+  if (!std::holds_alternative<ForcepsSpec>(tool.end) || !duct)
     throw std::runtime_error(
         "the motions of the duct's scenes are for a forceps and a body of the model 'modal_shell'");
   if (tool.name == "left") return steadying_motion(tool, {}, duct->shell.thickness);

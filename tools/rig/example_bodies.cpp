@@ -17,7 +17,7 @@ Scene block_scene(double scale) {
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.2 * scale};
-  tool.probe()->radius = 0.008 * scale;
+  std::get<ProbeSpec>(tool.end).radius = 0.008 * scale;
   tool.shaft_radius = 0.0025 * scale;
   tool.shaft_length = 0.3 * scale;
   scene.tools.push_back(tool);
@@ -42,7 +42,7 @@ Scene scene_of_moving(Body body) {
   Tool tool;
   tool.name = "probe";
   tool.pivot = {0, 0, 0.3};
-  tool.probe()->radius = 0.006;
+  std::get<ProbeSpec>(tool.end).radius = 0.006;
   tool.shaft_length = 0.01;
   scene.tools.push_back(tool);
   return scene;

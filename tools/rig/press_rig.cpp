@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "common/tool/instrument.hpp"
+
 namespace palpate {
 namespace {
 
-// As its node would tell of it; a forceps here stands as the handle wants it and holds nothing.
+// As its node would tell of it; jaws that turn stand here as the handle wants them and hold nothing.
 ToolState state_of(const Tool& of, std::size_t tool, const ToolDofs& dofs, std::uint64_t tick) {
-  const ProbeSpec* probe = of.probe();
-  const bool holding = probe && probe->jaws && dofs.grip < probe->jaws->closed_below;
+  const EndAbilities can = abilities_of(of);
   return {.tool = static_cast<std::uint32_t>(tool),
           .run = 1,
           .step = tick,
@@ -18,8 +19,8 @@ ToolState state_of(const Tool& of, std::size_t tool, const ToolDofs& dofs, std::
           .depth = dofs.depth,
           .roll = dofs.roll,
           .grip = dofs.grip,
-          .opening = probe ? 0 : dofs.grip,
-          .holding = holding,
+          .opening = can.turning ? dofs.grip : 0,
+          .holding = can.closing && dofs.grip < can.closing->closed_below,
           .pedal = dofs.pedal};
 }
 

@@ -9,10 +9,10 @@ namespace palpate {
 
 ScriptedTools::ScriptedTools(const Scene& scene) : dofs_(scene.tools.size()) {
   for (const Tool& tool : scene.tools) {
-    const auto* script = std::get_if<ScriptedDeviceSpec>(&tool.device);
+    const std::optional<Trajectory> script = script_of(tool.device);
     if (!script) throw std::runtime_error(fmt::format("tool '{}' is not scripted", tool.name));
-    motions_.push_back(load_trajectory(script->trajectory));
-    check_grip(motions_.back(), script->trajectory, tool);
+    check_grip(*script, motion_file_of(tool.device), tool);
+    motions_.push_back(*script);
   }
 }
 

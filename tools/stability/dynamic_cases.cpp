@@ -136,7 +136,7 @@ std::vector<Point> cut_points(const Extent& extent) {
                       }});
     points.push_back(
         {fmt::format("cut away {}", kind), "by", "cautery through the whole block", [scene = whole]() mutable {
-           scene.tools[0].probe()->cautery = Cautery{.radius = 0.008};
+           std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{.radius = 0.008};
            const auto path = [](int i) {
              return Vector3d(0.022 * std::sin(0.05 * i), 0.022 * std::sin(0.0613 * i), 0.028 - 0.03 * i / 1500);
            };

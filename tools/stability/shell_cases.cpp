@@ -22,7 +22,7 @@ Scene duct_scene(double thickness) {
   tool.pivot = {0, 0.15, kLength / 2};
   tool.axis = -Vector3d::UnitY();
   tool.up = Vector3d::UnitZ();
-  tool.probe()->radius = 0.003;
+  std::get<ProbeSpec>(tool.end).radius = 0.003;
   tool.shaft_length = 0.02;
   return scene;
 }

@@ -18,19 +18,15 @@ std::string digest_of(const std::filesystem::path& file) {
 }
 
 // What runs with a device depend on: its kind, and the file that moves it if there is one.
-template <class Spec>
-std::string text_of(const Spec& device) {
-  std::string text(device.kKind);
-  if constexpr (requires { device.trajectory; })
-    if (!device.trajectory.empty()) text += digest_of(device.trajectory);
-  return text;
+std::string text_of(const DeviceSpec& device) {
+  const std::filesystem::path file = motion_file_of(device);
+  return std::string(kind_of(device)) + (file.empty() ? "" : digest_of(file));
 }
 
 std::string digest_of(const Scene& scene) {
   std::string all = scene_hash(scene);
   for (const Body& body : scene.bodies) all += content_hash(body);
-  for (const Tool& tool : scene.tools)
-    all += std::visit([](const auto& device) { return text_of(device); }, tool.device);
+  for (const Tool& tool : scene.tools) all += text_of(tool.device);
   return digest(all);
 }
 

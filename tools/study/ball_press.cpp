@@ -30,7 +30,7 @@ Scene ball_scene(const Scene& from, Body body, const Patch& patch, double radius
   ball.name = "ball";
   ball.axis = patch.inward;
   ball.up = patch.inward.unitOrthogonal();
-  ball.probe()->radius = radius;
+  std::get<ProbeSpec>(ball.end).radius = radius;
   ball.shaft_radius = 0.3 * radius;
   ball.shaft_length = 0.4 * radius;
   ball.pivot = patch.point - 0.3 * patch.inward;

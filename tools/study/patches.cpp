@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/contact/tool_contacts.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate::study {
 namespace {
@@ -48,9 +49,9 @@ std::vector<double> smoothness(const SurfaceMap& s, double reach) {
 
 double study_radius(const Scene& scene, const SurfaceMap& surface, std::string& from) {
   for (const Tool& tool : scene.tools)
-    if (const ProbeSpec* probe = tool.probe()) {
+    if (const std::optional<double> ball = abilities_of(tool).ball) {
       from = "the tip of tool '" + tool.name + "'";
-      return probe->radius;
+      return *ball;
     }
   from = "the mean edge of the surface, for want of a probe";
   return mean_edge(surface);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/tool/instrument.hpp"
+
 namespace palpate {
 namespace {
 
@@ -24,12 +26,12 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
     : compliance_(compliance), friction_(settings.contact.friction), surface_(map) {
   double largest = 0;
   for (std::size_t t = 0; t < settings.tools.size(); ++t) {
-    const ProbeSpec* probe = settings.tools[t].probe();
-    if (!probe) continue;
-    auto grid = std::ranges::find(grids_, probe->radius, [](const auto& g) { return g->radius(); });
-    if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(probe->radius, half_space));
+    const std::optional<double> ball = abilities_of(settings.tools[t]).ball;
+    if (!ball) continue;
+    auto grid = std::ranges::find(grids_, *ball, [](const auto& g) { return g->radius(); });
+    if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(*ball, half_space));
     tips_.push_back({static_cast<int>(t), Patch(**grid)});
-    largest = std::max(largest, probe->radius);
+    largest = std::max(largest, *ball);
   }
   near_field_ = std::make_unique<NearField>(map, compliance, half_space, 2 * largest);
   moved_.reserve(Patch::kMaxNodes);

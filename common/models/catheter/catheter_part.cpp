@@ -11,15 +11,11 @@ namespace {
 
 constexpr std::uint64_t kTaskInterval = 100;  // [steps] from one task record to the next
 
-// A probe meets a catheter with its tip and its shaft; a forceps with its three segments.
-int parts_against_catheters(bool forceps) {
-  return forceps ? kForcepsPartCount : 2;
-}
-
-CatheterTool part_of(const MovingTool& tool, int part, bool forceps) {
+// A shaft of spheres behind a ball meets a catheter as one segment.
+CatheterTool part_of(const MovingTool& tool, int part, bool ball) {
   CatheterTool out{.part = part};
   Segment before = tool.axis_before(part), now = tool.axis(part);
-  if (!forceps && part == 1) {
+  if (ball && part == 1) {
     before.end = tool.axis_before(tool.size() - 1).start;
     now.end = tool.axis(tool.size() - 1).start;
   }
@@ -46,8 +42,10 @@ CatheterPart::CatheterPart(const CatheterSpec& spec, const StepSettings& setting
     : inside_(spec.catheter.inside), dt_(settings.dt), jaws_(settings.tools.size(), Eigen::Isometry3d::Identity()) {
   for (int t = 0; t < static_cast<int>(settings.tools.size()); ++t) {
     const Tool& tool = settings.tools[t];
-    is_forceps_.push_back(tool.forceps() != nullptr);
-    for (int p = 0; p < parts_against_catheters(tool.forceps()); ++p)
+    const bool ball = abilities_of(tool).ball.has_value();
+    has_ball_.push_back(ball);
+    const int parts = ball ? 2 : static_cast<int>(tool_parts(tool).size());
+    for (int p = 0; p < parts; ++p)
       tools_.push_back({.tool = t, .part = p, .compliance = tool.compliance, .friction = settings.contact.friction});
   }
   settings_ = {.shape = spec.catheter,
@@ -67,7 +65,7 @@ void CatheterPart::join(const FindPart& find) {
 
 bool CatheterPart::move(std::span<const MovingTool> tools, std::span<ToolLoad> loads) {
   for (CatheterTool& tool : tools_) {
-    const CatheterTool now = part_of(tools[tool.tool], tool.part, is_forceps_[tool.tool]);
+    const CatheterTool now = part_of(tools[tool.tool], tool.part, has_ball_[tool.tool]);
     tool.before = now.before;
     tool.now = now.now;
     tool.radius = now.radius;
@@ -89,7 +87,7 @@ void CatheterPart::finish(double max_force, double time) {
   wall_contacts_ = touching;
   task_.max_force = std::max(task_.max_force, max_force);
   bool held = false;
-  for (std::size_t t = 0; t < is_forceps_.size(); ++t) held |= body_->holds(static_cast<int>(t));
+  for (std::size_t t = 0; t < has_ball_.size(); ++t) held |= body_->holds(static_cast<int>(t));
   if (held) task_.held_s += dt_;
 }
 

@@ -39,9 +39,9 @@ class CatheterPart : public BodyPart {
   CatheterSettings settings_;
   std::string inside_;
   double dt_;
-  std::vector<CatheterTool> tools_;       ///< every part of every tool that may touch it
-  std::vector<std::uint8_t> is_forceps_;  ///< per tool
-  std::vector<Eigen::Isometry3d> jaws_;   ///< per tool
+  std::vector<CatheterTool> tools_;      ///< every part of every tool that may touch it
+  std::vector<std::uint8_t> has_ball_;   ///< per tool
+  std::vector<Eigen::Isometry3d> jaws_;  ///< per tool
   std::unique_ptr<CatheterBody> body_;
   CatheterWall* duct_ = nullptr;  ///< what it is led into
   Task task_;

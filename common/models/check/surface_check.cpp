@@ -8,6 +8,7 @@
 #include "common/contact/tool_contacts.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/geometry/buckets.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
@@ -77,12 +78,12 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
   std::vector<std::string> warnings;
   const double h = mean_edge(surface);
   for (const Tool& tool : settings.tools) {
-    const ForcepsSpec* forceps = tool.forceps();
-    const double radius = forceps ? forceps->jaws.radius : tool.probe()->radius;
+    const EndAbilities end = abilities_of(tool);
+    const double radius = end.radius;
     const auto warn = [&](const char* than, const char* so) {
       warnings.push_back(
           fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
-                      forceps ? "jaws with a radius" : "a radius", radius, than, h, body, so));
+                      end.radius_of, radius, than, h, body, so));
     };
     if (radius < h)
       warn("", "the force is the mesh's, not the tissue's");

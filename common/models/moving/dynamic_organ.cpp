@@ -49,8 +49,9 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       moving_(settings.tools.size()),
       in_step_(settings.tools.size()) {
   for (const Tool& tool : settings.tools) {
-    jaws_.push_back({tool.probe() ? tool.probe()->jaws : std::nullopt, forceps_shape(tool)});
-    cautery_.push_back(tool.probe() ? tool.probe()->cautery : std::nullopt);
+    const EndAbilities can = abilities_of(tool);
+    jaws_.push_back({can.closing, forceps_shape(tool)});
+    cautery_.push_back(can.cautery);
   }
   if (still_) topology_.join(shown_.joints());
   surface_.hide(shown_.joints());
@@ -158,9 +159,9 @@ void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
 void DynamicOrgan::grasp(int tool, const ToolInTick& with) {
   const auto take = [&](auto&& from, auto&& allowed) {
     const Eigen::Isometry3d& pose = with.moving.before;
-    if (const auto& probe = jaws_[tool].probe) return from.grasp(tool, pose, probe->length, probe->width, allowed);
-    if (const auto& forceps = jaws_[tool].forceps)
-      return from.grasp(OpenJaws{tool, *forceps, pose, with.opening, 0}, allowed);
+    if (const auto& jaws = jaws_[tool].closing) return from.grasp(tool, pose, jaws->length, jaws->width, allowed);
+    if (const auto& shape = jaws_[tool].turning)
+      return from.grasp(OpenJaws{tool, *shape, pose, with.opening, 0}, allowed);
     return false;
   };
   if (take(contacts_.search(), [&](int node) { return topology_.has_node(node); }) || !still_) return;

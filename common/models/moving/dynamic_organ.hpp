@@ -86,8 +86,8 @@ class DynamicOrgan {
  private:
   /// How a tool takes hold: at most one of these.
   struct Jaws {
-    std::optional<ProbeJaws> probe;
-    std::optional<ForcepsShape> forceps;
+    std::optional<ClosingJaws> closing;
+    std::optional<ForcepsShape> turning;
   };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {

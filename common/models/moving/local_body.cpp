@@ -31,7 +31,10 @@ Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double frict
 }  // namespace
 
 LocalBody::LocalBody(const Tool& tool, double friction, double dt)
-    : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)), jaws_(jaw_parts(tool)), friction_(friction), dt_(dt) {
+    : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
+      jaws_(abilities_of(tool).holding),
+      friction_(friction),
+      dt_(dt) {
   position_.fill(Vector3d::Zero());
   for (auto& box : box_) box.fill(Vector3d::Zero());
 }

@@ -1,8 +1,6 @@
 #pragma once
 #include <memory>
-#include <vector>
 
-#include "common/bus/bus.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/step_record.hpp"
 
@@ -41,22 +39,5 @@ struct DevicePlace {
 
 /// The device that the scene names for this tool. Throws std::runtime_error for a missing or malformed file.
 std::unique_ptr<Device> make_device(const Scene& scene, int tool);
-
-/// Moves samples of drivers elsewhere from the bus to their tools; runs on a thread of its own, not in the step.
-class BusDevices {
- public:
-  BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices);
-  /// Takes what has come.
-  void take();
-  bool needed() const;  ///< some tool waits for a driver elsewhere
-
- private:
-  struct Target {
-    std::uint32_t tool;
-    Device* device;
-  };
-  std::unique_ptr<Reader<DeviceState>> reader_;
-  std::vector<Target> targets_;
-};
 
 }  // namespace palpate

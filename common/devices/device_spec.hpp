@@ -1,0 +1,25 @@
+#pragma once
+#include <variant>
+
+#include "common/devices/bus/spec.hpp"
+#include "common/devices/log/spec.hpp"
+#include "common/devices/scripted/spec.hpp"
+
+namespace palpate {
+
+/// The table of devices: a tool has one of them.
+using DeviceSpec = std::variant<ScriptedDeviceSpec, LogDeviceSpec, BusDeviceSpec>;
+
+/// As a scene file writes it: `scripted`.
+inline std::string_view kind_of(const DeviceSpec& device) {
+  return std::visit([](const auto& spec) { return spec.kKind; }, device);
+}
+
+inline std::filesystem::path motion_file_of(const DeviceSpec& device) {
+  return std::visit([](const auto& spec) { return motion_file(spec); }, device);
+}
+
+/// Empty where the motion is not known before the run.
+std::optional<Trajectory> script_of(const DeviceSpec& device);
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/devices/device.hpp"
+
+namespace palpate {
+
+/// Moves samples of drivers elsewhere from the bus to their tools; runs on a thread of its own, not in the step.
+class BusDevices {
+ public:
+  BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices);
+  /// Takes what has come.
+  void take();
+  bool needed() const;  ///< some tool waits for a driver elsewhere
+
+ private:
+  struct Target {
+    std::uint32_t tool;
+    Device* device;
+  };
+  std::unique_ptr<Reader<DeviceState>> reader_;
+  std::vector<Target> targets_;
+};
+
+}  // namespace palpate
