@@ -39,7 +39,7 @@ struct Port {
   PortForce held;        ///< what the hand really gets until the next tick
   bool limited = false;  ///< by the last control()
 
-  PortMotion last;       ///< the motion that was observed before
+  PortMotion last;  ///< the motion that was observed before
   Reach reach;
   double resisting = 0;  ///< [N] that may stand against the motion whatever the energy is
 };
@@ -68,9 +68,9 @@ class PassivityGuard : public Stateful<PassivityGuard> {
       0.05;                                ///< share of the reserve that is kept for resisting while all else is gone
   static constexpr double kStill = 1e-12;  ///< [m, rad] less is no motion
 
-  /// `ports`: of all tools, which outlive the guard. Of all together: the sum of the force limits [N] and the least slew
-  /// limit [N/s]. The reach is max_acceleration dt^2, or less where that times max_force were over half the reserve, or
-  /// the largest change seen lately.
+  /// `ports`: of all tools, which outlive the guard. Of all together: the sum of the force limits [N] and the least
+  /// slew limit [N/s]. The reach is max_acceleration dt^2, or less where that times max_force were over half the
+  /// reserve, or the largest change seen lately.
   PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double slew, double dt);
 
   /// A tick begins: counts the energy of what the ports held over their motion.

@@ -1,3 +1,5 @@
+#include "common/models/solid/check.hpp"
+
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -11,7 +13,6 @@
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
 #include "common/models/moving_kind.hpp"
-#include "common/models/solid/check.hpp"
 
 namespace palpate {
 namespace {
