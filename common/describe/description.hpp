@@ -46,6 +46,8 @@ class Description {
   virtual ~Description() = default;
 
   virtual void number(const Key& key, double& value, const Range& range) = 0;
+  /// Non-empty list, each of the numbers within the range.
+  virtual void numbers(const Key& key, std::vector<double>& value, const Range& range) = 0;
   virtual void integer(const Key& key, int& value, int low, int high) = 0;
   virtual void flag(const Key& key, bool& value) = 0;
   virtual void text(const Key& key, std::string& value) = 0;

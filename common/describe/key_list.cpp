@@ -69,6 +69,10 @@ void KeyList::number(const Key& key, double& value, const Range& range) {
   enter_key(key, "number" + range.signs(), short_number(value));
 }
 
+void KeyList::numbers(const Key& key, std::vector<double>&, const Range& range) {
+  enter_key(key, "list of numbers" + range.signs(), "none");
+}
+
 void KeyList::integer(const Key& key, int& value, int low, int high) {
   enter_key(key, fmt::format("integer, {} to {}", low, high), std::to_string(value));
 }

@@ -39,6 +39,7 @@ class KeyList : public Description {
   const DescribedTable* find(const std::string& path) const;
 
   void number(const Key& key, double& value, const Range& range) override;
+  void numbers(const Key& key, std::vector<double>& value, const Range& range) override;
   void integer(const Key& key, int& value, int low, int high) override;
   void flag(const Key& key, bool& value) override;
   void text(const Key& key, std::string& value) override;

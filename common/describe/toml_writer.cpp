@@ -26,6 +26,12 @@ void TomlWriter::number(const Key& key, double& value, const Range&) {
   line(key, value_text::number(value));
 }
 
+void TomlWriter::numbers(const Key& key, std::vector<double>& value, const Range&) {
+  std::vector<std::string> entries;
+  for (const double x : value) entries.push_back(value_text::number(x));
+  if (!entries.empty()) line(key, value_text::list(entries));
+}
+
 void TomlWriter::integer(const Key& key, int& value, int, int) {
   line(key, std::to_string(value));
 }

@@ -146,6 +146,20 @@ void SceneReader::number(const Key& key, double& value, const Range& range) {
   value = x;
 }
 
+void SceneReader::numbers(const Key& key, std::vector<double>& value, const Range& range) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const toml::array* list = node->as_array();
+  if (!list) fail(node->source(), fmt::format("{} must be a list of numbers, not {}", key.name, kind(*node)));
+  if (list->empty()) fail(node->source(), fmt::format("{} must not be empty", key.name));
+  value.clear();
+  for (const toml::node& entry : *list) {
+    value.push_back(finite_number(entry, key.name));
+    if (!range.contains(value.back()))
+      fail(entry.source(), fmt::format("{} must be {}, and one is {}", key.name, range.words(), value.back()));
+  }
+}
+
 void SceneReader::integer(const Key& key, int& value, int low, int high) {
   const toml::node* node = find(key);
   if (!node) return;

@@ -20,6 +20,7 @@ class SceneReader : public Description {
   SceneReader(const toml::table& table, const KeyList& known, std::filesystem::path file);
 
   void number(const Key& key, double& value, const Range& range) override;
+  void numbers(const Key& key, std::vector<double>& value, const Range& range) override;
   void integer(const Key& key, int& value, int low, int high) override;
   void flag(const Key& key, bool& value) override;
   void text(const Key& key, std::string& value) override;
