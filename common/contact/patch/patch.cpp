@@ -47,7 +47,8 @@ PatchGrid::PatchGrid(double radius, const HalfSpace& half_space) : radius_(radiu
     }
 }
 
-Patch::Patch(const PatchGrid& grid) : grid_(grid) {
+Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : grid_(grid) {
+  if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
   across_ = up_ = at_ = force_ = travel_ = Vector3d::Zero();
@@ -75,6 +76,7 @@ void Patch::lift() {
   bent_.setZero();
   force_.setZero();
   pressing_ = depth_ = 0;
+  if (memory_) memory_->forget();
 }
 
 int Patch::local(int node) {
@@ -184,13 +186,37 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
       continue;
     }
     for (int v = 0; v < 3; ++v) wanted_[p] -= f.weights[v] * normal_.dot(moved[f.local[v]]);
+    if (memory_) wanted_[p] -= memory_->dent(p);
   }
   fill_near_field(ground.near_field);
   fill_normal();
   settle_pressures();
   pressing_ = 0;
   for (const double f : pressure_force_) pressing_ += f;
+  const Vector3d bent_before = bent_;
   shear(ground);
+  if (memory_) add_slip(bent_before);
+}
+
+// What of its way the tip has not taken the tissue along.
+void Patch::add_slip(const Vector3d& bent_before) {
+  const Vector3d slip = travel_ - (bent_ - bent_before);
+  slip_ = {across_.dot(slip), up_.dot(slip)};
+}
+
+void Patch::remember(std::span<const Vector3d> moved) {
+  if (!memory_) return;
+  const int n = grid_.size();
+  const double elastic = 1 / memory_->instant();
+  for (int p = 0; p < n; ++p) {
+    const Foot& f = feet_[p];
+    wanted_[p] = 0;
+    if (!std::isfinite(f.gap)) continue;
+    for (const int q : rows_) wanted_[p] += elastic * compliance_[p * n + q] * pressure_force_[q];
+    for (int v = 0; v < 3; ++v) wanted_[p] -= elastic * f.weights[v] * normal_.dot(moved[f.local[v]]);
+  }
+  memory_->follow(wanted_, elastic * sheared_);
+  memory_->slip(slip_, grid_.edge() * std::sqrt(static_cast<double>(rows_.size())));
 }
 
 // From one step to the next the nodes are mostly the same.
@@ -276,6 +302,7 @@ bool Patch::solve_active() {
 // slips and stays bent as far as the bound allows, so that the shear never turns against the travel.
 void Patch::shear(const Ground& ground) {
   loaded_ = 0;
+  sheared_.setZero();
   if (pressing_ <= 0) {
     bent_.setZero();
     force_.setZero();
@@ -298,14 +325,16 @@ void Patch::shear(const Ground& ground) {
       for (int j = 0; j < count; ++j)
         if (share[i] != 0 && share[j] != 0)
           c += share[i] * share[j] * plane.transpose() * near_field_[i * kMaxNodes + j] * plane;
-    Vector2d bent = plane.transpose() * (bent_ + travel_);
+    const Vector3d past = memory_ ? memory_->bent() : Vector3d::Zero();
+    Vector2d bent = plane.transpose() * (bent_ + travel_ - past);
     if (!resumed_.isZero(0)) bent = c * plane.transpose() * resumed_;
     resumed_.setZero();
     Vector2d force = c.inverse() * bent;
     const double most = ground.friction * pressing_, size = force.norm();
     sticks_ = size <= most;
     if (!sticks_) force *= most / size, bent = c * force;
-    bent_ = plane * bent;
+    sheared_ = bent_ = plane * bent;
+    if (memory_) bent_ += past - past.dot(normal_) * normal_;
     shear = plane * force;
   }
   force_ = pressing_ * normal_ + shear;
@@ -331,6 +360,7 @@ void Patch::state(State& s) {
   s.value(anchor_.nodes);
   s.value(anchor_.weights);
   s.value(sticks_);
+  if (memory_) memory_->state(s);
   for (PatchForce& f : forces_) {
     s.value(f.node);
     s.value(f.force);

@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/contact/patch/near_field.hpp"
+#include "common/contact/patch/patch_memory.hpp"
 #include "common/contact/patch/smooth_surface.hpp"
 #include "common/describe/state.hpp"
 #include "common/geometry/anchor.hpp"
@@ -46,12 +48,14 @@ struct PatchForce {
 ///   A = G + Phi K Phi^T,
 /// G being the half-space's kernel between the squares, Phi the hats of the surface's nodes at them and K what the
 /// body's compliance has beyond the half-space's (NearField). All is measured at the body's rest shape, as linear
-/// elasticity does.
+/// elasticity does. On tissue that relaxes A is softer by what it creeps within a step, and the past has moved the
+/// ground.
 class Patch {
  public:
   static constexpr int kMaxNodes = 64;  ///< near nodes that a patch may rest on
 
-  explicit Patch(const PatchGrid& grid);
+  /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
+  explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
 
   /// What the patch looks at; all outlive the patch.
   struct Ground {
@@ -63,8 +67,11 @@ class Patch {
   /// shear.
   std::span<const int> lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
                            const Eigen::Vector3d& middle);
-  /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces.
+  /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
+  /// the past.
   void press(const Ground& ground, std::span<const Eigen::Vector3d> moved);
+  /// Ends a step on tissue that relaxes. `moved` [m]: displacement of those nodes by forces() alone.
+  void remember(std::span<const Eigen::Vector3d> moved);
   void lift();  ///< no contact any more
   /// Goes on from a force [N] on the tissue that the same patch had in an earlier life.
   void resume(const Eigen::Vector3d& force) { resumed_ = force; }
@@ -98,12 +105,16 @@ class Patch {
   void settle_pressures();
   bool solve_active();
   void shear(const Ground& ground);
+  void add_slip(const Eigen::Vector3d& bent_before);
 
   const PatchGrid& grid_;
   Eigen::Vector3d normal_, across_, up_, at_, force_, travel_;
   Anchor anchor_;
   Eigen::Vector3d bent_ = Eigen::Vector3d::Zero();     ///< [m] the tissue's shear under the patch
   Eigen::Vector3d resumed_ = Eigen::Vector3d::Zero();  ///< [N] not zero: the shear is to begin with its part
+  Eigen::Vector2d slip_ = Eigen::Vector2d::Zero();     ///< [m] of the tip over the tissue, within the step
+  Eigen::Vector3d sheared_ = Eigen::Vector3d::Zero();  ///< [m] that the step's own shear bends the tissue
+  std::optional<PatchMemory> memory_;
   bool sticks_ = true;
   double pressing_ = 0, depth_ = 0;
   std::span<const int> near_;  ///< triangles, of lay() alone

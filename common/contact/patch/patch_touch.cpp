@@ -22,7 +22,7 @@ Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3
 }  // namespace
 
 PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
-                       const StepSettings& settings)
+                       const StepSettings& settings, const std::optional<CreepStep>& creep)
     : compliance_(compliance), friction_(settings.contact.friction), surface_(map) {
   double largest = 0;
   for (std::size_t t = 0; t < settings.tools.size(); ++t) {
@@ -30,7 +30,7 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
     if (!ball) continue;
     auto grid = std::ranges::find(grids_, *ball, [](const auto& g) { return g->radius(); });
     if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(*ball, half_space));
-    tips_.push_back({static_cast<int>(t), Patch(**grid)});
+    tips_.push_back({static_cast<int>(t), Patch(**grid, creep)});
     largest = std::max(largest, *ball);
   }
   near_field_ = std::make_unique<NearField>(map, compliance, half_space, 2 * largest);
@@ -54,20 +54,29 @@ void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<con
 }
 
 // One patch after another, each against the others' newest forces.
-void PatchTouch::touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others) {
+void PatchTouch::touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others,
+                       const Past& past) {
   const Patch::Ground ground{surface_, *near_field_, friction_};
   for (Tip& own : tips_) {
     const MovingTool& tool = tools[own.tool];
     const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(kTip).start);
     if (nodes.empty()) continue;
     moved_.assign(nodes.size(), Vector3d::Zero());
+    if (past) past(nodes, {moved_.data()->data(), 3 * nodes.size()});
     others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
     for (const Tip& other : tips_)
       for (const PatchForce& f : other.patch.forces())
         if (&other != &own) add_displacement(f.node, f.force, nodes);
     own.patch.press(ground, moved_);
     own.offset = tool.to_part(kTip, own.patch.at());
+    if (past) remember(own, nodes);
   }
+}
+
+void PatchTouch::remember(Tip& tip, std::span<const int> nodes) {
+  moved_.assign(nodes.size(), Vector3d::Zero());
+  for (const PatchForce& f : tip.patch.forces()) add_displacement(f.node, f.force, nodes);
+  tip.patch.remember(moved_);
 }
 
 Vector3d PatchTouch::pressing(int tool) const {

@@ -12,9 +12,10 @@ namespace palpate {
 /// construction.
 class PatchTouch {
  public:
-  /// `map` and `compliance` outlive this object; `half_space`: the material at the surface.
+  /// `map` and `compliance` outlive this object; `half_space`: the material at the surface. `creep`: of tissue that
+  /// relaxes; compliance and material are softer by its instant() then.
   PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
-             const StepSettings& settings);
+             const StepSettings& settings, const std::optional<CreepStep>& creep = {});
 
   /// Visits (tool, node, force [N] on the tissue).
   using VisitForce = BodyPart::VisitForce;
@@ -22,8 +23,11 @@ class PatchTouch {
   /// [m] of a node by all patches.
   Eigen::Vector3d displacement(int node) const;
 
-  /// Solves for the forces of one step. `others` visits what else acts on the body.
-  void touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others);
+  /// Fills what past forces do to nodes [m], three entries a node.
+  using Past = std::function<void(std::span<const int> nodes, std::span<double> displacement)>;
+  /// Solves for the forces of one step. `others` visits what else acts on the body; `past`: of tissue that relaxes.
+  void touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others,
+             const Past& past = {});
   /// Sum over a tool's patches of their pressures' forces [N] on the tissue, without shear.
   Eigen::Vector3d pressing(int tool) const;
   /// Adds what they do to the tools.
@@ -44,6 +48,7 @@ class PatchTouch {
   };
 
   void add_displacement(int from, const Eigen::Vector3d& force, std::span<const int> nodes);
+  void remember(Tip& tip, std::span<const int> nodes);
 
   const Compliance<double>& compliance_;
   double friction_;
