@@ -89,6 +89,12 @@ void Compliance<Scalar>::clear() {
 }
 
 template <class Scalar>
+void Compliance<Scalar>::scale(double factor) {
+  const std::ptrdiff_t entries = 3 * stride_ * column_nodes_;
+  for (std::ptrdiff_t i = 0; i < entries; ++i) data_[i] *= static_cast<Scalar>(factor);
+}
+
+template <class Scalar>
 void Compliance<Scalar>::add_modes(std::span<const double> shape, std::span<const double> weight) {
   const auto modes = static_cast<Eigen::Index>(weight.size());
   if (modes == 0 || shape.size() % weight.size() != 0 ||

@@ -23,7 +23,8 @@ class Compliance {
   std::ptrdiff_t stride() const { return stride_; }
   const Scalar* column(int node, int axis) const { return data_.get() + stride_ * (3 * node + axis); }
 
-  void clear();  ///< every entry becomes zero
+  void clear();               ///< every entry becomes zero
+  void scale(double factor);  ///< every entry becomes so many times as large
   /// Adds sum_m weight_m phi_m phi_m^T, phi_m being column m of `shape`: column-major, 3 entries a surface node of the
   /// archive, whose fixed axes hold zeros.
   void add_modes(std::span<const double> shape, std::span<const double> weight);
