@@ -10,7 +10,7 @@ namespace palpate {
 
 /// What a body in the haptic step may tell beside its contacts: a row for each message of a kind of tissue. Every one
 /// has body, run, seq, step and sense_ns.
-using BodyMessage = std::variant<ModalState, CatheterState, TaskRecord>;
+using BodyMessage = std::variant<ModalState, CatheterState, TaskRecord, CreepState>;
 
 inline constexpr std::uint64_t kShapeInterval = 4;  ///< [steps] from one shape of a body to the next
 

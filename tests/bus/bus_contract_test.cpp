@@ -78,6 +78,8 @@ TEST_P(BusContract, EveryFieldOfEveryMessageArrivesAsItWasSent) {
   expect_round_trip(topics::deform_keyframe, deform_keyframe_sample());
   expect_round_trip(topics::modal_state, modal_sample());
   expect_round_trip(topics::modal_state, modal_sample(1024, 4096));
+  expect_round_trip(topics::creep_state, creep_sample());
+  expect_round_trip(topics::creep_state, creep_sample(4096));
   expect_round_trip(topics::catheter_state, catheter_sample());
   expect_round_trip(topics::catheter_state, catheter_sample(1024));
   expect_round_trip(topics::task_record, task_sample());

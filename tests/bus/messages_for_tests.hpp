@@ -106,6 +106,13 @@ inline ModalState modal_sample(std::uint32_t modes = 4, std::uint32_t forces = 3
   return m;
 }
 
+inline CreepState creep_sample(std::uint32_t loads = 3) {
+  CreepState m;
+  m.body = 1, m.run = 2, m.seq = 3, m.step = 4, m.sense_ns = 5, m.publish_ns = 6;
+  for (std::uint32_t i = 0; i < loads; ++i) m.loads.push_back({10 + i, {0.5f * static_cast<float>(i), -2.5f, 3.25f}});
+  return m;
+}
+
 inline CatheterState catheter_sample(int particles = 5) {
   CatheterState m;
   m.body = 1, m.run = 2, m.seq = 3, m.step = 4, m.sense_ns = 5, m.publish_ns = 6;
@@ -137,6 +144,8 @@ void for_each_message(F&& f) {
   f(deform_keyframe_sample());
   f(modal_sample());
   f(modal_sample(0, 0));
+  f(creep_sample());
+  f(creep_sample(0));
   f(catheter_sample());
   f(task_sample());
   f(probe_sample());
