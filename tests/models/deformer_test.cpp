@@ -147,6 +147,30 @@ TEST(Deformer, NodalForcesOfContactsShapeQuasiStaticBodiesAlone) {
   EXPECT_EQ(deformer.contacts().size(), 1u);
 }
 
+TEST(Deformer, LoadsOfThePastShapeABodyThatRelaxesAsForcesDo) {
+  DuctScene s;
+  CreepState past{.body = kOrganBody, .run = 5, .seq = 1, .step = 9, .sense_ns = 1100};
+  past.loads = {{1, {0, 0, 2}}, {1, {0, 1, 0}}};
+  Deformer elastic(s.scene, s.archives);
+  EXPECT_FALSE(elastic.hears(past));
+  EXPECT_FALSE(elastic.take(past)) << "it has no past";
+
+  as<QuasiStaticSpec>(s.scene.bodies[kOrganBody])->relaxation = Relaxation{{1}, {0.5}};
+  Deformer relaxing(s.scene, s.archives), forced(s.scene, s.archives);
+  ASSERT_TRUE(relaxing.take(past));
+  relaxing.deform();
+  ContactState contacts{.run = 5, .seq = 1, .step = 9, .sense_ns = 1100};
+  contacts.forces.push_back({kOrganBody, 1, {0, 1, 2}});
+  ASSERT_TRUE(forced.take(contacts));
+  forced.deform();
+  EXPECT_FALSE(at_rest(relaxing, kOrganBody));
+  const auto &u = relaxing.surface(kOrganBody).displacement, &expected = forced.surface(kOrganBody).displacement;
+  for (std::size_t n = 0; n < u.size(); ++n) EXPECT_LT((u[n] - expected[n]).norm(), 1e-8) << n;
+
+  past.loads[1].node = static_cast<std::uint32_t>(s.archives[kOrganBody].surface.size());
+  EXPECT_FALSE(relaxing.take(past));
+}
+
 TEST(Deformer, ContactsAreNoNewsWhereNothingIsQuasiStatic) {
   DuctScene s;
   s.scene.bodies.erase(s.scene.bodies.begin());

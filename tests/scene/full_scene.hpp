@@ -91,6 +91,10 @@ poisson = 0.3
 fixed = [{ group = "edge" }]
 touchable = { box = [[0, 0, 0], [1, 1, 0]] }
 
+[body.relaxation]
+times = [0.1, 2]
+shares = [0.3, 0.25]
+
 [[body]]
 name = "third"
 mesh = "liver.msh"

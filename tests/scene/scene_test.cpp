@@ -48,6 +48,9 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(body.nonlinear->specimen_scale, 0.1);
   EXPECT_EQ(body.touchable->indices, (std::vector<int>{10, 11}));
   EXPECT_EQ(as<MeshedSpec>(scene.bodies[1])->touchable->box->max, Eigen::Vector3d(1, 1, 0));
+  const Relaxation& relaxation = *as<QuasiStaticSpec>(scene.bodies[1])->relaxation;
+  EXPECT_EQ(relaxation.times, (std::vector{0.1, 2.0}));
+  EXPECT_EQ(relaxation.shares, (std::vector{0.3, 0.25}));
   EXPECT_EQ(as<MeshedSpec>(scene.bodies[2])->touchable->group, "top");
   ASSERT_EQ(scene.tools.size(), 4u);
   const Tool& tool = scene.tools[0];
@@ -222,6 +225,7 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->fixed[0].axes[1] = true; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->degree = 6; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear.reset(); }));
+  EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[1])->relaxation->shares[1] = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { std::get<ProbeSpec>(s.tools[0].end).radius = 0.007; }));
   EXPECT_TRUE(changed([](Scene& s) { s.contact.friction = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));

@@ -48,7 +48,8 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           text = body + tool + line;
         } else if (key == "fixed") {
           text = plain + line;
-        } else if (key == "material" || key == "nonlinear" || key == "touchable" || key == "offline") {
+        } else if (key == "material" || key == "nonlinear" || key == "relaxation" || key == "touchable" ||
+                   key == "offline") {
           text = held + line;
         } else if (key == "dynamic" || key == "tearing" || key == "hybrid") {
           text = held + "model = \"hybrid\"\n" + line;

@@ -29,6 +29,15 @@ inline PlayedScene pressed_block() {
           }};
 }
 
+/// The same of tissue that relaxes, under a patch of the tip's own.
+inline PlayedScene relaxing_block() {
+  PlayedScene played = pressed_block();
+  played.name = "relaxing_block";
+  played.scene.contact.rule = "patch";
+  as<QuasiStaticSpec>(played.scene.bodies[0])->relaxation = Relaxation{{0.02, 0.3}, {0.3, 0.3}};
+  return played;
+}
+
 /// Moving tissue, 30 mm high: pressed, and cut while the pedal is down.
 template <class Spec = TensorMassSpec>
 PlayedScene cut_block() {

@@ -65,6 +65,7 @@ TEST_P(EveryKindOfTissue, ShowsThePressedSurfaceAtOnceAfterAStateIsRestored) {
 
 INSTANTIATE_TEST_SUITE_P(Simulator, EveryKindOfTissue,
                          ::testing::Values(Case{"quasi_static", testing::pressed_block, 400},
+                                           Case{"relaxing", testing::relaxing_block, 400},
                                            Case{"tensor_mass", [] { return testing::cut_block<>(); }, 400},
                                            Case{"hybrid", [] { return testing::cut_block<HybridSpec>(); }, 400},
                                            Case{"catheter", testing::fed_catheter, 700}),

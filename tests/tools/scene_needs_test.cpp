@@ -101,6 +101,8 @@ struct Needs {
     const auto any = [&](auto&& has) { return std::ranges::any_of(scene.bodies, has); };
     const bool moving = any([](const Body& b) { return as<MovingSpec>(b) != nullptr; });
     const bool shell = any([](const Body& b) { return as<ShellSpec>(b) != nullptr; });
+    const auto relaxes = [](const QuasiStaticSpec* body) { return body && body->relaxation; };
+    const bool relaxing = any([&](const Body& b) { return relaxes(as<QuasiStaticSpec>(b)); });
     const bool catheter = any([](const Body& b) { return as<CatheterSpec>(b) != nullptr; });
     const auto by_bus = [](const Tool& t) { return std::holds_alternative<BusDeviceSpec>(t.device); };
     const bool on_bus = std::ranges::any_of(scene.tools, by_bus);
@@ -113,6 +115,7 @@ struct Needs {
       add(topics, {"surface_state", "surface_state/all", "topology_change", "held_topology", "local_contact_model",
                    "deform_step", "deform_keyframe"});
     if (shell) add(topics, {"modal_state"});
+    if (relaxing) add(topics, {"creep_state"});
     if (catheter) add(topics, {"catheter_state", "task_record"});
     if (on_bus) add(topics, {"device_state"});
     haptic_threads += moving || on_bus;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "common/contact/creep.hpp"
 #include "common/fem/fine_space.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -51,6 +52,23 @@ void say_nonlinear(const QuasiStaticSpec& body, CheckReport& report) {
                   law.radial_curve().end()));
 }
 
+void say_relaxation(const QuasiStaticSpec& body, CheckReport& report) {
+  if (!body.relaxation) return;
+  std::vector<double> times;
+  double left = body.material.young;
+  for (const double share : body.relaxation->shares) left -= share * body.material.young;
+  for (const CreepTerm& term : creep_terms(*body.relaxation)) times.push_back(term.time);
+  report.say(fmt::format(
+      "  relaxation: young falls from {:.4g} Pa to {:.4g} Pa; under a force that stays it creeps with {:.3g} s",
+      body.material.young, left, fmt::join(times, ", ")));
+}
+
+/// What the haptic node keeps of the past: its field, of each retardation.
+MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface) {
+  const std::size_t terms = body.relaxation->times.size();
+  return {"haptic_node", "what is left of past forces", terms * 3 * sizeof(double) * surface.touchable};
+}
+
 /// The patch is as true as the tensors are near the tip.
 void warn_of_tensors(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   if (settings.contact.rule != "patch" || !has_linear_displacement(body.offline)) return;
@@ -67,8 +85,10 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
   say_offline(body, solid.mesh, report);
   say_nonlinear(body, report);
+  say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
+  if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
   std::ranges::copy(locking_warnings(body), std::back_inserter(report.warnings));
   warn_of_tensors(body, settings, report);
 }

@@ -1,6 +1,7 @@
 #include "common/models/quasi_static/quasi_static_body.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/kernels/kernels.hpp"
 
@@ -13,17 +14,37 @@ bool by_patch(const StepSettings& settings) {
 
 constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
+std::optional<CreepStep> creep_of(const QuasiStaticSpec& body, double dt) {
+  if (!body.relaxation) return {};
+  return CreepStep(*body.relaxation, dt);
+}
+
+// What the forces of one step meet.
+Compliance<double> softened(const Archive& archive, const std::optional<CreepStep>& creep) {
+  Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
+  if (creep) compliance.scale(creep->instant());
+  return compliance;
+}
+
 }  // namespace
 
 QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings)
-    : TouchBody(archive.surface, Compliance<double>(archive, Compliance<double>::Rows::touchable), settings,
-                {.tips = !by_patch(settings)}) {
-  const HalfSpace material{archive.young[0], archive.poisson[0]};
-  if (by_patch(settings)) patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings);
+    : QuasiStaticBody(archive, body, settings, creep_of(body, settings.dt)) {}
+
+QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings,
+                                 const std::optional<CreepStep>& creep)
+    : TouchBody(archive.surface, softened(archive, creep), settings, {.tips = !by_patch(settings)}) {
+  const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
+  if (by_patch(settings)) patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings, creep);
   if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
-  const std::size_t forces = 9 * kMaxContacts + (patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0);
+  const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
+  if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
+  const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->most_loads() : 0);
   columns_.reserve(3 * forces);
   coefficients_.reserve(3 * forces);
+  under_.reserve(3 * kMaxContacts);
+  touchable_.reserve(3 * kMaxContacts);
+  past_under_.reserve(9 * kMaxContacts);
   displacement_.reserve(3 * map().size());
   of_tool_.reserve(3 * map().size());
   held_.reserve(map().size());
@@ -33,21 +54,27 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
 void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
   const std::span<const int> marked = mark(tools);
   displacement_.assign(3 * marked.size(), 0.0);
-  if (!nonlinear_) {
+  if (memory_)
+    recall(Moment::now, marked, displacement_);
+  else if (!nonlinear_)
     superpose(-1, displacement_);
-  } else {
-    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-      superpose(t, of_tool_);
-      const Eigen::Vector3d press = press_of(t);
-      add_corrected<double>(*nonlinear_, of_tool_, press, displacement_);
-    }
-    superpose(-1, of_tool_);
-    held_.clear();
-    for (int i = 0; i < static_cast<int>(marked.size()); ++i)
-      if (is_held(marked[i])) held_.push_back(i);
-    keep_held<double>(held_, of_tool_, displacement_);
-  }
+  else
+    correct(tools);
   move_marked(displacement_);
+}
+
+void QuasiStaticBody::correct(std::span<const MovingTool> tools) {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    superpose(t, of_tool_);
+    const Eigen::Vector3d press = press_of(t);
+    add_corrected<double>(*nonlinear_, of_tool_, press, displacement_);
+  }
+  superpose(-1, of_tool_);
+  const std::span<const int> marked = surface().marked();
+  held_.clear();
+  for (int i = 0; i < static_cast<int>(marked.size()); ++i)
+    if (is_held(marked[i])) held_.push_back(i);
+  keep_held<double>(held_, of_tool_, displacement_);
 }
 
 bool QuasiStaticBody::is_held(int node) const {
@@ -62,34 +89,87 @@ void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
   columns_.clear();
   coefficients_.clear();
   for_each_force([this, tool](int of_tool, int node, const Eigen::Vector3d& f) {
-    if (node >= compliance().column_nodes() || (tool >= 0 && of_tool != tool)) return;
-    for (int axis = 0; axis < 3; ++axis) {
-      columns_.push_back(compliance().column(node, axis));
-      coefficients_.push_back(f[axis]);
-    }
+    if (tool < 0 || of_tool == tool) add_column(node, f);
   });
   const std::span<const int> marked = surface().marked();
-  const int count = static_cast<int>(columns_.size());
   displacement.resize(3 * marked.size());
+  combine(marked, displacement);
+}
+
+// What all forces up to now have done to nodes [m], three entries a node.
+void QuasiStaticBody::recall(Moment moment, std::span<const int> nodes, std::span<double> displacement) {
+  columns_.clear();
+  coefficients_.clear();
+  memory_->for_each_load(moment, [this](int node, const Eigen::Vector3d& load) { add_column(node, load); });
+  combine(nodes, displacement);
+  memory_->add_faded(moment, nodes, displacement);
+}
+
+// What the past does to nodes before the next forces [m], three entries a node; zero beyond the touchable ones.
+void QuasiStaticBody::recall_ahead(std::span<const int> nodes, std::span<double> displacement) {
+  const auto touchable = [this](int node) { return node < map().touchable; };
+  touchable_.assign(nodes.begin(), nodes.end());
+  std::ranges::replace_if(touchable_, std::not_fn(touchable), 0);
+  if (!nodes.empty()) recall(Moment::ahead, touchable_, displacement);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!touchable(nodes[i])) std::fill_n(displacement.begin() + 3 * i, 3, 0.0);
+}
+
+void QuasiStaticBody::add_column(int node, const Eigen::Vector3d& force) {
+  if (node >= compliance().column_nodes()) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    columns_.push_back(compliance().column(node, axis));
+    coefficients_.push_back(force[axis]);
+  }
+}
+
+// The sum of the columns at some of the touchable nodes.
+void QuasiStaticBody::combine(std::span<const int> nodes, std::span<double> displacement) {
+  const int count = static_cast<int>(columns_.size());
   // Reading whole columns beats picking from them once a good part of the nodes is asked for.
-  if (marked.size() * kWholeColumnsFrom < static_cast<std::size_t>(map().touchable)) {
-    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, marked.data(),
-                                      static_cast<int>(marked.size()), displacement.data());
+  if (nodes.size() * kWholeColumnsFrom < static_cast<std::size_t>(map().touchable)) {
+    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, nodes.data(),
+                                      static_cast<int>(nodes.size()), displacement.data());
     return;
   }
   kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map().touchable, whole_.data());
-  for (std::size_t i = 0; i < marked.size(); ++i)
-    std::copy_n(whole_.data() + 3 * marked[i], 3, displacement.data() + 3 * i);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    std::copy_n(whole_.data() + 3 * nodes[i], 3, displacement.data() + 3 * i);
 }
 
-// The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches
-// leave it.
+// The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches and
+// the past leave it.
 LawOutcome QuasiStaticBody::hold(std::span<const MovingTool> tools) {
-  if (!patch_) return TouchBody::hold(tools);
-  patch_->touch(tools, [this](const VisitForce& visit) { TouchBody::for_each_force(visit); });
+  if (patch_) {
+    const auto others = [this](const VisitForce& visit) { TouchBody::for_each_force(visit); };
+    const auto past = [this](std::span<const int> nodes, std::span<double> u) { recall_ahead(nodes, u); };
+    patch_->touch(tools, others, memory_ ? PatchTouch::Past(past) : PatchTouch::Past());
+  }
+  if (patch_ || memory_) lay_ground();
+  const LawOutcome outcome = TouchBody::hold(tools);
+  if (memory_) remember();
+  return outcome;
+}
+
+// Where the nodes that contacts hold are without their forces.
+void QuasiStaticBody::lay_ground() {
+  under_.clear();
   for (const TouchContact& c : law().contacts())
-    for (const int node : c.anchor.nodes) move_rest(node, patch_->displacement(node));
-  return TouchBody::hold(tools);
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0) under_.push_back(c.anchor.nodes[v]);
+  past_under_.assign(3 * under_.size(), 0.0);
+  if (memory_) recall_ahead(under_, past_under_);
+  for (std::size_t i = 0; i < under_.size(); ++i) {
+    Eigen::Vector3d moved = Eigen::Map<const Eigen::Vector3d>(past_under_.data() + 3 * i);
+    if (patch_) moved += patch_->displacement(under_[i]);
+    move_rest(under_[i], moved);
+  }
+}
+
+void QuasiStaticBody::remember() {
+  memory_->begin();
+  for_each_force([this](int, int node, const Eigen::Vector3d& force) { memory_->add(node, force); });
+  memory_->end();
 }
 
 void QuasiStaticBody::for_each_contact(const VisitContact& visit) const {
@@ -117,6 +197,7 @@ Eigen::Vector3d QuasiStaticBody::press_of(int tool) const {
 void QuasiStaticBody::state(State& s, std::span<const MovingTool> tools) {
   TouchBody::state(s, tools);
   if (patch_) patch_->state(s);
+  if (memory_) memory_->state(s);
 }
 
 void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {

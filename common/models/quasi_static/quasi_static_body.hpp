@@ -4,11 +4,14 @@
 
 #include "common/contact/patch/patch_touch.hpp"
 #include "common/contact/touch_body.hpp"
+#include "common/models/quasi_static/force_memory.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 
 namespace palpate {
 
-/// A body without inertia: its shape follows from the contact forces by superposition of its tensors (TVCG99 sec. 4).
+/// A body without inertia: its shape follows from the contact forces by superposition of its tensors (TVCG99 sec. 4),
+/// and where it relaxes from those of the past too: contacts then meet a body that is softer by what it creeps within a
+/// step, and whose shape without them is what the past has left.
 class QuasiStaticBody : public TouchBody {
  public:
   QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings);
@@ -21,19 +24,35 @@ class QuasiStaticBody : public TouchBody {
   void state(State& s, std::span<const MovingTool> tools) override;
   void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;
   bool superposed() const override { return true; }
+  std::vector<BodyNews> news() const override;
+  void tell(BodyMessage& message) override;
 
  protected:
   Eigen::Vector3d press_of(int tool) const override;
 
  private:
+  /// `creep`: what it does within a step; empty where it does not relax.
+  QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings,
+                  const std::optional<CreepStep>& creep);
+
   bool is_held(int node) const;
   void superpose(int tool, std::vector<double>& displacement);
+  void correct(std::span<const MovingTool> tools);
+  void recall(Moment moment, std::span<const int> nodes, std::span<double> displacement);
+  void recall_ahead(std::span<const int> nodes, std::span<double> displacement);
+  void combine(std::span<const int> nodes, std::span<double> displacement);
+  void add_column(int node, const Eigen::Vector3d& force);
+  void lay_ground();
+  void remember();
 
   std::optional<QuasiNonlinear> nonlinear_;
-  std::unique_ptr<PatchTouch> patch_;  ///< null: spheres touch as everything else does
+  std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
+  std::unique_ptr<PatchTouch> patch_;    ///< null: spheres touch as everything else does
   std::vector<const double*> columns_;
   std::vector<double> coefficients_, displacement_, of_tool_, whole_;
-  std::vector<int> held_;  ///< places among the marked nodes
+  std::vector<int> held_;               ///< places among the marked nodes
+  std::vector<int> under_, touchable_;  ///< nodes that contacts hold, or patches lie on
+  std::vector<double> past_under_;      ///< [m] what the past has left of the contacts' displacement
 };
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/fem/offline_spec.hpp"
+#include "common/fem/relaxation_spec.hpp"
 #include "common/fem/solid_spec.hpp"
 #include "common/models/kind.hpp"
 
@@ -43,12 +44,17 @@ inline void describe(Description& d, Nonlinear& n) {
 struct QuasiStaticSpec : SolidSpec {
   static constexpr std::string_view kKind = "quasi_static";
   std::optional<Nonlinear> nonlinear;
-  std::optional<Offline> offline;  ///< absent: the mesh itself with linear elements
+  std::optional<Relaxation> relaxation;  ///< absent: forces do not depend on the rate
+  std::optional<Offline> offline;        ///< absent: the mesh itself with linear elements
 };
 
 inline void describe(Description& d, QuasiStaticSpec& b) {
   describe(d, static_cast<SolidSpec&>(b));
   d.table({"nonlinear", "", "the quasi non-linear correction", Need::optional, Use::agreed, "linear"}, b.nonlinear);
+  d.table({"relaxation", "", "how its moduli fall with time", Need::optional, Use::agreed, "does not relax"},
+          b.relaxation);
+  d.require(!b.nonlinear || !b.relaxation, "relaxation",
+            "[body.relaxation] does not go with [body.nonlinear], whose curves were measured at one rate");
   d.table({"offline", "", "what the tensors are computed from", Need::optional, Use::stored, "the mesh itself"},
           b.offline);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/kernels/kernels.hpp"
+#include "common/models/quasi_static/relaxing_shape.hpp"
 
 namespace palpate {
 namespace {
@@ -25,35 +25,15 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 }
 
 SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive)
-    : BodyShape(archive.surface), compliance_(archive, Compliance<float>::Rows::surface) {
+    : BodyShape(archive.surface), sum_(archive) {
   if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
 }
 
-void SuperposedShape::add_columns(const ContactState& contacts, std::uint32_t body) {
-  for (const NodalForce& f : contacts.forces) {
-    if (f.body != body || static_cast<int>(f.node) >= compliance_.column_nodes()) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      columns_.push_back(compliance_.column(static_cast<int>(f.node), axis));
-      coefficients_.push_back(static_cast<float>(f.force[axis]));
-    }
-  }
-}
-
-void SuperposedShape::combine(std::vector<Eigen::Vector3f>& out) const {
-  kernels::active().combine_f(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()),
-                              3 * static_cast<std::ptrdiff_t>(out.size()), out.data()->data());
-}
-
 void SuperposedShape::displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
-  columns_.clear();
-  coefficients_.clear();
-  for (const auto& [tool, state] : contacts.of_tool) add_columns(state, contacts.body);
-  if (columns_.empty()) {
-    std::ranges::fill(total, Eigen::Vector3f::Zero());
-    return;
-  }
-  combine(total);
-  if (nonlinear_) correct(contacts, total);
+  sum_.clear();
+  for (const auto& [tool, state] : contacts.of_tool) sum_.add(state, contacts.body);
+  sum_.combine(total);
+  if (nonlinear_ && !sum_.empty()) correct(contacts, total);
 }
 
 void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
@@ -61,11 +41,10 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
   of_tool_.resize(total.size());
   std::ranges::fill(total, Eigen::Vector3f::Zero());
   for (const auto& [tool, state] : contacts.of_tool) {
-    columns_.clear();
-    coefficients_.clear();
-    add_columns(state, contacts.body);
-    if (columns_.empty()) continue;
-    combine(of_tool_);
+    sum_.clear();
+    sum_.add(state, contacts.body);
+    if (sum_.empty()) continue;
+    sum_.combine(of_tool_);
     const Eigen::Vector3d press = press_direction(state, contacts.body);
     add_corrected<float>(*nonlinear_, flat(of_tool_), press, flat(total));
   }
@@ -77,6 +56,7 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
 }
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive) {
+  if (body.relaxation) return std::make_unique<RelaxingShape>(archive);
   return std::make_unique<SuperposedShape>(body, archive);
 }
 

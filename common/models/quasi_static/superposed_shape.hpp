@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "common/archive/compliance.hpp"
 #include "common/models/body_shape.hpp"
+#include "common/models/quasi_static/column_sum.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 
 namespace palpate {
@@ -19,13 +19,9 @@ class SuperposedShape : public BodyShape {
  private:
   void displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) override;
   void correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total);
-  void add_columns(const ContactState& contacts, std::uint32_t body);
-  void combine(std::vector<Eigen::Vector3f>& out) const;
 
-  Compliance<float> compliance_;
+  ColumnSum sum_;
   std::optional<QuasiNonlinear> nonlinear_;
-  std::vector<const float*> columns_;
-  std::vector<float> coefficients_;
   std::vector<int> held_;
   std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
   std::vector<Eigen::Vector3f> of_tool_;
