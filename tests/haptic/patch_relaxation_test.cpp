@@ -35,7 +35,7 @@ class RelaxingPatch : public ::testing::Test {
     tool.pivot = {0, 0, 0.3};
     tool.axis = -Vector3d::UnitZ();
     tool.up = Vector3d::UnitY();
-    tool.probe()->radius = kRadius;
+    std::get<ProbeSpec>(tool.end).radius = kRadius;
     tool.max_force = 100;
     tool.max_force_rate = 1e6;
     scene_->tools.push_back(tool);
