@@ -72,8 +72,9 @@ Result pulled_by_a_couple(double force) {
     m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     for (const double side : {1.0, -1.0})
-      if (i > 0) m.contacts.push_back(
-          {0, 0, {0.005 * side, 0, 0}, {0, 0, -side}, {0, 0, -side * force}, {0, 0, 0, 0, 0, 0, 0, 0, 0}});
+      if (i > 0)
+        m.contacts.push_back(
+            {0, 0, {0.005 * side, 0, 0}, {0, 0, -side}, {0, 0, -side * force}, {0, 0, 0, 0, 0, 0, 0, 0, 0}});
     haptic.consume(m);
     haptic.step(std::array{dofs});
     watch.look(haptic);
