@@ -34,10 +34,18 @@ Vector3d dual(int corner) {
 
 }  // namespace
 
-NearField::NearField(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
-                     double width) {
+NearField::NearField(const SurfaceMap& map, double width) {
   find_edges(map);
   find_pairs(map, width);
+}
+
+std::size_t NearField::bytes_of(const SurfaceMap& map, double width) {
+  return NearField(map, width).bytes();
+}
+
+NearField::NearField(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
+                     double width)
+    : NearField(map, width) {
   take_half_space(map, half_space, width);
   for (int i = 0; i < map.size(); ++i)
     for (int k = first_[i]; k < first_[i + 1]; ++k) {

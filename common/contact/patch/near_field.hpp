@@ -19,9 +19,12 @@ class NearField {
   /// [m/N] symmetric under (i, j) and transposition; zero of nodes that are not near each other.
   Eigen::Matrix3d between(int i, int j) const;
 
+  /// [bytes] that it will take.
+  static std::size_t bytes_of(const SurfaceMap& map, double width);
   std::size_t bytes() const { return blocks_.size() * sizeof blocks_[0] + neighbours_.size() * sizeof neighbours_[0]; }
 
  private:
+  NearField(const SurfaceMap& map, double width);  ///< knows which pairs there are
   void find_edges(const SurfaceMap& map);
   void find_pairs(const SurfaceMap& map, double width);
   void take_half_space(const SurfaceMap& map, const HalfSpace& half_space, double width);

@@ -8,10 +8,12 @@
 #include <stdexcept>
 
 #include "common/contact/creep.hpp"
+#include "common/contact/patch/near_field.hpp"
 #include "common/fem/fine_space.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
+#include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
@@ -69,6 +71,25 @@ MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface
   return {"haptic_node", "what is left of past forces", terms * 3 * sizeof(double) * surface.touchable};
 }
 
+/// What presses by a patch presses with a size of its own, not with the mesh's.
+std::vector<std::string> warnings_of_size(const QuasiStaticSpec& body, const CheckSettings& settings,
+                                          const SurfaceMap& surface) {
+  std::vector<Tool> by_mesh;
+  for (const Tool& tool : settings.tools)
+    if (settings.contact.rule != "patch" || !abilities_of(tool).ball) by_mesh.push_back(tool);
+  CheckSettings of_mesh = settings;
+  of_mesh.tools = by_mesh;
+  return size_warnings(of_mesh, body.name, surface);
+}
+
+/// What the haptic node computes for patches when it starts; nothing where there are none.
+void add_near_field(const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report) {
+  double width = 0;
+  for (const Tool& tool : settings.tools) width = std::max(width, 2 * abilities_of(tool).ball.value_or(0));
+  if (settings.contact.rule != "patch" || width == 0) return;
+  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width)});
+}
+
 /// The patch is as true as the tensors are near the tip.
 void warn_of_tensors(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   if (settings.contact.rule != "patch" || !has_linear_displacement(body.offline)) return;
@@ -88,7 +109,9 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
+  add_near_field(settings, solid.surface, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
+  report.warnings = warnings_of_size(body, settings, solid.surface);
   std::ranges::copy(locking_warnings(body), std::back_inserter(report.warnings));
   warn_of_tensors(body, settings, report);
 }
