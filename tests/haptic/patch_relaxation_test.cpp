@@ -1,9 +1,8 @@
 // The patch rule on tissue that relaxes.
 #include <gtest/gtest.h>
 
-#include "common/mesh/generators.hpp"
-#include "common/models/quasi_static/precompute.hpp"
 #include "tests/haptic/hereditary.hpp"
+#include "tests/haptic/patch_block.hpp"
 #include "tests/tool/count_allocations.hpp"
 #include "tools/rig/press_rig.hpp"
 
@@ -12,44 +11,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.006, kYoung = 6000, kPoisson = 0.3, kDt = 1e-3;
+constexpr double kRadius = testing::PatchBlock::kRadius, kYoung = testing::PatchBlock::kYoung,
+                 kPoisson = testing::PatchBlock::kPoisson, kDt = 1e-3;
 const Relaxation kRelaxation{{0.05, 0.5}, {0.3, 0.3}};
 
-/// Block 16 x 16 x 8 radii of cells of two radii, top in the plane z = 0, base fixed.
 class RelaxingPatch : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    QuasiStaticSpec block;
-    block.name = "block";
-    block.material = {kYoung, kPoisson, 1000};
-    block.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-    block.offline = Offline{.refine = 1, .element = "p2"};
-    const double side = 16 * kRadius;
-    const TetMesh mesh = make_block({-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, 0}, {8, 8, 4});
-    archive_ = std::make_unique<Archive>(precompute(block, mesh));
-    scene_ = std::make_unique<Scene>();
-    scene_->bodies.push_back(block);
-    scene_->contact.rule = "patch";
-    Tool tool;
-    tool.name = "probe";
-    tool.pivot = {0, 0, 0.3};
-    tool.axis = -Vector3d::UnitZ();
-    tool.up = Vector3d::UnitY();
-    std::get<ProbeSpec>(tool.end).radius = kRadius;
-    tool.max_force = 100;
-    tool.max_force_rate = 1e6;
-    scene_->tools.push_back(tool);
+    block_ = std::make_unique<testing::PatchBlock>(1);
+    block_->scene.tools.push_back(testing::PatchBlock::probe("probe"));
   }
-  static void TearDownTestSuite() {
-    archive_.reset();
-    scene_.reset();
-  }
+  static void TearDownTestSuite() { block_.reset(); }
 
   static PressRig rig(const std::optional<Relaxation>& relaxation, double friction = 0) {
-    Scene scene = *scene_;
+    Scene scene = block_->scene;
     scene.contact.friction = friction;
     as<QuasiStaticSpec>(scene.bodies[0])->relaxation = relaxation;
-    return {scene, {*archive_}};
+    return {scene, {block_->archive}};
   }
   static Vector3d at(double x, double y, double depth) { return {x, y, kRadius - depth}; }
   static Vector3d at(double depth) { return at(0.003, 0.002, depth); }
@@ -68,11 +46,9 @@ class RelaxingPatch : public ::testing::Test {
     return all;
   }
 
-  static std::unique_ptr<Archive> archive_;
-  static std::unique_ptr<Scene> scene_;
+  static std::unique_ptr<testing::PatchBlock> block_;
 };
-std::unique_ptr<Archive> RelaxingPatch::archive_;
-std::unique_ptr<Scene> RelaxingPatch::scene_;
+std::unique_ptr<testing::PatchBlock> RelaxingPatch::block_;
 
 // Lee & Radok 1960: while the contact area grows, F(t) is the hereditary integral over Hertz's force.
 TEST_F(RelaxingPatch, ASphereThatGoesDownFollowsLeeAndRadok) {

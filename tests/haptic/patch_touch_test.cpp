@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "common/mesh/generators.hpp"
-#include "common/models/quasi_static/precompute.hpp"
+#include "tests/haptic/patch_block.hpp"
 #include "tests/tool/count_allocations.hpp"
 #include "tools/rig/press_rig.hpp"
 
@@ -13,58 +12,32 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.006, kYoung = 6000, kPoisson = 0.3;
+constexpr double kRadius = testing::PatchBlock::kRadius, kYoung = testing::PatchBlock::kYoung,
+                 kPoisson = testing::PatchBlock::kPoisson;
 const Vector3d kAlong = Vector3d(2, 1, 0).normalized();
 
-/// Block 16 x 16 x 8 radii of cells of two radii, top in the plane z = 0, base fixed.
 class PatchRule : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    QuasiStaticSpec block;
-    block.name = "block";
-    block.material = {kYoung, kPoisson, 1000};
-    block.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-    block.offline = Offline{.refine = 0, .element = "p2"};
-    const double side = 16 * kRadius;
-    const TetMesh mesh = make_block({-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, 0}, {8, 8, 4});
-    archive_ = std::make_unique<Archive>(precompute(block, mesh));
-    scene_ = std::make_unique<Scene>();
-    scene_->bodies.push_back(block);
-    scene_->contact.rule = "patch";
-  }
-  static void TearDownTestSuite() {
-    archive_.reset();
-    scene_.reset();
-  }
+  static void SetUpTestSuite() { block_ = std::make_unique<testing::PatchBlock>(0); }
+  static void TearDownTestSuite() { block_.reset(); }
 
   /// Under tools that come down from above, each by its own tip's place.
   static PressRig rig(double friction, int tools = 1, const char* rule = "patch") {
-    Scene scene = *scene_;
+    Scene scene = block_->scene;
     scene.contact.friction = friction;
     scene.contact.rule = rule;
-    for (int t = 0; t < tools; ++t) {
-      Tool tool;
-      tool.name = "probe" + std::to_string(t);
-      tool.pivot = {0.02 * t, 0, 0.3};
-      tool.axis = -Vector3d::UnitZ();
-      tool.up = Vector3d::UnitY();
-      std::get<ProbeSpec>(tool.end).radius = kRadius;
-      tool.max_force = 100;
-      tool.max_force_rate = 1e6;
-      scene.tools.push_back(tool);
-    }
-    return {scene, {*archive_}};
+    for (int t = 0; t < tools; ++t)
+      scene.tools.push_back(testing::PatchBlock::probe("probe" + std::to_string(t), 0.02 * t));
+    return {scene, {block_->archive}};
   }
   static Vector3d at(double x, double y, double depth) { return {x, y, kRadius - depth}; }
   static double hertz(double depth) {
     return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(depth, 1.5);
   }
 
-  static std::unique_ptr<Archive> archive_;
-  static std::unique_ptr<Scene> scene_;
+  static std::unique_ptr<testing::PatchBlock> block_;
 };
-std::unique_ptr<Archive> PatchRule::archive_;
-std::unique_ptr<Scene> PatchRule::scene_;
+std::unique_ptr<testing::PatchBlock> PatchRule::block_;
 
 // Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh
 // gives two to three times Hertz.
