@@ -146,12 +146,18 @@ void SceneReader::number(const Key& key, double& value, const Range& range) {
   value = x;
 }
 
-void SceneReader::numbers(const Key& key, std::vector<double>& value, const Range& range) {
+const toml::array* SceneReader::find_list(const Key& key, const char* of) const {
   const toml::node* node = find(key);
-  if (!node) return;
+  if (!node) return nullptr;
   const toml::array* list = node->as_array();
-  if (!list) fail(node->source(), fmt::format("{} must be a list of numbers, not {}", key.name, kind(*node)));
+  if (!list) fail(node->source(), fmt::format("{} must be a list of {}, not {}", key.name, of, kind(*node)));
   if (list->empty()) fail(node->source(), fmt::format("{} must not be empty", key.name));
+  return list;
+}
+
+void SceneReader::numbers(const Key& key, std::vector<double>& value, const Range& range) {
+  const toml::array* list = find_list(key, "numbers");
+  if (!list) return;
   value.clear();
   for (const toml::node& entry : *list) {
     value.push_back(finite_number(entry, key.name));
@@ -246,11 +252,8 @@ void SceneReader::axes(const Key& key, std::array<bool, 3>& value) {
 }
 
 void SceneReader::indices(const Key& key, std::vector<int>& value) {
-  const toml::node* node = find(key);
-  if (!node) return;
-  const toml::array* list = node->as_array();
-  if (!list) fail(node->source(), fmt::format("{} must be a list of integers, not {}", key.name, kind(*node)));
-  if (list->empty()) fail(node->source(), fmt::format("{} must not be empty", key.name));
+  const toml::array* list = find_list(key, "integers");
+  if (!list) return;
   value.clear();
   std::set<std::int64_t> seen;
   for (const toml::node& entry : *list) {

@@ -67,6 +67,8 @@ class SceneReader : public Description {
 
   const toml::node* find(std::string_view key) const { return levels_.back().table->get(key); }
   const toml::node* find(const Key& key) const;
+  /// One that is not empty; null where the key is not given. `of`: what it holds, in the plural.
+  const toml::array* find_list(const Key& key, const char* of) const;
   void step_into(const toml::node& node, const Key& key, bool list);
   void refuse_unknown() const;
   void refuse_strange() const;
