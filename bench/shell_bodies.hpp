@@ -14,7 +14,7 @@ constexpr double kSide = 10;
 
 /// `cells` x `cells` squares of two triangles, diagonals alternating; node j * (cells + 1) + i at (i, j) *
 /// side / cells.
-inline ShellMesh square_plate(int cells, double side = kSide) {
+inline ShellMesh split_squares(int cells, double side = kSide) {
   ShellMesh mesh;
   for (int j = 0; j <= cells; ++j)
     for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({i * side / cells, j * side / cells, 0});
@@ -45,7 +45,7 @@ inline ShellSystem make_system(const ShellMesh& mesh, const ShellMaterial& mater
 
 /// Plate in bending alone, its edges held but free to turn across the edge.
 inline ShellSystem supported_plate(int cells) {
-  return make_system(square_plate(cells), kSteel, [](const Eigen::Vector3d& x, int dof) {
+  return make_system(split_squares(cells), kSteel, [](const Eigen::Vector3d& x, int dof) {
     const bool edge_x = x[0] == 0 || x[0] == kSide, edge_y = x[1] == 0 || x[1] == kSide;
     return dof <= 1 || dof == 5 || (dof == 2 && (edge_x || edge_y)) || (dof == 3 && edge_x) || (dof == 4 && edge_y);
   });
@@ -59,12 +59,12 @@ inline ShellSystem duct(int around, int along) {
 }
 
 inline ShellSystem free_plate(int cells) {
-  return make_system(square_plate(cells), kSteel, [](const Eigen::Vector3d&, int) { return false; });
+  return make_system(split_squares(cells), kSteel, [](const Eigen::Vector3d&, int) { return false; });
 }
 
 /// NAFEMS FV32: a membrane 10 m long that tapers from 5 to 1 m, its root held, moving in its plane alone.
 inline ShellSystem tapered_membrane(int cells) {
-  ShellMesh mesh = square_plate(cells, 1);
+  ShellMesh mesh = split_squares(cells, 1);
   for (Eigen::Vector3d& x : mesh.nodes) x = {10 * x[0], (x[1] - 0.5) * (5 - 4 * x[0]), 0};
   return make_system(mesh, kSteel, [](const Eigen::Vector3d& x, int dof) { return dof >= 2 ? dof != 5 : x[0] == 0; });
 }
@@ -74,7 +74,7 @@ constexpr ShellMaterial kStrip{200e9, 0, 8000, 0.05};
 constexpr double kStripLength = 10;
 
 inline ShellSystem cantilever_strip(int cells) {
-  ShellMesh mesh = square_plate(cells, 1);
+  ShellMesh mesh = split_squares(cells, 1);
   for (Eigen::Vector3d& x : mesh.nodes) x = {kStripLength * x[0], 0.5 * x[1], 0};
   return make_system(mesh, kStrip, [](const Eigen::Vector3d& x, int dof) { return dof <= 1 || dof == 5 || x[0] == 0; });
 }

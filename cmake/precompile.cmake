@@ -27,8 +27,8 @@ function(palpate_use_precompiled_header name)
     get_target_property(options ${target} COMPILE_OPTIONS)
     if(sources MATCHES "\\.cpp" AND options STREQUAL folder_options AND NOT target MATCHES "^precompiled_")
       target_precompile_headers(${target} REUSE_FROM precompiled_${name})
-      # GCC 12 forgets which precompiled lines are a library's, where these two are often wrong.
-      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized -Wno-stringop-overflow)
+      # GCC 12 forgets which precompiled lines are a library's, where these are often wrong.
+      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-array-bounds)
     endif()
   endforeach()
 endfunction()

@@ -6,15 +6,6 @@
 #include "common/realtime/shutdown.hpp"
 
 namespace palpate {
-namespace {
-
-std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
-  std::vector<std::size_t> nodes;
-  for (int b = 0; b < deformer.bodies(); ++b) nodes.push_back(deformer.surface(b).position.size());
-  return nodes;
-}
-
-}  // namespace
 
 DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz)
     : deformer_(deformer),
@@ -24,7 +15,7 @@ DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double 
       link_(bus),
       frame_ns_(static_cast<std::int64_t>(1e9 / visual_hz)),
       feed_(bus, presence, deformer),
-      surfaces_(bus, surface_nodes(deformer)) {
+      surfaces_(bus, deformer) {
   presence_.set_clock(&clock_);
 }
 

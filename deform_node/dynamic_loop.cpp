@@ -12,12 +12,6 @@ namespace {
 constexpr std::uint64_t kReminderTicks = 64;
 constexpr int kLoopPriority = 50;  // below the haptic loop, above the picture
 
-std::vector<std::size_t> surface_nodes(const Deformer& deformer) {
-  std::vector<std::size_t> nodes;
-  for (int b = 0; b < deformer.bodies(); ++b) nodes.push_back(deformer.map(b).position.size());
-  return nodes;
-}
-
 }  // namespace
 
 DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus,
@@ -31,7 +25,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       visual_hz_(scene.rates.visual_hz),
       local_models_(local_models),
       feed_(bus, presence, deformer),
-      surfaces_(bus, surface_nodes(deformer)),
+      surfaces_(bus, deformer),
       tools_(bus.reader(topics::tool_state)),
       changes_(bus.writer(topics::topology_change)),
       models_(bus.writer(topics::local_contact_model)),

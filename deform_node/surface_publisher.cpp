@@ -6,12 +6,13 @@
 
 namespace palpate {
 
-SurfacePublisher::SurfacePublisher(Bus& bus, std::span<const std::size_t> nodes)
-    : writer_(bus.writer(topics::surface_state)), messages_(nodes.size()) {
-  for (std::size_t b = 0; b < nodes.size(); ++b) {
+SurfacePublisher::SurfacePublisher(Bus& bus, const Deformer& deformer)
+    : writer_(bus.writer(topics::surface_state)), messages_(deformer.bodies()) {
+  for (int b = 0; b < deformer.bodies(); ++b) {
+    const std::size_t numbers = 3 * deformer.map(b).position.size();
     messages_[b].body = static_cast<std::uint32_t>(b);
-    messages_[b].position.resize(3 * nodes[b]);
-    messages_[b].normal.resize(3 * nodes[b]);
+    messages_[b].position.resize(numbers);
+    messages_[b].normal.resize(numbers);
   }
 }
 

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/sim/deformer.hpp"
 
 namespace palpate {
 
 /// Publishes the shapes of a scene's bodies, in messages whose memory is kept.
 class SurfacePublisher {
  public:
-  /// `nodes`: surface nodes per body.
-  SurfacePublisher(Bus& bus, std::span<const std::size_t> nodes);
+  SurfacePublisher(Bus& bus, const Deformer& deformer);
 
   /// Where the newest step shown comes from.
   struct Origin {

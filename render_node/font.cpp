@@ -11,12 +11,12 @@
 namespace palpate {
 namespace {
 
-struct Closer {
+struct FreeTypeCloser {
   void operator()(FT_Library library) const { FT_Done_FreeType(library); }
   void operator()(FT_Face face) const { FT_Done_Face(face); }
 };
-using Library = std::unique_ptr<std::remove_pointer_t<FT_Library>, Closer>;
-using Face = std::unique_ptr<std::remove_pointer_t<FT_Face>, Closer>;
+using Library = std::unique_ptr<std::remove_pointer_t<FT_Library>, FreeTypeCloser>;
+using Face = std::unique_ptr<std::remove_pointer_t<FT_Face>, FreeTypeCloser>;
 
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string log, topic, file;
   bool csv = false, json = false;
 };
@@ -42,7 +42,7 @@ class Output {
 };
 
 template <class M>
-std::uint64_t export_topic(const Options& o, const Topic<M>& topic, LogReader& reader, Output& out) {
+std::uint64_t export_topic(const ExportOptions& o, const Topic<M>& topic, LogReader& reader, Output& out) {
   if (!o.json) out.line("receive_ns," + csv_header<M>());
   std::uint64_t count = 0;
   LogEvent event;
@@ -56,7 +56,7 @@ std::uint64_t export_topic(const Options& o, const Topic<M>& topic, LogReader& r
   return count;
 }
 
-void run(const Options& o) {
+void run(const ExportOptions& o) {
   const std::string name = o.topic.find('/') == std::string::npos ? "palpate/" + o.topic : o.topic;
   LogReader reader(o.log);
   bool known = false;
@@ -77,7 +77,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_export_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ExportOptions>();
   cli::Command command = app.add_command("export", "Write one topic of a log as CSV or JSON lines");
   command.add_option("log", o->log, "LCM event log").required();
   command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it").required();

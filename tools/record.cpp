@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Options {
+struct RecordOptions {
   BusSettings network;
   std::string file;
   double seconds = 0;
@@ -35,14 +35,14 @@ std::uint64_t samples_of(const RecorderReport& report) {
   return sum;
 }
 
-nlohmann::ordered_json summary(const Options& o, const RecorderReport& report, double seconds) {
+nlohmann::ordered_json summary(const RecordOptions& o, const RecorderReport& report, double seconds) {
   return {{"node", "recorder"},          {"file", o.file},
           {"seconds", seconds},          {"messages", samples_of(report)},
           {"missing", report.missing()}, {"lost", report.log.lost},
           {"bytes", report.log.bytes},   {"error", report.log.error}};
 }
 
-void print_report(const Options& o, const RecorderReport& report, double seconds) {
+void print_report(const RecordOptions& o, const RecorderReport& report, double seconds) {
   fmt::print("{}: {:.1f} s, {} messages, {:.1f} MB\n", o.file, seconds, samples_of(report),
              1e-6 * static_cast<double>(report.log.bytes));
   for (const auto& [name, topic] : report.topics) {
@@ -70,7 +70,7 @@ class LossNotice {
   std::int64_t next_ = 0;
 };
 
-void record(Options& o) {
+void record(RecordOptions& o) {
   if (o.file.empty()) o.file = default_file();
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
@@ -97,7 +97,7 @@ void record(Options& o) {
 }  // namespace
 
 void add_record_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RecordOptions>();
   cli::Command command = app.add_command("record", "Write every topic of a running system into an LCM event log");
   add_network_options(command, o->network, "recorder");
   command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");

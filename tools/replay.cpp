@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   BusSettings network;
   PlaySettings play;
   std::string file;
@@ -47,7 +47,7 @@ void verify(const std::string& file) {
     fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
 }
 
-nlohmann::ordered_json json_of(const Options& o, const PlayReport& report) {
+nlohmann::ordered_json json_of(const ReplayOptions& o, const PlayReport& report) {
   const Percentiles pace = percentiles_us(report.pace);
   return {
       {"file", o.file},
@@ -59,7 +59,7 @@ nlohmann::ordered_json json_of(const Options& o, const PlayReport& report) {
       {"damage", report.damage}};
 }
 
-void play(const Options& o) {
+void play(const ReplayOptions& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
   request_realtime(
@@ -86,7 +86,7 @@ void play(const Options& o) {
 }  // namespace
 
 void add_replay_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReplayOptions>();
   cli::Command command = app.add_command("replay", "Play a topic log back to DDS, or verify it");
   command.add_option("log", o->file, "LCM event log").required();
   command.add_option("--speed", o->play.speed, "2 plays twice as fast").positive().show_default();

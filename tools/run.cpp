@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct RunOptions {
   std::string scene, record, film, still, summary, keys;
   double seconds = 0;
   int domain = -1, processes = 2;
@@ -121,7 +121,7 @@ std::vector<std::string> recorder_command(const Scene& scene, const std::string&
   return command;
 }
 
-void start_nodes(Nodes& nodes, const Scene& scene, const Options& o) {
+void start_nodes(Nodes& nodes, const Scene& scene, const RunOptions& o) {
   const std::string domain = std::to_string(o.domain >= 0 ? o.domain : scene.network.domain);
   const auto with = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
@@ -190,7 +190,7 @@ void print_summary(const nlohmann::json& s) {
     fmt::print("recorder {} messages, {} lost\n", s["recorder"].value("messages", 0), s["recorder"].value("lost", 0));
 }
 
-void run(const Options& o) {
+void run(const RunOptions& o) {
   const Scene scene = load_scene(o.scene);
   for (const Body& body : scene.bodies) ensure_archive(scene, body);
   catch_shutdown_signals();
@@ -221,7 +221,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_run_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RunOptions>();
   cli::Command run_command = app.add_command("run", "Start the nodes that a scene needs on this machine");
   run_command.add_option("scene", o->scene, "Scene file").required();
   run_command

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Options {
+struct TopOptions {
   BusSettings network;
   double interval = 1;
   bool once = false;
@@ -141,7 +141,7 @@ class Board {
   std::int64_t last_force_ns_ = 0;
 };
 
-void run(const Options& o) {
+void run(const TopOptions& o) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
   Board board(*bus);
@@ -164,7 +164,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_top_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<TopOptions>();
   cli::Command command =
       app.add_command("top", "Watch a running system: nodes, rates, missed ticks, latencies, forces, links");
   command.add_option("--interval", o->interval, "Time between two looks [s]").between(0.1, 60.0).show_default();

@@ -92,10 +92,10 @@ QosPtr reader_qos(const Qos& qos, Keep keep) {
 }
 
 /// A writer of the middleware, with its topic.
-class Outlet {
+class DdsOutlet {
  public:
-  Outlet(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name, const Qos& qos,
-         int lease_ms)
+  DdsOutlet(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name, const Qos& qos,
+            int lease_ms)
       : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr),
                fmt::format("creating topic {}", name)),
         writer_(dds_create_writer(participant, topic_, writer_qos(qos, lease_ms).get(), nullptr),
@@ -144,16 +144,16 @@ class DdsWriter final : public Writer<M> {
   }
 
  private:
-  Outlet outlet_;
-  std::optional<Outlet> for_recorders_;
+  DdsOutlet outlet_;
+  std::optional<DdsOutlet> for_recorders_;
   std::uint64_t refused_ = 0;
 };
 
 /// A reader of the middleware, with its topic and what wakes the bus for it.
-class Inlet {
+class DdsInlet {
  public:
-  Inlet(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t& type, const std::string& name,
-        const Qos& qos, Keep keep)
+  DdsInlet(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t& type, const std::string& name,
+           const Qos& qos, Keep keep)
       : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr),
                fmt::format("creating topic {}", name)),
         reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), nullptr),
@@ -219,7 +219,7 @@ class DdsReader final : public Reader<M> {
   std::uint64_t invalid() const override { return invalid_; }
 
  private:
-  Inlet inlet_;
+  DdsInlet inlet_;
   std::uint64_t invalid_ = 0;
 };
 

@@ -70,14 +70,15 @@ class MemoryNetwork {
 namespace {
 
 /// What writes, apart from the type of the message.
-class Outlet {
+class MemoryOutlet {
  public:
-  Outlet(MemoryNetwork& network, Channel& channel, const Qos& qos) : network_(network), channel_(channel), qos_(qos) {
+  MemoryOutlet(MemoryNetwork& network, Channel& channel, const Qos& qos)
+      : network_(network), channel_(channel), qos_(qos) {
     const std::lock_guard lock(network_.mutex);
     ++channel_.writers;
   }
-  Outlet(const Outlet&) = delete;
-  ~Outlet() {
+  MemoryOutlet(const MemoryOutlet&) = delete;
+  ~MemoryOutlet() {
     const std::lock_guard lock(network_.mutex);
     --channel_.writers;
     std::erase_if(channel_.kept, [&](const auto& entry) { return entry.first.first == this; });
@@ -104,17 +105,17 @@ class Outlet {
 };
 
 /// What reads, apart from the type of the message.
-class Inlet {
+class MemoryInlet {
  public:
-  Inlet(MemoryNetwork& network, Channel& channel, std::shared_ptr<Bell> bell, Keep keep)
+  MemoryInlet(MemoryNetwork& network, Channel& channel, std::shared_ptr<Bell> bell, Keep keep)
       : network_(network), channel_(channel), queue_{std::move(bell), keep, {}} {
     const std::lock_guard lock(network_.mutex);
     channel_.queues.push_back(&queue_);
     for (const auto& [owner, samples] : channel_.kept)
       for (const Sample& sample : samples) deliver(queue_, sample);
   }
-  Inlet(const Inlet&) = delete;
-  ~Inlet() {
+  MemoryInlet(const MemoryInlet&) = delete;
+  ~MemoryInlet() {
     const std::lock_guard lock(network_.mutex);
     std::erase(channel_.queues, &queue_);
     queue_.bell->waiting -= queue_.samples.size();
@@ -164,7 +165,7 @@ class MemoryWriter final : public Writer<M> {
 
  private:
   std::shared_ptr<MemoryNetwork> network_;
-  Outlet outlet_;
+  MemoryOutlet outlet_;
   std::uint64_t refused_ = 0;
 };
 
@@ -186,7 +187,7 @@ class MemoryReader final : public Reader<M> {
 
  private:
   std::shared_ptr<MemoryNetwork> network_;
-  Inlet inlet_;
+  MemoryInlet inlet_;
 };
 
 class MemoryBus final : public Bus {

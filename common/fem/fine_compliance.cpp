@@ -9,7 +9,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr Index kBlock = 128;
+constexpr Index kHats = 128;
 
 /// Columns of W over the free fine dofs, one per free axis of the given run-time nodes.
 SparseMatrix loads_of(const FineProblem& problem, const std::vector<int>& nodes) {
@@ -53,7 +53,7 @@ SurfaceCompliance surface_compliance(const FineProblem& problem, const std::vect
   const auto rows = static_cast<std::size_t>(t);
   const std::size_t packed = rows * (rows + 1) / 2, others = static_cast<std::size_t>(o) * rows;
   // Right-hand sides, their solution and what CHOLMOD keeps of them.
-  const std::size_t blocks = 5 * sizeof(double) * static_cast<std::size_t>(touch.rows() * std::min(kBlock, t));
+  const std::size_t blocks = 5 * sizeof(double) * static_cast<std::size_t>(touch.rows() * std::min(kHats, t));
   const FineFactor factor(problem, sizeof(double) * (packed + others) + blocks, progress);
 
   SurfaceCompliance result;
@@ -61,8 +61,8 @@ SurfaceCompliance surface_compliance(const FineProblem& problem, const std::vect
   result.other.resize(others);
   Stopwatch watch(progress);
   Tenths tenths(watch, t);
-  for (Index begin = 0; begin < t; begin += kBlock) {
-    const Index count = std::min(kBlock, t - begin);
+  for (Index begin = 0; begin < t; begin += kHats) {
+    const Index count = std::min(kHats, t - begin);
     const MatrixXd moved = factor.solve(MatrixXd(touch.middleCols(begin, count)));
     const MatrixXd column = touch.transpose() * moved, rest_column = rest.transpose() * moved;
     for (Index c = 0; c < count; ++c) {

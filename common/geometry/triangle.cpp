@@ -124,12 +124,12 @@ struct Relative {
   double speed = 0;  ///< [m] per step, largest coordinate
 };
 
-constexpr double kTolerance = 1e-9;  ///< of the reach: how far beside the triangle a crossing still counts
-constexpr double kRounding = 4e-15;  ///< of the reach cubed: bound of the error of a computed volume
-constexpr double kMaxShare = 1e-4;   ///< of the reach: no tolerance is larger
+constexpr double kTolerance = 1e-9;     ///< of the reach: how far beside the triangle a crossing still counts
+constexpr double kVolumeError = 4e-15;  ///< of the reach cubed: bound of the error of a computed volume
+constexpr double kMaxShare = 1e-4;      ///< of the reach: no tolerance is larger
 
 double lateral_tolerance(const Relative& relative, const Cubic& volume, double t) {
-  const double error = kRounding * relative.reach * relative.reach * relative.reach;
+  const double error = kVolumeError * relative.reach * relative.reach * relative.reach;
   const double late = std::min(error / std::abs(slope(volume, t)), std::sqrt(2 * error / max_curvature(volume)));
   const double sideways = std::isfinite(late) ? late * relative.speed : 0.0;
   return std::min(kTolerance * relative.reach + sideways, kMaxShare * relative.reach);

@@ -1,16 +1,14 @@
 #include "common/sim/local_models.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "common/geometry/segment.hpp"
+#include "common/sim/contact_stiffness.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr double kSoftening =
-    0.02;                      // of a contact's own compliance: contacts that nearly depend on one another stay finite
-constexpr int kAskedEach = 8;  // ticks from one look at what stiffness is wanted to the next
+constexpr int kAskedEach = 8;      // ticks from one look at what stiffness is wanted to the next
 constexpr int kCondensedFor = 16;  // ticks for which the contacts' stiffness holds while they stay the same
 
 void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
@@ -20,18 +18,6 @@ void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
 void copy(const Eigen::Matrix3d& from, std::array<double, 9>& to) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) to[3 * r + c] = from(r, c);
-}
-
-/// [m/N] between two anchors; zero where a node is not known.
-Eigen::Matrix3d compliance_between(const LocalStiffness::Answer& answer, const Anchor& a, const Anchor& b) {
-  Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
-  for (int v = 0; v < 3; ++v)
-    for (int w = 0; w < 3; ++w) {
-      if (a.weights[v] == 0 || b.weights[w] == 0) continue;
-      const int i = answer.find(a.nodes[v]), j = answer.find(b.nodes[w]);
-      if (i >= 0 && j >= 0) c += a.weights[v] * b.weights[w] * answer.block(i, j);
-    }
-  return c;
 }
 
 /// The quasi-static part of a hybrid body as its connection nodes feel it.
@@ -106,8 +92,6 @@ void LocalModels::refresh() {
   }
 }
 
-// K_i = sum over the same tool's contacts j of (A^-1)_ij, A = P C P^T over everything that all tools hold: three rows
-// for what sticks, the normal alone for what slides. It is how the force at i grows when that tool moves.
 void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   const auto contacts = organ.contacts();
   std::vector<std::array<int, 5>> shape;
@@ -117,36 +101,7 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
   if (shape == own.shape && ++own.age < kCondensedFor) return;
   own.shape = std::move(shape);
   own.age = 0;
-  own.contact.assign(contacts.size(), Eigen::Matrix3d::Zero());
-
-  std::vector<int> first;
-  int rows = 0;
-  const auto rows_of = [&](const TouchContact& c) -> Eigen::MatrixXd {
-    if (c.touch == Touch::open) return Eigen::MatrixXd(0, 3);
-    return c.touch == Touch::sticking ? Eigen::MatrixXd(Eigen::Matrix3d::Identity())
-                                      : Eigen::MatrixXd(c.normal.transpose());
-  };
-  for (const TouchContact& c : contacts) {
-    first.push_back(rows);
-    rows += static_cast<int>(rows_of(c).rows());
-  }
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, rows);
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    for (std::size_t j = 0; j < contacts.size(); ++j) {
-      const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
-      a.block(first[i], first[j], p.rows(), q.rows()) =
-          p * compliance_between(own.stiffness->current(), contacts[i].anchor, contacts[j].anchor) * q.transpose();
-    }
-  const double typical = rows > 0 ? a.trace() / rows : 0;
-  if (!(typical > 0)) return;
-  a.diagonal().array() += kSoftening * typical;
-  const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(rows, rows));
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    for (std::size_t j = 0; j < contacts.size(); ++j) {
-      if (!contacts[i].is_by(contacts[j].tool_point().tool)) continue;
-      const Eigen::MatrixXd p = rows_of(contacts[i]), q = rows_of(contacts[j]);
-      own.contact[i] += p.transpose() * inverse.block(first[i], first[j], p.rows(), q.rows()) * q;
-    }
+  own.contact = contact_stiffness(own.stiffness->current(), contacts);
 }
 
 // Of which moment the model is, and the pose that the tool had.

@@ -121,11 +121,11 @@ void manipulate(TubeWall& wall, double sleeve, double tip, unsigned seed) {
   }
   std::printf("%d s: led in and outside %d, not led in and inside %d, energy %.3g J, wall %.3g J, force %.3g N\n",
               ticks() / 1000, outside, strayed, energy, wall_energy, force);
-  testing::Test::RecordProperty("energy_uJ", static_cast<int>(1e6 * energy));
-  testing::Test::RecordProperty("max_force_mN", static_cast<int>(1e3 * force));
-  testing::Test::RecordProperty("grasps", left.grasps() + right.grasps());
-  testing::Test::RecordProperty("drops", left.drops() + right.drops());
-  testing::Test::RecordProperty("held_back", limited);
+  ::testing::Test::RecordProperty("energy_uJ", static_cast<int>(1e6 * energy));
+  ::testing::Test::RecordProperty("max_force_mN", static_cast<int>(1e3 * force));
+  ::testing::Test::RecordProperty("grasps", left.grasps() + right.grasps());
+  ::testing::Test::RecordProperty("drops", left.drops() + right.drops());
+  ::testing::Test::RecordProperty("held_back", limited);
   EXPECT_EQ(outside, 0);
   EXPECT_EQ(strayed, 0);
   EXPECT_LT(energy, 0.1);

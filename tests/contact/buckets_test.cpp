@@ -13,16 +13,16 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-using Box = std::array<Vector3d, 2>;
+using Corners = std::array<Vector3d, 2>;
 
-std::vector<int> ask(const Buckets& buckets, const MovingSurface& surface, const Box& box, double radius = 0) {
+std::vector<int> ask(const Buckets& buckets, const MovingSurface& surface, const Corners& box, double radius = 0) {
   std::vector<int> found(surface.size());
   found.resize(buckets.query(box[0], box[1], radius, found));
   std::sort(found.begin(), found.end());
   return found;
 }
 
-Box random_box(MovingSurface& surface) {
+Corners random_box(MovingSurface& surface) {
   const Vector3d centre = surface.uniform(0, 0.12) * surface.direction();
   const Vector3d half = Vector3d::Constant(std::pow(10.0, surface.uniform(-5, -1)));
   return {centre - half, centre + half};
@@ -30,7 +30,7 @@ Box random_box(MovingSurface& surface) {
 
 void enter_all(Buckets& buckets, const MovingSurface& surface) {
   for (int t = 0; t < surface.size(); ++t) {
-    const Box box = swept_box(surface.before(t), surface.after(t));
+    const Corners box = swept_box(surface.before(t), surface.after(t));
     buckets.move(t, box[0], box[1]);
   }
 }
@@ -43,7 +43,7 @@ TEST(Buckets, GiveEveryTriangleWhoseBoxMeetsTheQuestionOnce) {
     surface.step(0.002);
     enter_all(buckets, surface);
     for (int trial = 0; trial < 100; ++trial) {
-      const Box box = random_box(surface);
+      const Corners box = random_box(surface);
       const std::vector<int> found = ask(buckets, surface, box);
       EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
       for (int t = 0; t < surface.size(); ++t) {
@@ -63,12 +63,12 @@ TEST(Buckets, GiveEveryTriangleWhoseBoxComesWithinTheRadius) {
   enter_all(buckets, surface);
   std::size_t round_ones = 0, square_ones = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    const Box box = random_box(surface);
+    const Corners box = random_box(surface);
     const double radius = std::pow(10.0, surface.uniform(-4, 0.5));
     const std::vector<int> found = ask(buckets, surface, box, radius);
     EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
     for (int t = 0; t < surface.size(); ++t) {
-      const Box own = swept_box(surface.before(t), surface.after(t));
+      const Corners own = swept_box(surface.before(t), surface.after(t));
       const Vector3d apart = (own[0] - box[1]).cwiseMax(box[0] - own[1]).cwiseMax(0.0);
       if (apart.norm() > radius) continue;
       ASSERT_TRUE(std::binary_search(found.begin(), found.end(), t))
@@ -89,7 +89,7 @@ TEST(Buckets, AnswerTheSameWhateverTheHistoryOfMoves) {
   }
   enter_all(fresh, surface);
   for (int trial = 0; trial < 500; ++trial) {
-    const Box box = random_box(surface);
+    const Corners box = random_box(surface);
     EXPECT_EQ(ask(used, surface, box), ask(fresh, surface, box));
   }
 }
@@ -139,14 +139,14 @@ TEST(Buckets, ForgetATriangleUntilItIsEnteredAgain) {
     enter_all(whole, surface);
     for (int t = 0; t < surface.size(); ++t) {
       in[t] = surface.pick(3) > 0;
-      const Box box = swept_box(surface.before(t), surface.after(t));
+      const Corners box = swept_box(surface.before(t), surface.after(t));
       if (in[t])
         comers.move(t, box[0], box[1]);
       else
         comers.remove(t);
     }
     for (int trial = 0; trial < 20; ++trial) {
-      const Box box = random_box(surface);
+      const Corners box = random_box(surface);
       std::vector<int> expected = ask(whole, surface, box);
       std::erase_if(expected, [&](int t) { return !in[t]; });
       ASSERT_EQ(ask(comers, surface, box), expected);

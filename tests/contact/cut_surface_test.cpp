@@ -89,7 +89,7 @@ TEST(CutSurface, FindsWhatBruteForceFindsOnTheMovingAndCutSurface) {
         body.tremble(body.random() % 2 == 0 ? 1e-6 : 1e-4);
       for (unsigned i = 0; i < body.random() % 3 && body.cut.alive_count() > 0; ++i) body.remove(cutter.aim(body.cut));
       for (int trial = 0; trial < 3; ++trial) body.expect_found_as_by_brute_force();
-      if (testing::Test::HasFatalFailure()) FAIL() << "kind " << kind;
+      if (::testing::Test::HasFatalFailure()) FAIL() << "kind " << kind;
     }
     EXPECT_TRUE(body.surface.find({0, 0, 0}, {0, 0, 0}, 10).empty());
     EXPECT_EQ(body.surface.buckets().overflow(), 0);

@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector3d;
 using namespace testing;
 
-const Vector3d kGravity(1.5, -0.7, -9.81);
+const Vector3d kAslant(1.5, -0.7, -9.81);
 
 /// A fine block below and a coarse one on top of it, twice as coarse.
 struct Stack {
   TetMesh fine = make_block({0, 0, 0}, {0.04, 0.04, 0.02}, {4, 4, 2});
   TetMesh coarse = make_block({0, 0, 0.02}, {0.04, 0.04, 0.06}, {2, 2, 2});
-  HybridSpec body = hybrid_body({}, kGravity);
+  HybridSpec body = hybrid_body({}, kAslant);
 
   Stack() {
     body.hybrid.regions.clear();
@@ -66,7 +66,7 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
   stack.body.dynamic.gravity.setZero();
   const HybridRun<double> weightless(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, Vector3d::Zero());
   EXPECT_NEAR(weightless.part.gap(weightless.model), archive.hybrid->max_gap, 1e-12);
-  HybridRun<double> run(archive, 0, 60, kGravity);
+  HybridRun<double> run(archive, 0, 60, kAslant);
   run.run(1.0);
   const double opened = run.part.gap(run.model);
   std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->max_gap, 1e3 * opened);
@@ -86,11 +86,11 @@ TEST(PartialConnection, FullConnectionHasNoGap) {
 TEST(PartialConnection, RestsWhereTheJoinedMeshWould) {
   const Stack stack;
   const auto problem = make_static_problem(stack.body, join_meshes(stack.fine, stack.coarse, "test"));
-  const auto direct = solve_loads(problem, weights(problem, kGravity));
-  HybridRun<double> twice(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
+  const auto direct = solve_loads(problem, weights(problem, kAslant));
+  HybridRun<double> twice(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kAslant);
   twice.run(2);
   EXPECT_LT(static_difference(twice, direct), 1e-6);
-  HybridRun<float> once(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kGravity);
+  HybridRun<float> once(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, kAslant);
   once.run(2);
   EXPECT_LT(static_difference(once, direct), 1e-3);
 }

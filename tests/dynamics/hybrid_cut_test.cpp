@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace testing;
 
-const Vector3d kGravity(1.5, -0.7, -9.81);
+const Vector3d kCutGravity(1.5, -0.7, -9.81);
 
 std::vector<int> upper_part(const TetMesh& mesh, double height) {
   std::vector<int> part;
@@ -27,8 +27,8 @@ std::vector<int> upper_part(const TetMesh& mesh, double height) {
 template <class Scalar>
 double difference_after(const std::vector<int>& removed) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
-  const auto body = hybrid_body(upper_part(mesh, 0.02), kGravity);
-  HybridRun<Scalar> run(precompute(body, mesh), 0, 80, kGravity);
+  const auto body = hybrid_body(upper_part(mesh, 0.02), kCutGravity);
+  HybridRun<Scalar> run(precompute(body, mesh), 0, 80, kCutGravity);
   run.run(0.05);
   run.model.remove(removed);
   run.run(1.6);
@@ -49,7 +49,7 @@ double difference_after(const std::vector<int>& removed) {
   problem.mesh = left;
   problem.materials = materials;
   problem.dofs = apply_boundary_conditions(left, body.fixed, "what is left");
-  const auto direct = solve_loads(problem, weights(problem, kGravity));
+  const auto direct = solve_loads(problem, weights(problem, kCutGravity));
   std::vector<Vector3d> ours, theirs;
   for (int i = 0; i < run.archive.surface.size(); ++i) {
     const int node = run.archive.surface.node_number[i];

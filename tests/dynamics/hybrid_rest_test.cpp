@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector3d;
 using namespace testing;
 
-const Vector3d kGravity(1.5, -0.7, -9.81);
-constexpr double kDamping = 80;  // [1/s], about critical for the lowest frequency of the blocks here
-constexpr double kTime = 0.8;    // [s] from the start to rest
+const Vector3d kRestGravity(1.5, -0.7, -9.81);
+constexpr double kRestDamping = 80;  // [1/s], about critical for the lowest frequency of the blocks here
+constexpr double kRestTime = 0.8;    // [s] from the start to rest
 
 /// Point loads [N] spread over touchable nodes of the chosen parts.
 template <class Run>
@@ -49,19 +49,21 @@ double worst_difference(const Case& loads) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto body = hybrid_body(random_part(mesh, seed), loads.gravity);
     const auto problem = make_static_problem(body, mesh);
-    HybridRun<Scalar> run(precompute(body, mesh), 0, kDamping, loads.gravity);
+    HybridRun<Scalar> run(precompute(body, mesh), 0, kRestDamping, loads.gravity);
     auto load = put_point_loads(run, loads.on_quasi_static, loads.on_dynamic, mesh.nodes.size());
     const auto weight = weights(problem, loads.gravity);
     for (std::size_t i = 0; i < load.size(); ++i) load[i] += weight[i];
-    run.run(kTime);
+    run.run(kRestTime);
     worst = std::max(worst, static_difference(run, solve_loads(problem, load)));
   }
   std::printf("largest difference from the direct solve: %.3g\n", worst);
   return worst;
 }
 
-const Case kCases[] = {
-    {kGravity, false, false}, {Vector3d::Zero(), true, false}, {Vector3d::Zero(), false, true}, {kGravity, true, true}};
+const Case kCases[] = {{kRestGravity, false, false},
+                       {Vector3d::Zero(), true, false},
+                       {Vector3d::Zero(), false, true},
+                       {kRestGravity, true, true}};
 
 TEST(HybridRest, IsTheQuasiStaticStateForEveryBorderAndLoadInDouble) {
   for (const Case& one : kCases) EXPECT_LT(worst_difference<double>(one), 1e-6);
@@ -75,17 +77,18 @@ TEST(HybridRest, IsTheQuasiStaticStateForEveryBorderAndLoadInSingle) {
 template <class Scalar>
 double difference_from_tensor_mass() {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
-  const auto whole = precompute_moving(hybrid_body({}, kGravity), TensorMassSpec::kKind, mesh);
-  TensorMass<Scalar> model(elastic_mesh(whole), Integrator::rk4, kDamping);
-  model.set_gravity(kGravity);
+  const auto whole = precompute_moving(hybrid_body({}, kRestGravity), TensorMassSpec::kKind, mesh);
+  TensorMass<Scalar> model(elastic_mesh(whole), Integrator::rk4, kRestDamping);
+  model.set_gravity(kRestGravity);
   const double dt = 0.9 * max_step(Integrator::rk4, model.frequency_bound(), 0);
-  for (int i = 0; i < kTime / dt; ++i) model.step(dt);
+  for (int i = 0; i < kRestTime / dt; ++i) model.step(dt);
   std::vector<Vector3d> of_node(mesh.nodes.size(), Vector3d::Zero());
   for (int i = 0; i < whole.surface.size(); ++i) of_node[whole.surface.node_number[i]] = model.displacement(i);
   double worst = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    HybridRun<Scalar> run(precompute(hybrid_body(random_part(mesh, seed), kGravity), mesh), 0, kDamping, kGravity);
-    run.run(kTime);
+    HybridRun<Scalar> run(precompute(hybrid_body(random_part(mesh, seed), kRestGravity), mesh), 0, kRestDamping,
+                          kRestGravity);
+    run.run(kRestTime);
     worst = std::max(worst, static_difference(run, {of_node, {}}));
   }
   std::printf("largest difference from the tensor-mass body: %.3g\n", worst);
@@ -131,7 +134,8 @@ TEST(HybridMotion, KeepsOrLosesEnergyAtTheLargestStepWhereverTheBorderIs) {
 
 TEST(HybridRest, SurfaceForThePictureIsThatOfTheNodes) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
-  HybridRun<double> run(precompute(hybrid_body(random_part(mesh, 7), kGravity), mesh), 0, kDamping, kGravity);
+  HybridRun<double> run(precompute(hybrid_body(random_part(mesh, 7), kRestGravity), mesh), 0, kRestDamping,
+                        kRestGravity);
   put_point_loads(run, true, false, mesh.nodes.size());
   run.run(0.01);
   std::vector<Eigen::Vector3f> picture(run.archive.surface.size(), Eigen::Vector3f::Constant(7));
@@ -153,11 +157,11 @@ TEST(HybridRest, SurfaceForThePictureIsThatOfTheNodes) {
 TEST(HybridRest, NormalsAcrossTheBorderAreThoseOfOneBody) {
   const auto mesh = make_hybrid_block({5, 4, 5}, 0.01);
   for (unsigned seed : {1u, 2u, 3u, 4u}) {
-    const auto body = hybrid_body(random_part(mesh, seed), kGravity);
+    const auto body = hybrid_body(random_part(mesh, seed), kRestGravity);
     const auto problem = make_static_problem(body, mesh);
-    HybridRun<float> run(precompute(body, mesh), 0, kDamping, kGravity);
-    run.run(kTime);
-    const auto direct = solve_loads(problem, weights(problem, kGravity));
+    HybridRun<float> run(precompute(body, mesh), 0, kRestDamping, kRestGravity);
+    run.run(kRestTime);
+    const auto direct = solve_loads(problem, weights(problem, kRestGravity));
     const SurfaceMap& map = run.archive.surface;
     std::vector<Vector3d> ours, theirs;
     for (int i = 0; i < map.size(); ++i) {

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using namespace testing;
 
-const Vector3d kGravity(1.5, -0.7, -9.81);
+const Vector3d kLoad(1.5, -0.7, -9.81);
 
 /// The coupled system over the free dofs of the dynamic nodes, built from dense pieces.
 struct Coupled {
@@ -74,11 +74,11 @@ Coupled couple(const Archive& archive, const Vector3d& gravity) {
 TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    const auto body = hybrid_body(random_part(mesh, seed), kGravity);
+    const auto body = hybrid_body(random_part(mesh, seed), kLoad);
     const auto archive = precompute(body, mesh);
     const auto problem = make_static_problem(body, mesh);
-    const auto direct = solve_loads(problem, weights(problem, kGravity));
-    const auto system = couple(archive, kGravity);
+    const auto direct = solve_loads(problem, weights(problem, kLoad));
+    const auto system = couple(archive, kLoad);
     const VectorXd u = system.stiffness.llt().solve(system.load);
     const double size = u.cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < u.size(); ++i)
@@ -107,15 +107,15 @@ TEST(HybridTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
     for (int node : mesh.tetrahedra[e]) centre += mesh.nodes[node] / 4;
     if (centre.z() < 0.02) upper.push_back(e);  // the lower half moves, the upper hangs on it without a fixed node
   }
-  const auto archive = precompute(hybrid_body(upper, kGravity), mesh);
-  const auto problem = make_static_problem(hybrid_body(upper, kGravity), mesh);
+  const auto archive = precompute(hybrid_body(upper, kLoad), mesh);
+  const auto problem = make_static_problem(hybrid_body(upper, kLoad), mesh);
   Vector3d whole = Vector3d::Zero(), moving = Vector3d::Zero(), reaction = Vector3d::Zero();
-  for (const auto& weight : weights(problem, kGravity)) whole += weight;
+  for (const auto& weight : weights(problem, kLoad)) whole += weight;
   const auto part = elastic_mesh(archive);
   for (std::size_t e = 0; e < part.tetrahedra.size(); ++e) {
     const auto& t = part.tetrahedra[e];
     moving += part.material(static_cast<int>(e)).density *
-              tet_gradients({part.rest[t[0]], part.rest[t[1]], part.rest[t[2]], part.rest[t[3]]}).volume * kGravity;
+              tet_gradients({part.rest[t[0]], part.rest[t[1]], part.rest[t[2]], part.rest[t[3]]}).volume * kLoad;
   }
   for (std::size_t i = 0; i < archive.hybrid->dofs.size(); ++i)
     reaction[archive.hybrid->dofs[i].axis] += archive.hybrid->reaction[i];

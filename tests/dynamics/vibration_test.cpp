@@ -37,7 +37,7 @@ struct Modes {
   std::vector<Field> shape;  // the lowest ones
 };
 
-void set_displacement(DynamicModel& model, const Field& u) {
+void displace(DynamicModel& model, const Field& u) {
   for (int n = 0; n < model.nodes(); ++n) model.set_motion(n, u[n], Vector3d::Zero());
 }
 
@@ -67,7 +67,7 @@ TEST(Vibration, LowestFrequenciesAreThoseOfTheEigenproblem) {
   for (Integrator integrator : {Integrator::rk4, Integrator::semi_implicit})
     for (int k : {0, 1, 2, 3, 4}) {
       TensorMass<double> model(body.mesh, integrator, 0);
-      set_displacement(model, modes.shape[k]);
+      displace(model, modes.shape[k]);
       const double h = 0.1 * max_step(integrator, model.frequency_bound(), 0);
       const double period = measured_period(model, modes.shape[k], h);
       EXPECT_NEAR(period * modes.frequency[k] / (2 * std::numbers::pi), 1, 1e-4) << "mode " << k;
@@ -84,7 +84,7 @@ TEST(Vibration, ABarSwingsAtItsClosedFormFrequency) {
   const double length = 0.01 * cells, wave = std::numbers::pi / (2 * length);
   Field shape;
   for (const Vector3d& x : body.mesh.rest) shape.emplace_back(0, 0, 1e-3 * std::sin(wave * x.z()));
-  set_displacement(model, shape);
+  displace(model, shape);
   const double frequency = wave * std::sqrt(4e3 / 1000);
   const double period = measured_period(model, shape, 0.1 * max_step(Integrator::rk4, model.frequency_bound(), 0));
   EXPECT_NEAR(period * frequency / (2 * std::numbers::pi), 1, 1e-3);
@@ -94,7 +94,7 @@ TEST(Vibration, ABarSwingsAtItsClosedFormFrequency) {
 double energy_change(const testing::DynamicBody& body, const Field& start, Integrator integrator, double h,
                      double time) {
   TensorMass<double> model(body.mesh, integrator, 0);
-  set_displacement(model, start);
+  displace(model, start);
   const double before = model.energy();
   double largest = 0;
   for (int i = 0; i < std::lround(time / h); ++i) {
@@ -131,7 +131,7 @@ TEST(Vibration, SemiImplicitEnergySwingsWithTheStepAndDoesNotDrift) {
 /// Growth of the energy over many steps from a random start.
 double growth(const testing::DynamicBody& body, Integrator integrator, double damping, double h) {
   TensorMass<double> model(body.mesh, integrator, damping);
-  set_displacement(model, testing::random_field(body.mesh.rest.size(), 1e-4, 4));
+  displace(model, testing::random_field(body.mesh.rest.size(), 1e-4, 4));
   const double before = model.energy();
   for (int i = 0; i < 6000; ++i) model.step(h);
   return model.energy() / before;

@@ -59,7 +59,9 @@ TEST(HapticLoop, ADeviceInTheProcessGetsItsForceInTheSameTickAndIsPushedOut) {
   for (std::size_t i = 0; i < MassOnATip::kMaxTicks; ++i) {
     deepest = std::min(deepest, log.height[i]);
     largest = std::max(largest, log.force[i]);
-    if (log.height[i] > 0.0081) EXPECT_EQ(log.force[i], 0) << "in free air, tick " << i;
+    if (log.height[i] > 0.0081) {
+      EXPECT_EQ(log.force[i], 0) << "in free air, tick " << i;
+    }
   }
   EXPECT_LT(deepest, 0.006);
   EXPECT_GT(largest, 0.05);

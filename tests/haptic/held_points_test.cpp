@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-Anchor vertex(int node) {
+Anchor at_vertex(int node) {
   return {{node, node, node}, Vector3d::UnitX()};
 }
 
@@ -42,7 +42,7 @@ class HeldPointsTest : public ::testing::Test {
 
 TEST_F(HeldPointsTest, FullyHeldPointsTakeTheForcesOfTheDirectInverse) {
   HeldPoints held(response_, 8);
-  std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
+  std::vector<Anchor> anchors{at_vertex(3), at_vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, at_vertex(141)};
   for (const Anchor& a : anchors) held.add(a);
   const std::vector<Hold> hold(4, Hold::all);
   const std::vector<Vector3d> normal(4, Vector3d::UnitZ());
@@ -67,7 +67,7 @@ TEST_F(HeldPointsTest, AnyHistoryOfAddingRemovingAndHoldingGivesTheForcesOfAFres
       bool present = false;
       for (const Anchor& a : anchors) present |= a.nodes[0] == n;
       if (present) continue;
-      anchors.push_back(vertex(n));
+      anchors.push_back(at_vertex(n));
       hold.push_back(static_cast<Hold>(state(random_)));
       held.add(anchors.back());
     } else {
@@ -128,8 +128,8 @@ TEST_F(HeldPointsTest, CoincidentPointsWithContradictoryTargetsGetBoundedForces)
 TEST_F(HeldPointsTest, ASoftHoldGivesThePointsTargetLessSoftnessTimesForce) {
   const double softness[] = {0, 2e-3, 7e-3, 1e-3};
   HeldPoints held(response_, 8);
-  std::vector<Anchor> anchors{vertex(3), vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, vertex(141)};
-  held.add(vertex(80), ToolPoint{.softness = 5e-3});
+  std::vector<Anchor> anchors{at_vertex(3), at_vertex(40), {{70, 71, 83}, Vector3d(0.2, 0.3, 0.5)}, at_vertex(141)};
+  held.add(at_vertex(80), ToolPoint{.softness = 5e-3});
   for (int p = 0; p < 4; ++p) held.add(anchors[p], ToolPoint{.softness = softness[p]});
   held.remove(0);  // the others keep their own
   const std::vector<Hold> hold{Hold::all, Hold::normal, Hold::all, Hold::normal};

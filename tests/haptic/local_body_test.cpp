@@ -19,12 +19,12 @@ using testing::add_contact;
 using testing::add_square;
 using testing::empty_model;
 
-constexpr double kRadius = 0.008;
+constexpr double kBallRadius = 0.008;
 
 /// A tool above moving tissue whose deform node is the test itself.
 class LocalBodyTest : public ::testing::Test {
  protected:
-  explicit LocalBodyTest(double friction = 0) : scene_(testing::moving_block_scene(kRadius)) { restart(friction); }
+  explicit LocalBodyTest(double friction = 0) : scene_(testing::moving_block_scene(kBallRadius)) { restart(friction); }
 
   void restart(double friction) {
     scene_.contact.friction = friction;
@@ -65,7 +65,7 @@ TEST_F(LocalBodyTest, WithoutAModelNothingIsFelt) {
 TEST_F(LocalBodyTest, AHeldPlaceAnswersMotionByItsStiffnessAndNeverPulls) {
   const Vector3d pressed{0, 0, 0};
   LocalContactModel m = model(pressed);
-  add_contact(m, {0, 0, -kRadius}, {0, 0, -1.5}, 300);
+  add_contact(m, {0, 0, -kBallRadius}, {0, 0, -1.5}, 300);
   EXPECT_NEAR(feel_settled(pressed, m).z(), 1.5, 1e-9);
   EXPECT_NEAR(feel_settled({0, 0, -0.002}, m).z(), 1.5 + 300 * 0.002, 1e-9);
   EXPECT_NEAR(feel_settled({0, 0, 0.004}, m).z(), 1.5 - 300 * 0.004, 1e-9);
@@ -84,7 +84,7 @@ TEST_F(LocalBodyTest, WhatJawsHoldPullsAsWell) {
 TEST_F(LocalBodyTest, FrictionIsAtMostItsShareOfThePressure) {
   restart(0.5);
   LocalContactModel m = model({0, 0, 0});
-  add_contact(m, {0, 0, -kRadius}, {0, 0, -1}, 200);
+  add_contact(m, {0, 0, -kBallRadius}, {0, 0, -1}, 200);
   const Vector3d sticks = feel_settled({0.001, 0, 0}, m);
   EXPECT_NEAR(sticks.x(), -0.2, 0.01) << "the shaft turns a little about its trocar";
   const Vector3d slides = feel_settled({0.02, 0, 0}, m);
@@ -98,30 +98,30 @@ TEST_F(LocalBodyTest, FrictionIsAtMostItsShareOfThePressure) {
 TEST_F(LocalBodyTest, TheTorqueIsThatOfTheForceAtTheTouchingPoint) {
   restart(0.9);
   LocalContactModel m = model({0, 0, 0});
-  add_contact(m, {0, 0, -kRadius}, {0.3, -0.2, -1}, 0);
+  add_contact(m, {0, 0, -kBallRadius}, {0.3, -0.2, -1}, 0);
   feel_settled({0, 0, 0}, m);
-  const Vector3d expected = Vector3d(0, 0, -kRadius).cross(Vector3d(-0.3, 0.2, 1));
+  const Vector3d expected = Vector3d(0, 0, -kBallRadius).cross(Vector3d(-0.3, 0.2, 1));
   EXPECT_LT((haptic_->torque(0) - expected).norm(), 1e-12);
 }
 
 TEST_F(LocalBodyTest, ASphereThatHeldNothingIsPushedOutOfTheNearSurface) {
   LocalContactModel m = model(far);
   add_square(m, 0, 250);
-  EXPECT_EQ(feel_settled({0.01, 0.02, kRadius + 1e-4}, m).norm(), 0);
+  EXPECT_EQ(feel_settled({0.01, 0.02, kBallRadius + 1e-4}, m).norm(), 0);
   for (const double depth : {1e-3, 5e-3, 7.9e-3, 8.1e-3, 1.2e-2}) {
-    const Vector3d force = feel_settled({0.01, 0.02, kRadius - depth}, m);
+    const Vector3d force = feel_settled({0.01, 0.02, kBallRadius - depth}, m);
     EXPECT_NEAR(force.z(), 250 * depth, 1e-9) << depth;
     EXPECT_LT(force.head<2>().norm(), 1e-12);
   }
-  EXPECT_EQ(feel_settled({0.1, 0.02, kRadius - 5e-3}, m).norm(), 0) << "beside the surface";
+  EXPECT_EQ(feel_settled({0.1, 0.02, kBallRadius - 5e-3}, m).norm(), 0) << "beside the surface";
 }
 
 TEST_F(LocalBodyTest, StiffnessIsThatOfTheTriangleWhereItIsTouched) {
   LocalContactModel m = model(far);
   add_square(m, 0, 0);
   for (int n = 0; n < 4; ++n) m.nodes[n].stiffness = testing::isotropic(100 + 3000 * (m.nodes[n].position[0] + 0.05));
-  EXPECT_NEAR(feel_settled({0.01, 0.02, kRadius - 2e-3}, m).z(), (100 + 3000 * 0.06) * 2e-3, 1e-9);
-  EXPECT_NEAR(feel_settled({-0.03, -0.02, kRadius - 2e-3}, m).z(), (100 + 3000 * 0.02) * 2e-3, 1e-9);
+  EXPECT_NEAR(feel_settled({0.01, 0.02, kBallRadius - 2e-3}, m).z(), (100 + 3000 * 0.06) * 2e-3, 1e-9);
+  EXPECT_NEAR(feel_settled({-0.03, -0.02, kBallRadius - 2e-3}, m).z(), (100 + 3000 * 0.02) * 2e-3, 1e-9);
 }
 
 TEST_F(LocalBodyTest, AroundAConvexEdgeTheForceTurnsButNeverJumpsNorAttracts) {
@@ -137,7 +137,7 @@ TEST_F(LocalBodyTest, AroundAConvexEdgeTheForceTurnsButNeverJumpsNorAttracts) {
   for (int i = 0; i <= 90; ++i) {
     const double angle = i * std::numbers::pi / 180;
     const Vector3d outward{std::sin(angle), 0, std::cos(angle)};
-    const Vector3d force = feel_settled((kRadius - 2e-3) * outward, m);
+    const Vector3d force = feel_settled((kBallRadius - 2e-3) * outward, m);
     EXPECT_NEAR(force.norm(), 0.4, 1e-6) << i;
     EXPECT_GT(force.dot(outward), 0.399) << i;
     EXPECT_LT((force - last).norm(), i > 0 ? 0.02 : 0.5) << i;
@@ -149,7 +149,7 @@ TEST_F(LocalBodyTest, NodesMoveOnWithTheirVelocityForAWhile) {
   LocalContactModel m = model(far);
   add_square(m, -2e-3, 1000, {0, 0, 0.1});
   ASSERT_TRUE(haptic_->consume(m));
-  const Vector3d p{0.01, 0.02, kRadius};
+  const Vector3d p{0.01, 0.02, kBallRadius};
   for (int i = 0; i < 10; ++i) feel(p);
   EXPECT_EQ(haptic_->force(0).norm(), 0) << "after 9 ms the surface is still 1.1 mm below";
   for (int i = 10; i < 100; ++i) {
@@ -175,7 +175,7 @@ TEST_F(LocalBodyTest, ContactsThatDidNotPressAreNoHold) {
 
 TEST_F(LocalBodyTest, AModelThatIsTooOldFadesWithinFiftyMillisecondsAndSaysSo) {
   LocalContactModel m = model({0, 0, 0});
-  add_contact(m, {0, 0, -kRadius}, {0, 0, -2}, 300);
+  add_contact(m, {0, 0, -kBallRadius}, {0, 0, -2}, 300);
   feel_settled({0, 0, 0}, m);
   const std::uint64_t newest = step_ - 1;
   while (step_ <= newest + 150) {
@@ -227,7 +227,7 @@ TEST_F(LocalBodyTest, ARunGoesOnBitForBitFromASavedState) {
     if (i % 7 == 0 && (i < 700 || i > 1000)) {
       LocalContactModel m = model(tip(i));
       add_square(m, 1e-3 * any(random), 300 + 50 * any(random), {0, 0, 0.1 * any(random)});
-      if (i % 3) add_contact(m, tip(i) + Vector3d(0, 0, -kRadius), {0.1 * any(random), 0.1, -1 + any(random)}, 300);
+      if (i % 3) add_contact(m, tip(i) + Vector3d(0, 0, -kBallRadius), {0.1 * any(random), 0.1, -1 + any(random)}, 300);
       ASSERT_TRUE(haptic_->consume(m));
       ASSERT_TRUE(!twice || copy.consume(m));
     }
@@ -271,11 +271,11 @@ TEST_F(LocalBodyTest, ADamagedStateIsRefused) {
 
 TEST_F(LocalBodyTest, ModelsThatDoNotFitAreRefusedAndTheOldOneStays) {
   LocalContactModel m = model({0, 0, 0});
-  add_contact(m, {0, 0, -kRadius}, {0, 0, -2}, 300);
+  add_contact(m, {0, 0, -kBallRadius}, {0, 0, -2}, 300);
   feel_settled({0, 0, 0}, m);
   const auto refuse = [&](auto&& change) {
     LocalContactModel bad = model({0, 0, 0});
-    add_contact(bad, {0, 0, -kRadius}, {0, 0, -9}, 300);
+    add_contact(bad, {0, 0, -kBallRadius}, {0, 0, -9}, 300);
     add_square(bad, 0, 100);
     change(bad);
     EXPECT_FALSE(haptic_->consume(bad));
@@ -324,7 +324,7 @@ TEST_F(LocalBodyTest, AQuasiStaticBodyInTheSameSceneIsFeltAsBefore) {
   EXPECT_GT(a.force(0).norm(), 0.1);
   // What the moving body adds, it adds: here at the other body's index.
   LocalContactModel m = empty_model(t, {0, 0, 0}, 200);
-  m.contacts.push_back({1, 0, {0, 0, -kRadius}, {0, 0, -1}, {0, 0, -1}, testing::isotropic(0)});
+  m.contacts.push_back({1, 0, {0, 0, -kBallRadius}, {0, 0, -1}, {0, 0, -1}, testing::isotropic(0)});
   ASSERT_TRUE(b.consume(m));
   m.contacts[0].body = 0;
   EXPECT_FALSE(b.consume(m)) << "the first body is not dynamic";
@@ -345,7 +345,7 @@ TEST_F(LocalBodyTest, TheFeedBringsTheNewestModelOfThisRunToTheStep) {
   const auto send = [&](std::uint64_t tool_run, std::uint64_t seq) {
     LocalContactModel m = empty_model(tool(), {0, 0, 0}, 0, seq);
     m.tool_run = tool_run;
-    add_contact(m, {0, 0, -kRadius}, {0, 0, -static_cast<double>(seq)}, 0);
+    add_contact(m, {0, 0, -kBallRadius}, {0, 0, -static_cast<double>(seq)}, 0);
     ASSERT_TRUE(writer->write(m));
     feed.take();
     feed.give(*haptic_);

@@ -12,14 +12,14 @@ using testing::Hand;
 using testing::LoopTrace;
 using testing::TouchedBlock;
 
-constexpr double kDt = 1e-3, kRadius = 0.008;
+constexpr double kPeriod = 1e-3, kPressRadius = 0.008;
 
 /// Path of the tip that the hand intends.
 Vector3d intended(double t) {
   const auto ramp = [](double x) { return x <= 0 ? 0.0 : x >= 1 ? 1.0 : 0.5 - 0.5 * std::cos(std::numbers::pi * x); };
   double depth = 0.012 * ramp((t - 0.1) / 0.4) - 0.014 * ramp((t - 4.5) / 0.2);
   if (t > 2 && t < 3) depth += 0.003 * std::sin(2 * std::numbers::pi * 4 * (t - 2));
-  return {0, 0, kRadius + 0.002 - depth};
+  return {0, 0, kPressRadius + 0.002 - depth};
 }
 
 /// Five seconds of the loop: the hand comes down, presses, holds still, shakes for a second, holds still and leaves.
@@ -27,7 +27,7 @@ Vector3d intended(double t) {
 /// than it could, claims `stiffer` times the stiffness, and comes no more from step `silent_from` on.
 LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step, double stiffer = 1,
               std::uint64_t silent_from = 5000, bool controller = true) {
-  Scene scene = testing::moving_block_scene(kRadius);
+  Scene scene = testing::moving_block_scene(kPressRadius);
   scene.passivity.controller = controller;
   const Tool& tool = scene.tools[0];
   HapticStep haptic(scene, std::vector<Archive>(1));
@@ -44,13 +44,13 @@ LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step
     }
     const ToolDofs dofs = tip_at(tool, hand.at);
     haptic.step(std::array{dofs});
-    block.tick(before, hand.at, kRadius, kDt);
+    block.tick(before, hand.at, kPressRadius, kPeriod);
     if (k < silent_from) on_the_way.push_back(block.describe(dofs, k, stiffer));
     trace.at.push_back(hand.at);
     trace.felt.push_back(lock_step ? Vector3d(-block.force()) : haptic.force(0));
     trace.full.push_back(-block.force());
     before = hand.at;
-    hand.move(intended(kDt * static_cast<double>(k)), trace.felt.back(), kDt);
+    hand.move(intended(kPeriod * static_cast<double>(k)), trace.felt.back(), kPeriod);
   }
   return trace;
 }
@@ -58,7 +58,7 @@ LoopTrace run(Hand hand, double young, double damping, int delay, bool lock_step
 /// Largest and smallest height of the tip [m] between two times, subtracted.
 double swing(const LoopTrace& trace, double from, double to) {
   double least = 1, most = -1;
-  for (int k = static_cast<int>(from / kDt); k < static_cast<int>(to / kDt); ++k) {
+  for (int k = static_cast<int>(from / kPeriod); k < static_cast<int>(to / kPeriod); ++k) {
     least = std::min(least, trace.at[k].z());
     most = std::max(most, trace.at[k].z());
   }

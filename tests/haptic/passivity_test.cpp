@@ -18,12 +18,12 @@ namespace {
 using Eigen::Vector3d;
 using testing::BlockScene;
 
-constexpr double kDt = 1e-3;
+constexpr double kTick = 1e-3;
 
 /// One tool whose force a function of place and time gives, held from tick to tick and moved by hand.
 struct OnePort {
   explicit OnePort(bool controller = true, double reserve = 0.01)
-      : guard({.controller = controller, .reserve = reserve}, {&port}, 20, 1e5, kDt) {}
+      : guard({.controller = controller, .reserve = reserve}, {&port}, 20, 1e5, kTick) {}
   OnePort(const OnePort&) = delete;
   OnePort& operator=(const OnePort&) = delete;
 
@@ -71,7 +71,7 @@ TEST(Passivity, EnergyCountsTheForceThatWasHeldOverTheMotion) {
 
 TEST(Passivity, TorqueAndGripCount) {
   Port port;
-  PassivityGuard guard({}, {&port}, 10, 1e5, kDt);
+  PassivityGuard guard({}, {&port}, 10, 1e5, kTick);
   port.held = {.torque = {0, 0.1, 0}, .grip = 0.2};
   const Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d now = before;
@@ -93,12 +93,12 @@ TEST(Passivity, AnActiveSourceIsHeldToTheReserve) {
         Vector3d force = Vector3d::Zero(), before = hand.at;
         port.at = hand.at;
         for (int i = 0; i < 4000; ++i) {
-          hand.move(Vector3d::Zero(), force, kDt);
+          hand.move(Vector3d::Zero(), force, kTick);
           const Vector3d motion = hand.at - before;
           before = hand.at;
           force = port.tick(hand.at, Vector3d(strength * motion.stableNormalized()));
           ASSERT_TRUE(force.allFinite());
-          ASSERT_LE(force.norm(), strength + PassivityGuard::kMaxDamping / kDt * hand.speed.norm() * 1.1 + 1e-12);
+          ASSERT_LE(force.norm(), strength + PassivityGuard::kMaxDamping / kTick * hand.speed.norm() * 1.1 + 1e-12);
         }
         if (controller) {
           EXPECT_GE(port.least, -reserve) << reserve << " J, " << strength << " N";
@@ -142,8 +142,8 @@ TEST(Passivity, AForceThatWasTakenAwayEarnsItsReturn) {
     OnePort port;
     for (int i = 0; i < 1000; ++i) port.tick({i % 2 ? 2e-5 : 0, 0, 0}, Vector3d(i % 2 ? -10 : 10, 0, 0));
     double travelled = 0;
-    for (Vector3d given = Vector3d::Zero(); given.x() > -5 + 1e-12; travelled += speed * kDt) {
-      given = port.tick({port.at.x() + speed * kDt, 0, 0}, Vector3d(-5, 0, 0));
+    for (Vector3d given = Vector3d::Zero(); given.x() > -5 + 1e-12; travelled += speed * kTick) {
+      given = port.tick({port.at.x() + speed * kTick, 0, 0}, Vector3d(-5, 0, 0));
       ASSERT_LE(given.x(), 0);
       ASSERT_LT(travelled, 0.01) << speed << " m/s: locked out at " << given.x() << " N";
     }
@@ -157,12 +157,12 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
   const auto vector = [&] { return Vector3d(any(random), any(random), any(random)); };
-  constexpr double turn = PassivityGuard::kMaxAcceleration * kDt * kDt;
+  constexpr double turn = PassivityGuard::kMaxAcceleration * kTick * kTick;
   for (const double slew : {1e5, 2e4})
     for (int run = 0; run < 60; ++run) {
       Port port;
-      PassivityGuard guard({.controller = true, .reserve = 0.01}, {&port}, 20, slew, kDt);
-      SafetyChain chain(20, slew, kDt);
+      PassivityGuard guard({.controller = true, .reserve = 0.01}, {&port}, 20, slew, kTick);
+      SafetyChain chain(20, slew, kTick);
       Vector3d motion = Vector3d::Zero(), given = Vector3d::Zero(), asked = Vector3d::Zero();
       double least = 0;
       const double malice = 0.25 * (run % 5);
@@ -187,7 +187,7 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
 
 TEST(Passivity, OneToolMayTakeOutWhatAnotherPutIn) {
   Port giving, taking;
-  PassivityGuard guard({.controller = true, .reserve = 1e-3}, {&giving, &taking}, 20, 1e5, kDt);
+  PassivityGuard guard({.controller = true, .reserve = 1e-3}, {&giving, &taking}, 20, 1e5, kTick);
   for (int i = 0; i < 1000; ++i) {
     giving.motion = taking.motion = {.shift = {1e-4, 0, 0}};
     guard.observe();
@@ -239,7 +239,7 @@ struct DelayedWall {
     Vector3d force = Vector3d::Zero();
     double low = 1, high = -1, largest = 0;
     for (int i = 0; i < 6000; ++i) {
-      hand.move({0, 0, -0.01}, force, kDt);
+      hand.move({0, 0, -0.01}, force, kTick);
       late[i % late.size()] = std::clamp(-stiffness * hand.at.z(), 0.0, 20.0);
       force = port.tick(hand.at, Vector3d(0, 0, late[(i + 1) % late.size()]));
       largest = std::max(largest, force.norm());

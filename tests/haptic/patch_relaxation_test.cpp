@@ -11,15 +11,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = testing::PatchBlock::kRadius, kYoung = testing::PatchBlock::kYoung,
-                 kPoisson = testing::PatchBlock::kPoisson, kDt = 1e-3;
+using testing::PatchBlock;
+constexpr double kDt = 1e-3;
 const Relaxation kRelaxation{{0.05, 0.5}, {0.3, 0.3}};
 
 class RelaxingPatch : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    block_ = std::make_unique<testing::PatchBlock>(1);
-    block_->scene.tools.push_back(testing::PatchBlock::probe("probe"));
+    block_ = std::make_unique<PatchBlock>(1);
+    block_->scene.tools.push_back(PatchBlock::probe("probe"));
   }
   static void TearDownTestSuite() { block_.reset(); }
 
@@ -29,11 +29,12 @@ class RelaxingPatch : public ::testing::Test {
     as<QuasiStaticSpec>(scene.bodies[0])->relaxation = relaxation;
     return {scene, {block_->archive}};
   }
-  static Vector3d at(double x, double y, double depth) { return {x, y, kRadius - depth}; }
+  static Vector3d at(double x, double y, double depth) { return {x, y, PatchBlock::kRadius - depth}; }
   static Vector3d at(double depth) { return at(0.003, 0.002, depth); }
   static Vector3d above() { return at(0, 0, -0.002); }
   static double hertz(double depth) {
-    return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(std::max(depth, 0.0), 1.5);
+    return 4.0 / 3 * PatchBlock::kYoung / (1 - PatchBlock::kPoisson * PatchBlock::kPoisson) *
+           std::sqrt(PatchBlock::kRadius) * std::pow(std::max(depth, 0.0), 1.5);
   }
   template <class Depth>
   static std::vector<double> forces(PressRig rig, int ticks, Depth&& depth) {
@@ -46,15 +47,15 @@ class RelaxingPatch : public ::testing::Test {
     return all;
   }
 
-  static std::unique_ptr<testing::PatchBlock> block_;
+  static std::unique_ptr<PatchBlock> block_;
 };
-std::unique_ptr<testing::PatchBlock> RelaxingPatch::block_;
+std::unique_ptr<PatchBlock> RelaxingPatch::block_;
 
 // Lee & Radok 1960: while the contact area grows, F(t) is the hereditary integral over Hertz's force.
 TEST_F(RelaxingPatch, ASphereThatGoesDownFollowsLeeAndRadok) {
   for (const int ticks : {50, 400}) {
     SCOPED_TRACE(ticks);
-    const auto down = [=](int n) { return 0.5 * kRadius * (n + 1) / ticks; };
+    const auto down = [=](int n) { return 0.5 * PatchBlock::kRadius * (n + 1) / ticks; };
     const std::vector<double> elastic = forces(rig({}), ticks, down), felt = forces(rig(kRelaxation), ticks, down);
     std::vector<double> of_hertz;
     for (int n = 0; n < ticks; ++n) of_hertz.push_back(hertz(down(n)));
@@ -69,7 +70,7 @@ TEST_F(RelaxingPatch, ASphereThatGoesDownFollowsLeeAndRadok) {
 }
 
 TEST_F(RelaxingPatch, AHeldPressRelaxesByTheClosedForm) {
-  const auto down = [](int n) { return n < 20 ? 0.5 * kRadius * (n + 1) / 20 : 0.5 * kRadius; };
+  const auto down = [](int n) { return n < 20 ? 0.5 * PatchBlock::kRadius * (n + 1) / 20 : 0.5 * PatchBlock::kRadius; };
   const std::vector<double> elastic = forces(rig({}), 1500, down), felt = forces(rig(kRelaxation), 1500, down);
   const std::vector<double> expected = testing::relaxed(kRelaxation, elastic, kDt);
   for (std::size_t n = 0; n < felt.size(); ++n) EXPECT_NEAR(felt[n], expected[n], 0.001 * elastic.back()) << n;
@@ -96,7 +97,7 @@ TEST_F(RelaxingPatch, PressHoldSlideAndReleaseHaveNoJump) {
     Vector3d before = Vector3d::Zero();
     double largest = 0, jump = 0;
     for (int n = 0; n < 2500; ++n) {
-      const double down = 0.5 * kRadius * std::clamp(std::min(n / 200.0, (2300 - n) / 200.0), -0.2, 1.0);
+      const double down = 0.5 * PatchBlock::kRadius * std::clamp(std::min(n / 200.0, (2300 - n) / 200.0), -0.2, 1.0);
       const double aside = 2e-5 * std::clamp(n - 700, 0, 1000);
       rig.step(at(-0.01 + aside, 0.002 + 0.4 * aside, down));
       jump = std::max(jump, (rig.force() - before).norm());

@@ -12,13 +12,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = testing::PatchBlock::kRadius, kYoung = testing::PatchBlock::kYoung,
-                 kPoisson = testing::PatchBlock::kPoisson;
+using testing::PatchBlock;
+
 const Vector3d kAlong = Vector3d(2, 1, 0).normalized();
 
 class PatchRule : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { block_ = std::make_unique<testing::PatchBlock>(0); }
+  static void SetUpTestSuite() { block_ = std::make_unique<PatchBlock>(0); }
   static void TearDownTestSuite() { block_.reset(); }
 
   /// Under tools that come down from above, each by its own tip's place.
@@ -26,23 +26,23 @@ class PatchRule : public ::testing::Test {
     Scene scene = block_->scene;
     scene.contact.friction = friction;
     scene.contact.rule = rule;
-    for (int t = 0; t < tools; ++t)
-      scene.tools.push_back(testing::PatchBlock::probe("probe" + std::to_string(t), 0.02 * t));
+    for (int t = 0; t < tools; ++t) scene.tools.push_back(PatchBlock::probe("probe" + std::to_string(t), 0.02 * t));
     return {scene, {block_->archive}};
   }
-  static Vector3d at(double x, double y, double depth) { return {x, y, kRadius - depth}; }
+  static Vector3d at(double x, double y, double depth) { return {x, y, PatchBlock::kRadius - depth}; }
   static double hertz(double depth) {
-    return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(depth, 1.5);
+    return 4.0 / 3 * PatchBlock::kYoung / (1 - PatchBlock::kPoisson * PatchBlock::kPoisson) *
+           std::sqrt(PatchBlock::kRadius) * std::pow(depth, 1.5);
   }
 
-  static std::unique_ptr<testing::PatchBlock> block_;
+  static std::unique_ptr<PatchBlock> block_;
 };
-std::unique_ptr<testing::PatchBlock> PatchRule::block_;
+std::unique_ptr<PatchBlock> PatchRule::block_;
 
 // Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh
 // gives two to three times Hertz.
 TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
-  for (const double depth : {0.25 * kRadius, 0.5 * kRadius})
+  for (const double depth : {0.25 * PatchBlock::kRadius, 0.5 * PatchBlock::kRadius})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, 0.001}, {0.006, 0.006}, {-0.011, 0.003}}) {
       PressRig rig = PatchRule::rig(0);
       rig.start(at(x, y, -0.001));
@@ -57,7 +57,7 @@ TEST_F(PatchRule, ASlideIsSmoothAndFrictionHoldsBack) {
     PressRig rig = PatchRule::rig(friction);
     Vector3d tip = at(-0.012, -0.005, 0);
     rig.start(tip + Vector3d(0, 0, 0.001));
-    const double depth = 0.5 * kRadius;
+    const double depth = 0.5 * PatchBlock::kRadius;
     for (int i = 0; i <= 100; ++i) rig.step(tip - Vector3d(0, 0, depth * i / 100));
     tip.z() -= depth;
     double before = rig.force().norm(), sum = 0, of_squares = 0;
@@ -93,7 +93,7 @@ TEST_F(PatchRule, TheForceComesAndGoesWithoutAStep) {
     if (depth <= 0) {
       EXPECT_EQ(now, 0) << i;
     }
-    if (depth > 0.02 * kRadius) {
+    if (depth > 0.02 * PatchBlock::kRadius) {
       EXPECT_GT(now, 0) << i;  // the innermost squares are that far from the tip's own middle
     }
     before = now;

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.008, kDt = 1e-3;
-const Relaxation kRelaxation{{0.05, 0.4}, {0.3, 0.25}};
+constexpr double kRadius = 0.008, kTickSeconds = 1e-3;
+const Relaxation kTwoTerms{{0.05, 0.4}, {0.3, 0.25}};
 constexpr double kLeft = 0.45;  // of the modulus, in the end
 
 /// A mesh, and where its top is pressed.
@@ -55,9 +55,9 @@ class Relaxing : public ::testing::TestWithParam<Ground> {
 TEST_P(Relaxing, AHeldPressRelaxesByTheClosedForm) {
   const auto down = [](int) { return 0.003; };
   const std::vector<double> elastic = forces(rig({}), 600, down);
-  const std::vector<double> felt = forces(rig(kRelaxation), 600, down);
+  const std::vector<double> felt = forces(rig(kTwoTerms), 600, down);
   ASSERT_GT(elastic[0], 0.02);
-  const std::vector<double> expected = testing::relaxed(kRelaxation, elastic, kDt);
+  const std::vector<double> expected = testing::relaxed(kTwoTerms, elastic, kTickSeconds);
   for (std::size_t n = 0; n < felt.size(); ++n) EXPECT_NEAR(felt[n], expected[n], 1e-5 * elastic[0]) << n;
   EXPECT_NEAR(felt[0], elastic[0], 0.01 * elastic[0]);
   EXPECT_NEAR(felt.back(), (1 - 0.3 - 0.25 * (1 - std::exp(-0.6 / 0.4))) * elastic[0], 1e-3 * elastic[0]);
@@ -66,8 +66,8 @@ TEST_P(Relaxing, AHeldPressRelaxesByTheClosedForm) {
 TEST_P(Relaxing, AGrowingPressIsTheHereditaryIntegralOfTheElasticOne) {
   const auto down = [](int n) { return 0.004 * (n + 1) / 400; };
   const std::vector<double> elastic = forces(rig({}), 400, down);
-  const std::vector<double> felt = forces(rig(kRelaxation), 400, down);
-  const std::vector<double> expected = testing::relaxed(kRelaxation, elastic, kDt);
+  const std::vector<double> felt = forces(rig(kTwoTerms), 400, down);
+  const std::vector<double> expected = testing::relaxed(kTwoTerms, elastic, kTickSeconds);
   for (std::size_t n = 0; n < felt.size(); ++n) EXPECT_NEAR(felt[n], expected[n], 1e-5 * elastic.back()) << n;
   EXPECT_LT(felt.back(), 0.8 * elastic.back());
 }
@@ -85,7 +85,7 @@ TEST_P(Relaxing, TimesFarFromThoseOfThePressDoNotCount) {
 
 // Recovery: with the forces that were felt, u = U (f + sum of gain s) / f_elastic at each node.
 TEST_P(Relaxing, WhatIsLetGoCreepsBackAndPullsAtNothing) {
-  PressRig elastic = rig({}), relaxing = rig(kRelaxation);
+  PressRig elastic = rig({}), relaxing = rig(kTwoTerms);
   for (PressRig* r : {&elastic, &relaxing}) r->start(tip(-0.001));
   std::vector<double> share;
   for (int n = 0; n < 300; ++n) {
@@ -99,10 +99,10 @@ TEST_P(Relaxing, WhatIsLetGoCreepsBackAndPullsAtNothing) {
     share.push_back(0);
     if (n % 100 != 4) continue;
     double left = 0;
-    for (const CreepTerm& term : creep_terms(kRelaxation)) {
+    for (const CreepTerm& term : creep_terms(kTwoTerms)) {
       double lag = 0, before = 0;
       for (const double f : share) {
-        const double steps = kDt / term.time, mean = -std::expm1(-steps) / steps;
+        const double steps = kTickSeconds / term.time, mean = -std::expm1(-steps) / steps;
         lag = std::exp(-steps) * lag + (mean - std::exp(-steps)) * before + (1 - mean) * f;
         before = f;
       }
@@ -120,7 +120,7 @@ TEST_P(Relaxing, WhatIsLetGoCreepsBackAndPullsAtNothing) {
 }
 
 TEST_P(Relaxing, ATipInTheDentFeelsNothingUntilTheTissueHasComeBackToIt) {
-  PressRig rig = Relaxing::rig(kRelaxation, 0);
+  PressRig rig = Relaxing::rig(kTwoTerms, 0);
   rig.start(tip(-0.001));
   for (int n = 0; n < 400; ++n) rig.step(tip(0.004));
   int touched = -1;
@@ -140,7 +140,7 @@ TEST_P(Relaxing, ATipInTheDentFeelsNothingUntilTheTissueHasComeBackToIt) {
 }
 
 TEST_P(Relaxing, ReleaseAndRestGiveNothingBackForNothing) {
-  PressRig rig = Relaxing::rig(kRelaxation);
+  PressRig rig = Relaxing::rig(kTwoTerms);
   rig.start(tip(-0.001));
   double work = 0, before = 0, depth = 0;  // [J] of the hand
   for (int n = 0; n < 4000; ++n) {
@@ -161,7 +161,7 @@ TEST_P(Relaxing, GoesOnBitForBitFromASavedState) {
         tip_at(rig.scene().tools[0], {-0.02 + 0.03 * s, 0.01 * std::sin(5 * s), kRadius - 0.004 * std::sin(9 * s)}),
         tip_at(rig.scene().tools[1], {0.02, 0.02 * s, kRadius - 0.003 * std::sin(7 * s)})};
   };
-  PressRig one = rig(kRelaxation, 0.3, 2), other = rig(kRelaxation, 0.3, 2);
+  PressRig one = rig(kTwoTerms, 0.3, 2), other = rig(kTwoTerms, 0.3, 2);
   for (PressRig* r : {&one, &other}) r->start(tips(*r, 0));
   double largest = 0;
   for (int n = 0; n < 600; ++n) one.step(tips(one, n));
@@ -176,7 +176,7 @@ TEST_P(Relaxing, GoesOnBitForBitFromASavedState) {
 }
 
 TEST_P(Relaxing, AStepTakesNoMemory) {
-  PressRig rig = Relaxing::rig(kRelaxation);
+  PressRig rig = Relaxing::rig(kTwoTerms);
   const auto at = [&](int n) {
     const double s = 1e-3 * n;
     return std::array{tip_at(rig.scene().tools[0], {-0.03 + 0.03 * s, 0, kRadius - 0.003 * std::sin(12 * s)})};

@@ -168,7 +168,7 @@ TEST_P(BlockRows, TinyNumbersBecomeZeroWithinAStepAndNowhereElse) {
   EXPECT_NE(outside, 0.0f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, BlockRows, testing::ValuesIn(available()), path_name);
+INSTANTIATE_TEST_SUITE_P(Paths, BlockRows, ::testing::ValuesIn(available()), path_name);
 
 }  // namespace
 }  // namespace palpate::kernels

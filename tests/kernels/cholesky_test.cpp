@@ -228,7 +228,7 @@ TEST_P(Cholesky, APivotThatIsNotANumberIsCounted) {
   EXPECT_GE(table().cholesky(f.l.data(), 5, f.ld, f.floor.data()), 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Path, Cholesky, testing::ValuesIn(available()), path_name);
+INSTANTIATE_TEST_SUITE_P(Path, Cholesky, ::testing::ValuesIn(available()), path_name);
 
 }  // namespace
 }  // namespace palpate::kernels

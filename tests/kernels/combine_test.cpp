@@ -77,7 +77,7 @@ TEST_P(Combine, SameInputGivesTheSameBits) {
   EXPECT_EQ(first, second);
 }
 
-INSTANTIATE_TEST_SUITE_P(Path, Combine, testing::ValuesIn(available()), path_name);
+INSTANTIATE_TEST_SUITE_P(Path, Combine, ::testing::ValuesIn(available()), path_name);
 
 }  // namespace
 }  // namespace palpate::kernels

@@ -91,13 +91,13 @@ TEST(Child, ThatCrashesOrLeavesIsReportedInWords) {
 }
 
 TEST(Child, CannotWriteToTheTerminal) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   run_in_child([] {
     puts("chatter");
     fflush(stdout);
     return std::string();
   });
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ class ScriptedForceps {
   Trajectory trajectory_;
 };
 
-class DuctScene : public testing::Test {
+class DuctScene : public ::testing::Test {
  protected:
   void load(const char* name) {
     scene = load_scene(kScenes + name);

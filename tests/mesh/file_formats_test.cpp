@@ -243,12 +243,12 @@ TEST(RealLiver, IsReadWithItsNodesInOrder) {
 TEST(MeshFile, LoadingPrintsNothing) {
   const TestFolder folder;
   const auto good = folder.write("a.msh", kGmsh2), bad = folder.write("b.msh", replaced(kGmsh2, "$EndElements", ""));
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
   load_tet_mesh(good, 1);
   sentence_of([&] { load_tet_mesh(bad, 1); });
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

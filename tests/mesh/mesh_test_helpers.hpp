@@ -18,7 +18,7 @@ namespace palpate {
 class TestFolder {
  public:
   TestFolder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               (std::string("palpate_") + test->name() + "_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kRadius = 0.015, kHeight = 0.013, kDeepest = 0.0039;
+constexpr double kCylinderRadius = 0.015, kCylinderHeight = 0.013, kDeepest = 0.0039;
 constexpr int kSteps = 13;
 const Eigen::Vector3d kPress = -Eigen::Vector3d::UnitZ();
 
@@ -22,18 +22,21 @@ struct Press {
   std::vector<double> linear;  ///< [m] displacements, three a node
 };
 
-class BrainCylinder : public testing::TestWithParam<const char*> {
+class BrainCylinder : public ::testing::TestWithParam<const char*> {
  protected:
   BrainCylinder() {
     body.name = "specimen";
     body.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
-    body.nonlinear = Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kRadius, kHeight, 6, {}, 1};
+    body.nonlinear =
+        Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1};
   }
 
   /// Holds the bottom's height, one point of it and its turn about the axis.
   void slide_at_the_bottom() {
-    const auto on_x_axis = [&](int n) { return std::hypot(mesh.nodes[n].x() - kRadius, mesh.nodes[n].y()) < 1e-9; };
+    const auto on_x_axis = [&](int n) {
+      return std::hypot(mesh.nodes[n].x() - kCylinderRadius, mesh.nodes[n].y()) < 1e-9;
+    };
     const std::vector<int>& bottom = mesh.groups.at("bottom").nodes;
     const auto rim = std::find_if(bottom.begin(), bottom.end(), on_x_axis);
     ASSERT_NE(rim, bottom.end());
@@ -59,7 +62,7 @@ class BrainCylinder : public testing::TestWithParam<const char*> {
   std::vector<int> middle_circle() const {
     std::vector<int> nodes;
     for (int n : mesh.groups.at("side").nodes)
-      if (std::abs(mesh.nodes[n].z() - kHeight / 2) < 1e-6) nodes.push_back(n);
+      if (std::abs(mesh.nodes[n].z() - kCylinderHeight / 2) < 1e-6) nodes.push_back(n);
     return nodes;
   }
 
@@ -72,7 +75,7 @@ class BrainCylinder : public testing::TestWithParam<const char*> {
 
   double outward(const std::vector<double>& field, int n) const { return std::hypot(field[3 * n], field[3 * n + 1]); }
 
-  TetMesh mesh = make_cylinder(kRadius, kHeight, 10, 6);
+  TetMesh mesh = make_cylinder(kCylinderRadius, kCylinderHeight, 10, 6);
   QuasiStaticSpec body;
 };
 
@@ -88,7 +91,7 @@ double measured(const std::filesystem::path& file, const char* column, double x)
 
 TEST_P(BrainCylinder, FitFollowsTheMeasuredCurves) {
   const QuasiNonlinear law = make_quasi_nonlinear(body, Archive{});
-  const LinearSlopes linear = sliding_slopes(body.material, kRadius, kHeight);
+  const LinearSlopes linear = sliding_slopes(body.material, kCylinderRadius, kCylinderHeight);
   const double greatest = measured(body.nonlinear->force_curve, "force_N", kDeepest);
   const double widest = measured(body.nonlinear->radial_curve, "radial_m", kDeepest);
   for (int i = 1; i <= 40; ++i) {
@@ -103,10 +106,10 @@ TEST_P(BrainCylinder, FitFollowsTheMeasuredCurves) {
 // The state is homogeneous, so two layers suffice. The polygon of 96 sides has 0.07 % less area than the
 // circle of the closed form, which the curves steepen to 0.2 % of the force.
 TEST_P(BrainCylinder, SlidingEndsReproduceTheFittedCurvesAtEveryStep) {
-  mesh = make_cylinder(kRadius, kHeight, 16, 2);
+  mesh = make_cylinder(kCylinderRadius, kCylinderHeight, 16, 2);
   slide_at_the_bottom();
   const QuasiNonlinear law = make_quasi_nonlinear(body, Archive{});
-  const LinearSlopes linear = sliding_slopes(body.material, kRadius, kHeight);
+  const LinearSlopes linear = sliding_slopes(body.material, kCylinderRadius, kCylinderHeight);
   const StaticProblem problem = make_static_problem(body, mesh);
   ASSERT_EQ(middle_circle().size(), 96u);
   for (int i = 1; i <= kSteps; ++i) {
@@ -144,18 +147,18 @@ TEST_P(BrainCylinder, StuckEndsReproduceThemWithTheSlopesOfTheModelItself) {
 
 TEST_P(BrainCylinder, StuckEndsAreNotTheClosedForms) {
   const SpecimenSlopes stuck = press_specimen(mesh, body.material);
-  const LinearSlopes sliding = sliding_slopes(body.material, kRadius, kHeight);
+  const LinearSlopes sliding = sliding_slopes(body.material, kCylinderRadius, kCylinderHeight);
   EXPECT_GT(stuck.force / sliding.force, 1.3);
 }
 
-std::string speed_name(const testing::TestParamInfo<const char*>& info) {
+std::string speed_name(const ::testing::TestParamInfo<const char*>& info) {
   const char* const names[] = {"Fast", "Middling", "Slow"};
   return names[info.index];
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, BrainCylinder,
-                         testing::Values("brain_force_500mm_min.csv", "brain_force_5mm_min.csv",
-                                         "brain_force_0.005mm_min.csv"),
+                         ::testing::Values("brain_force_500mm_min.csv", "brain_force_5mm_min.csv",
+                                           "brain_force_0.005mm_min.csv"),
                          speed_name);
 
 }  // namespace

@@ -23,9 +23,9 @@ struct Force {
 using Forces = std::vector<Force>;
 
 /// A patch of nodes that relaxes, and its memory; `most` nodes carry force at once.
-class Body : public Stateful<Body> {
+class OneNode : public Stateful<OneNode> {
  public:
-  explicit Body(std::size_t most) : softened_(make()), memory_(step_, softened_, most) {}
+  explicit OneNode(std::size_t most) : softened_(make()), memory_(step_, softened_, most) {}
 
   void step(const Forces& forces) {
     memory_.begin();
@@ -68,12 +68,12 @@ class Body : public Stateful<Body> {
 /// The same with one full history a node, which forgets nothing.
 class Reference {
  public:
-  void step(const Body& body, const Forces& forces) {
+  void step(const OneNode& body, const Forces& forces) {
     for (LoadTrace& t : traces_) t.before = t.force, t.force.setZero();
     for (const auto& [node, force] : forces) traces_[node].force += force;
     for (LoadTrace& t : traces_) t.follow(body.creep());
   }
-  std::vector<Vector3d> displacement(const Body& body, Moment moment) const {
+  std::vector<Vector3d> displacement(const OneNode& body, Moment moment) const {
     std::vector<Vector3d> u(kNodes, Vector3d::Zero());
     for (int by = 0; by < kNodes; ++by)
       for (int n = 0; n < kNodes; ++n)
@@ -110,7 +110,7 @@ TEST(ForceMemory, ForgetsNothingOfTheShapeHoweverFewNodesItFollows) {
   for (const std::size_t most : {1u, 2u, 6u, 40u}) {
     SCOPED_TRACE(most);
     std::mt19937 random(7);
-    Body body(most);
+    OneNode body(most);
     Reference reference;
     for (int i = 0; i < 1500; ++i) {
       const Forces forces = wandering(random, i, most);
@@ -125,7 +125,7 @@ TEST(ForceMemory, ForgetsNothingOfTheShapeHoweverFewNodesItFollows) {
 }
 
 TEST(ForceMemory, CreepsUnderAForceThatStaysByTheClosedForm) {
-  Body body(1);
+  OneNode body(1);
   const Vector3d force(0.1, 0.2, -1);
   const Vector3d elastic = body.moved(13, 40, force) / body.creep().instant();
   for (int n = 1; n <= 2000; ++n) {
@@ -140,7 +140,7 @@ TEST(ForceMemory, CreepsUnderAForceThatStaysByTheClosedForm) {
 }
 
 TEST(ForceMemory, ComesBackToRest) {
-  Body body(1);
+  OneNode body(1);
   for (int n = 0; n < 500; ++n) body.step({{40, {0, 0, -1}}});
   const double pressed = body.displacement(Moment::now)[40].norm();
   for (int n = 0; n < 500; ++n) body.step({});
@@ -155,7 +155,7 @@ TEST(ForceMemory, ComesBackToRest) {
 
 TEST(ForceMemory, TellsLoadsThatPutTheNodesWhereTheyAre) {
   std::mt19937 random(3);
-  Body body(4);
+  OneNode body(4);
   for (int i = 0; i < 300; ++i) body.step(wandering(random, i, 4));
   std::vector<Vector3d> told(kNodes, Vector3d::Zero());
   body.memory().for_each_creep_load([&](int node, const Vector3d& load) {
@@ -166,7 +166,7 @@ TEST(ForceMemory, TellsLoadsThatPutTheNodesWhereTheyAre) {
 
 TEST(ForceMemory, GoesOnBitForBitFromASavedState) {
   std::mt19937 random(5);
-  Body body(3), other(3);
+  OneNode body(3), other(3);
   for (int i = 0; i < 700; ++i) body.step(wandering(random, i, 3));
   std::vector<std::uint8_t> state(body.state_size());
   body.save(state.data());
@@ -181,7 +181,7 @@ TEST(ForceMemory, GoesOnBitForBitFromASavedState) {
 
 TEST(ForceMemory, TakesNoMemoryFromTheSystem) {
   std::mt19937 random(5);
-  Body body(3);
+  OneNode body(3);
   std::vector<Forces> forces;
   for (int i = 0; i < 1000; ++i) forces.push_back(wandering(random, i, 3));
   const long before = allocations();

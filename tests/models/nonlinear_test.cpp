@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadius = 0.015, kHeight = 0.013;
 
-class QuasiNonlinearLaw : public testing::Test {
+class QuasiNonlinearLaw : public ::testing::Test {
  protected:
   QuasiNonlinearLaw() {
     char name[] = "/tmp/palpate_curves_XXXXXX";

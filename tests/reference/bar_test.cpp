@@ -7,20 +7,20 @@
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 0.02, kDepth = 0.03, kLength = 0.1, kYoung = 5000, kPull = 0.001;
+constexpr double kWidth = 0.02, kDepth = 0.03, kBarLength = 0.1, kBarYoung = 5000, kPull = 0.001;
 
 struct Bar {
-  TetMesh mesh = testing::make_jittered_block({kWidth, kDepth, kLength}, {3, 4, 8}, 0.15);
+  TetMesh mesh = testing::make_jittered_block({kWidth, kDepth, kBarLength}, {3, 4, 8}, 0.15);
   QuasiStaticSpec body;
 
   explicit Bar(double poisson) {
-    body = testing::make_body(kYoung, poisson);
+    body = testing::make_body(kBarYoung, poisson);
     body.fixed = {testing::fix_group("x0", {true, false, false}), testing::fix_group("y0", {false, true, false}),
                   testing::fix_group("z0", {false, false, true})};
   }
 
   void expect_stretch(const std::vector<Eigen::Vector3d>& displacement) const {
-    const double strain = kPull / kLength, nu = body.material.poisson;
+    const double strain = kPull / kBarLength, nu = body.material.poisson;
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
       const Eigen::Vector3d expected = strain * mesh.nodes[i].cwiseProduct(Eigen::Vector3d(-nu, -nu, 1));
       EXPECT_LT((displacement[i] - expected).norm(), 1e-11 * kPull);
@@ -37,15 +37,15 @@ TEST(Bar, PulledByItsEndStretchesUniformly) {
     bar.expect_stretch(solution.displacement);
     double force = 0;
     for (int node : bar.mesh.groups.at("top").nodes) force += solution.force[node].z();
-    EXPECT_NEAR(force, kYoung * kWidth * kDepth * kPull / kLength, 1e-11 * force);
+    EXPECT_NEAR(force, kBarYoung * kWidth * kDepth * kPull / kBarLength, 1e-11 * force);
   }
 }
 
 TEST(Bar, UniformTractionGivesTheSameAndItsReactionsBalance) {
   const Bar bar(0.3);
-  const double traction = kYoung * kPull / kLength;
+  const double traction = kBarYoung * kPull / kBarLength;
   const auto load = testing::traction_load(
-      bar.mesh, [](const auto& x) { return x.z() > kLength * (1 - 1e-9); },
+      bar.mesh, [](const auto& x) { return x.z() > kBarLength * (1 - 1e-9); },
       [&](const auto& normal) -> Eigen::Vector3d { return traction * normal; });
   const auto solution = solve_loads(make_static_problem(bar.body, bar.mesh), load);
   bar.expect_stretch(solution.displacement);

@@ -16,11 +16,11 @@ constexpr int kModes = 50;
 constexpr double kH = 1e-3, kToolCompliance = 1e-4;
 
 /// A point of a body with fifty modes, lightly damped, that a tool presses in over 0.1 s and then holds.
-struct Pressed {
+struct PressedMode {
   std::vector<double> omega, at_point;
   double residual;
 
-  explicit Pressed(double residual) : residual(residual) {
+  explicit PressedMode(double residual) : residual(residual) {
     std::mt19937 random(2);
     std::normal_distribution<double> shape(0, 40);
     for (int m = 0; m < kModes; ++m) {
@@ -49,7 +49,7 @@ struct Forces {
 
 constexpr int kSteps = 400;
 
-Forces meet_position(const Pressed& body) {
+Forces meet_position(const PressedMode& body) {
   ModalNewmark newmark(body.omega, modal_damping(body.omega, 0.02, 0), kH);
   const std::vector<double> rest(kModes, 0.0), damping = modal_damping(body.omega, 0.02, 0);
   newmark.start(rest, rest, rest);
@@ -61,7 +61,7 @@ Forces meet_position(const Pressed& body) {
   for (int step = 1; step <= kSteps; ++step) {
     ModalNewmark free = newmark;
     free.step(rest);
-    const double force = std::max(0.0, (Pressed::depth(step) - body.dot(free.position())) / compliance);
+    const double force = std::max(0.0, (PressedMode::depth(step) - body.dot(free.position())) / compliance);
     std::vector<double> load(kModes);
     for (int m = 0; m < kModes; ++m) load[m] = body.at_point[m] * force;
     newmark.step(load);
@@ -70,7 +70,7 @@ Forces meet_position(const Pressed& body) {
   return forces;
 }
 
-Forces meet_velocity(const Pressed& body) {
+Forces meet_velocity(const PressedMode& body) {
   const ModalConstants constants = make_modal_constants(body.omega, modal_damping(body.omega, 0.02, 0), kH);
   std::vector<double> x(kModes), v(kModes), y(kModes), none(kModes);
   double compliance = body.residual + kToolCompliance;
@@ -78,7 +78,7 @@ Forces meet_velocity(const Pressed& body) {
   Forces forces;
   for (int step = 1; step <= kSteps; ++step) {
     free_motion(constants, x.data(), v.data(), none.data(), y.data());
-    const double force = std::max(0.0, (Pressed::depth(step) - body.dot(x) - body.dot(y)) / compliance);
+    const double force = std::max(0.0, (PressedMode::depth(step) - body.dot(x) - body.dot(y)) / compliance);
     for (int m = 0; m < kModes; ++m) y[m] += constants.inverse[m] * body.at_point[m] * force;
     advance(constants, x.data(), v.data(), y.data());
     forces.enter(step, kSteps, force);
@@ -86,14 +86,14 @@ Forces meet_velocity(const Pressed& body) {
   return forces;
 }
 
-double static_force(const Pressed& body) {
+double static_force(const PressedMode& body) {
   double compliance = body.residual + kToolCompliance;
   for (int m = 0; m < kModes; ++m) compliance += std::pow(body.at_point[m] / body.omega[m], 2);
   return 0.002 / compliance;
 }
 
 TEST(ContactInNewmark, MetInTheEndPositionTheForceNeverSettles) {
-  const Pressed body(0);
+  const PressedMode body(0);
   const Forces forces = meet_position(body);
   EXPECT_GT(forces.max_change, static_force(body));
   EXPECT_GT(forces.lost, 50);
@@ -101,7 +101,7 @@ TEST(ContactInNewmark, MetInTheEndPositionTheForceNeverSettles) {
 
 TEST(ContactInNewmark, MetByTheEndVelocityItSettlesToTheStaticForce) {
   for (const double residual : {0.0, 2e-3}) {
-    const Pressed body(residual);
+    const PressedMode body(residual);
     const Forces forces = meet_velocity(body);
     EXPECT_LT(forces.max_change, 0.01 * static_force(body)) << residual;
     EXPECT_EQ(forces.lost, 0) << residual;

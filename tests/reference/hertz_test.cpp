@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTipRadius = 0.01, kYoung = 5000, kPoisson = 0.3;
+constexpr double kTipRadius = 0.01, kBlockYoung = 5000, kBlockPoisson = 0.3;
 constexpr std::array<std::array<double, 2>, 4> kPlaces{{{0, 0}, {0.25, 0.1}, {0.5, 0.25}, {0.5, 0.5}}};  ///< over h
 
 /// Grid coordinates from 0 outwards: steps of h to `fine`, then growing by 1.5 to exactly `end`.
@@ -46,7 +46,7 @@ class Block {
   Block(double h, const std::optional<Offline>& offline, double extent = 8 * kTipRadius) : h_(h) {
     QuasiStaticSpec body;
     body.name = "block";
-    body.material = {.young = kYoung, .poisson = kPoisson, .density = 1000};
+    body.material = {.young = kBlockYoung, .poisson = kBlockPoisson, .density = 1000};
     body.fixed.push_back({.where = {.group = "bottom"}});
     const double reach = 1.2 * kTipRadius;
     body.touchable = NodeSelector{{.box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1e-6}}}};
@@ -84,7 +84,7 @@ class Block {
 };
 
 double hertz(double depth) {
-  return 4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kTipRadius) * std::pow(depth, 1.5);
+  return 4.0 / 3 * kBlockYoung / (1 - kBlockPoisson * kBlockPoisson) * std::sqrt(kTipRadius) * std::pow(depth, 1.5);
 }
 
 /// F / Hertz at every place.

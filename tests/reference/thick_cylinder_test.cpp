@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kInner = 3, kOuter = 9, kYoung = 1000, kPressure = 1, kQuarter = M_PI / 2;
+constexpr double kInner = 3, kOuter = 9, kPipeYoung = 1000, kPressure = 1, kQuarter = M_PI / 2;
 
 double exact_radial(double poisson, double radius) {
-  return (1 + poisson) * kPressure * kInner * kInner / (kYoung * (kOuter * kOuter - kInner * kInner)) *
+  return (1 + poisson) * kPressure * kInner * kInner / (kPipeYoung * (kOuter * kOuter - kInner * kInner)) *
          ((1 - 2 * poisson) * radius + kOuter * kOuter / radius);
 }
 
@@ -29,7 +29,7 @@ Errors errors(double poisson, int cells) {
   // A block in (radius, angle, z) bent into the quarter ring; squarish cells.
   auto mesh = make_block({kInner, 0, 0}, {kOuter, kQuarter, 1}, {cells, cells, 1});
   for (auto& node : mesh.nodes) node = {node.x() * std::cos(node.y()), node.x() * std::sin(node.y()), node.z()};
-  auto body = testing::make_body(kYoung, poisson);
+  auto body = testing::make_body(kPipeYoung, poisson);
   body.fixed = {testing::fix_group("y0", {false, true, false}), testing::fix_group("y1", {true, false, false}),
                 testing::fix_group("z0", {false, false, true}), testing::fix_group("z1", {false, false, true})};
   const auto inner = [](const Eigen::Vector3d& x) { return x.head<2>().norm() < kInner * (1 + 1e-9); };

@@ -209,7 +209,9 @@ TEST(Forceps, EachJawLiesAlongTheSegmentThatCollides) {
     for (const auto& p : shape.parts[jaw].position) {
       const Eigen::Vector3d q = pose * p.cast<double>();
       farthest = std::max(farthest, q.dot(along));
-      if (q.dot(along) >= 0) EXPECT_LT((q - std::min(q.dot(along), length) * along).norm(), 1.9 * radius);
+      if (q.dot(along) >= 0) {
+        EXPECT_LT((q - std::min(q.dot(along), length) * along).norm(), 1.9 * radius);
+      }
       if (q.dot(along) > 0.4 * length) inward = std::max(inward, -q.dot(across));
     }
     EXPECT_NEAR(farthest, length + radius, 0.15 * radius);

@@ -13,7 +13,7 @@ TensorMassSpec tensor_mass_like(const MovingSpec& body) {
   return spec;
 }
 
-class SceneFile : public testing::Test {
+class SceneFile : public ::testing::Test {
  protected:
   Scene parse(const std::string& text) const { return parse_scene(text, folder / "scene.toml"); }
   SceneFolder folder;

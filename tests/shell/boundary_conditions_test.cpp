@@ -43,7 +43,7 @@ ShellBoundaryCondition group(const char* name) {
   return region;
 }
 
-class ShellBoundaryConditions : public testing::Test {
+class ShellBoundaryConditions : public ::testing::Test {
  protected:
   std::string complaint(std::vector<ShellBoundaryCondition> fixed) const {
     return sentence_of([&] { apply_boundary_conditions(tube, duct_body(std::move(fixed)), "body 'duct'"); });
@@ -106,7 +106,7 @@ TEST_F(ShellBoundaryConditions, WhatSelectsNothingIsRefused) {
   EXPECT_EQ(complaint({region_of(all)}), "body 'duct': every node is fixed, nothing is left to deform");
 }
 
-class ShellCheck : public testing::Test {
+class ShellCheck : public ::testing::Test {
  protected:
   std::string complaint(const ShellMesh& mesh) const {
     return sentence_of([&] { check_shell(body, mesh, apply_boundary_conditions(mesh, body, "x"), "body 'duct'"); });

@@ -53,7 +53,7 @@ TEST(ShellModes, ASimplySupportedSquarePlateHasTheFrequenciesOfTheClosedForm) {
 // Leissa 1973 gives 13.489, 19.789, 24.432, 35.024 (twice), 61.526 as upper bounds; the Ritz method with 16 x
 // 16 Legendre polynomials gives what stands here, and NAFEMS FV12 the first three of it.
 TEST(ShellModes, AFreeSquarePlateHasSixRigidMotionsAndThePublishedFrequencies) {
-  const auto system = make_system(square_plate(28), kSteel, [](const Eigen::Vector3d&, int) { return false; });
+  const auto system = make_system(split_squares(28), kSteel, [](const Eigen::Vector3d&, int) { return false; });
   const auto f = hertz(lowest_modes(system.stiffness, system.mass, 13, 100));
   const double rigidity = kSteel.young * std::pow(kSteel.thickness, 3) / 12 / (1 - 0.3 * 0.3);
   const double unit = std::sqrt(rigidity / (kSteel.density * kSteel.thickness)) / (kSide * kSide) / (2 * pi);
@@ -208,7 +208,7 @@ TEST(ShellModes, WrongCountsAndSingularMatricesAreRefusedInWords) {
   VectorXd massless = mass;
   massless[2] = 0;
   EXPECT_EQ(refusal(chains(1, 6), massless, 1), "a node without mass has no modes of vibration");
-  const auto plate = make_system(square_plate(6), kSteel, [](const Eigen::Vector3d&, int) { return false; });
+  const auto plate = make_system(split_squares(6), kSteel, [](const Eigen::Vector3d&, int) { return false; });
   EXPECT_NE(refusal(plate.stiffness, plate.mass, 3), "");
 }
 

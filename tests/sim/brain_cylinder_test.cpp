@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.015, kHeight = 0.013, kDeepest = 0.0039;
+constexpr double kCylinderRadius = 0.015, kCylinderHeight = 0.013, kDeepest = 0.0039;
 constexpr double kPlate = 200;  // [m] radius of a ball that is a plate to the cylinder: 0.6 um lower in its middle
 constexpr int kRings = 5;       // the top's 91 nodes are all held
 constexpr int kSides = 6 * kRings;
@@ -28,9 +28,12 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     body_.name = "specimen";
     body_.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
-    body_.nonlinear = Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kRadius, kHeight, 6, {}, 1};
+    body_.nonlinear =
+        Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1};
     // The bottom slides: its height is held, one point of it, and its turn about the axis.
-    const auto on_x_axis = [&](int n) { return std::hypot(mesh_.nodes[n].x() - kRadius, mesh_.nodes[n].y()) < 1e-9; };
+    const auto on_x_axis = [&](int n) {
+      return std::hypot(mesh_.nodes[n].x() - kCylinderRadius, mesh_.nodes[n].y()) < 1e-9;
+    };
     const std::vector<int>& bottom = mesh_.groups.at("bottom").nodes;
     const int rim = *std::ranges::find_if(bottom, on_x_axis);
     body_.fixed = {{{{}, {}, "bottom"}, {false, false, true}},
@@ -50,7 +53,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     archives_.push_back(precompute(body_, mesh_));
   }
 
-  ToolInput at(double depth) const { return {tip_at(scene_.tools[0], {0, 0, kPlate + kHeight - depth})}; }
+  ToolInput at(double depth) const { return {tip_at(scene_.tools[0], {0, 0, kPlate + kCylinderHeight - depth})}; }
   /// [m] mean outward displacement on the circle at mid-height, as it is shown.
   double widening(Simulator& simulator) const {
     const auto shown = simulator.surface(0).position;
@@ -59,7 +62,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     for (std::size_t n = 0; n < shown.size(); ++n) {
       const Vector3d& rest = archives_[0].surface.position[n];
       const double r = std::hypot(rest.x(), rest.y());
-      if (std::abs(rest.z() - kHeight / 2) > 1e-6 || r < 0.99 * kRadius) continue;
+      if (std::abs(rest.z() - kCylinderHeight / 2) > 1e-6 || r < 0.99 * kCylinderRadius) continue;
       sum += std::hypot(shown[n].x(), shown[n].y()) - r;
       ++count;
     }
@@ -67,7 +70,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     return sum / count;
   }
 
-  TetMesh mesh_ = make_cylinder(kRadius, kHeight, kRings, 2);
+  TetMesh mesh_ = make_cylinder(kCylinderRadius, kCylinderHeight, kRings, 2);
   QuasiStaticSpec body_;
   Scene scene_;
   std::vector<Archive> archives_;
@@ -78,7 +81,7 @@ TEST_P(PressedBrainCylinder, GivesTheHandAndTheEyeTheMeasuredCurves) {
   constexpr double turn = 2 * std::numbers::pi / kSides;
   const double area = std::sin(turn) / turn;
   const QuasiNonlinear law = make_quasi_nonlinear(body_, archives_[0]);
-  const LinearSlopes linear = sliding_slopes(body_.material, kRadius, kHeight);
+  const LinearSlopes linear = sliding_slopes(body_.material, kCylinderRadius, kCylinderHeight);
   Simulator simulator(scene_, archives_);
   simulator.start(std::array{at(-1e-4)});
   for (int i = 1; i <= 13; ++i) {

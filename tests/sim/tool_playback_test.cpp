@@ -48,7 +48,9 @@ TEST(ToolPlayback, UnevenArrivalLeavesAnEvenMotion) {
     playback.tick(step > newest ? &state : nullptr);
     newest = step;
     const double moved = playback.dofs().depth - std::exchange(before, playback.dofs().depth);
-    if (k > 3) EXPECT_NEAR(moved, kPace, 0.07 * kPace) << k;
+    if (k > 3) {
+      EXPECT_NEAR(moved, kPace, 0.07 * kPace) << k;
+    }
     EXPECT_NEAR(playback.dofs().depth, kPace * static_cast<double>(k), 3 * kPace);
   }
 }

@@ -205,7 +205,7 @@ std::string refusal(const ModalShellSpec& body, const ShellMesh& mesh) {
   return "";
 }
 
-bool says(const std::string& sentence, const std::string& part) {
+bool says_of_duct(const std::string& sentence, const std::string& part) {
   return sentence.find("body 'duct'") != std::string::npos && sentence.find(part) != std::string::npos;
 }
 
@@ -213,19 +213,19 @@ TEST(ModalArchive, BadShellsAreRefusedInWords) {
   const auto mesh = duct_mesh();
   auto body = duct_body();
   body.shell.modes = 181;
-  EXPECT_TRUE(says(refusal(body, mesh), "181 modes")) << refusal(body, mesh);
-  EXPECT_TRUE(says(refusal(body, mesh), "180 free")) << refusal(body, mesh);
+  EXPECT_TRUE(says_of_duct(refusal(body, mesh), "181 modes")) << refusal(body, mesh);
+  EXPECT_TRUE(says_of_duct(refusal(body, mesh), "180 free")) << refusal(body, mesh);
   body.shell.modes = 180;
   EXPECT_EQ(refusal(body, mesh), "");
   body = duct_body();
   body.shell.thickness = 0.005;
-  EXPECT_TRUE(says(refusal(body, mesh), "thick")) << refusal(body, mesh);
+  EXPECT_TRUE(says_of_duct(refusal(body, mesh), "thick")) << refusal(body, mesh);
   body = duct_body();
   body.fixed.clear();
-  EXPECT_TRUE(says(refusal(body, mesh), "unfixed")) << refusal(body, mesh);
+  EXPECT_TRUE(says_of_duct(refusal(body, mesh), "unfixed")) << refusal(body, mesh);
   body = duct_body();
   body.touchable = NodeSelector{{{}, {}, "end0"}};
-  EXPECT_TRUE(says(refusal(body, mesh), "selects no free node")) << refusal(body, mesh);
+  EXPECT_TRUE(says_of_duct(refusal(body, mesh), "selects no free node")) << refusal(body, mesh);
 }
 
 class ShellFiles : public ::testing::Test {

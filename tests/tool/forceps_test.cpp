@@ -7,17 +7,17 @@
 #include "common/tool/instrument.hpp"
 #include "common/tool/moving_tool.hpp"
 #include "tests/tool/count_allocations.hpp"
+#include "tests/tool/example_forceps.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-const ForcepsShape shape{.shaft_radius = 0.0025, .shaft_length = 0.3, .jaw_length = 0.015, .jaw_radius = 0.001};
+using testing::kForceps;
 
 TEST(Forceps, ThreeSegmentsMeetAtTheJointAndTheJawsOpenSymmetrically) {
   const double opening = 0.6;
-  const auto parts = forceps_parts(shape, opening);
+  const auto parts = forceps_parts(kForceps, opening);
   const Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
   for (const ToolPart& part : parts) EXPECT_EQ(part.axis(tip).start, Vector3d::Zero());
   EXPECT_LT((parts[forceps_shaft].axis(tip).end - Vector3d(0, 0, -0.3)).norm(), 1e-15);
@@ -29,7 +29,7 @@ TEST(Forceps, ThreeSegmentsMeetAtTheJointAndTheJawsOpenSymmetrically) {
 }
 
 TEST(Forceps, WhatSticksToAJawTurnsWithIt) {
-  auto before = forceps_parts(shape, 0.8), now = before;
+  auto before = forceps_parts(kForceps, 0.8), now = before;
   MovingTool tool{.parts_before = before, .parts = now};
   const Vector3d on_jaw = tool.to_part(forceps_jaw_a, tool.axis(forceps_jaw_a).at(0.7) + Vector3d(0.001, 0, 0));
   set_opening(0.2, now);
@@ -39,18 +39,18 @@ TEST(Forceps, WhatSticksToAJawTurnsWithIt) {
 }
 
 TEST(Forceps, TurningTheJawsAllocatesNothing) {
-  auto parts = forceps_parts(shape, 0.8);
+  auto parts = forceps_parts(kForceps, 0.8);
   const auto before = allocations();
   for (int i = 0; i < 100; ++i) set_opening(0.01 * i, parts);
   EXPECT_EQ(allocations(), before);
 }
 
 TEST(Forceps, BetweenTheJawsIsTheirWedge) {
-  EXPECT_TRUE(between_jaws(shape, 0.6, {0, 0.001, 0.01}));
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0.004, 0.01}));  // above jaw A
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0.002, 0, 0.01}));  // beside
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, 0.016}));     // ahead
-  EXPECT_FALSE(between_jaws(shape, 0.6, {0, 0, -0.001}));    // behind the joint
+  EXPECT_TRUE(between_jaws(kForceps, 0.6, {0, 0.001, 0.01}));
+  EXPECT_FALSE(between_jaws(kForceps, 0.6, {0, 0.004, 0.01}));  // above jaw A
+  EXPECT_FALSE(between_jaws(kForceps, 0.6, {0.002, 0, 0.01}));  // beside
+  EXPECT_FALSE(between_jaws(kForceps, 0.6, {0, 0, 0.016}));     // ahead
+  EXPECT_FALSE(between_jaws(kForceps, 0.6, {0, 0, -0.001}));    // behind the joint
 }
 
 TEST(Instruments, AProbeIsSpheresAndAForcepsSegments) {

@@ -7,19 +7,20 @@
 #include <random>
 
 #include "common/tool/jaws.hpp"
+#include "tests/tool/example_forceps.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
+using testing::kForceps;
 
-const ForcepsShape shape{.shaft_radius = 0.0025, .shaft_length = 0.3, .jaw_length = 0.015, .jaw_radius = 0.001};
 const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
 constexpr double kDt = 1e-3;
 
 /// [m] between a jaw's axis and a point.
 double away(double opening, ForcepsPart jaw, const Vector3d& p) {
-  return (nearest_point(forceps_parts(shape, opening)[jaw].axis(here), p) - p).norm();
+  return (nearest_point(forceps_parts(kForceps, opening)[jaw].axis(here), p) - p).norm();
 }
 
 TEST(OpeningAtContact, TheLaterJawJustTouchesTheBall) {
@@ -29,11 +30,11 @@ TEST(OpeningAtContact, TheLaterJawJustTouchesTheBall) {
   int touched = 0;
   for (int round = 0; round < 2000; ++round) {
     const Vector3d p(aside(random), height(random), along(random));
-    const double radius = size(random), opening = opening_at_contact(shape, p, radius);
+    const double radius = size(random), opening = opening_at_contact(kForceps, p, radius);
     if (opening == 0) continue;
     ++touched;
     const double a = away(opening, forceps_jaw_a, p), b = away(opening, forceps_jaw_b, p),
-                 reach = shape.jaw_radius + radius;
+                 reach = kForceps.jaw_radius + radius;
     ASSERT_NEAR(std::max(a, b), reach, 1e-9);  // the other one is at it already
     ASSERT_GT(std::max(away(opening + 0.01, forceps_jaw_a, p), away(opening + 0.01, forceps_jaw_b, p)), reach);
   }
@@ -41,30 +42,30 @@ TEST(OpeningAtContact, TheLaterJawJustTouchesTheBall) {
 }
 
 TEST(OpeningAtContact, WhatIsNotBetweenTheJawsDoesNotStopThem) {
-  EXPECT_GT(opening_at_contact(shape, {0, 0, 0.01}, 0.001), 0);
-  EXPECT_EQ(opening_at_contact(shape, {0, 0, 0.018}, 0.001), 0);      // ahead
-  EXPECT_EQ(opening_at_contact(shape, {0, 0, -0.002}, 0.001), 0);     // behind the joint
-  EXPECT_EQ(opening_at_contact(shape, {0.0021, 0, 0.01}, 0.001), 0);  // the jaws pass it
-  EXPECT_EQ(opening_at_contact(shape, {0, 0.009, 0.01}, 0.001), 0);   // jaw B comes nowhere near
+  EXPECT_GT(opening_at_contact(kForceps, {0, 0, 0.01}, 0.001), 0);
+  EXPECT_EQ(opening_at_contact(kForceps, {0, 0, 0.018}, 0.001), 0);      // ahead
+  EXPECT_EQ(opening_at_contact(kForceps, {0, 0, -0.002}, 0.001), 0);     // behind the joint
+  EXPECT_EQ(opening_at_contact(kForceps, {0.0021, 0, 0.01}, 0.001), 0);  // the jaws pass it
+  EXPECT_EQ(opening_at_contact(kForceps, {0, 0.009, 0.01}, 0.001), 0);   // jaw B comes nowhere near
 }
 
 TEST(OpeningAtContact, ACatheterAcrossTheJawsStopsThemWhereverItsParticlesLie) {
-  const double middle = opening_at_contact(shape, Vector3d(0, 0, 0.01), 0.00125);
+  const double middle = opening_at_contact(kForceps, Vector3d(0, 0, 0.01), 0.00125);
   for (const double shift : {-0.004, 0.0, 0.0013, 0.0031}) {
     const Segment across{{shift - 0.004, 0, 0.01}, {shift + 0.004, 0, 0.01}};
-    EXPECT_NEAR(opening_at_contact(shape, across, 0.00125), middle, 1e-12) << shift;
+    EXPECT_NEAR(opening_at_contact(kForceps, across, 0.00125), middle, 1e-12) << shift;
   }
   const Segment beside{{0.003, 0, 0.01}, {0.011, 0, 0.01}};
-  EXPECT_EQ(opening_at_contact(shape, beside, 0.00125), 0);
+  EXPECT_EQ(opening_at_contact(kForceps, beside, 0.00125), 0);
 }
 
 TEST(OpeningAtContact, EachJawStopsAtItsOwnWallOfATube) {
   const std::vector<GripObstacle> walls{{{0, 0.002, 0.01}, 0.0004}, {{0, -0.002, 0.01}, 0.0004}};
-  const double opening = opening_at_contact(shape, walls, 1.0);
+  const double opening = opening_at_contact(kForceps, walls, 1.0);
   EXPECT_NEAR(away(opening, forceps_jaw_a, walls[0].position), 0.0014, 1e-9);
   EXPECT_NEAR(away(opening, forceps_jaw_b, walls[1].position), 0.0014, 1e-9);
-  EXPECT_GT(opening, opening_at_contact(shape, walls[0].position, 0.0004));
-  EXPECT_EQ(opening_at_contact(shape, walls, 0.3), 0);  // both are outside of jaws this far open
+  EXPECT_GT(opening, opening_at_contact(kForceps, walls[0].position, 0.0004));
+  EXPECT_EQ(opening_at_contact(kForceps, walls, 0.3), 0);  // both are outside of jaws this far open
 }
 
 class GripTest : public ::testing::Test {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-class Kinematics : public testing::Test {
+class Kinematics : public ::testing::Test {
  protected:
   double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
   Eigen::Vector3d vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-class TrajectoryFile : public testing::Test {
+class TrajectoryFile : public ::testing::Test {
  protected:
   TrajectoryFile() {
     char name[] = "/tmp/palpate_trajectory_XXXXXX";

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-struct Options {
+struct KeysOptions {
   std::string folder, role, name;
   int days = 730;
 };
@@ -42,7 +42,7 @@ void print_all(const std::string& folder, std::time_t end) {
       folder);
 }
 
-void run(const Options& o) {
+void run(const KeysOptions& o) {
   constexpr std::time_t day = 24 * 60 * 60;
   const std::time_t now = std::time(nullptr);
   // A host whose clock is behind by less than a day can use them at once.
@@ -61,7 +61,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_keys_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<KeysOptions>();
   cli::Command command =
       app.add_command("keys", "Make the keys by which nodes know each other and encrypt what they send");
   command.add_option("folder", o->folder, "Folder to make, with an authority and a folder for each role").required();

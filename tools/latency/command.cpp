@@ -26,7 +26,7 @@ using latency::RoundTrips;
 using latency::Side;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct LatencyOptions {
   BusSettings network;
   std::string scene, out;
   double rate = 1000, seconds = 10;
@@ -37,14 +37,14 @@ struct Options {
 constexpr std::array kNames{"round_trip", "bare_dds", "bare_udp"};
 using Ways = std::array<std::unique_ptr<Echo>, kNames.size()>;
 
-Ways open_ways(const Options& o, Side side) {
+Ways open_ways(const LatencyOptions& o, Side side) {
   const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
   return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side),
           latency::udp_echo(host, o.port, side)};
 }
 
 /// Sends back whatever comes, over each way on a thread of its own, until told to stop.
-void answer(const Options& o) {
+void answer(const LatencyOptions& o) {
   Ways ways = open_ways(o, Side::answers);
   catch_shutdown_signals();
   std::vector<std::jthread> threads;
@@ -67,21 +67,21 @@ std::vector<std::string> with_network(std::vector<std::string> command, const Bu
 }
 
 /// The other side, on this machine, where no other is named.
-std::optional<ChildProcess> answerer_here(const Options& o) {
+std::optional<ChildProcess> answerer_here(const LatencyOptions& o) {
   if (!o.network.peers.empty()) return std::nullopt;
   return ChildProcess("latency --answer", with_network({sibling_program("palpate"), "latency", "--answer", "--json",
                                                         "--udp-port", std::to_string(o.port)},
                                                        o.network));
 }
 
-std::vector<std::string> run_command(const Options& o) {
+std::vector<std::string> run_command(const LatencyOptions& o) {
   std::vector<std::string> command{sibling_program("palpate"),      "run", o.scene, "--processes", "3", "--domain",
                                    std::to_string(o.network.domain)};
   if (!o.network.keys.empty()) command.insert(command.end(), {"--keys", o.network.keys});
   return command;
 }
 
-void find_other_side(std::array<std::unique_ptr<RoundTrips>, kNames.size()>& ways, const Options& o) {
+void find_other_side(std::array<std::unique_ptr<RoundTrips>, kNames.size()>& ways, const LatencyOptions& o) {
   const std::int64_t limit = now_ns() + 10 * kNsPerS;
   const auto silent = [&]() -> std::string {
     std::string text;
@@ -109,7 +109,7 @@ struct Result {
 };
 
 /// The ways take turns within each period, so that a change of the host's load meets all three.
-Result measure(const Options& o) {
+Result measure(const LatencyOptions& o) {
   const auto other = answerer_here(o);
   std::array<std::unique_ptr<RoundTrips>, kNames.size()> ways;
   Ways echoes = open_ways(o, Side::asks);
@@ -167,7 +167,7 @@ Json bins_of(const Histogram& h) {
   return bins;
 }
 
-Json json_of(const Options& o, const Result& r) {
+Json json_of(const LatencyOptions& o, const Result& r) {
   Json json;
   for (std::size_t i = 0; i < kNames.size(); ++i) json[std::string(kNames[i]) + "_us"] = json_of(r.trips[i].time);
   json["ratio_to_bare_dds"] =
@@ -232,7 +232,7 @@ void print_text(const Result& r) {
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
 }
 
-void run(Options& o) {
+void run(LatencyOptions& o) {
   if (o.answer) return answer(o);
   if (!o.scene.empty()) {
     const Scene scene = load_scene(o.scene);
@@ -260,7 +260,7 @@ void run(Options& o) {
 }  // namespace
 
 void add_latency_command(cli::Command& app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<LatencyOptions>();
   cli::Command command = app.add_command(
       "latency",
       "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");

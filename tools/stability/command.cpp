@@ -14,12 +14,12 @@
 namespace palpate {
 namespace {
 
-struct Options {
+struct StabilityOptions {
   std::string scene, folder, only;
   bool quick = false;
 };
 
-void run(const Options& o) {
+void run(const StabilityOptions& o) {
   std::optional<Scene> scene;
   if (!o.scene.empty()) scene = load_scene(o.scene);
   const stability::Extent extent{.quick = o.quick};
@@ -34,7 +34,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_stability_command(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StabilityOptions>();
   cli::Command command =
       app.add_command("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
   command.add_option("scene", options->scene, "scene file; without one, the general cases");

@@ -13,13 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = kDuctRadius, kLength = kDuctLength;
-
 Scene duct_scene(double thickness) {
   Scene scene = block_scene();
   scene.bodies[0] = duct_body(thickness);
   Tool& tool = scene.tools[0];
-  tool.pivot = {0, 0.15, kLength / 2};
+  tool.pivot = {0, 0.15, kDuctLength / 2};
   tool.axis = -Vector3d::UnitY();
   tool.up = Vector3d::UnitZ();
   std::get<ProbeSpec>(tool.end).radius = 0.003;
@@ -33,7 +31,7 @@ ModalShellSpec& duct_of(Scene& scene) {
 
 Result press_wall(const Scene& scene, const ShellMesh& mesh, double surface, double depth) {
   PressRig rig(scene, {precompute(std::get<ModalShellSpec>(scene.bodies[0]), mesh)});
-  const auto at = [&](double above) { return Vector3d(0, surface + 0.003 + above, kLength / 2); };
+  const auto at = [&](double above) { return Vector3d(0, surface + 0.003 + above, kDuctLength / 2); };
   rig.start(at(0.002));
   Watch watch;
   for (int i = 1; i <= 900; ++i) {
@@ -55,10 +53,10 @@ Result tap_wall(double young, double rate, double speed) {
   scene.passivity.controller = false;
   scene.tools[0].max_force = 1e6;
   scene.tools[0].max_force_rate = 1e12;
-  PressRig rig(scene, {precompute(duct_of(scene), make_tube(kRadius, kLength, 12, 12))});
+  PressRig rig(scene, {precompute(duct_of(scene), make_tube(kDuctRadius, kDuctLength, 12, 12))});
   constexpr double reach = 0.0003;  // [m] to both sides of the wall
   const auto at = [&](double time) {
-    return Vector3d(0, kRadius + 0.0035 + reach * std::cos(speed / reach * time), kLength / 2);
+    return Vector3d(0, kDuctRadius + 0.0035 + reach * std::cos(speed / reach * time), kDuctLength / 2);
   };
   rig.start(at(0));
   Watch watch;
@@ -80,9 +78,9 @@ Result tap_wall(double young, double rate, double speed) {
 /// A plate in the plane y = 0: every triangle is coplanar with its neighbours.
 ShellMesh plate_mesh(int cells) {
   ShellMesh mesh;
-  const double h = kLength / cells;
+  const double h = kDuctLength / cells;
   for (int k = 0; k <= cells; ++k)
-    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({h * i - kLength / 2, 0, h * k});
+    for (int i = 0; i <= cells; ++i) mesh.nodes.push_back({h * i - kDuctLength / 2, 0, h * k});
   for (int k = 0; k < cells; ++k)
     for (int i = 0; i < cells; ++i) {
       const int a = k * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
@@ -100,8 +98,8 @@ std::vector<Point> shell_points(const Extent& extent) {
   for (double t : extent.quick ? std::vector{1e-5, 0.3} : std::vector{1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.2, 0.3})
     points.push_back({"shell thickness", "t/R [1]", fmt::format("{:g}", t),
                       [t] {
-                        return press_wall(duct_scene(t * kRadius), make_tube(kRadius, kLength, 12, 12),
-                                          kRadius * (1 + t / 2), 0.001);
+                        return press_wall(duct_scene(t * kDuctRadius), make_tube(kDuctRadius, kDuctLength, 12, 12),
+                                          kDuctRadius * (1 + t / 2), 0.001);
                       },
                       120});
   for (const char* bending : {"polynomial", "discrete_kirchhoff"})
@@ -117,7 +115,8 @@ std::vector<Point> shell_points(const Extent& extent) {
                       [e] {
                         Scene scene = duct_scene(0.001);
                         duct_of(scene).material.young = e;
-                        return press_wall(scene, make_tube(kRadius, kLength, 12, 12), kRadius + 0.0005, 0.001);
+                        return press_wall(scene, make_tube(kDuctRadius, kDuctLength, 12, 12), kDuctRadius + 0.0005,
+                                          0.001);
                       },
                       120});
   for (double e : extent.quick ? std::vector{1e5} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8})
@@ -134,7 +133,8 @@ std::vector<Point> shell_points(const Extent& extent) {
                       [z] {
                         Scene scene = duct_scene(0.001);
                         duct_of(scene).shell.damping_ratio = z;
-                        return press_wall(scene, make_tube(kRadius, kLength, 12, 12), kRadius + 0.0005, 0.001);
+                        return press_wall(scene, make_tube(kDuctRadius, kDuctLength, 12, 12), kDuctRadius + 0.0005,
+                                          0.001);
                       },
                       120});
   return points;

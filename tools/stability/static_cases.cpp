@@ -16,12 +16,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.008;
+constexpr double kBallRadius = 0.008;
 
 Result press_block(const std::function<void(Scene&)>& change, const TetMesh& mesh) {
   Scene scene = block_scene();
   change(scene);
-  return press(scene, mesh, down_and_up(kRadius + 0.001, 0.004 - kRadius, 100), 300);
+  return press(scene, mesh, down_and_up(kBallRadius + 0.001, 0.004 - kBallRadius, 100), 300);
 }
 
 /// Moves the nodes of a block's inner layer so that the tetrahedra there become flat: angle [degrees] between their
@@ -88,7 +88,7 @@ std::vector<Point> geometry_points(const Extent& extent) {
   for (double s : extent.quick ? std::vector{1e-3, 1e6} : std::vector{1e-6, 1e-3, 1.0, 1e3, 1e6})
     points.push_back({"units", "size of the block / 0.1 m [1]", fmt::format("{:g}", s), [s] {
                         return press(block_scene(s), block_mesh(6, s),
-                                     down_and_up(s * (kRadius + 0.001), s * (0.004 - kRadius), 100), 300);
+                                     down_and_up(s * (kBallRadius + 0.001), s * (0.004 - kBallRadius), 100), 300);
                       }});
   return points;
 }
@@ -112,7 +112,8 @@ std::vector<Point> press_points(const Extent& extent) {
   std::vector<Point> points;
   for (double d : extent.quick ? std::vector{1e-12, 0.07} : std::vector{1e-12, 1e-9, 1e-6, 1e-3, 1e-2, 4e-2, 7e-2})
     points.push_back({"press", "depth [m] of 0.05", fmt::format("{:g}", d), [d] {
-                        return press(block_scene(), block_mesh(), down_and_up(kRadius + 0.001, d - kRadius, 200), 600);
+                        return press(block_scene(), block_mesh(),
+                                     down_and_up(kBallRadius + 0.001, d - kBallRadius, 200), 600);
                       }});
   for (double v : extent.quick ? std::vector{0.0, 1e3} : std::vector{0.0, 1e-6, 0.1, 1.0, 10.0, 100.0, 1e3})
     points.push_back({"speed", "tool speed [m/s]", fmt::format("{:g}", v), [v] {

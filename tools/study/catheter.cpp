@@ -15,7 +15,7 @@ namespace palpate::study {
 namespace {
 
 constexpr double kPulled = 0.1;  // of its length, the tip aside
-constexpr double kRampSeconds = 0.1, kCourseSeconds = 0.3, kRestSeconds = 3, kRestDamping = 40;
+constexpr double kPullSeconds = 0.1, kPullCourseSeconds = 0.3, kRestSeconds = 3, kPullDamping = 40;
 constexpr double kClamp = 0.02;                         // of its length, held at the tail by three points
 constexpr double kStiff = 1e-6;                         // [m/N] of the grasps
 constexpr int kPlaces = 60;                             // along its length, where shapes are compared
@@ -61,7 +61,7 @@ class Rig {
   Pulled rest() {
     Pulled answer;
     for (double t = 0; t < kRestSeconds; t += tick_)
-      answer.force = step(std::min(1.0, t / kRampSeconds) * kPulled * length_);
+      answer.force = step(std::min(1.0, t / kPullSeconds) * kPulled * length_);
     for (int i = 1; i <= kPlaces; ++i) answer.shape.push_back(displacement(length_ * i / kPlaces));
     return answer;
   }
@@ -70,8 +70,8 @@ class Rig {
   std::vector<std::array<double, 2>> course(double interval) {
     std::vector<std::array<double, 2>> path;
     const int ticks = static_cast<int>(std::lround(interval / tick_));
-    for (int i = 1; i * tick_ < kCourseSeconds + 1e-12; ++i) {
-      const double force = step(std::min(1.0, i * tick_ / kRampSeconds) * kPulled * length_);
+    for (int i = 1; i * tick_ < kPullCourseSeconds + 1e-12; ++i) {
+      const double force = step(std::min(1.0, i * tick_ / kPullSeconds) * kPulled * length_);
       if (i % ticks == 0) path.push_back({force, displacement(length_ / 2).dot(side_)});
     }
     return path;
@@ -152,7 +152,7 @@ class CatheterMethod : public Method {
     point.apply(scene);
     Row row{scene_.file.stem().string(), point.method, point.knob, point.value};
     const double tick = 1 / scene.rates.haptic_hz;
-    Rig rig(scene, body_, tick, kRestDamping);
+    Rig rig(scene, body_, tick, kPullDamping);
     row.memory_bytes = static_cast<double>(rig.bytes());
     row.offline_s = 0;
     const Pulled ours = rig.rest();
@@ -188,7 +188,7 @@ class CatheterMethod : public Method {
     fine.integrator = "implicit";
     const double tick = interval() / 8;
     course_ = Rig(scene, body_, tick, fine.damping).course(interval());
-    reference_ = Rig(scene, body_, 4 * tick, kRestDamping).rest();
+    reference_ = Rig(scene, body_, 4 * tick, kPullDamping).rest();
   }
 
   /// Depth and force on the wall over time; the step's time is then that of the catheter in the duct.

@@ -40,7 +40,7 @@ ShellMesh refine(const ShellMesh& mesh) {
 
 namespace {
 
-constexpr double kCourseSeconds = 0.2, kRampSeconds = 0.04;
+constexpr double kWallCourseSeconds = 0.2, kWallRampSeconds = 0.04;
 constexpr int kSettling = 1500;  // steps until a press rests
 constexpr int kModesOfRefined = 150;
 
@@ -138,8 +138,8 @@ class Modal : public Method {
     const Patch& patch = errors_.presses().patches[0];
     BallPress press(press_scene(scene, patch), archive, patch, touching());
     Course path;
-    for (double t = step(); t < kCourseSeconds; t += step()) {
-      const double force = press.step(course_depth(t, kRampSeconds, errors_.presses().radius));
+    for (double t = step(); t < kWallCourseSeconds; t += step()) {
+      const double force = press.step(course_depth(t, kWallRampSeconds, errors_.presses().radius));
       const auto u = renumbered(press.displacement(), archive);
       path.push_back({force, press.along(u, as_is_.surface.triangles[patch.triangle])});
     }

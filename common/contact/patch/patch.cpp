@@ -12,15 +12,15 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSquaresPerRadius = 4;  // 44 squares in all
-constexpr double kWidth = 0.95;          // of the radius: beyond it the sphere is too steep to press
-constexpr double kLookAround = 1.5;      // radii about the sphere's middle, and as much more as it is deep,
-constexpr double kDeepest = 4;           // up to so many radii
-constexpr double kFacing = 0.2;          // cosine between a facet's normal and the patch's, below which it lies aside
-constexpr int kTurns = 6;                // at most, of the normal towards that below the sphere's middle
-constexpr int kPasses = 24;              // at most, of the active set
-constexpr double kGapTolerance = 1e-9;   // [m]
-constexpr double kPivotShare = 1e-9;     // of a square's own compliance, to which pivots are raised
+constexpr double kSquaresPerRadius = 4;   // 44 squares in all
+constexpr double kWidth = 0.95;           // of the radius: beyond it the sphere is too steep to press
+constexpr double kLookAround = 1.5;       // radii about the sphere's middle, and as much more as it is deep,
+constexpr double kDeepest = 4;            // up to so many radii
+constexpr double kFacing = 0.2;           // cosine between a facet's normal and the patch's, below which it lies aside
+constexpr int kTurns = 6;                 // at most, of the normal towards that below the sphere's middle
+constexpr int kPasses = 24;               // at most, of the active set
+constexpr double kTouchTolerance = 1e-9;  // [m]
+constexpr double kPivotShare = 1e-9;      // of a square's own compliance, to which pivots are raised
 
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
 // takes its z axis into the tissue.
@@ -272,7 +272,7 @@ void Patch::settle_pressures() {
       }
       double moved = 0;
       for (const int q : rows_) moved += compliance_[p * n + q] * pressure_force_[q];
-      if (moved < wanted_[p] - kGapTolerance) active_[p] = 1, changed = true;
+      if (moved < wanted_[p] - kTouchTolerance) active_[p] = 1, changed = true;
     }
   }
   for (double& f : pressure_force_) f = std::max(f, 0.0);
