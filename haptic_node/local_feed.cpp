@@ -1,5 +1,7 @@
 #include "haptic_node/local_feed.hpp"
 
+#include <spdlog/spdlog.h>
+
 namespace palpate {
 
 struct LocalFeed::OfTool {
@@ -17,6 +19,10 @@ LocalFeed::LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run) : ru
 LocalFeed::~LocalFeed() = default;
 
 void LocalFeed::take() {
+  if (!said_ && refused() > 0) {
+    spdlog::warn("a local contact model names a haptic step that is still to come; such models are refused");
+    said_ = true;
+  }
   while (const auto message = reader_->take()) {
     if (message->tool_run != run_ || message->tool >= of_tool_.size()) continue;
     if (copy_model(*message, dynamic_, *copy_)) of_tool_[message->tool]->newest.put(*copy_);
@@ -27,7 +33,11 @@ void LocalFeed::give(HapticStep& haptic) {
   for (std::size_t t = 0; t < of_tool_.size(); ++t) {
     const LocalModel& model = of_tool_[t]->newest.get();
     const LocalModel& used = haptic.local(static_cast<int>(t)).model();
-    if (model.seq != 0 && (model.seq != used.seq || model.run != used.run)) haptic.consume(static_cast<int>(t), model);
+    if (model.seq == 0 || (model.seq == used.seq && model.run == used.run)) continue;
+    if (model.tool_step < haptic.steps())
+      haptic.consume(static_cast<int>(t), model);
+    else
+      refused_.fetch_add(1, std::memory_order_relaxed);
   }
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,8 +22,10 @@ class LocalFeed {
   bool needed() const { return reader_ != nullptr; }
   /// Takes what has come.
   void take();
-  /// Hands each tool's newest model to the step, if it is not the one in use.
+  /// Hands each tool's newest model to the step, if it is not the one in use. A model that names a step which is not
+  /// done yet is refused: it would never be too old.
   void give(HapticStep& haptic);
+  std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
  private:
   struct OfTool;
@@ -30,6 +34,8 @@ class LocalFeed {
   std::vector<std::uint8_t> dynamic_;
   std::vector<std::unique_ptr<OfTool>> of_tool_;
   std::unique_ptr<LocalModel> copy_;
+  std::atomic<std::uint64_t> refused_ = 0;
+  bool said_ = false;
 };
 
 }  // namespace palpate

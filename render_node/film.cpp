@@ -101,7 +101,9 @@ Film::Film(std::filesystem::path file, int width, int height, double frames_per_
       width_(width),
       height_(height),
       rate_(frames_per_second) {
-  const int probe = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);  // of a process with this number that was killed, or a link in wait
+  const int probe = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (probe < 0) fail(std::strerror(errno));
   ::close(probe);
   start();

@@ -62,7 +62,8 @@ void encode(const Image& image, const std::filesystem::path& file, std::FILE* ou
 void write_png(const Image& image, const std::filesystem::path& file) {
   const std::filesystem::path temporary = fmt::format("{}.part{}", file.string(), ::getpid());
   try {
-    File out(std::fopen(temporary.c_str(), "wb"));
+    std::filesystem::remove(temporary);  // of a process with this number that was killed, or a link that lies in wait
+    File out(std::fopen(temporary.c_str(), "wbx"));
     if (!out) fail(file, std::strerror(errno));
     encode(image, file, out.get());
     if (std::fclose(out.release()) != 0) fail(file, std::strerror(errno));

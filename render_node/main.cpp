@@ -104,9 +104,10 @@ int main(int argc, char** argv) {
   palpate::cli::CommandLine app{"render_node: draws the organs and the instruments, off screen"};
   palpate::add_node_options(app, node);
   app.add_flag("--deform", o.deform, "Superpose the contacts in this process; no deform node is needed");
-  app.add_option("--film", o.film, "Write a film (MP4) in real time");
+  app.add_option("--film", o.film, "Write a film (MP4) in real time").output_file(".mp4");
   app.add_option("--film-rate", o.film_rate, "Frames per second of the film").between(1.0, 120.0).show_default();
-  app.add_option("--still", o.still, "Write a picture (PNG) of the moment of the greatest force, at the end");
+  app.add_option("--still", o.still, "Write a picture (PNG) of the moment of the greatest force, at the end")
+      .output_file(".png");
   app.add_option("--samples", o.samples, "Samples per pixel of the film: 4 smooths edges and takes twice the time")
       .one_of({1, 4})
       .show_default();

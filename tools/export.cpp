@@ -83,7 +83,7 @@ void add_export_command(cli::Command& app) {
   command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it").required();
   command.add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
   command.add_flag("--jsonl", o->json, "One JSON object a line").excludes({"--csv"});
-  command.add_option("-o,--output", o->file, "File (default: standard output)");
+  command.add_option("-o,--output", o->file, "File (default: standard output)").output_file();
   command.does([o] { run(*o); });
 }
 

@@ -100,7 +100,7 @@ void add_record_command(cli::Command& app) {
   auto o = std::make_shared<RecordOptions>();
   cli::Command command = app.add_command("record", "Write every topic of a running system into an LCM event log");
   add_network_options(command, o->network, "recorder");
-  command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)");
+  command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)").output_file();
   command.add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)").positive();
   command.add_flag("--supervised", o->supervised).hidden();
   command.does([o] { record(*o); });

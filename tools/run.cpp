@@ -228,10 +228,11 @@ void add_run_command(cli::Command& app) {
       .add_option("--seconds", o->seconds,
                   "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")
       .positive();
-  run_command.add_option("--record", o->record, "Write all topics to this LCM event log");
-  run_command.add_option("--film", o->film, "Write a film (MP4)");
-  run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force");
-  run_command.add_option("--summary", o->summary, "Write rates, latencies and forces as JSON");
+  run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file();
+  run_command.add_option("--film", o->film, "Write a film (MP4)").output_file(".mp4");
+  run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force")
+      .output_file(".png");
+  run_command.add_option("--summary", o->summary, "Write rates, latencies and forces as JSON").output_file(".json");
   run_command.add_option("--domain", o->domain, "DDS domain in place of the scene's").between(0, 230);
   run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command

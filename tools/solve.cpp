@@ -171,10 +171,12 @@ void add_solve_command(cli::Command& app) {
   command.add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
       .one_of({"tensors", "direct"})
       .show_default();
-  command.add_option("--csv", arguments->csv,
-                     "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
-                     "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero");
-  command.add_option("--vtu", arguments->vtu, "write a file for ParaView");
+  command
+      .add_option("--csv", arguments->csv,
+                  "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
+                  "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero")
+      .output_file(".csv");
+  command.add_option("--vtu", arguments->vtu, "write a file for ParaView").output_file(".vtu");
   command.does([arguments] { solve(*arguments); });
 }
 

@@ -5,6 +5,42 @@
 #include <filesystem>
 
 namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOutput = "FILE";  // shown in the help; marks what is written
+
+/// Why a file is not written; empty: it may be.
+std::string refuse_output(const std::string& name, const std::string& ending) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(name, error);
+  if (fs::is_symlink(status)) return name + " is a link: name the file that is to be written itself";
+  if (fs::is_directory(status)) return name + " is a folder, not a file that can be written";
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return name + " is no regular file, and would be replaced by one";
+  if (!name.ends_with(ending)) return name + " does not end in " + ending;
+  return "";
+}
+
+/// Whatever else is given on the command line is not written over.
+void keep_inputs(const CLI::App& app) {
+  for (const CLI::Option* output : app.get_options()) {
+    if (output->get_type_name() != kOutput) continue;
+    for (const std::string& to : output->results())
+      for (const CLI::Option* other : app.get_options()) {
+        if (other == output) continue;
+        for (const std::string& from : other->results()) {
+          std::error_code error;
+          const bool both_written = other->get_type_name() == kOutput && from == to;
+          if (both_written || fs::equivalent(from, to, error))
+            throw CLI::ValidationError(output->get_name(), to + " is named by " + other->get_name() + " too");
+        }
+      }
+  }
+}
+
+}  // namespace
 
 Option& Option::required() {
   option_->required();
@@ -61,6 +97,12 @@ Option& Option::hidden() {
   return *this;
 }
 
+Option& Option::output_file(const std::string& ending) {
+  option_->type_name(kOutput);
+  option_->check([ending](const std::string& name) { return refuse_output(name, ending); }, "");
+  return *this;
+}
+
 template <class T>
 Option Command::add_option(const std::string& name, T& value, const std::string& meaning) {
   return Option(app_->add_option(name, value, meaning));
@@ -82,7 +124,10 @@ Command Command::add_command(const std::string& name, const std::string& meaning
 }
 
 void Command::does(const std::function<void()>& work) {
-  app_->callback(work);
+  app_->callback([app = app_, work] {
+    keep_inputs(*app);
+    work();
+  });
 }
 
 CommandLine::CommandLine(const std::string& meaning) : Command(nullptr), own_(std::make_unique<CLI::App>(meaning)) {
@@ -102,6 +147,7 @@ void CommandLine::require_command() {
 std::optional<int> CommandLine::read(int argc, char** argv) {
   try {
     app_->parse(argc, argv);
+    keep_inputs(*app_);
   } catch (const CLI::ParseError& error) {
     return app_->exit(error);
   }

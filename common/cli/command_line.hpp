@@ -30,6 +30,9 @@ class Option {
   Option& excludes(const std::vector<std::string>& names);
   Option& needs(const Option& other);
   Option& hidden();
+  /// It names a file that is written: refused where that is there and no regular file, is a link, is what another
+  /// option of the command names, or ends in another way than `ending` (".png") says.
+  Option& output_file(const std::string& ending = "");
 
  private:
   CLI::Option* option_;

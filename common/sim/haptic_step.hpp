@@ -72,7 +72,8 @@ class HapticStep {
 
   /// [J] that all tools together have put into what they touch, by the forces that the hands really got.
   double energy() const { return passivity_.energy(); }
-  void trip();  ///< fault from outside: the force ramps to zero
+  std::uint64_t steps() const { return step_; }  ///< that are done
+  void trip();                                   ///< fault from outside: the force ramps to zero
 
   /// Changing state as bytes, to start a replay from. save() leaves the factor forgotten, so that the run goes on
   /// bit for bit as one that begins with restore().

@@ -1,0 +1,75 @@
+#include "haptic_node/local_feed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "common/bus/memory_bus.hpp"
+#include "tests/haptic/local_models_for_tests.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kTip = 0.008;  // [m] of the tip's radius
+constexpr std::uint64_t kRun = 5;
+
+/// A haptic step in free air that is told of tissue over the bus.
+class ToldOverTheBus : public ::testing::Test {
+ protected:
+  ToldOverTheBus() : feed_(*bus_, haptic_, kRun), models_(bus_->writer(topics::local_contact_model)) {
+    haptic_.start(std::array{free_air()});
+  }
+
+  ToolDofs free_air() const { return tip_at(scene_.tools[0], {0, 0, 0.05}); }
+  /// [N] after `steps` more steps, the largest.
+  double feel(int steps) {
+    double largest = 0;
+    for (int k = 0; k < steps; ++k) {
+      feed_.take();
+      feed_.give(haptic_);
+      haptic_.step(std::array{free_air()});
+      largest = std::max(largest, haptic_.force(0).norm());
+    }
+    return largest;
+  }
+  /// A model that presses the tool by 10 N where it is.
+  LocalContactModel press(std::uint64_t step, std::uint64_t seq) const {
+    LocalContactModel m = testing::empty_model(scene_.tools[0], {0, 0, 0.05}, step, seq);
+    m.tool_run = kRun;
+    testing::add_contact(m, {0, 0, 0.042}, {0, 0, -10}, 0);
+    return m;
+  }
+
+  Scene scene_ = testing::moving_block_scene(kTip);
+  HapticStep haptic_{scene_, std::vector<Archive>(1)};
+  std::unique_ptr<Bus> bus_ = make_memory_bus(make_memory_network());
+  LocalFeed feed_;
+  std::unique_ptr<Writer<LocalContactModel>> models_;
+};
+
+TEST_F(ToldOverTheBus, AModelOfADoneStepIsFeltAndAgesWhenNoOtherComes) {
+  feel(10);
+  models_->write(press(9, 1));
+  EXPECT_NEAR(feel(100), 10, 1e-9);
+  feel(200);
+  EXPECT_EQ(feel(1), 0);
+  EXPECT_EQ(feed_.refused(), 0);
+}
+
+// It would be young for ever, and its sender need not be there any more.
+TEST_F(ToldOverTheBus, AModelOfAStepToComeIsRefused) {
+  feel(10);
+  std::uint64_t seq = 0;
+  for (const std::uint64_t step :
+       {std::uint64_t{10}, std::uint64_t{1} << 40, std::numeric_limits<std::uint64_t>::max()}) {
+    models_->write(press(step, ++seq));
+    EXPECT_EQ(feel(1), 0) << step;
+  }
+  EXPECT_EQ(feel(500), 0);
+  EXPECT_GE(feed_.refused(), 3);
+  models_->write(press(510, ++seq));
+  EXPECT_NEAR(feel(60), 10, 1e-9) << "the next good one is felt";
+}
+
+}  // namespace
+}  // namespace palpate
