@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -60,7 +61,7 @@ class Nodes {
   /// Throws if a node has failed.
   void check() {
     for (Node& n : nodes_)
-      if (!n.process.running() && n.process.status() != 0)
+      if (!n.process.running() && n.process.status() != 0 && !stopped_early(n))
         throw std::runtime_error(
             fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
   }
@@ -101,6 +102,10 @@ class Nodes {
   }
 
  private:
+  /// Stopped by this process before it could take notice.
+  static bool stopped_early(const Node& node) {
+    return shutdown_requested() && !node.ready && node.process.status() == 128 + SIGINT;
+  }
   static void note_ready(Node& node) {
     node.ready = true;
     node.startup = std::chrono::duration<double>(Clock::now() - node.begun).count();
@@ -152,7 +157,10 @@ void print_summary(const nlohmann::json& s) {
   const auto number = [](const nlohmann::json& j, const char* key) {
     return j.is_object() && j.contains(key) ? j[key].get<double>() : 0.0;
   };
-  const auto& haptic = s["haptic_node"];
+  // What a node says at its end; nothing of one that was stopped before it had begun.
+  const auto said_by = [&](const char* node) { return s.value(node, nlohmann::json()); };
+  const nlohmann::json haptic = said_by("haptic_node"), render = said_by("render_node"),
+                       deform = said_by("deform_node"), recorder = said_by("recorder");
   if (haptic.is_object())
     fmt::print(
         "haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest "
@@ -169,25 +177,22 @@ void print_summary(const nlohmann::json& s) {
           1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"),
           number(task, "inserting_s"), number(task, "force_max_n"), task.value("wall_contacts", 0),
           task.value("grasps", 0), task.value("drops", 0));
-  if (s.contains("render_node") && s["render_node"].is_object())
+  if (render.is_object())
     fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n",
-               number(s["render_node"], "rate_hz"), 1e-3 * number(s["render_node"], "latency_us_p50"),
-               1e-3 * number(s["render_node"], "latency_us_p99"), s["render_node"].value("frames", 0));
-  if (s.contains("deform_node") && s["deform_node"].contains("tick_hz")) {
-    const auto& deform = s["deform_node"];
+               number(render, "rate_hz"), 1e-3 * number(render, "latency_us_p50"),
+               1e-3 * number(render, "latency_us_p99"), render.value("frames", 0));
+  if (deform.is_object() && deform.contains("tick_hz"))
     fmt::print(
         "tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, "
         "{} fallen away\n",
         number(deform, "tick_hz"), number(deform, "tick_us_p50"), number(deform, "tick_us_p99"),
         deform.value("missed", 0), deform.value("ticks", 0), deform.value("tetrahedra_cut", 0),
         deform.value("tetrahedra_torn", 0), deform.value("tetrahedra_fallen", 0));
-  }
-  if (s.contains("deform_node") && s["deform_node"].is_object())
-    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n",
-               number(s["deform_node"], "rate_hz"), number(s["deform_node"], "latency_us_p50"),
-               number(s["deform_node"], "latency_us_p99"));
-  if (s.contains("recorder") && s["recorder"].is_object())
-    fmt::print("recorder {} messages, {} lost\n", s["recorder"].value("messages", 0), s["recorder"].value("lost", 0));
+  if (deform.is_object())
+    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(deform, "rate_hz"),
+               number(deform, "latency_us_p50"), number(deform, "latency_us_p99"));
+  if (recorder.is_object())
+    fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
 }
 
 void run(const RunOptions& o) {

@@ -136,6 +136,22 @@ TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
   EXPECT_TRUE(json::parse(text_of(session.summary))["haptic_node"].is_object());
 }
 
+// At any moment from the first node's start to the last one's.
+TEST_P(ToolsSession, CtrlCWhileTheNodesStartEndsARunInOrder) {
+  const LoopbackScene scene(fmt::format("stopped-early{}", GetParam()));
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  const Session session(scene.folder());
+  for (const auto moment : {0ms, 30ms, 100ms, 250ms}) {
+    ChildProcess run("palpate", session.arguments(scene, GetParam()));
+    while (run.running() && processes_of(scene.folder()).size() < 2) std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(moment);
+    run.interrupt();
+    ASSERT_TRUE(run.wait(30s));
+    EXPECT_EQ(run.status(), 0) << moment.count() << " ms after the first node";
+    EXPECT_EQ(processes_of(scene.folder()), std::vector<std::string>{});
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Processes, ToolsSession, ::testing::Values(2, 3));
 
 }  // namespace
