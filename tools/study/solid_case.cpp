@@ -20,10 +20,10 @@ namespace palpate::study {
 namespace {
 
 using Fineness = SolidCase::Fineness;
-constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
-    neo_mesh{1, 1 / 5.0, 0.4, 6000};
-constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
-    quick_neo{1, 1 / 4.0, 0.6, 6000};
+constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 18500}, next_mesh{0.8, 1 / 6.0, 0.4, 18500},
+    neo_mesh{1, 1 / 5.0, 0.4, 4500};
+constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_next{1, 1 / 4.0, 0.5, 10500},
+    quick_neo{1, 1 / 4.0, 0.6, 4500};
 constexpr double kStride = 1.15;
 constexpr int kMaxStrides = 12;
 
@@ -61,20 +61,25 @@ Scene SolidCase::press_scene(const Scene& from, int patch) const {
   return ball_scene(from, std::move(body), presses().patches[patch], presses().radius);
 }
 
-double SolidCase::reach() const {
-  const double d = presses().deepest(), r = presses().radius;
-  return 1.1 * std::sqrt(2 * r * d - d * d);
+double SolidCase::reach(double depth) const {
+  return 1.1 * std::sqrt((2 * presses().radius - depth) * depth);
 }
 
-StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strides) const {
-  const Patch& at = presses().patches[patch];
+StaticProblem SolidCase::refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const {
+  const int max_nodes = static_cast<int>(problem_.mesh.nodes.size()) + fineness.more_nodes;
   for (;; ++strides) {
     const double faster = std::pow(kStride, strides);
     const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
     const double inner = std::min(outer, fineness.ball * presses().radius);
-    const auto size = size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
+    const SizeField size = [&](const Eigen::Vector3d& x) {
+      double least = outer;
+      for (const Patch& at : places)
+        least = std::min(least,
+                         size_around(x, at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth));
+      return least;
+    };
     try {
-      return refine_graded(problem_, size, fineness.max_nodes);
+      return refine_graded(problem_, size, max_nodes);
     } catch (const std::runtime_error&) {
       if (strides == kMaxStrides) throw;
     }
@@ -83,15 +88,15 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strid
 
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,
 // the mesh.
-std::string SolidCase::key(int patch, const Fineness& fineness) const {
-  constexpr int definitions = 2;  // changes with every change of how references are solved
+std::string SolidCase::key(std::span<const Patch> places, const Fineness& fineness) const {
+  constexpr int definitions = 3;  // changes with every change of how references are solved
   const Body plain = as_kind<QuasiStaticSpec>(solid());
-  const Patch& at = presses().patches[patch];
   std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
                                  fineness.ball, fineness.growth);
-  for (const double number :
-       {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2], presses().radius})
-    text += fmt::format(" {}", number);
+  for (const Patch& at : places)
+    for (const double number : {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2]})
+      text += fmt::format(" {}", number);
+  text += fmt::format(" of {}", presses().radius);
   for (const double depth : presses().depths) text += fmt::format(" {}", depth);
   return text;
 }
@@ -99,7 +104,8 @@ std::string SolidCase::key(int patch, const Fineness& fineness) const {
 std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, int strides) const {
   const Patch& at = presses().patches[patch];
   const auto begin = std::chrono::steady_clock::now();
-  const LinearContact contact(refined(patch, fineness, strides), at.point, reach());
+  const LinearContact contact(refined(place(patch), fineness, strides), std::array{at.point},
+                              reach(presses().deepest()));
   std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
@@ -112,7 +118,7 @@ std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, i
 
 std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness, int strides) const {
   const auto numbers =
-      cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness, strides); });
+      cache_.get("linear " + key(place(patch), fineness), [&] { return solve_fine(patch, fineness, strides); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
 }
@@ -142,7 +148,7 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
     int strides = 0;  // those of the finer mesh, so that the two remain levels apart
-    refined(static_cast<int>(p), quick_ ? kQuickFine : kFineMesh, strides);
+    refined(place(static_cast<int>(p)), quick_ ? kQuickFine : kFineMesh, strides);
     const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh, strides);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);
@@ -160,8 +166,8 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
   }
   const auto found = nonlinearity_.find(patch);
   if (found != nonlinearity_.end()) return found->second;
-  const auto numbers =
-      cache_.get("neo-Hookean " + key(patch, quick_ ? quick_neo : neo_mesh), [&] { return solve_nonlinear(patch); });
+  const auto numbers = cache_.get("neo-Hookean " + key(place(patch), quick_ ? quick_neo : neo_mesh),
+                                  [&] { return solve_nonlinear(patch); });
   Nonlinearity& both = nonlinearity_[patch];
   const double* at = numbers.data();
   both.nodes = static_cast<int>(*at++);
@@ -184,7 +190,7 @@ std::vector<double> SolidCase::solve_nonlinear(int patch) const {
   const auto begin = std::chrono::steady_clock::now();
   const Patch& at = presses().patches[patch];
   int strides = 0;
-  const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh, strides);
+  const StaticProblem problem = refined(place(patch), quick_ ? quick_neo : neo_mesh, strides);
   const auto ball = [&](double depth) { return Sphere{centre_at(at, presses().radius, depth), presses().radius}; };
   std::vector<double> numbers{static_cast<double>(problem.mesh.nodes.size()), 0, 0};
   for (const Law law : {Law::neo_hookean, Law::linear}) {
