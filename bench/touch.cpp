@@ -186,17 +186,7 @@ void cross_edge(const Archive& archive) {
 }
 
 void slide_block(const Archive& archive, const std::string& of) {
-  const int middle = [&] {
-    const auto& s = archive.surface;
-    int best = 0;
-    double least = 1e300;
-    for (int t = 0; t < static_cast<int>(s.triangles.size()); ++t) {
-      Vector3d m = Vector3d::Zero();
-      for (const int n : s.triangles[t]) m += s.position[n] / 3;
-      if (m.norm() < least) least = m.norm(), best = t;
-    }
-    return best;
-  }();
+  const int middle = nearest_triangle(archive.surface, Vector3d::Zero());
   const auto places = places_in(archive.surface, middle);
   const SurfacePath path = surface_path(
       archive.surface, places[0], {.length = 6 * kTipRadius, .run_up = kTipRadius, .step = 5e-5, .clear = kTipRadius});

@@ -56,9 +56,9 @@ TEST(SlideMeasures, AStepIsAJumpAndTheRunUpCountsForNothing) {
 }
 
 TEST(SlideMeasures, AToolIsPushedAlongWhereTheForceOnItPointsAlongItsMotion) {
-  EXPECT_EQ(measured(ticks_of([](double) { return 1; }, -0.3)).turn, 0);
-  EXPECT_EQ(measured(ticks_of([](double) { return 1; }, 0.0019)).turn, 0);
-  EXPECT_EQ(measured(ticks_of([](double) { return 1; }, 0.0021)).turn, 1);
+  EXPECT_EQ(measured(ticks_of([](double) { return 1.0; }, -0.3)).turn, 0);
+  EXPECT_EQ(measured(ticks_of([](double) { return 1.0; }, 0.0019)).turn, 0);
+  EXPECT_EQ(measured(ticks_of([](double) { return 1.0; }, 0.0021)).turn, 1);
 }
 
 TEST(SlideMeasures, ATrendCountsInShapeAlone) {
@@ -112,12 +112,7 @@ TEST(SurfacePath, GoesInEvenStepsOverACurveAndPressesAgainstASmoothNormal) {
 
 TEST(SurfacePath, EndsBeforeAnEdgeAndIsRefusedWhereThereIsNoRoom) {
   const Archive archive = precompute(block_body<QuasiStaticSpec>(), block_mesh(8));
-  int top = 0;
-  for (int t = 0; t < static_cast<int>(archive.surface.triangles.size()); ++t) {
-    Vector3d middle = Vector3d::Zero();
-    for (const int n : archive.surface.triangles[t]) middle += archive.surface.position[n] / 3;
-    if (middle.norm() < 0.01) top = t;
-  }
+  const int top = nearest_triangle(archive.surface, Vector3d::Zero());
   const SurfacePlace start = places_in(archive.surface, top).front();
   EXPECT_LT((start.inward + Vector3d::UnitZ()).norm(), 1e-12);
   PathPlan plan{.length = 0.09, .run_up = 0.006, .step = 1e-3, .clear = 0.008};
@@ -134,12 +129,7 @@ TEST(Slide, OverAFineBlockIsSmoothFollowsTheDepthAndFrictionHoldsTheToolBack) {
   Scene scene = block_scene();
   scene.passivity.controller = false;
   scene.tools[0].max_force = scene.tools[0].max_force_rate = 1e9;
-  int top = 0;
-  for (int t = 0; t < static_cast<int>(archive.surface.triangles.size()); ++t) {
-    Vector3d middle = Vector3d::Zero();
-    for (const int n : archive.surface.triangles[t]) middle += archive.surface.position[n] / 3;
-    if (middle.norm() < 0.004) top = t;
-  }
+  const int top = nearest_triangle(archive.surface, Vector3d::Zero());
   const SurfacePath path = surface_path(archive.surface, places_in(archive.surface, top).front(),
                                         {.length = 0.02, .run_up = 0.008, .step = 5e-5, .clear = 0.008});
   const auto over = [&](double friction, double depth) {

@@ -83,13 +83,14 @@ SlideMeasures measure_slide(std::span<const SlideTick> ticks, std::span<const do
     of.mean += ticks[i].force / count;
     among += ticks[i].force * trend[i];
     of_trend += trend[i] * trend[i];
-    of.turn += (ticks[i].tangential > kPushed * ticks[i].force) / count;
+    of.turn += ticks[i].tangential > kPushed * ticks[i].force;
     if (i > 0) of.jump = std::max(of.jump, std::abs(ticks[i].force - ticks[i - 1].force));
   }
   std::vector<double> about;
   for (std::size_t i = 0; i < ticks.size(); ++i) about.push_back(ticks[i].force - among / of_trend * trend[i]);
   of.ripple = std::sqrt(std::inner_product(about.begin(), about.end(), about.begin(), 0.0) / count) / of.mean;
   of.jump /= of.mean;
+  of.turn /= count;
   of.buzz = band(about, dt) / of.mean;
   return of;
 }

@@ -74,6 +74,13 @@ std::vector<SurfacePlace> walk(const SmoothSurface& surface, SurfacePlace from, 
 
 }  // namespace
 
+int nearest_triangle(const SurfaceMap& map, const Vector3d& point) {
+  const auto nearest = std::ranges::min_element(map.triangles, {}, [&](const std::array<int, 3>& t) {
+    return (map.position[t[0]] + map.position[t[1]] + map.position[t[2]] - 3 * point).squaredNorm();
+  });
+  return static_cast<int>(nearest - map.triangles.begin());
+}
+
 std::vector<SurfacePlace> places_in(const SurfaceMap& map, int triangle) {
   const SmoothSurface surface(map);
   std::vector<SurfacePlace> places{place_at(surface, triangle, Vector3d::Constant(1 / 3.0))};

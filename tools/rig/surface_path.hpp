@@ -18,6 +18,9 @@ inline Eigen::Vector3d centre_at(const SurfacePlace& place, double radius, doubl
   return place.point + (depth - radius) * place.inward;
 }
 
+/// The triangle whose middle is nearest to a point.
+int nearest_triangle(const SurfaceMap& map, const Eigen::Vector3d& point);
+
 /// Seven places all over a triangle: near its corners, near its edges, in its middle; pressed along the surface's
 /// normal, which turns evenly from corner to corner.
 std::vector<SurfacePlace> places_in(const SurfaceMap& map, int triangle);

@@ -1,4 +1,5 @@
 #pragma once
+#include "tools/rig/press_rig.hpp"
 #include "tools/study/solid_case.hpp"
 
 namespace palpate::study {
