@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "common/models/content_hash.hpp"
@@ -20,10 +21,9 @@ namespace palpate::study {
 namespace {
 
 using Fineness = SolidCase::Fineness;
-constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 18500}, next_mesh{0.8, 1 / 6.0, 0.4, 18500},
-    neo_mesh{1, 1 / 5.0, 0.4, 4500};
-constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_next{1, 1 / 4.0, 0.5, 10500},
-    quick_neo{1, 1 / 4.0, 0.6, 4500};
+constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 40000}, neo_mesh{1, 1 / 5.0, 0.4, 4500};
+constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_neo{1, 1 / 4.0, 0.6, 4500};
+constexpr double kLevel = std::numbers::sqrt2;  // edges of a mesh against those of the next finer one
 constexpr double kStride = 1.15;
 constexpr int kMaxStrides = 12;
 
@@ -101,11 +101,15 @@ std::string SolidCase::key(std::span<const Patch> places, const Fineness& finene
   return text;
 }
 
-std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, int strides) const {
+// Meshes of one place remain levels apart: all are graded as fast as the finest must be.
+std::vector<double> SolidCase::solve_fine(int patch, double coarser) const {
   const Patch& at = presses().patches[patch];
   const auto begin = std::chrono::steady_clock::now();
-  const LinearContact contact(refined(place(patch), fineness, strides), std::array{at.point},
-                              reach(presses().deepest()));
+  const Fineness& finest = quick_ ? kQuickFine : kFineMesh;
+  int strides = 0;
+  StaticProblem problem = refined(place(patch), finest, strides);
+  if (coarser > 1) problem = refined(place(patch), finest.coarser(coarser), strides);
+  const LinearContact contact(std::move(problem), std::array{at.point}, reach(presses().deepest()));
   std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
@@ -116,11 +120,23 @@ std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, i
   return numbers;
 }
 
-std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness, int strides) const {
-  const auto numbers =
-      cache_.get("linear " + key(place(patch), fineness), [&] { return solve_fine(patch, fineness, strides); });
+std::vector<PressAnswer> SolidCase::press_fine(int patch, double coarser) const {
+  const auto key_of_mesh = fmt::format("linear {} {}", coarser, key(place(patch), quick_ ? kQuickFine : kFineMesh));
+  const auto numbers = cache_.get(key_of_mesh, [&] { return solve_fine(patch, coarser); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
+}
+
+// What linear elements leave wrong falls with the square of their size, which is halved from level to level.
+std::vector<PressAnswer> SolidCase::extrapolated(int patch, double coarser) const {
+  auto answers = press_fine(patch, coarser);
+  const auto next = press_fine(patch, coarser * kLevel);
+  for (std::size_t d = 0; d < answers.size(); ++d) {
+    answers[d].force += answers[d].force - next[d].force;
+    for (std::size_t n = 0; n < answers[d].displacement.size(); ++n)
+      answers[d].displacement[n] += answers[d].displacement[n] - next[d].displacement[n];
+  }
+  return answers;
 }
 
 std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t count) const {
@@ -135,7 +151,7 @@ std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t 
 const std::vector<PressAnswer>& SolidCase::fine(int patch) {
   const auto found = fine_.find(patch);
   if (found != fine_.end()) return found->second;
-  return fine_[patch] = press_fine(patch, quick_ ? kQuickFine : kFineMesh, 0);
+  return fine_[patch] = extrapolated(patch, 1);
 }
 
 const PressAnswer& SolidCase::fine_linear(int patch, int depth) {
@@ -147,9 +163,7 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   int count = 0;
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
-    int strides = 0;  // those of the finer mesh, so that the two remain levels apart
-    refined(place(static_cast<int>(p)), quick_ ? kQuickFine : kFineMesh, strides);
-    const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh, strides);
+    const auto next = extrapolated(static_cast<int>(p), kLevel);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);
       square[1] += std::pow(next[d].force / best[d].force - 1, 2);

@@ -46,10 +46,10 @@ class SolidCase {
   /// some of them, constant over the run-up.
   const std::vector<double>& slide_reference(double depth);
 
-  /// Linear elasticity on a mesh so fine, around each patch, that it stands for the exact solution.
+  /// Linear elasticity on fine meshes around each patch, so extrapolated that it stands for the exact solution.
   const PressAnswer& fine_linear(int patch, int depth);
-  /// [1] by how much fine_linear() still differs from the next coarser level: an estimate of its own error
-  /// (u, f).
+  /// [1] by how much fine_linear() differs from what coarser meshes give in the same way: an estimate of its own
+  /// error (u, f).
   std::array<double, 2> fine_linear_rest();
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
@@ -60,6 +60,8 @@ class SolidCase {
   struct Fineness {
     double edge, ball, growth;
     int more_nodes;
+
+    Fineness coarser(double by) const { return {by * edge, by * ball, by * growth, more_nodes}; }
   };
   StaticProblem refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const;
   double reach(double depth) const;  ///< [m] about a patch within which nodes may touch the ball
@@ -81,8 +83,9 @@ class SolidCase {
   void add_errors(const Row& cost, const PressAnswers& presses, Result& result);
 
  private:
-  std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness, int strides) const;
-  std::vector<double> solve_fine(int patch, const Fineness& fineness, int strides) const;
+  std::vector<PressAnswer> extrapolated(int patch, double coarser) const;
+  std::vector<PressAnswer> press_fine(int patch, double coarser) const;
+  std::vector<double> solve_fine(int patch, double coarser) const;
   std::vector<double> solve_slide(std::span<const Patch> places, double depth) const;
   std::vector<double> solve_nonlinear(int patch) const;
   std::span<const Patch> place(int patch) const { return std::span(presses().patches).subspan(patch, 1); }

@@ -4,46 +4,49 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/fem/dense.hpp"
+#include "common/fem/ordering.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate::study {
 namespace {
 
 constexpr int kMaxRounds = 200;
-constexpr std::size_t kRightHandSides = 64;  // solved at once
-constexpr double kNear = 1.2;                // radii about the ball's middle in which nodes are tried
+constexpr double kNear = 1.2;  // radii about the ball's middle in which nodes are tried
 
-Factorisation factorised(const StaticProblem& problem) {
-  const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs);
-  Factorisation factor(stiffness);
+/// Those that may touch the ball come last, so that the last block of the factor is that of their compliance's inverse.
+Factorisation factorised(const StaticProblem& problem, const std::vector<int>& last) {
+  const NodeGraph graph = node_graph(problem.mesh);
+  const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs, graph);
+  Factorisation factor(stiffness, dof_order(problem.dofs, interior_first_order(graph, last)));
   factor.factorise(stiffness);
   return factor;
+}
+
+std::vector<int> near_any(const StaticProblem& problem, const std::vector<int>& surface,
+                          std::span<const Eigen::Vector3d> centres, double reach) {
+  std::vector<int> nodes;
+  for (const int n : surface)
+    if (std::ranges::any_of(centres, [&](const auto& c) { return (problem.mesh.nodes[n] - c).norm() < reach; }))
+      nodes.push_back(n);
+  return nodes;
 }
 
 }  // namespace
 
 LinearContact::LinearContact(StaticProblem problem, std::span<const Eigen::Vector3d> centres, double reach)
-    : problem_(std::move(problem)), factor_(factorised(problem_)), surface_(extract_surface(problem_.mesh).nodes) {
-  for (const int n : surface_)
-    if (std::ranges::any_of(centres, [&](const auto& c) { return (problem_.mesh.nodes[n] - c).norm() < reach; }))
-      all_.node.push_back(n);
+    : problem_(std::move(problem)),
+      surface_(extract_surface(problem_.mesh).nodes),
+      all_{near_any(problem_, surface_, centres, reach), {}},
+      factor_(factorised(problem_, all_.node)) {
   const auto size = static_cast<Eigen::Index>(3 * all_.node.size());
-  all_.compliance = Eigen::MatrixXd::Zero(size, size);
-  std::vector<int> row(static_cast<std::size_t>(size));
   std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    row[i] = problem_.dofs.index(all_.node[i / 3], static_cast<int>(i % 3));
-    if (row[i] >= 0) free.push_back(i);
-  }
-  for (std::size_t begin = 0; begin < free.size(); begin += kRightHandSides) {
-    const std::size_t count = std::min(kRightHandSides, free.size() - begin);
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(problem_.dofs.size(), static_cast<Eigen::Index>(count));
-    for (std::size_t c = 0; c < count; ++c) unit(row[free[begin + c]], static_cast<Eigen::Index>(c)) = 1;
-    const Eigen::MatrixXd answer = factor_.solve(unit);
-    for (std::size_t c = 0; c < count; ++c)
-      for (const Eigen::Index i : free)
-        all_.compliance(i, free[begin + c]) = answer(row[i], static_cast<Eigen::Index>(c));
-  }
+  for (Eigen::Index i = 0; i < size; ++i)
+    if (problem_.dofs.is_free(all_.node[i / 3], static_cast<int>(i % 3))) free.push_back(i);
+  Eigen::MatrixXd among = factor_.trailing_factor(static_cast<int>(free.size()));
+  invert_from_cholesky(among);
+  all_.compliance = Eigen::MatrixXd::Zero(size, size);
+  all_.compliance(free, free) = among.selfadjointView<Eigen::Lower>();
 }
 
 LinearContact::Candidates LinearContact::near(const Sphere& ball) const {

@@ -31,9 +31,9 @@ class LinearContact {
                                       const std::vector<Eigen::Vector3d>& normal, std::vector<char>& active) const;
 
   StaticProblem problem_;
-  Factorisation factor_;
   std::vector<int> surface_;  // nodes of the surface
   Candidates all_;
+  Factorisation factor_;
 };
 
 }  // namespace palpate::study
