@@ -1,6 +1,5 @@
 #include "tools/rig/slide.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -30,13 +29,6 @@ double band(std::span<const double> values, double dt) {
     power += (2 * k < n ? 2 : 1) * std::norm(sum) / (n * n);
   }
   return std::sqrt(power / window_power);
-}
-
-Eigen::MatrixXd powers(std::span<const double> path, double middle, double half, int degree) {
-  Eigen::MatrixXd rows(path.size(), degree + 1);
-  for (std::size_t i = 0; i < path.size(); ++i)
-    for (int k = 0; k <= degree; ++k) rows(i, k) = std::pow((path[i] - middle) / half, k);
-  return rows;
 }
 
 }  // namespace
@@ -95,25 +87,20 @@ SlideMeasures measure_slide(std::span<const SlideTick> ticks, std::span<const do
   return of;
 }
 
-std::vector<double> fit_over_path(std::span<const double> path, std::span<const double> values, int degree,
-                                  std::span<const double> at) {
-  const auto [low, high] = std::ranges::minmax(path);
-  const double middle = (low + high) / 2, half = (high - low) / 2;
-  const Eigen::Map<const Eigen::VectorXd> wanted(values.data(), static_cast<Eigen::Index>(values.size()));
-  const Eigen::VectorXd factors = powers(path, middle, half, degree).colPivHouseholderQr().solve(wanted);
-  const Eigen::VectorXd fitted = powers(at, middle, half, degree) * factors;
-  return {fitted.begin(), fitted.end()};
-}
-
 std::vector<double> line_through(std::span<const SlideTick> ticks) {
-  std::vector<double> at, path, values;
+  double count = 0, path = 0, force = 0, squares = 0, products = 0;
   for (const SlideTick& t : ticks) {
-    at.push_back(t.path);
     if (t.path < 0) continue;
-    path.push_back(t.path);
-    values.push_back(t.force);
+    ++count;
+    path += t.path;
+    force += t.force;
+    squares += t.path * t.path;
+    products += t.path * t.force;
   }
-  return fit_over_path(path, values, 1, at);
+  const double slope = (count * products - path * force) / (count * squares - path * path);
+  std::vector<double> line;
+  for (const SlideTick& t : ticks) line.push_back((force + slope * (count * t.path - path)) / count);
+  return line;
 }
 
 double spread_of(std::span<const double> values) {

@@ -37,9 +37,6 @@ struct SlideMeasures {
 /// force. `dt` [s] of a tick.
 SlideMeasures measure_slide(std::span<const SlideTick> ticks, std::span<const double> trend, double dt);
 
-/// A polynomial over the path by least squares, at each of `at`.
-std::vector<double> fit_over_path(std::span<const double> path, std::span<const double> values, int degree,
-                                  std::span<const double> at);
 /// The line through the forces after the run-up: what a slide over a flat block is measured about.
 std::vector<double> line_through(std::span<const SlideTick> ticks);
 

@@ -13,8 +13,7 @@ namespace palpate::study {
 namespace {
 
 constexpr SolidCase::Fineness kMesh{0.8, 1 / 7.0, 0.4, 18500}, kQuickMesh{1, 1 / 5.0, 0.5, 10500};
-constexpr double kApart = 0.5;  // radii between two places of the converged solution
-constexpr int kDegree = 4;      // of the curve through them
+constexpr double kApart = 1 / 6.0;  // radii between two places of the converged solution
 
 }  // namespace
 
@@ -32,20 +31,20 @@ const std::vector<double>& SolidCase::slide_reference(double depth) {
   const auto found = slide_reference_.find(depth);
   if (found != slide_reference_.end()) return found->second;
   const SurfacePath& path = slide_path();
-  const std::size_t measured = path.places.size() - 1 - path.run_up;
-  const double length = path.at(path.places.size() - 1);
-  const int count = std::max(kDegree + 2, 1 + static_cast<int>(length / (kApart * presses().radius)));
+  const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(kApart * presses().radius / path.step));
   std::vector<Patch> places;
-  std::vector<double> at, wanted;
-  for (int i = 0; i < count; ++i) {
-    const std::size_t place = path.run_up + measured * i / (count - 1);
-    places.push_back(path.places[place]);
-    at.push_back(path.at(place));
-  }
-  for (std::size_t i = 0; i < path.places.size(); ++i) wanted.push_back(std::max(0.0, path.at(i)));
+  for (std::size_t i = path.run_up; i < path.places.size() + stride - 1; i += stride)
+    places.push_back(path.places[std::min(i, path.places.size() - 1)]);
   const auto key_of_slide = fmt::format("slide to {} {}", depth, key(places, quick_ ? kQuickMesh : kMesh));
   const auto forces = cache_.get(key_of_slide, [&] { return solve_slide(places, depth); });
-  return slide_reference_[depth] = fit_over_path(at, forces, kDegree, wanted);
+  std::vector<double>& at_all = slide_reference_[depth];
+  at_all.assign(path.run_up, forces.front());
+  for (std::size_t i = 0; i + path.run_up < path.places.size(); ++i) {
+    const std::size_t before = i / stride, next = std::min(before + 1, forces.size() - 1);
+    const double share = static_cast<double>(i % stride) / static_cast<double>(stride);
+    at_all.push_back((1 - share) * forces[before] + share * forces[next]);
+  }
+  return at_all;
 }
 
 std::vector<double> SolidCase::solve_slide(std::span<const Patch> places, double depth) const {

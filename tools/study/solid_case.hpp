@@ -42,8 +42,8 @@ class SolidCase {
   Scene press_scene(const Scene& from, int patch) const;
   /// The path of the slide about the first patch. Throws std::runtime_error where the surface has no room for it.
   const SurfacePath& slide_path();
-  /// [N] force of the converged solution at each of that path's places, pressed to a depth [m]: a smooth curve through
-  /// some of them, constant over the run-up.
+  /// [N] force of the converged solution at each of that path's places, pressed to a depth [m]: through presses a sixth
+  /// of the radius apart; constant over the run-up.
   const std::vector<double>& slide_reference(double depth);
 
   /// Linear elasticity on fine meshes around each patch, so extrapolated that it stands for the exact solution.
