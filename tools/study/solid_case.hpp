@@ -46,10 +46,10 @@ class SolidCase {
   /// of the radius apart; constant over the run-up.
   const std::vector<double>& slide_reference(double depth);
 
-  /// Linear elasticity on fine meshes around each patch, so extrapolated that it stands for the exact solution.
+  /// Linear elasticity on a fine mesh around each patch, its force extrapolated, which stands for the exact solution.
   const PressAnswer& fine_linear(int patch, int depth);
-  /// [1] by how much fine_linear() differs from what coarser meshes give in the same way: an estimate of its own
-  /// error (u, f).
+  /// [1] by how much fine_linear() differs from what meshes one level coarser give in the same way: an estimate of its
+  /// own error (u, f).
   std::array<double, 2> fine_linear_rest();
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
