@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Plots and pages of `palpate study`: study_page.py DIR.
 
-DIR holds the figures of one scene (study.csv, depth.csv, course.csv, notes.csv, machine.txt), or folders that do, of which
-an index is made; a growth.csv in DIR gets its plots too. Plots are written as PNG, and DIR/index.html holds all."""
+DIR holds the figures of one scene (study.csv, depth.csv, course.csv, slide.csv, touch.csv, notes.csv, machine.txt), or folders
+that do, of which an index is made; a growth.csv in DIR gets its plots too. Plots are written as PNG, and DIR/index.html holds all."""
 import base64
 import csv
 import html
@@ -303,6 +303,36 @@ def draw_course(rows, folder, name, of_displacement, of_force):
     return folder / f"{name}.png"
 
 
+def plot_slide(rows, folder):
+    """Force over path without friction and with it, and what holds the tool back."""
+    settings = list(dict.fromkeys((r["method"], r["knob"], r["value"]) for r in rows))
+    if not settings:
+        return None
+    figure, axes = plt.subplots(3, 1, figsize=(10, 9.6), sharex=True)
+    panels = [(0, "force_N", "force without friction [N]"), (0.3, "force_N", "force with friction 0.3 [N]"),
+              (0.3, "tangential_N", "along the motion, on the tool [N]")]
+    for axis, (friction, key, title) in zip(axes, panels):
+        for i, setting in enumerate(settings):
+            mine = [r for r in rows if (r["method"], r["knob"], r["value"]) == setting and number(r["friction"]) == friction]
+            as_is = setting[1] in ("scene", "model")
+            text = setting[0] if as_is else f"{setting[0]}, {setting[1]} {setting[2]}"
+            axis.plot([1e3 * number(r["path_m"]) for r in mine], [number(r[key]) for r in mine], color=COLOURS[i % 8], lw=1.8 if as_is else 0.9,
+                      zorder=3 if as_is else 2, label=text)
+        if friction == 0:
+            axis.plot([1e3 * number(r["path_m"]) for r in mine], [number(r["reference_force_N"]) for r in mine], "--", color="#222", lw=1.2, zorder=4, label="fine linear")
+        axis.axvspan(min(1e3 * number(r["path_m"]) for r in rows), 0, color="#888", alpha=0.12, lw=0)
+        axis.set(ylabel=title)
+    axes[0].set_title("Force over the path of a ball that is led over the surface at half its radius deep, 50 mm/s (shaded: run-up)", fontsize=10)
+    axes[0].set_ylim(bottom=0)
+    axes[1].set_ylim(bottom=0)
+    axes[2].set(xlabel="path [mm]")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="lower center", ncol=3, frameon=False, fontsize=8)
+    figure.tight_layout(rect=(0, 0.022 * ((len(settings) + 3) // 3) + 0.01, 1, 1))
+    figure.savefig(folder / "slide.png")
+    plt.close(figure)
+    return folder / "slide.png"
+
+
 def plot_growth(rows, folder):
     groups = list(dict.fromkeys(r["what"] for r in rows))
     if not groups:
@@ -362,6 +392,13 @@ def figure_table(rows, reference):
     return table(head, cells, [i in best for i in range(len(mine))])
 
 
+def touch_table(rows):
+    head = ["method", "knob", "value", "friction", "mean force [N]", "ripple", "jump", "turn", "buzz", "spread"]
+    cells = [[r["method"], r["knob"], r["value"], r["friction"], figures(r["mean_force_N"])] + [percent(r[m]) for m in ("ripple", "jump", "turn", "buzz", "spread")]
+             for r in rows]
+    return table(head, cells)
+
+
 def linearity_sentence(rows):
     """Where the error of being linear is assessed and where it is not."""
     sentences = []
@@ -389,9 +426,10 @@ def linearity_sentence(rows):
 
 def scene_page(folder, rows):
     depth, course, notes = read(folder / "depth.csv"), read(folder / "course.csv"), read(folder / "notes.csv")
+    slides, touches = read(folder / "slide.csv"), read(folder / "touch.csv")
     name = rows[0]["scene"]
     pictures = [(plot_pareto(rows, folder), "error against run time"),
-                (plot_depth(depth, folder), "error over depth"), (plot_force(depth, folder), "force over depth"),
+                (plot_depth(depth, folder), "error over depth"), (plot_force(depth, folder), "force over depth"), (plot_slide(slides, folder), "force over path"),
                 *((path, "time course") for path in plot_course(course, folder))]
     machine = "<br>".join(map(html.escape, (folder / "machine.txt").read_text().splitlines())) if (folder / "machine.txt").exists() else ""
     parts = [f"<h1>{html.escape(name)}</h1><p class=small>{machine}</p><p>{linearity_sentence(rows)}</p>"]
@@ -399,6 +437,11 @@ def scene_page(folder, rows):
     if budget.exists():
         parts.append(f"<p><b>{html.escape(budget.read_text().strip())}</b></p>")
     parts += [f"<p>{picture(path, text)}</p>" for path, text in pictures if path]
+    if touches:
+        parts.append("<h2>How a slide feels</h2><p class=small>Of the force after the run-up, as shares of its mean: <i>ripple</i>, root mean square about the curve of "
+                     "<i>fine linear</i>, scaled to it; <i>jump</i>, largest change from one tick to the next; <i>turn</i>, ticks in which the tool is pushed along its motion "
+                     "by more than 0.002 of the force; <i>buzz</i>, root mean square between 100 and 500 Hz. <i>Spread</i>, of presses at places all over the triangles of the "
+                     "pressed places, against the reference: largest less least over mean.</p>" + touch_table(touches))
     for ref in dict.fromkeys(r["reference"] for r in rows if r["reference"]):
         parts.append(f"<h2>Against {ref}</h2><p class=small>{MEANING.get(ref, '')}. Errors are root mean squares of relative errors; rows on the Pareto front "
                      "of the median time and the larger of both errors are shaded.</p>" + figure_table(rows, ref))

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "tests/study/small_scenes.hpp"
-#include "tools/study/budget.hpp"
 #include "tools/study/press_errors.hpp"
 #include "tools/study/study.hpp"
 
@@ -47,29 +46,6 @@ TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
                std::runtime_error);
   EXPECT_THROW(add_course({}, {{1, 2}, {kNan, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
   EXPECT_THROW(add_course({}, {{1, 2}, {3, kNan}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
-}
-
-TEST(Budget, BuysNothingWhoseForceOrTimeCourseHasNoFigure) {
-  struct One : Method {
-    int body() const override { return 0; }
-    std::vector<Point> points() const override {
-      return {{"m", "k", "v", [](Scene&) {}, true}};
-    }
-    Result evaluate(const Point&) override { return {}; }
-  };
-  Methods methods;
-  methods.push_back(std::make_unique<One>());
-  const auto buys = [&](double still_force, double moving_force, double still_time, double moving_time) {
-    Result result;
-    result.rows.push_back({"s", "m", "k", "v", 1, still_time, 0, 0, 0.1, still_force, "finest_chain"});
-    result.rows.push_back({"s", "m", "k", "v", 1, moving_time, 0, 0, 0.1, moving_force, "finest_insertion"});
-    return choose(methods, 1, result, 50e-6).has_value();
-  };
-  EXPECT_TRUE(buys(0.1, 0.1, 10, 10));
-  EXPECT_FALSE(buys(kNan, 0.1, 10, 10));
-  EXPECT_FALSE(buys(0.1, kNan, 10, 10));
-  EXPECT_FALSE(buys(0.1, 0.1, 10, 60)) << "the slower of its steps counts";
-  EXPECT_FALSE(buys(0.1, 0.1, 60, 10));
 }
 
 Scene catheter_scene(const Folder& folder) {

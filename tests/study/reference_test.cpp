@@ -127,7 +127,7 @@ TEST(NewtonSolid, ATinyPressIsThatOfTheLinearSolverAndADeepOneIsNot) {
   const StaticProblem problem = block(8);
   const double radius = 0.012;
   const auto ball = [&](double depth) { return Sphere{{0.001, 0.002, 0.03 + radius - depth}, radius}; };
-  const LinearContact contact(problem, {0, 0, 0.03}, 0.012);
+  const LinearContact contact(problem, std::array{Vector3d(0, 0, 0.03)}, 0.012);
   const auto force = [&](Law law, double depth) {
     NewtonSolid solid(problem, law, 1e9);
     return -solid.press(ball(0), ball(depth)).force.z();
@@ -150,13 +150,18 @@ double volume(const TetMesh& mesh) {
   return sum;
 }
 
+SizeField around(const Vector3d& centre, double radius, double inner, double growth, double outer) {
+  return [=](const Vector3d& x) {
+    return std::min(outer, size_around(x, centre, Vector3d::UnitZ(), radius, inner, growth));
+  };
+}
+
 TEST(Graded, AFinerMeshIsConformingHasTheSameShapeAndKeepsItsNodes) {
   SolidSpec body = soft_block();
   body.materials.push_back(
       {.where = {.indices = {}, .box = Box{{-1, -1, 0.015}, {1, 1, 1}}, .group = {}}, .material = {9000, 0.2, 1000}});
   const StaticProblem coarse = make_static_problem(body, middle_block_mesh(4));
-  const StaticProblem fine =
-      refine_graded(coarse, size_around({0, 0, 0.03}, Vector3d::UnitZ(), 0.008, 0.003, 0.5, 0.012), 100000);
+  const StaticProblem fine = refine_graded(coarse, around({0, 0, 0.03}, 0.008, 0.003, 0.5, 0.012), 100000);
   EXPECT_GT(fine.mesh.nodes.size(), 4 * coarse.mesh.nodes.size());
   for (std::size_t n = 0; n < coarse.mesh.nodes.size(); ++n) EXPECT_EQ(fine.mesh.nodes[n], coarse.mesh.nodes[n]);
   EXPECT_NEAR(volume(fine.mesh), volume(coarse.mesh), 1e-12 * volume(coarse.mesh));
@@ -191,9 +196,8 @@ TEST(LinearContact, AShallowPressOnALargeBlockComesToHertzAsTheMeshGetsFiner) {
   double last = 1;
   for (const double share : {0.55, 0.36}) {  // of the contact's radius; the edges grow as slowly as they are small
     const double h = share * a;
-    const StaticProblem fine =
-        refine_graded(block, size_around({0, 0, 0.3}, Vector3d::UnitZ(), a, h, share, 0.2), 100000);
-    const LinearContact contact(fine, {0, 0, 0.3}, 1.3 * a);
+    const StaticProblem fine = refine_graded(block, around({0, 0, 0.3}, a, h, share, 0.2), 100000);
+    const LinearContact contact(fine, std::array{Vector3d(0, 0, 0.3)}, 1.3 * a);
     const PressState state = contact.press({{0.0003, 0.0002, 0.3 + r - d}, r});
     const double error = std::abs(-state.force.z() / hertz - 1);
     std::printf("h = a/%.1f: %zu nodes, force off by %.2f %%\n", a / h, fine.mesh.nodes.size(), 100 * error);

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_generators.hpp"
 #include "tests/study/small_scenes.hpp"
-#include "tools/study/budget.hpp"
 #include "tools/study/modal.hpp"
 #include "tools/study/patches.hpp"
 #include "tools/study/quasi_static.hpp"
@@ -84,6 +84,32 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   EXPECT_LT(rest->err_f_rel, as_is->err_f_rel);
   EXPECT_LT(rest->err_u_rel, as_is->err_u_rel);
 
+  // A slide for each rule, without friction and with it; the patch, which sticks to no node, drags by Coulomb's law.
+  const auto touch = [&](const std::string& value, double friction) {
+    for (const TouchRow& t : result.touches)
+      if (t.method == "quasi_static" && t.value == value && t.friction == friction) return t;
+    ADD_FAILURE() << value << " " << friction;
+    return TouchRow{};
+  };
+  for (const char* rule : {"as it is", "alpha", "patch"}) {
+    const TouchRow free = touch(rule, 0);
+    EXPECT_GT(free.ripple, 1e-3);
+    EXPECT_LT(free.ripple, 0.2) << rule;
+    EXPECT_GT(free.spread, free.ripple) << rule;
+    EXPECT_LT(free.spread, 1) << rule;
+  }
+  EXPECT_LT(touch("patch", 0).jump, 0.01);
+  EXPECT_NEAR(touch("patch", 0.3).mean_force_N, std::hypot(1, 0.3) * touch("patch", 0).mean_force_N, 1e-3);
+  EXPECT_EQ(touch("patch", 0.3).turn, 0);
+  for (const Note& note : result.notes) EXPECT_EQ(note.text.find("slide"), std::string::npos) << note.text;
+  double least = 1e300, most = 0;
+  for (const SlideRow& r : result.slides) {
+    least = std::min(least, r.reference_force_N);
+    most = std::max(most, r.reference_force_N);
+  }
+  EXPECT_LT(most, 1.3 * least);
+  EXPECT_NEAR(most, result.depths[2].reference_force_N, 0.3 * most);
+
   // Tensor-mass tissue comes to rest where the tensors are, and springs do not, once the ball has come to the
   // nodes.
   int compared = 0;
@@ -146,15 +172,28 @@ TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
   const auto say = [&](const std::string&) { ++solved; };
   SolidCase first(scene, 0, on_one(scene), true, cache, say), second(scene, 0, on_one(scene), true, cache, say);
   const double force = first.fine(0)[1].force;
-  EXPECT_EQ(solved, 1);
+  EXPECT_EQ(solved, 2);  // two levels
   EXPECT_EQ(second.fine(0)[1].force, force);
   EXPECT_EQ(second.fine(0)[1].displacement, first.fine(0)[1].displacement);
-  EXPECT_EQ(solved, 1);
+  EXPECT_EQ(solved, 2);
   Scene stiffer = scene;
   as<SolidSpec>(stiffer.bodies[0])->material.young *= 2;
   SolidCase other(stiffer, 0, on_one(stiffer), true, cache, say);
   EXPECT_NEAR(other.fine(0)[1].force, 2 * force, 1e-6 * force);
-  EXPECT_EQ(solved, 2);
+  EXPECT_EQ(solved, 4);
+}
+
+TEST(Study, ReferencesAreRefinedFromAMeshOfAnySize) {
+  const Folder folder;
+  Scene scene = block_scene(folder.at);
+  write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {24, 24, 12}), folder.at / "block.msh");
+  const SolidCase solid(scene, 0, on_one(scene), true);
+  ASSERT_GT(solid.mesh().nodes.size(), 8000u);
+  int strides = 0;
+  const auto place = std::span(solid.presses().patches).first(1);
+  const StaticProblem finer = solid.refined(place, {1, 1 / 9.0, 0.6, 3000}, strides);
+  EXPECT_GT(finer.mesh.nodes.size(), solid.mesh().nodes.size() + 500);
+  EXPECT_LE(finer.mesh.nodes.size(), solid.mesh().nodes.size() + 3000);
 }
 
 TEST(ReferenceCache, ComputesOnceAndAgainWhereTheFileIsDamaged) {
@@ -211,6 +250,8 @@ TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
   result.rows.push_back(
       {"small", "quasi_static", "scene", "as it is", 1.5, 2.5, kUnknown, 4e6, 0.25, 0.125, "fine_linear"});
   result.courses.push_back({"small", "quasi_static", "scene", "as it is", 0.001, 1, 2, 3, 4});
+  result.slides.push_back({"small", "quasi_static", "scene", "as it is", 0.3, 0.001, 5, -6, 7});
+  result.touches.push_back({"small", "quasi_static", "scene", "as it is", 0.3, 2, 0.01, 0.02, 0.5, 0.03});
   result.notes.push_back({"small", "quasi_static", "scene", "as it is", "with, commas"});
   store.keep(point, result);
   const auto found = Store(folder.at, study_key(scene, true)).find(point);
@@ -219,6 +260,11 @@ TEST(Study, GoesOnWhereItWasAndStartsAfreshForAnotherScene) {
   EXPECT_EQ(found->rows[0].err_f_rel, 0.125);
   EXPECT_TRUE(std::isnan(found->rows[0].offline_s));
   EXPECT_EQ(found->courses[0].reference_displacement_m, 4);
+  EXPECT_EQ(found->slides[0].tangential_N, -6);
+  EXPECT_EQ(found->slides[0].reference_force_N, 7);
+  EXPECT_EQ(found->touches[0].turn, 0.5);
+  EXPECT_EQ(found->touches[0].buzz, 0.03);
+  EXPECT_TRUE(std::isnan(found->touches[0].spread));
   EXPECT_EQ(found->notes[0].text, "with; commas");
   for (const auto& file : std::filesystem::directory_iterator(folder.at / "points"))
     if (file.path().extension() == ".csv") std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
@@ -319,42 +365,6 @@ TEST(Study, MovingTissueComesNearerToItsOwnSmallStepsWithSmallerStepsAndAfterACu
   ASSERT_TRUE(cut && stale);
   EXPECT_LT(cut->err_u_rel, 1e-3);
   EXPECT_GT(stale->err_u_rel, 10 * cut->err_u_rel);
-}
-
-TEST(Budget, TakesTheMostAccurateThatFitsAndNothingWhereNothingDoes) {
-  struct Fixed : Method {
-    int of;
-    explicit Fixed(int b) : of(b) {}
-    int body() const override { return of; }
-    std::vector<Point> points() const override {
-      const auto nothing = [](Scene&) {};
-      const std::string m = "m" + std::to_string(of);
-      return {{m, "k", "fast", nothing, true},
-              {m, "k", "slow", nothing, true},
-              {m, "k", "best", {}, true},
-              {m, "k", "other", nothing, false}};
-    }
-    Result evaluate(const Point&) override { return {}; }
-  };
-  Methods methods;
-  methods.push_back(std::make_unique<Fixed>(0));
-  methods.push_back(std::make_unique<Fixed>(1));
-  Result result;
-  for (const char* m : {"m0", "m1"}) {
-    result.rows.push_back({"s", m, "k", "fast", 1, 10, 0, 0, 0.3, 0.2, "fine_linear"});
-    result.rows.push_back({"s", m, "k", "slow", 1, 100, 0, 0, 0.05, 0.1, "fine_linear"});
-    result.rows.push_back({"s", m, "k", "best", 1, 1, 0, 0, 0, 0, "fine_linear"});   // no scene can say it
-    result.rows.push_back({"s", m, "k", "other", 1, 1, 0, 0, 0, 0, "fine_linear"});  // does not serve
-  }
-  const auto values = [&](double budget) {
-    std::vector<std::string> chosen;
-    if (const auto choice = choose(methods, 2, result, budget))
-      for (const Point& p : choice->points) chosen.push_back(p.value);
-    return chosen;
-  };
-  EXPECT_EQ(values(250e-6), (std::vector<std::string>{"slow", "slow"}));
-  EXPECT_EQ(values(50e-6), (std::vector<std::string>{"fast", "fast"}));
-  EXPECT_TRUE(values(15e-6).empty());
 }
 
 }  // namespace

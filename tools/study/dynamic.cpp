@@ -14,6 +14,7 @@
 #include "tools/study/cut_rest.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
+#include "tools/study/slides.hpp"
 
 namespace palpate::study {
 namespace {
@@ -46,7 +47,7 @@ class Dynamic : public Method {
                        model_.become(body);
                        change(body);
                      },
-                     serves && moves && (own_ || !solid_->has_two_meshes())});
+                     serves && own_});
     };
     add(own_ ? "scene" : "model", own_ ? "as it is" : model_.name, true, [](Body&) {});
     const bool turning = motion.corotational;
@@ -168,6 +169,7 @@ class Dynamic : public Method {
     solid_->add_errors(row, answers, result);
     solid_->errors().add(row, answers, same_mesh(), "same_mesh", result);
     add_course(scene, ready, row, result);
+    if (row.knob == "scene") add_slides(*solid_, scene, ready.archive, row, {}, result);
     return result;
   }
 

@@ -5,15 +5,13 @@
 
 #include "common/archive/archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tools/rig/surface_path.hpp"
 
 namespace palpate::study {
 
-/// A place of the surface that is pressed: a point within a triangle, neither a node nor the middle.
-struct Patch {
-  Eigen::Vector3d point;   ///< [m]
-  Eigen::Vector3d inward;  ///< unit, against the triangle's normal
-  int triangle;            ///< of the surface map
-};
+/// A place of the surface that is pressed: a point within a triangle, neither a node nor the middle, pressed against
+/// the triangle's own normal.
+using Patch = SurfacePlace;
 
 /// Presses of physical size, the same for all methods.
 struct Presses {
@@ -24,11 +22,6 @@ struct Presses {
 
   double deepest() const { return depths.back(); }
 };
-
-/// Where the ball's centre is for a depth [m].
-inline Eigen::Vector3d centre_at(const Patch& patch, double radius, double depth) {
-  return patch.point + (depth - radius) * patch.inward;
-}
 
 /// The ball is the tip of the scene's first probe; without one its radius is the surface's mean edge. Depths
 /// go up to half the radius. Places: touchable triangles away from fixed nodes where the surface is smooth,

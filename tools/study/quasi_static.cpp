@@ -12,6 +12,7 @@
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
+#include "tools/study/slides.hpp"
 
 namespace palpate::study {
 namespace {
@@ -49,17 +50,24 @@ class QuasiStatic : public Method {
     std::vector<Point> all;
     const bool serves = !find_motion(solid_->body());
     const int b = solid_->index();
-    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
+    const QuasiStaticSpec own = as_kind<QuasiStaticSpec>(solid_->body());
+    // `open`: the scene leaves it open, so that a budget may choose it.
+    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change,
+                         bool open = true) {
       all.push_back({name_, knob, value,
                      [=](Scene& scene) {
                        as_quasi_static(scene.bodies[b]);
                        change(scene);
                      },
-                     serves});
+                     serves && open});
     };
     add("scene", "as it is", [](Scene&) {});
-    for (const char* rule : {"barycentric", "alpha", "patch"})
-      if (rule != solid_->scene().contact.rule) add("rule", rule, [rule](Scene& scene) { scene.contact.rule = rule; });
+    const std::string& own_rule = solid_->scene().contact.rule;
+    for (const std::string rule : {"barycentric", "alpha", "patch"})  // alpha is there for comparison
+      if (rule != own_rule)
+        add(
+            "rule", rule, [rule](Scene& scene) { scene.contact.rule = rule; },
+            own_rule == ContactSpec{}.rule && rule != "alpha");
     for (const int count : tensor_counts())
       add("tensors", std::to_string(count), [b, nodes = nearest_nodes(*solid_, count)](Scene& scene) {
         as_quasi_static(scene.bodies[b]).touchable = NodeSelector{{.indices = nodes, .box = {}, .group = {}}};
@@ -73,10 +81,13 @@ class QuasiStatic : public Method {
         {"refine 2", {.refine = 2}}};
     for (const auto& [value, offline] : better) {
       if (solid_->quick() && value != "refine 1") continue;
-      add("offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; });
+      add(
+          "offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; },
+          !own.offline);
     }
-    if (as_kind<QuasiStaticSpec>(solid_->body()).nonlinear)
-      add("correction", "off", [b](Scene& scene) { as_quasi_static(scene.bodies[b]).nonlinear.reset(); });
+    if (own.nonlinear)
+      add(
+          "correction", "off", [b](Scene& scene) { as_quasi_static(scene.bodies[b]).nonlinear.reset(); }, false);
     return all;
   }
 
@@ -93,7 +104,7 @@ class QuasiStatic : public Method {
     row.offline_s = seconds_since(begin);
     if (point.value == "single") round_tensors(archive);
     Result result;
-    std::vector<double> seconds;
+    std::vector<double> seconds, shares;
     PressAnswers answers;
     const auto& presses = solid_->presses();
     const int samples = (solid_->quick() ? 600 : 2400) / static_cast<int>(presses.patches.size());
@@ -110,16 +121,26 @@ class QuasiStatic : public Method {
       }
       const auto times = press.time(200, samples);
       seconds.insert(seconds.end(), times.begin(), times.end());
+      if (!slides(point)) continue;
+      press.to(-0.5 * presses.radius, 0);
+      const auto around = press_around(*solid_, static_cast<int>(p), press.rig());
+      shares.insert(shares.end(), around.begin(), around.end());
     }
     const StepTime time = summarise(std::move(seconds));
     row.step_us_median = 1e6 * time.median;
     row.step_us_p99 = 1e6 * time.p99;
     if (point.value == "double") row.memory_bytes += 4.0 * archive.surface.size() * 3 * archive.surface.touchable * 3;
     solid_->add_errors(row, answers, result);
+    if (slides(point)) add_slides(*solid_, scene, archive, row, shares, result);
     return result;
   }
 
  private:
+  /// Whether the setting can change how a slide feels.
+  static bool slides(const Point& point) {
+    return point.knob == "scene" || point.knob == "rule" || point.knob == "offline";
+  }
+
   std::vector<int> tensor_counts() const {
     const int all = solid_->surface().touchable;
     std::vector<int> counts{all / 2, all / 4, all / 10};

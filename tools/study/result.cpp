@@ -18,6 +18,8 @@ const char* const depth_head =
     "reference";
 const char* const course_head =
     "scene,method,knob,value,time_s,force_N,reference_force_N,displacement_m,reference_displacement_m";
+const char* const slide_head = "scene,method,knob,value,friction,path_m,force_N,tangential_N,reference_force_N";
+const char* const touch_head = "scene,method,knob,value,friction,mean_force_N,ripple,jump,turn,buzz,spread";
 const char* const note_head = "scene,method,knob,value,text";
 
 std::string cell(double value) {
@@ -51,6 +53,18 @@ std::string line(const CourseRow& r) {
                      cell(r.reference_displacement_m));
 }
 
+std::string line(const SlideRow& r) {
+  return fmt::format("{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob), cell(r.value),
+                     cell(r.friction), cell(r.path_m), cell(r.force_N), cell(r.tangential_N),
+                     cell(r.reference_force_N));
+}
+
+std::string line(const TouchRow& r) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob), cell(r.value),
+                     cell(r.friction), cell(r.mean_force_N), cell(r.ripple), cell(r.jump), cell(r.turn), cell(r.buzz),
+                     cell(r.spread));
+}
+
 std::string line(const Note& n) {
   return fmt::format("{},{},{},{},{}", cell(n.scene), cell(n.method), cell(n.knob), cell(n.value), cell(n.text));
 }
@@ -75,6 +89,8 @@ void append(Result& to, const Result& from) {
   to.rows.insert(to.rows.end(), from.rows.begin(), from.rows.end());
   to.depths.insert(to.depths.end(), from.depths.begin(), from.depths.end());
   to.courses.insert(to.courses.end(), from.courses.begin(), from.courses.end());
+  to.slides.insert(to.slides.end(), from.slides.begin(), from.slides.end());
+  to.touches.insert(to.touches.end(), from.touches.begin(), from.touches.end());
   to.notes.insert(to.notes.end(), from.notes.begin(), from.notes.end());
 }
 
@@ -82,6 +98,8 @@ void write_result(const Result& result, const std::filesystem::path& folder) {
   write_table(folder / "study.csv", study_head, result.rows);
   write_table(folder / "depth.csv", depth_head, result.depths);
   write_table(folder / "course.csv", course_head, result.courses);
+  write_table(folder / "slide.csv", slide_head, result.slides);
+  write_table(folder / "touch.csv", touch_head, result.touches);
   write_table(folder / "notes.csv", note_head, result.notes);
 }
 
@@ -91,6 +109,8 @@ void write_fragment(const Result& result, const std::filesystem::path& file) {
   for (const Row& r : result.rows) out << "study," << line(r) << '\n';
   for (const DepthRow& r : result.depths) out << "depth," << line(r) << '\n';
   for (const CourseRow& r : result.courses) out << "course," << line(r) << '\n';
+  for (const SlideRow& r : result.slides) out << "slide," << line(r) << '\n';
+  for (const TouchRow& r : result.touches) out << "touch," << line(r) << '\n';
   for (const Note& r : result.notes) out << "note," << line(r) << '\n';
   out << "end\n";
   if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", beside.string()));
@@ -117,6 +137,12 @@ Result read_fragment(const std::filesystem::path& file) {
     else if (kind == "course" && c.size() == 9)
       result.courses.push_back(
           {c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]), number(c[8])});
+    else if (kind == "slide" && c.size() == 9)
+      result.slides.push_back(
+          {c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]), number(c[8])});
+    else if (kind == "touch" && c.size() == 11)
+      result.touches.push_back({c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]),
+                                number(c[8]), number(c[9]), number(c[10])});
     else if (kind == "note" && c.size() == 5)
       result.notes.push_back({c[0], c[1], c[2], c[3], c[4]});
     else

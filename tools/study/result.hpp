@@ -39,6 +39,23 @@ struct CourseRow {
   double displacement_m = 0, reference_displacement_m = 0;  ///< of the pressed place, along the press
 };
 
+/// One line of slide.csv: a tick of a slide.
+struct SlideRow {
+  std::string scene, method, knob, value;
+  double friction = 0, path_m = 0;  ///< negative in the run-up
+  double force_N = 0;
+  double tangential_N = 0;       ///< on the tool, along its motion
+  double reference_force_N = 0;  ///< without friction
+};
+
+/// One line of touch.csv: how a slide feels. See SlideMeasures.
+struct TouchRow {
+  std::string scene, method, knob, value;
+  double friction = kUnknown, mean_force_N = kUnknown;
+  double ripple = kUnknown, jump = kUnknown, turn = kUnknown, buzz = kUnknown;
+  double spread = kUnknown;  ///< over presses at places all over the patches' triangles
+};
+
 /// A sentence that belongs to a row, or to the scene as a whole (empty method).
 struct Note {
   std::string scene, method, knob, value, text;
@@ -49,12 +66,14 @@ struct Result {
   std::vector<Row> rows;
   std::vector<DepthRow> depths;
   std::vector<CourseRow> courses;
+  std::vector<SlideRow> slides;
+  std::vector<TouchRow> touches;
   std::vector<Note> notes;
 };
 
 void append(Result& to, const Result& from);
 
-/// Writes study.csv, depth.csv, course.csv and notes.csv into a folder.
+/// Writes study.csv, depth.csv, course.csv, slide.csv, touch.csv and notes.csv into a folder.
 void write_result(const Result& result, const std::filesystem::path& folder);
 /// One file that holds all of it, written beside and renamed: whole or absent.
 void write_fragment(const Result& result, const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "common/models/content_hash.hpp"
@@ -20,10 +21,9 @@ namespace palpate::study {
 namespace {
 
 using Fineness = SolidCase::Fineness;
-constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
-    neo_mesh{1, 1 / 5.0, 0.4, 6000};
-constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
-    quick_neo{1, 1 / 4.0, 0.6, 6000};
+constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 40000}, neo_mesh{1, 1 / 5.0, 0.4, 4500};
+constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_neo{1, 1 / 4.0, 0.6, 4500};
+constexpr double kLevel = std::numbers::sqrt2;  // edges of a mesh against those of the next finer one
 constexpr double kStride = 1.15;
 constexpr int kMaxStrides = 12;
 
@@ -61,20 +61,25 @@ Scene SolidCase::press_scene(const Scene& from, int patch) const {
   return ball_scene(from, std::move(body), presses().patches[patch], presses().radius);
 }
 
-double SolidCase::reach() const {
-  const double d = presses().deepest(), r = presses().radius;
-  return 1.1 * std::sqrt(2 * r * d - d * d);
+double SolidCase::reach(double depth) const {
+  return 1.1 * std::sqrt((2 * presses().radius - depth) * depth);
 }
 
-StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strides) const {
-  const Patch& at = presses().patches[patch];
+StaticProblem SolidCase::refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const {
+  const int max_nodes = static_cast<int>(problem_.mesh.nodes.size()) + fineness.more_nodes;
   for (;; ++strides) {
     const double faster = std::pow(kStride, strides);
     const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
     const double inner = std::min(outer, fineness.ball * presses().radius);
-    const auto size = size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
+    const SizeField size = [&](const Eigen::Vector3d& x) {
+      double least = outer;
+      for (const Patch& at : places)
+        least = std::min(least,
+                         size_around(x, at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth));
+      return least;
+    };
     try {
-      return refine_graded(problem_, size, fineness.max_nodes);
+      return refine_graded(problem_, size, max_nodes);
     } catch (const std::runtime_error&) {
       if (strides == kMaxStrides) throw;
     }
@@ -83,23 +88,28 @@ StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strid
 
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,
 // the mesh.
-std::string SolidCase::key(int patch, const Fineness& fineness) const {
-  constexpr int definitions = 2;  // changes with every change of how references are solved
+std::string SolidCase::key(std::span<const Patch> places, const Fineness& fineness) const {
+  constexpr int definitions = 3;  // changes with every change of how references are solved
   const Body plain = as_kind<QuasiStaticSpec>(solid());
-  const Patch& at = presses().patches[patch];
   std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
                                  fineness.ball, fineness.growth);
-  for (const double number :
-       {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2], presses().radius})
-    text += fmt::format(" {}", number);
+  for (const Patch& at : places)
+    for (const double number : {at.point[0], at.point[1], at.point[2], at.inward[0], at.inward[1], at.inward[2]})
+      text += fmt::format(" {}", number);
+  text += fmt::format(" of {}", presses().radius);
   for (const double depth : presses().depths) text += fmt::format(" {}", depth);
   return text;
 }
 
-std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, int strides) const {
+// Meshes of one place remain levels apart: all are graded as fast as the finest must be.
+std::vector<double> SolidCase::solve_fine(int patch, double coarser) const {
   const Patch& at = presses().patches[patch];
   const auto begin = std::chrono::steady_clock::now();
-  const LinearContact contact(refined(patch, fineness, strides), at.point, reach());
+  const Fineness& finest = quick_ ? kQuickFine : kFineMesh;
+  int strides = 0;
+  StaticProblem problem = refined(place(patch), finest, strides);
+  if (coarser > 1) problem = refined(place(patch), finest.coarser(coarser), strides);
+  const LinearContact contact(std::move(problem), std::array{at.point}, reach(presses().deepest()));
   std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
@@ -110,11 +120,21 @@ std::vector<double> SolidCase::solve_fine(int patch, const Fineness& fineness, i
   return numbers;
 }
 
-std::vector<PressAnswer> SolidCase::press_fine(int patch, const Fineness& fineness, int strides) const {
-  const auto numbers =
-      cache_.get("linear " + key(patch, fineness), [&] { return solve_fine(patch, fineness, strides); });
+std::vector<PressAnswer> SolidCase::press_fine(int patch, double coarser) const {
+  const auto key_of_mesh = fmt::format("linear {} {}", coarser, key(place(patch), quick_ ? kQuickFine : kFineMesh));
+  const auto numbers = cache_.get(key_of_mesh, [&] { return solve_fine(patch, coarser); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
+}
+
+// What linear elements leave wrong in the force falls with the square of their size, which is halved from level to
+// level. Displacements under the ball change from mesh to mesh by where the nodes lie, so that they stay those of the
+// finer one.
+std::vector<PressAnswer> SolidCase::extrapolated(int patch, double coarser) const {
+  auto answers = press_fine(patch, coarser);
+  const auto next = press_fine(patch, coarser * kLevel);
+  for (std::size_t d = 0; d < answers.size(); ++d) answers[d].force += answers[d].force - next[d].force;
+  return answers;
 }
 
 std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t count) const {
@@ -129,7 +149,7 @@ std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t 
 const std::vector<PressAnswer>& SolidCase::fine(int patch) {
   const auto found = fine_.find(patch);
   if (found != fine_.end()) return found->second;
-  return fine_[patch] = press_fine(patch, quick_ ? kQuickFine : kFineMesh, 0);
+  return fine_[patch] = extrapolated(patch, 1);
 }
 
 const PressAnswer& SolidCase::fine_linear(int patch, int depth) {
@@ -141,9 +161,7 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   int count = 0;
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
-    int strides = 0;  // those of the finer mesh, so that the two remain levels apart
-    refined(static_cast<int>(p), quick_ ? kQuickFine : kFineMesh, strides);
-    const auto next = press_fine(static_cast<int>(p), quick_ ? quick_next : next_mesh, strides);
+    const auto next = extrapolated(static_cast<int>(p), kLevel);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);
       square[1] += std::pow(next[d].force / best[d].force - 1, 2);
@@ -160,8 +178,8 @@ const SolidCase::Nonlinearity& SolidCase::nonlinearity(int patch) {
   }
   const auto found = nonlinearity_.find(patch);
   if (found != nonlinearity_.end()) return found->second;
-  const auto numbers =
-      cache_.get("neo-Hookean " + key(patch, quick_ ? quick_neo : neo_mesh), [&] { return solve_nonlinear(patch); });
+  const auto numbers = cache_.get("neo-Hookean " + key(place(patch), quick_ ? quick_neo : neo_mesh),
+                                  [&] { return solve_nonlinear(patch); });
   Nonlinearity& both = nonlinearity_[patch];
   const double* at = numbers.data();
   both.nodes = static_cast<int>(*at++);
@@ -184,7 +202,7 @@ std::vector<double> SolidCase::solve_nonlinear(int patch) const {
   const auto begin = std::chrono::steady_clock::now();
   const Patch& at = presses().patches[patch];
   int strides = 0;
-  const StaticProblem problem = refined(patch, quick_ ? quick_neo : neo_mesh, strides);
+  const StaticProblem problem = refined(place(patch), quick_ ? quick_neo : neo_mesh, strides);
   const auto ball = [&](double depth) { return Sphere{centre_at(at, presses().radius, depth), presses().radius}; };
   std::vector<double> numbers{static_cast<double>(problem.mesh.nodes.size()), 0, 0};
   for (const Law law : {Law::neo_hookean, Law::linear}) {

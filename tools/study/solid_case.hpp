@@ -2,6 +2,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "common/fem/direct.hpp"
 #include "tools/study/one_mesh.hpp"
@@ -38,24 +40,31 @@ class SolidCase {
   /// A scene of this body alone, as `from` has it, under a frictionless ball that comes to a patch along its
   /// press.
   Scene press_scene(const Scene& from, int patch) const;
+  /// The path of the slide about the first patch. Throws std::runtime_error where the surface has no room for it.
+  const SurfacePath& slide_path();
+  /// [N] force of the converged solution at each of that path's places, pressed to a depth [m]: through presses a sixth
+  /// of the radius apart; constant over the run-up.
+  const std::vector<double>& slide_reference(double depth);
 
-  /// Linear elasticity on a mesh so fine, around each patch, that it stands for the exact solution.
+  /// Linear elasticity on a fine mesh around each patch, its force extrapolated, which stands for the exact solution.
   const PressAnswer& fine_linear(int patch, int depth);
-  /// [1] by how much fine_linear() still differs from the next coarser level: an estimate of its own error
-  /// (u, f).
+  /// [1] by how much fine_linear() differs from what meshes one level coarser give in the same way: an estimate of its
+  /// own error (u, f).
   std::array<double, 2> fine_linear_rest();
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
   std::vector<Eigen::Vector3d> at_surface(const std::vector<Eigen::Vector3d>& of_nodes) const;
   /// How fine a reference's mesh is: edges far away against the body's own and under the ball against its
-  /// radius [1], by how much they grow per distance between, and how many nodes it may have. A mesh with more is
-  /// coarser far away and graded faster, in as many strides of 15 % as it takes.
+  /// radius [1], by how much they grow per distance between, and how many nodes it may have beyond the body's own. A
+  /// mesh with more is coarser far away and graded faster, in as many strides of 15 % as it takes.
   struct Fineness {
     double edge, ball, growth;
-    int max_nodes;
+    int more_nodes;
+
+    Fineness coarser(double by) const { return {by * edge, by * ball, by * growth, more_nodes}; }
   };
-  StaticProblem refined(int patch, const Fineness& fineness, int& strides) const;
-  double reach() const;  ///< [m] about a patch within which nodes may touch the ball
+  StaticProblem refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const;
+  double reach(double depth) const;  ///< [m] about a patch within which nodes may touch the ball
 
   /// The same contact with large strain and rotation (neo-Hookean), and with linear elasticity by the same
   /// solver, on one mesh; fewer depths where the solver gave up, with its reason, and none beyond the first
@@ -74,10 +83,13 @@ class SolidCase {
   void add_errors(const Row& cost, const PressAnswers& presses, Result& result);
 
  private:
-  std::vector<PressAnswer> press_fine(int patch, const Fineness& fineness, int strides) const;
-  std::vector<double> solve_fine(int patch, const Fineness& fineness, int strides) const;
+  std::vector<PressAnswer> extrapolated(int patch, double coarser) const;
+  std::vector<PressAnswer> press_fine(int patch, double coarser) const;
+  std::vector<double> solve_fine(int patch, double coarser) const;
+  std::vector<double> solve_slide(std::span<const Patch> places, double depth) const;
   std::vector<double> solve_nonlinear(int patch) const;
-  std::string key(int patch, const Fineness& fineness) const;
+  std::span<const Patch> place(int patch) const { return std::span(presses().patches).subspan(patch, 1); }
+  std::string key(std::span<const Patch> places, const Fineness& fineness) const;
   std::vector<PressAnswer> read_answers(const double*& at, std::size_t count) const;
 
   const std::string second_mesh_;  // content hash with it; empty unless a hybrid has one
@@ -92,6 +104,8 @@ class SolidCase {
   PressErrors errors_;
   std::map<int, std::vector<PressAnswer>> fine_;
   std::map<int, Nonlinearity> nonlinearity_;
+  std::optional<SurfacePath> slide_path_;
+  std::map<double, std::vector<double>> slide_reference_;
 };
 
 }  // namespace palpate::study

@@ -36,7 +36,7 @@ Result evaluate(const Scene& scene, Method& method, const Point& point) {
 
 void spend(const Scene& scene, const Methods& methods, const Result& result, const std::filesystem::path& folder,
            const StudyOptions& options) {
-  const auto choice = choose(methods, static_cast<int>(scene.bodies.size()), result, *options.budget);
+  const auto choice = choose(methods, scene, result, *options.budget);
   std::string text = fmt::format("No configuration fits a step within {} here.", options.budget_text);
   if (choice) {
     std::string unit = options.budget_text;
@@ -46,8 +46,12 @@ void spend(const Scene& scene, const Methods& methods, const Result& result, con
     std::string settings;
     for (const Point& p : choice->points)
       settings += fmt::format("{}{}, {} = {}", settings.empty() ? "" : "; ", p.method, p.knob, p.value);
-    text = fmt::format("Within {}: {}; 99th percentile {:.3g} us, largest error {:.2g} %; written as {}.",
-                       options.budget_text, settings, 1e6 * choice->p99, 100 * choice->error, file.filename().string());
+    const char* judged = is_quiet(result) ? "judged by both, the machine being quiet"
+                                          : "judged by the median alone, the machine not being quiet";
+    text = fmt::format(
+        "Within {}: {}; step {:.3g} us, 99th percentile {:.3g} us, {}; largest error {:.2g} %; written as {}.",
+        options.budget_text, settings, 1e6 * choice->median, 1e6 * choice->p99, judged, 100 * choice->error,
+        file.filename().string());
   }
   std::ofstream(folder / "budget.txt") << text << '\n';
   options.say(text);

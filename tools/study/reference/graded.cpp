@@ -171,12 +171,10 @@ double mean_edge(const TetMesh& mesh) {
   return sum / (6.0 * static_cast<double>(mesh.tetrahedra.size()));
 }
 
-SizeField size_around(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double radius, double inner,
-                      double growth, double outer) {
-  return [=](const Eigen::Vector3d& x) {
-    const double high = (x - centre).dot(axis), out = (x - centre - high * axis).norm() - radius;
-    return std::min(outer, inner + growth * std::hypot(high, std::max(0.0, out)));
-  };
+double size_around(const Eigen::Vector3d& place, const Eigen::Vector3d& centre, const Eigen::Vector3d& axis,
+                   double radius, double inner, double growth) {
+  const double high = (place - centre).dot(axis), out = (place - centre - high * axis).norm() - radius;
+  return inner + growth * std::hypot(high, std::max(0.0, out));
 }
 
 }  // namespace palpate::study

@@ -19,8 +19,8 @@ StaticProblem refine_graded(const StaticProblem& problem, const SizeField& size,
 /// [m] mean edge of the tetrahedra.
 double mean_edge(const TetMesh& mesh);
 
-/// Size wanted around a flat disc: `inner` on it, growing by `growth` per metre of distance up to `outer`.
-SizeField size_around(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double radius, double inner,
-                      double growth, double outer);
+/// [m] Size wanted at a place around a flat disc: `inner` on it, growing by `growth` per metre of distance.
+double size_around(const Eigen::Vector3d& place, const Eigen::Vector3d& centre, const Eigen::Vector3d& axis,
+                   double radius, double inner, double growth);
 
 }  // namespace palpate::study

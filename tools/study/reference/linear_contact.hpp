@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "common/fem/direct.hpp"
 #include "tools/study/reference/sphere.hpp"
 
@@ -10,22 +12,28 @@ namespace palpate::study {
 /// reach.
 class LinearContact {
  public:
-  /// Nodes of the surface within `reach` [m] of `centre` may touch the ball.
-  LinearContact(StaticProblem problem, const Eigen::Vector3d& centre, double reach);
+  /// Nodes of the surface within `reach` [m] of one of `centres` may touch the ball.
+  LinearContact(StaticProblem problem, std::span<const Eigen::Vector3d> centres, double reach);
 
   /// Throws std::runtime_error if the contact does not settle or the ball comes to nodes beyond the reach.
   PressState press(const Sphere& ball) const;
   const StaticProblem& problem() const { return problem_; }
-  int candidates() const { return static_cast<int>(node_.size()); }
+  int candidates() const { return static_cast<int>(all_.node.size()); }
 
  private:
-  Eigen::VectorXd solve_normal_forces(const Sphere& ball, const std::vector<Eigen::Vector3d>& normal,
-                                      std::vector<char>& active) const;
+  /// Nodes that may touch the ball.
+  struct Candidates {
+    std::vector<int> node;
+    Eigen::MatrixXd compliance;  // [m/N] among them, 3 entries a node; fixed axes hold zeros
+  };
+  Candidates near(const Sphere& ball) const;
+  Eigen::VectorXd solve_normal_forces(const Sphere& ball, const Candidates& candidates,
+                                      const std::vector<Eigen::Vector3d>& normal, std::vector<char>& active) const;
 
   StaticProblem problem_;
+  std::vector<int> surface_;  // nodes of the surface
+  Candidates all_;
   Factorisation factor_;
-  std::vector<int> surface_, node_;  // nodes of the surface; candidates among them
-  Eigen::MatrixXd compliance_;       // [m/N] 3 entries a candidate; fixed axes hold zeros
 };
 
 }  // namespace palpate::study
