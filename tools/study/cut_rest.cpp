@@ -9,7 +9,7 @@
 
 #include "tools/rig/kinds.hpp"
 #include "tools/study/measure.hpp"
-#include "tools/study/reference/graded.hpp"
+#include "common/fem/refine_graded.hpp"
 
 namespace palpate::study {
 namespace {

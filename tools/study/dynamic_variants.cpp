@@ -1,6 +1,6 @@
 #include "common/models/hybrid/hybrid_split.hpp"
 #include "tools/study/kinds.hpp"
-#include "tools/study/reference/graded.hpp"
+#include "common/fem/refine_graded.hpp"
 
 namespace palpate::study {
 

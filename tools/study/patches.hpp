@@ -36,7 +36,4 @@ inline Eigen::Vector3d centre_at(const Patch& patch, double radius, double depth
 /// same surface gives the same places. Throws std::runtime_error if no triangle serves.
 Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick);
 
-/// [m^2] share of the surface of each node.
-std::vector<double> node_areas(const SurfaceMap& surface);
-
 }  // namespace palpate::study

@@ -13,19 +13,16 @@
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
-#include "tools/study/reference/graded.hpp"
-#include "tools/study/reference/newton.hpp"
+#include "common/fem/refine_graded.hpp"
+#include "common/fem/newton_solid.hpp"
 
 namespace palpate::study {
 namespace {
 
-using Fineness = SolidCase::Fineness;
 constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 20000}, next_mesh{0.8, 1 / 6.0, 0.4, 20000},
     neo_mesh{1, 1 / 5.0, 0.4, 6000};
 constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 12000}, quick_next{1, 1 / 4.0, 0.5, 12000},
     quick_neo{1, 1 / 4.0, 0.6, 6000};
-constexpr double kStride = 1.15;
-constexpr int kMaxStrides = 12;
 
 void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   numbers.push_back(answer.force);
@@ -49,7 +46,7 @@ SolidCase::SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, Re
       say_(std::move(say)),
       problem_(make_static_problem(solid(), std::move(whole.mesh))),
       surface_(make_surface_map(solid(), problem_.mesh, problem_.dofs)),
-      errors_(node_areas(surface_), choose_presses(scene, surface_, quick)) {}
+      errors_(node_areas(surface_.position, surface_.triangles), choose_presses(scene, surface_, quick)) {}
 
 std::string SolidCase::name(const std::string& model) const {
   return scene_.bodies.size() == 1 ? model : fmt::format("{}:{}", solid().name, model);
@@ -68,17 +65,7 @@ double SolidCase::reach() const {
 
 StaticProblem SolidCase::refined(int patch, const Fineness& fineness, int& strides) const {
   const Patch& at = presses().patches[patch];
-  for (;; ++strides) {
-    const double faster = std::pow(kStride, strides);
-    const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
-    const double inner = std::min(outer, fineness.ball * presses().radius);
-    const auto size = size_around(at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth, outer);
-    try {
-      return refine_graded(problem_, size, fineness.max_nodes);
-    } catch (const std::runtime_error&) {
-      if (strides == kMaxStrides) throw;
-    }
-  }
+  return refine_under_ball(problem_, {at.point, at.inward, presses().radius}, fineness, strides);
 }
 
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,

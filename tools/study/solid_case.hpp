@@ -4,9 +4,10 @@
 #include <memory>
 
 #include "common/fem/direct.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
-#include "tools/study/reference/linear_contact.hpp"
+#include "tools/study/linear_contact.hpp"
 #include "tools/study/reference_cache.hpp"
 
 namespace palpate::study {
@@ -47,13 +48,6 @@ class SolidCase {
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
   std::vector<Eigen::Vector3d> at_surface(const std::vector<Eigen::Vector3d>& of_nodes) const;
-  /// How fine a reference's mesh is: edges far away against the body's own and under the ball against its
-  /// radius [1], by how much they grow per distance between, and how many nodes it may have. A mesh with more is
-  /// coarser far away and graded faster, in as many strides of 15 % as it takes.
-  struct Fineness {
-    double edge, ball, growth;
-    int max_nodes;
-  };
   StaticProblem refined(int patch, const Fineness& fineness, int& strides) const;
   double reach() const;  ///< [m] about a patch within which nodes may touch the ball
 

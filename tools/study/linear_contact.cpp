@@ -1,4 +1,4 @@
-#include "tools/study/reference/linear_contact.hpp"
+#include "tools/study/linear_contact.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -3,10 +3,10 @@
 #include <span>
 
 #include "common/fem/direct.hpp"
-#include "tools/study/reference/neo_hookean.hpp"
-#include "tools/study/reference/sphere.hpp"
+#include "common/fem/neo_hookean.hpp"
+#include "common/fem/sphere.hpp"
 
-namespace palpate::study {
+namespace palpate {
 
 /// How a solve went.
 struct NewtonOutcome {
@@ -31,9 +31,9 @@ class NewtonSolid {
   /// Goes on from the last converged state; on failure the state stays as it was.
   NewtonOutcome solve(const std::optional<Sphere>& ball);
   /// Solves with the ball brought from `from` (the last one) to `to` in steps of a tenth of its radius, or
-  /// shorter ones where those do not converge. Throws std::runtime_error if twelve halvings on end do not
+  /// shorter ones where those do not converge. Throws std::runtime_error if so many halvings on end do not
   /// help.
-  PressState press(const Sphere& from, const Sphere& to);
+  PressState press(const Sphere& from, const Sphere& to, int max_halvings = 12);
 
   const std::vector<Eigen::Vector3d>& displacement() const { return u_; }
   PressState state(const std::optional<Sphere>& ball) const;
@@ -70,4 +70,4 @@ class NewtonSolid {
   int steps_ = 0, iterations_ = 0;
 };
 
-}  // namespace palpate::study
+}  // namespace palpate

@@ -1,6 +1,6 @@
 #pragma once
 #include "common/fem/direct.hpp"
-#include "tools/study/reference/sphere.hpp"
+#include "common/fem/sphere.hpp"
 
 namespace palpate::study {
 
