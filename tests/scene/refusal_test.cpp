@@ -53,7 +53,7 @@ const Refusal kRefusals[] = {
      "[body.nonlinear] means nothing for the model 'tensor_mass'"},
     {"[body.touchable]\nnodes = [10, 11]", "[body.relaxation]\ntimes = [1]\nshares = [0.5]",
      "[body.relaxation]\ntimes = [1]",
-     "[body.relaxation] does not go with [body.nonlinear], whose curves were measured at one rate"},
+     "[body.relaxation] does not go with [body.nonlinear], whose curves are those of one rate"},
     {"young = 1e6", "model = \"tensor_mass\"\nyoung = 1e6", "[body.relaxation]",
      "[body.relaxation] means nothing for the model 'tensor_mass'"},
     {"times = [0.1, 2]", "times = []", "[]", "times must not be empty"},

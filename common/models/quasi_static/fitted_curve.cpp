@@ -26,13 +26,21 @@ FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>
   const Eigen::Map<const Eigen::VectorXd> right(y.data(), points);
   const Eigen::VectorXd solution = basis.colPivHouseholderQr().solve(right) / end_;
   std::copy_n(solution.data(), degree, coefficient_.begin());
-  end_value_ = value(end_);
+  end_ratio_ = ratio(end_);
   end_slope_ = slope(end_);
+}
+
+void FittedCurve::add(double share, const FittedCurve& other) {
+  count_ = std::max(count_, other.count_);
+  for (int k = 0; k < other.count_; ++k) coefficient_[k] += share * other.coefficient_[k];
+  end_ += share * other.end_;
+  end_ratio_ += share * other.end_ratio_;
+  end_slope_ += share * other.end_slope_;
 }
 
 double FittedCurve::ratio(double s) const {
   s = std::abs(s);
-  if (s > end_) return (end_value_ + end_slope_ * (s - end_)) / s;
+  if (s > end_) return (end_ * end_ratio_ + end_slope_ * (s - end_)) / s;
   const double t = 2 * s / end_ - 1;
   double b1 = 0, b2 = 0;  // Clenshaw
   for (int k = count_ - 1; k > 0; --k) b2 = std::exchange(b1, 2 * t * b1 - b2 + coefficient_[k]);
@@ -63,6 +71,12 @@ double FittedCurve::first_fall() const {
     if (slope(s) <= 1e-4 * greatest) return s;
   }
   return -1;
+}
+
+FittedCurve fit_rising(const std::vector<double>& s, const std::vector<double>& y, int degree) {
+  for (int d = std::min(degree, static_cast<int>(s.size())); d > 0; --d)
+    if (const FittedCurve curve(s, y, d); curve.first_fall() < 0) return curve;
+  return {{s.back()}, {s.back()}, 1};
 }
 
 }  // namespace palpate

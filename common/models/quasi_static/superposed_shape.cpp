@@ -26,7 +26,7 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 
 SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive)
     : BodyShape(archive.surface), sum_(archive) {
-  if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
+  if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
 }
 
 void SuperposedShape::displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
@@ -46,13 +46,20 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
     if (sum_.empty()) continue;
     sum_.combine(of_tool_);
     const Eigen::Vector3d press = press_direction(state, contacts.body);
-    add_corrected<float>(*nonlinear_, flat(of_tool_), press, flat(total));
+    add_corrected<float>(correction_of(state, contacts.body), flat(of_tool_), press, flat(total));
   }
   held_.clear();
   for (const auto& [tool, state] : contacts.of_tool)
     for (const NodalForce& f : state.forces)
       if (f.body == contacts.body) held_.push_back(static_cast<int>(f.node));
   keep_held<float>(held_, flat(linear_), flat(total));
+}
+
+QuasiNonlinear SuperposedShape::correction_of(const ContactState& tool, std::uint32_t body) const {
+  PressPlace place;
+  for (const NodalForce& f : tool.forces)
+    if (f.body == body) place.add(map().position[f.node], Eigen::Map<const Eigen::Vector3d>(f.force.data()).norm());
+  return nonlinear_->at(place.mean());
 }
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive) {

@@ -19,9 +19,10 @@ class SuperposedShape : public BodyShape {
  private:
   void displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) override;
   void correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total);
+  QuasiNonlinear correction_of(const ContactState& tool, std::uint32_t body) const;
 
   ColumnSum sum_;
-  std::optional<QuasiNonlinear> nonlinear_;
+  std::optional<BodyNonlinear> nonlinear_;
   std::vector<int> held_;
   std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
   std::vector<Eigen::Vector3f> of_tool_;
