@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kRadius = 0.006;  // [m]
+constexpr double kRadius = 0.006;                                                // [m]
 constexpr double kDepths[] = {0.125, 0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5};  // of the radius
 constexpr int kMaxHalvings = 3;
 

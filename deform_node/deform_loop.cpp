@@ -55,7 +55,8 @@ void DeformLoop::keep_house(std::int64_t now) {
                                                  static_cast<double>(now - last_status_ns_);
   const std::string silence = link_.silence("haptic", now);
   presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)),
-                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)), silence.empty() ? range_.warning() : silence);
+                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)),
+                     silence.empty() ? range_.warning() : silence);
   last_status_ns_ = now;
   last_frames_ = report_.frames;
 }

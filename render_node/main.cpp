@@ -50,17 +50,17 @@ void write_still(const Stage& stage, int width, int height) {
 void summarise(const RenderReport& r, const Film* film, const RangeMonitor* range, bool supervised) {
   const auto us = [](const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); };
   nlohmann::json summary{{"node", "render"},
-                               {"seconds", r.seconds},
-                               {"frames", r.frames},
-                               {"missed", r.missed},
-                               {"refused", r.refused},
-                               {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
-                               {"latency_us_p50", us(r.latency, 0.5)},
-                               {"latency_us_p99", us(r.latency, 0.99)},
-                               {"draw_us_p50", us(r.draw, 0.5)},
-                               {"draw_us_p99", us(r.draw, 0.99)},
-                               {"force_max_n", r.peak_force},
-                               {"film_frames", film ? film->frames() : 0}};
+                         {"seconds", r.seconds},
+                         {"frames", r.frames},
+                         {"missed", r.missed},
+                         {"refused", r.refused},
+                         {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
+                         {"latency_us_p50", us(r.latency, 0.5)},
+                         {"latency_us_p99", us(r.latency, 0.99)},
+                         {"draw_us_p50", us(r.draw, 0.5)},
+                         {"draw_us_p99", us(r.draw, 0.99)},
+                         {"force_max_n", r.peak_force},
+                         {"film_frames", film ? film->frames() : 0}};
   if (range) summary["range"] = range_summary(*range);
   if (supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms", r.frames,

@@ -67,8 +67,8 @@ struct Archive {
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
   std::vector<double> other_compliance;
   /// Slopes of the linear model's specimen curves where the scene names a specimen mesh, else 0.
-  double specimen_force_slope = 0;   ///< [N/m]
-  double specimen_radial_slope = 0;  ///< [1]
+  double specimen_force_slope = 0;    ///< [N/m]
+  double specimen_radial_slope = 0;   ///< [1]
   std::vector<PressedPlace> presses;  ///< empty unless the scene asks for them
   std::optional<HybridTensors> hybrid;
   std::optional<ModalTensors> modal;  ///< of a shell, beside the static compliance of its nodes

@@ -42,7 +42,8 @@ SurfaceAtRest::SurfaceAtRest(const std::vector<Vector3d>& position, std::vector<
   }
 }
 
-// F = E' E^-1 in the triangle's plane; U = sqrt(F^T F) = (C + sqrt(det C) I) / sqrt(tr C + 2 sqrt(det C)), and R = F U^-1.
+// F = E' E^-1 in the triangle's plane; U = sqrt(F^T F) = (C + sqrt(det C) I) / sqrt(tr C + 2 sqrt(det C)), and R = F
+// U^-1.
 SurfaceChange SurfaceAtRest::change(std::span<const Eigen::Vector3f> position) const {
   double largest = 1, least = 1, cosine = 1, sum = 0;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {

@@ -19,8 +19,8 @@ class SurfaceAtRest {
   /// Triangles outward by the right-hand rule; `position` [m].
   SurfaceAtRest(const std::vector<Eigen::Vector3d>& position, std::vector<std::array<int, 3>> triangles);
 
-  /// `position` [m] of the same nodes. Of each triangle the deformation gradient is split into rotation and stretch, its
-  /// normal going along without stretch. About 60 flops a triangle; allocates nothing.
+  /// `position` [m] of the same nodes. Of each triangle the deformation gradient is split into rotation and stretch,
+  /// its normal going along without stretch. About 60 flops a triangle; allocates nothing.
   SurfaceChange change(std::span<const Eigen::Vector3f> position) const;
 
  private:

@@ -11,9 +11,9 @@ namespace {
 
 std::string describe(const RangeMonitor::Watched& body) {
   const UsedRange& r = body.now;
-  std::string text = fmt::format("{} beyond its linear range: stretch {:.0f} %, rotation {:.0f} deg, volume {:+.1f} %",
-                                 body.name, 100 * r.change.stretch, 180 / std::numbers::pi * r.change.rotation,
-                                 100 * r.change.volume);
+  std::string text =
+      fmt::format("{} beyond its linear range: stretch {:.0f} %, rotation {:.0f} deg, volume {:+.1f} %", body.name,
+                  100 * r.change.stretch, 180 / std::numbers::pi * r.change.rotation, 100 * r.change.volume);
   if (r.force > 0) text += fmt::format(", force {:.0f} % of what is fitted", 100 * r.force);
   return text;
 }

@@ -22,8 +22,8 @@ struct UsedRange {
   bool within() const;
 };
 
-/// Watches whether bodies whose shape is superposed stay where linear elasticity holds, and its correction where that is
-/// fitted.
+/// Watches whether bodies whose shape is superposed stay where linear elasticity holds, and its correction where that
+/// is fitted.
 class RangeMonitor {
  public:
   RangeMonitor(const Scene& scene, const Deformer& deformer);

@@ -23,8 +23,7 @@ struct Moved {
 
   SurfaceChange by(const Matrix3d& gradient) {
     position.clear();
-    for (const Vector3d& x : mesh.nodes)
-      position.emplace_back((gradient * x + 1e-3 * Vector3d(1, 2, 3)).cast<float>());
+    for (const Vector3d& x : mesh.nodes) position.emplace_back((gradient * x + 1e-3 * Vector3d(1, 2, 3)).cast<float>());
     return rest.change(position);
   }
 };
@@ -32,8 +31,7 @@ struct Moved {
 TEST(SurfaceChange, ARigidMotionIsARotationAlone) {
   Moved block;
   for (const double angle : {0.0, 0.3, 1.2, 2.9}) {
-    const SurfaceChange c =
-        block.by(Eigen::AngleAxisd(angle, Vector3d(1, -2, 3).normalized()).toRotationMatrix());
+    const SurfaceChange c = block.by(Eigen::AngleAxisd(angle, Vector3d(1, -2, 3).normalized()).toRotationMatrix());
     EXPECT_NEAR(c.stretch, 0, 1e-5);
     EXPECT_NEAR(c.rotation, angle, angle == 0 ? 1e-2 : 1e-4);
     EXPECT_NEAR(c.volume, 0, 1e-5);

@@ -229,7 +229,8 @@ TEST(DuctStage, ScenesWithoutACatheterAskForNoTaskRecord) {
   TaskWorld world;
   world.d.s.scene.bodies.resize(1);
   world.d.s.archives.resize(1);
-  const auto source = deform_surfaces(world.d.s.scene, *world.bus, world.presence, Deformer(world.d.s.scene, world.d.s.archives));
+  const auto source =
+      deform_surfaces(world.d.s.scene, *world.bus, world.presence, Deformer(world.d.s.scene, world.d.s.archives));
   Renderer renderer(160, 120);
   std::vector<SurfaceMap> surfaces{world.d.s.archives[0].surface};
   const RenderLoop loop(world.d.s.scene, Stage(world.d.s.scene, surfaces, {}), *source, *world.bus, world.presence,

@@ -224,9 +224,8 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   };
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->material.young *= 1 + 1e-15; }));
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->fixed[0].axes[1] = true; }));
-  EXPECT_TRUE(changed([](Scene& s) {
-    std::get<MeasuredLaw>(as<QuasiStaticSpec>(s.bodies[0])->nonlinear->law).degree = 6;
-  }));
+  EXPECT_TRUE(
+      changed([](Scene& s) { std::get<MeasuredLaw>(as<QuasiStaticSpec>(s.bodies[0])->nonlinear->law).degree = 6; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->law = NeoHookeanLaw{}; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear.reset(); }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[1])->relaxation->shares[1] = 0.2; }));

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/fem/newton_solid.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "common/models/content_hash.hpp"
 #include "common/models/solid/precompute.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
-#include "common/fem/refine_graded.hpp"
-#include "common/fem/newton_solid.hpp"
 
 namespace palpate::study {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "common/fem/direct.hpp"
 #include "common/fem/refine_graded.hpp"
+#include "tools/study/linear_contact.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
-#include "tools/study/linear_contact.hpp"
 #include "tools/study/reference_cache.hpp"
 
 namespace palpate::study {

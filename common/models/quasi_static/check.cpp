@@ -45,10 +45,11 @@ std::string say_law(const MeasuredLaw& law, const QuasiStaticSpec& body, const C
     slopes.specimen_radial_slope = pressed.radial;
   }
   const QuasiNonlinear curves = make_nonlinear(body, slopes).at(Eigen::Vector3d::Zero());
-  return fmt::format("degree {}, {} ends; fitted up to a linear force of {:.3g} N and a linear radial displacement of "
-                     "{:.3g} m",
-                     law.degree, law.specimen_mesh.empty() ? "sliding" : "stuck", curves.force_curve().end(),
-                     curves.radial_curve().end());
+  return fmt::format(
+      "degree {}, {} ends; fitted up to a linear force of {:.3g} N and a linear radial displacement of "
+      "{:.3g} m",
+      law.degree, law.specimen_mesh.empty() ? "sliding" : "stuck", curves.force_curve().end(),
+      curves.radial_curve().end());
 }
 
 std::string say_law(const NeoHookeanLaw& law, const QuasiStaticSpec&, const CheckSettings& settings) {
@@ -75,10 +76,10 @@ void warn_of_ball(const QuasiStaticSpec& body, const CheckSettings& settings, Ch
   for (const Tool& tool : settings.tools) {
     const double radius = abilities_of(tool).radius;
     if (std::abs(radius / law->ball_radius - 1) > kLikeBall)
-      report.warnings.push_back(
-          fmt::format("tool '{}' has {} of {:.3g} m, and the correction of body '{}' is of presses with a ball of {:.3g} "
-                      "m: give [body.nonlinear] that ball_radius",
-                      tool.name, abilities_of(tool).radius_of, radius, body.name, law->ball_radius));
+      report.warnings.push_back(fmt::format(
+          "tool '{}' has {} of {:.3g} m, and the correction of body '{}' is of presses with a ball of {:.3g} "
+          "m: give [body.nonlinear] that ball_radius",
+          tool.name, abilities_of(tool).radius_of, radius, body.name, law->ball_radius));
   }
 }
 

@@ -14,8 +14,8 @@ namespace palpate {
 
 namespace {
 
-constexpr int kDegree = 4;        // of the curves through computed presses
-constexpr double kSpot = 1e-4;    // [m] about a place within which the others do not count
+constexpr int kDegree = 4;      // of the curves through computed presses
+constexpr double kSpot = 1e-4;  // [m] about a place within which the others do not count
 
 /// The true answer over the linear one.
 FittedCurve fit_pairs(const std::vector<PressedPlace::Pair>& pairs) {

@@ -41,8 +41,8 @@ std::vector<PressState> course(const StaticProblem& problem, Law law, const Pres
   try {
     while (states.size() < most) {
       const std::size_t done = states.size();
-      states.push_back(solid.press(ball_at(spot, depth_of(spot, done)), ball_at(spot, depth_of(spot, done + 1)),
-                                   kMaxHalvings));
+      states.push_back(
+          solid.press(ball_at(spot, depth_of(spot, done)), ball_at(spot, depth_of(spot, done + 1)), kMaxHalvings));
     }
   } catch (const std::runtime_error&) {  // the range ends with the steps reached
   }

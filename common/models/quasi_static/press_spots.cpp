@@ -9,14 +9,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kReach = 1.2;   // of the ball's radius: what has to be smooth
-constexpr int kChoice = 3;       // times as many nodes as wanted, that a stricter demand has to leave
+constexpr double kReach = 1.2;                // of the ball's radius: what has to be smooth
+constexpr int kChoice = 3;                    // times as many nodes as wanted, that a stricter demand has to leave
 constexpr double kSmooth[] = {0.8, 0.5, -1};  // cosines of the facets against the press
 constexpr double kClear[] = {1.5, 0};         // radii from what is fixed
 
 struct Candidate {
   PressedSpot spot;
-  double smooth = 1;                                            // least cosine of a facet within reach
+  double smooth = 1;                                       // least cosine of a facet within reach
   double clear = std::numeric_limits<double>::infinity();  // [m] from what is fixed
 };
 
@@ -38,8 +38,8 @@ std::vector<Facet> facets_of(const SurfaceMap& s, std::vector<Vector3d>& node_no
     const Vector3d &a = s.position[t[0]], &b = s.position[t[1]], &c = s.position[t[2]];
     const Vector3d twice = (b - a).cross(c - a), middle = (a + b + c) / 3;
     for (const int n : t) node_normal[n] += twice;
-    facets.push_back({middle, twice.normalized(),
-                      std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
+    facets.push_back(
+        {middle, twice.normalized(), std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
   }
   return facets;
 }

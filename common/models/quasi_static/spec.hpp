@@ -58,8 +58,9 @@ inline void describe(Description& d, NeoHookeanLaw& n) {
   d.number({"ball_radius", "m", "radius of the ball that presses: that of the tips that will touch the body",
             Need::optional, Use::stored},
            n.ball_radius, above(0));
-  d.integer({"places", "", "number of places that it presses, spread over what can be touched; between them the "
-                           "correction goes over evenly",
+  d.integer({"places", "",
+             "number of places that it presses, spread over what can be touched; between them the "
+             "correction goes over evenly",
              Need::optional, Use::stored},
             n.places, 1, NeoHookeanLaw::kMaxPlaces);
 }
