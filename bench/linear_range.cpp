@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadius = 0.006;                                                // [m]
 constexpr double kDepths[] = {0.125, 0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5};  // of the radius
-constexpr int kMaxHalvings = 3;
+constexpr NewtonSolid::Stepping kStepping{.max_halvings = 3};
 
 /// [1] difference of two fields in the mean square over a surface's area.
 double difference(const std::vector<double>& area, const PressState& a, const PressState& truth) {
@@ -43,8 +43,8 @@ void press(const std::string& name, const SolidSpec& body, const TetMesh& mesh, 
     if (quick && share > 0.5) break;
     const double depth = share * kRadius;
     try {
-      const PressState l = linear.press(ball(before), ball(depth), kMaxHalvings);
-      const PressState t = truth.press(ball(before), ball(depth), kMaxHalvings);
+      const PressState l = linear.press(ball(before), ball(depth), kStepping);
+      const PressState t = truth.press(ball(before), ball(depth), kStepping);
       std::vector<Eigen::Vector3f> position;
       for (int n = 0; n < map.size(); ++n)
         position.push_back((map.position[n] + l.displacement[map.node_number[n]]).cast<float>());

@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kMaxIterations = 30;
 constexpr double kTolerance = 1e-8;  // of the unbalanced force
-constexpr double kMaxStride = 0.1;   // of the ball's radius in one step of load
 constexpr double kMinShare = 1e-3;   // of Newton's step that the line search tries
 
 /// Where an entry of the lower triangle stands among the matrix's values; -1 outside it.
@@ -189,9 +188,9 @@ void NewtonSolid::predict(const Sphere& ball, double ratio) {
   if (energy(guess, ball) < energy(u_, ball)) u_ = std::move(guess);
 }
 
-PressState NewtonSolid::press(const Sphere& from, const Sphere& to, int max_halvings) {
+PressState NewtonSolid::press(const Sphere& from, const Sphere& to, const Stepping& stepping) {
   const double way = (to.centre - from.centre).norm();
-  double done = 0, stride = std::min(1.0, kMaxStride * to.radius / std::max(way, 1e-300));
+  double done = 0, stride = std::min(1.0, stepping.stride * to.radius / std::max(way, 1e-300));
   for (int halvings = 0; done < 1;) {
     const double next = std::min(1.0, done + stride);
     const Sphere ball{from.centre + next * (to.centre - from.centre), to.radius};
@@ -207,7 +206,8 @@ PressState NewtonSolid::press(const Sphere& from, const Sphere& to, int max_halv
     }
     u_ = reached;
     stride /= 2;
-    if (++halvings > max_halvings) throw std::runtime_error("Newton's method does not converge under the ball");
+    if (++halvings > stepping.max_halvings)
+      throw std::runtime_error("Newton's method does not converge under the ball");
   }
   return state(to);
 }

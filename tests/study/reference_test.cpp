@@ -10,7 +10,7 @@
 #include "common/mesh/generators.hpp"
 #include "common/mesh/surface.hpp"
 #include "tools/rig/example_bodies.hpp"
-#include "tools/study/linear_contact.hpp"
+#include "common/fem/linear_contact.hpp"
 
 /// The solvers that the study's references come from.
 namespace palpate::study {

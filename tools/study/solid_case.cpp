@@ -10,6 +10,7 @@
 
 #include "common/fem/newton_solid.hpp"
 #include "common/fem/refine_graded.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/models/content_hash.hpp"
 #include "common/models/solid/precompute.hpp"
 #include "tools/study/ball_press.hpp"

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/fem/dense.hpp"
+#include "common/fem/linear_contact.hpp"
 #include "common/fem/newton_solid.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/models/quasi_static/press_spots.hpp"
@@ -21,10 +22,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Fineness kFineness{1, 0.25, 0.6, 4000};
-constexpr int kSteps = 10;       // to the whole radius
-constexpr int kMaxHalvings = 3;  // of a step
-constexpr int kClasses = 12;     // of nodes, by how far they go across the press
+constexpr Fineness kFineness{1, 0.3, 0.7, 3000};
+constexpr int kSteps = 6;  // to the whole radius
+constexpr NewtonSolid::Stepping kStepping{.stride = 0.2, .max_halvings = 3};
+constexpr double kReach = 1.4;      // of the radius about the place, within which nodes may touch the ball
+constexpr double kTouching = 1e-3;  // of the radius
+constexpr int kClasses = 12;        // of nodes, by how far they go across the press
 
 Sphere ball_at(const PressedSpot& spot, double depth) {
   return {spot.point + (depth - spot.radius) * spot.inward, spot.radius};
@@ -34,16 +37,15 @@ double depth_of(const PressedSpot& spot, std::size_t step) {
   return spot.radius * static_cast<double>(step) / kSteps;
 }
 
-/// The states of the body after each step that finds equilibrium, but not beyond `most` steps.
-std::vector<PressState> course(const StaticProblem& problem, Law law, const PressedSpot& spot, std::size_t most) {
-  NewtonSolid solid(problem, law);
+/// The states of the body after each step that finds equilibrium, but not beyond `most` steps. `press(from, to)`:
+/// brings the ball from one place to the next.
+template <class Press>
+std::vector<PressState> course(const PressedSpot& spot, std::size_t most, Press&& press) {
   std::vector<PressState> states;
   try {
-    while (states.size() < most) {
-      const std::size_t done = states.size();
+    while (states.size() < most)
       states.push_back(
-          solid.press(ball_at(spot, depth_of(spot, done)), ball_at(spot, depth_of(spot, done + 1)), kMaxHalvings));
-    }
+          press(ball_at(spot, depth_of(spot, states.size())), ball_at(spot, depth_of(spot, states.size() + 1))));
   } catch (const std::runtime_error&) {  // the range ends with the steps reached
   }
   return states;
@@ -63,7 +65,7 @@ class Comparison {
   void add(double depth, const PressState& linear, const PressState& truth) {
     const Sphere ball = ball_at(spot_, depth);
     const auto outside = [&](int n, const PressState& state) {
-      return (mesh_.nodes[n] + state.displacement[n] - ball.centre).norm() > ball.radius;
+      return (mesh_.nodes[n] + state.displacement[n] - ball.centre).norm() > (1 + kTouching) * ball.radius;
     };
     for (const int n : surface_.nodes) {
       if (!outside(n, linear) || !outside(n, truth)) continue;  // held by the ball
@@ -109,8 +111,11 @@ class Comparison {
 PressedPlace press(const StaticProblem& problem, const PressedSpot& spot) {
   int strides = 0;
   const StaticProblem fine = refine_under_ball(problem, spot, kFineness, strides);
-  const auto truth = course(fine, Law::neo_hookean, spot, kSteps);
-  const auto linear = course(fine, Law::linear, spot, truth.size());
+  NewtonSolid solid(fine, Law::neo_hookean);
+  const auto truth =
+      course(spot, kSteps, [&](const Sphere& from, const Sphere& to) { return solid.press(from, to, kStepping); });
+  const LinearContact contact(fine, spot.point, kReach * spot.radius);
+  const auto linear = course(spot, truth.size(), [&](const Sphere&, const Sphere& to) { return contact.press(to); });
   PressedPlace place{.at = spot.point};
   Comparison across(fine.mesh, spot);
   for (std::size_t i = 0; i < linear.size(); ++i) {

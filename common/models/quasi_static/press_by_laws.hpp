@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Presses a body with a rigid frictionless ball at a few places of its surface, in steps of a tenth of the ball's
-/// radius to all of it, by linear and by neo-Hookean elasticity with the same constants, mesh and contact: the body's
+/// Presses a body with a rigid frictionless ball at a few places of its surface, in six steps to its whole
+/// radius, by linear and by neo-Hookean elasticity with the same constants, mesh and contact: the body's
 /// own mesh with linear elements, made fine under the ball. A place's range ends where either law finds no equilibrium,
 /// or where the force would fall while the ball advances; one without range is left out. Progress says how far each
 /// went. Throws std::runtime_error if none has any.

@@ -10,7 +10,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach = 1.2;                // of the ball's radius: what has to be smooth
-constexpr int kChoice = 3;                    // times as many nodes as wanted, that a stricter demand has to leave
 constexpr double kSmooth[] = {0.8, 0.5, -1};  // cosines of the facets against the press
 constexpr double kClear[] = {1.5, 0};         // radii from what is fixed
 
@@ -54,7 +53,7 @@ std::vector<Candidate> candidates(const SurfaceMap& s, double radius) {
     Candidate& c = all.emplace_back(Candidate{{s.position[n], -normal[n].normalized(), radius}});
     c.clear = distance(fixed, c.spot.point);
     for (const Facet& f : facets)
-      if ((f.middle - c.spot.point).norm() < kReach * radius + f.size)
+      if ((f.middle - c.spot.point).norm() < std::max(kReach * radius, 1.01 * f.size))
         c.smooth = std::min(c.smooth, -f.normal.dot(c.spot.inward));
   }
   return all;
@@ -74,7 +73,7 @@ std::vector<Candidate> serving(const std::vector<Candidate>& all, double radius,
 }  // namespace
 
 std::vector<PressedSpot> choose_spots(const SurfaceMap& surface, double radius, int count) {
-  const auto all = serving(candidates(surface, radius), radius, static_cast<std::size_t>(kChoice * count));
+  const auto all = serving(candidates(surface, radius), radius, static_cast<std::size_t>(count));
   Vector3d middle = Vector3d::Zero();
   for (const Candidate& c : all) middle += c.spot.point / static_cast<double>(all.size());
   std::vector<PressedSpot> spots;

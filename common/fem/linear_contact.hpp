@@ -2,7 +2,7 @@
 #include "common/fem/direct.hpp"
 #include "common/fem/sphere.hpp"
 
-namespace palpate::study {
+namespace palpate {
 
 /// Linear elasticity under a ball that is pressed into its surface, on a mesh of any fineness: nodes that
 /// would be inside the ball lie on it, are pushed along the ball's own normal and never pulled. One
@@ -28,4 +28,4 @@ class LinearContact {
   Eigen::MatrixXd compliance_;       // [m/N] 3 entries a candidate; fixed axes hold zeros
 };
 
-}  // namespace palpate::study
+}  // namespace palpate
