@@ -8,10 +8,10 @@
 
 namespace palpate {
 
-/// Beyond any of these an answer by superposition is no longer taken for the tissue's; docs/models.md has the presses
-/// from which they come.
-inline constexpr double kMaxStretch = 0.5;    // [1] of a triangle of the surface
-inline constexpr double kMaxRotation = 0.61;  // [rad] likewise, 35 degrees
+/// Beyond any of these an answer by superposition is no longer taken for the tissue's; docs/nonlinear.md has the
+/// presses from which they come.
+inline constexpr double kMaxStretch = 0.2;    // [1] of a triangle of the surface
+inline constexpr double kMaxRotation = 0.44;  // [rad] likewise, 25 degrees
 inline constexpr double kMaxVolume = 0.03;    // [1] by which the body's volume seems to change
 
 /// How far a body has gone.

@@ -32,6 +32,15 @@ TEST(Archive, ReadsBackWithoutOtherNodesAndRegions) {
   EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
 }
 
+TEST(Archive, ReadsBackThePressesOfABody) {
+  const TemporaryFolder folder;
+  auto archive = make_archive(20, 8);
+  archive.presses = {{{1, 2, 3}, 0.002, {{1, 1.5}, {2, 3.5}}, {{0.1, 0.2}}}, {{4, 5, 6}, 0.001, {{1, 1}}, {}}};
+  write_archive(archive, folder / "a.h5");
+  EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
+  EXPECT_EQ(read_archive(folder / "a.h5", ArchivePart::header, {}).presses, archive.presses);
+}
+
 TEST(Archive, ReadsBackWhatMovesWithInertia) {
   const TemporaryFolder folder;
   auto archive = make_hybrid_archive(20, 8);

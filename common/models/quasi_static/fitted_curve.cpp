@@ -7,8 +7,13 @@
 #include <utility>
 
 namespace palpate {
+namespace {
 
-FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree)
+constexpr double kBegin = 1e-3;  // of the first point: where a curve is as good as at its beginning
+
+}  // namespace
+
+FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree, Error error)
     : count_(degree), end_(s.empty() ? 0 : s.back()) {
   const auto points = static_cast<Eigen::Index>(s.size());
   if (degree < 1 || degree > kMaxDegree || points < degree || s.size() != y.size() || !(s.front() > 0))
@@ -16,14 +21,16 @@ FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>
 
   Eigen::MatrixXd basis(points, degree);
   for (Eigen::Index i = 0; i < points; ++i) {
-    const double t = 2 * s[i] / end_ - 1, weight = s[i] / end_;
+    const double t = 2 * s[i] / end_ - 1, weight = error == Error::relative ? 1 : s[i] / end_;
     double before = t, now = 1;  // T_-1 = T_1
     for (int k = 0; k < degree; ++k) {
       basis(i, k) = weight * now;
       before = std::exchange(now, 2 * t * now - before);
     }
   }
-  const Eigen::Map<const Eigen::VectorXd> right(y.data(), points);
+  Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(y.data(), points);
+  if (error == Error::relative)
+    for (Eigen::Index i = 0; i < points; ++i) right[i] *= end_ / s[i];
   const Eigen::VectorXd solution = basis.colPivHouseholderQr().solve(right) / end_;
   std::copy_n(solution.data(), degree, coefficient_.begin());
   end_ratio_ = ratio(end_);
@@ -73,9 +80,12 @@ double FittedCurve::first_fall() const {
   return -1;
 }
 
-FittedCurve fit_rising(const std::vector<double>& s, const std::vector<double>& y, int degree) {
+FittedCurve fit_rising(std::vector<double> s, std::vector<double> y, int degree) {
+  const double begin = kBegin * s.front();
+  s.insert(s.begin(), begin);
+  y.insert(y.begin(), begin);
   for (int d = std::min(degree, static_cast<int>(s.size())); d > 0; --d)
-    if (const FittedCurve curve(s, y, d); curve.first_fall() < 0) return curve;
+    if (const FittedCurve curve(s, y, d, FittedCurve::Error::relative); curve.first_fall() < 0) return curve;
   return {{s.back()}, {s.back()}, 1};
 }
 

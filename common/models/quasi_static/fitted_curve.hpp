@@ -13,9 +13,10 @@ class FittedCurve {
 
   /// A curve through which nothing goes yet: see add().
   FittedCurve() = default;
+  enum class Error { absolute, relative };  ///< whose squares are least: of y, or of y(s)/s
   /// Fits y of the given degree (1 .. 10). `s` is positive and increases strictly; at least `degree` points.
   /// Throws std::invalid_argument.
-  FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree);
+  FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree, Error error = Error::absolute);
 
   /// Adds a share of another curve: its end by that share, and by that share its shape y/end over s/end. Shares of
   /// rising curves that sum to 1 make a rising curve, and one that goes over evenly as the shares do.
@@ -37,8 +38,9 @@ class FittedCurve {
   double end_ = 0, end_ratio_ = 0, end_slope_ = 0;
 };
 
-/// A curve that rises throughout: of the highest degree up to `degree` whose fit does. A straight line where no other
-/// does, and y = s where that falls too. Points as for a FittedCurve, of any number above zero.
-FittedCurve fit_rising(const std::vector<double>& s, const std::vector<double>& y, int degree);
+/// A curve that rises throughout and begins as y = s: of the highest degree up to `degree` whose fit of least relative
+/// error does. A straight line where no other does, and y = s where that falls too. Points as for a FittedCurve, of any
+/// number above zero.
+FittedCurve fit_rising(std::vector<double> s, std::vector<double> y, int degree);
 
 }  // namespace palpate

@@ -14,7 +14,7 @@ namespace palpate {
 
 namespace {
 
-constexpr int kDegree = 3;      // of the curves through computed presses
+constexpr int kDegree = 4;      // of the curves through computed presses
 constexpr double kSpot = 1e-4;  // [m] about a place within which the others do not count
 
 /// The true answer over the linear one.
