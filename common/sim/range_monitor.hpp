@@ -12,7 +12,7 @@ namespace palpate {
 /// presses from which they come.
 inline constexpr double kMaxStretch = 0.2;    // [1] of a triangle of the surface
 inline constexpr double kMaxRotation = 0.44;  // [rad] likewise, 25 degrees
-inline constexpr double kMaxVolume = 0.03;    // [1] by which the body's volume seems to change
+inline constexpr double kMaxVolume = 0.02;    // [1] by which the body's volume seems to change
 
 /// How far a body has gone.
 struct UsedRange {
