@@ -98,8 +98,12 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
       [](Archive& a) { a.tetrahedra.pop_back(); },  // materials are left over
       [](Archive& a) { a.density.pop_back(); },
       [](Archive& a) { a.parts.hybrid = false; },
-      [](Archive& a) { a.presses = {{{0, 0, 0}, 0.001, {}, {}}}; },
-      [](Archive& a) { a.presses = {{{0, 0, 0}, 0.001, {{2, 2}, {1, 3}}, {}}}; },
+      [](Archive& a) {
+        a.presses = {{{0, 0, 0}, 0.001, {}, {}}};
+      },
+      [](Archive& a) {
+        a.presses = {{{0, 0, 0}, 0.001, {{2, 2}, {1, 3}}, {}}};
+      },
       [](Archive& a) { a.hybrid.reset(); },
       [](Archive& a) { a.hybrid->connection[0] = -1; },
       [](Archive& a) { a.hybrid->mass.pop_back(); },

@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "common/mesh/surface.hpp"
 #include "common/mesh/shell_file.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"

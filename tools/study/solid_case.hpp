@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "common/fem/direct.hpp"
-#include "common/fem/refine_graded.hpp"
 #include "common/fem/linear_contact.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
 #include "tools/study/reference_cache.hpp"
