@@ -33,7 +33,7 @@ void measure(const std::string& scene_file, const std::string& name, bool quick)
 
   const StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
   std::optional<QuasiNonlinear> correction;
-  if (body.nonlinear) correction = make_quasi_nonlinear(body, archives[0]);
+  if (body.nonlinear) correction = make_nonlinear(body, archives[0]).at(archives[0].surface.position[contact]);
   std::vector<Constraint> holds;
   for (int axis = 0; axis < 3; ++axis)
     holds.push_back(hold(archives[0].surface.node_number[contact], axis, imposed[axis]));

@@ -11,7 +11,7 @@
 #include "tools/rig/slide.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
-#include "tools/study/reference/graded.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "tools/study/slides.hpp"
 
 namespace palpate {
@@ -209,7 +209,7 @@ double block_force(double depth, double share) {
   const double contact = std::sqrt(kTipRadius * depth);
   const auto size = [&](const Vector3d& x) {
     return std::min(4 * kTipRadius,
-                    study::size_around(x, Vector3d::Zero(), Vector3d::UnitZ(), contact, share * contact, 2 * share));
+                    size_around(x, Vector3d::Zero(), Vector3d::UnitZ(), contact, share * contact, 2 * share));
   };
   const study::LinearContact reference(study::refine_graded(coarse, size, 100000),
                                        std::array{Vector3d(Vector3d::Zero())}, 1.15 * contact);

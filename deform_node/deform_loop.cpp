@@ -7,15 +7,16 @@
 
 namespace palpate {
 
-DeformLoop::DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz)
+DeformLoop::DeformLoop(const Scene& scene, Deformer& deformer, Bus& bus, Presence& presence)
     : deformer_(deformer),
       bus_(bus),
       presence_(presence),
       clock_(bus, presence.node()),
       link_(bus),
-      frame_ns_(static_cast<std::int64_t>(1e9 / visual_hz)),
+      frame_ns_(static_cast<std::int64_t>(1e9 / scene.rates.visual_hz)),
       feed_(bus, presence, deformer),
-      surfaces_(bus, deformer) {
+      surfaces_(bus, deformer),
+      range_(scene, deformer) {
   presence_.set_clock(&clock_);
 }
 
@@ -30,6 +31,8 @@ void DeformLoop::publish(bool all) {
       surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal,
                         {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
+  if (all)
+    for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
 }
 
 // Peers, the death of the haptic node and the status: what is not for every frame.
@@ -41,8 +44,10 @@ void DeformLoop::keep_house(std::int64_t now) {
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(report_.frames - last_frames_) /
                                                  static_cast<double>(now - last_status_ns_);
+  const std::string silence = link_.silence("haptic", now);
   presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)),
-                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)), link_.silence("haptic", now));
+                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)),
+                     silence.empty() ? range_.warning() : silence);
   last_status_ns_ = now;
   last_frames_ = report_.frames;
 }

@@ -7,6 +7,7 @@
 #include "common/bus/presence.hpp"
 #include "common/node/contact_feed.hpp"
 #include "common/realtime/histogram.hpp"
+#include "common/sim/range_monitor.hpp"
 #include "deform_node/surface_publisher.hpp"
 
 namespace palpate {
@@ -24,7 +25,9 @@ struct DeformReport {
 /// and everything at least at the visual rate.
 class DeformLoop {
  public:
-  DeformLoop(Deformer& deformer, Bus& bus, Presence& presence, double visual_hz);
+  DeformLoop(const Scene& scene, Deformer& deformer, Bus& bus, Presence& presence);
+
+  const RangeMonitor& range() const { return range_; }
 
   /// Until `seconds` are over (0: no limit) or a stop is requested.
   const DeformReport& run(double seconds);
@@ -41,6 +44,7 @@ class DeformLoop {
   std::int64_t frame_ns_;
   ContactFeed feed_;
   SurfacePublisher surfaces_;
+  RangeMonitor range_;
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_frames_ = 0;
   DeformReport report_;

@@ -26,6 +26,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       local_models_(local_models),
       feed_(bus, presence, deformer),
       surfaces_(bus, deformer),
+      range_(scene, deformer),
       tools_(bus.reader(topics::tool_state)),
       changes_(bus.writer(topics::topology_change)),
       models_(bus.writer(topics::local_contact_model)),
@@ -141,6 +142,7 @@ void DynamicLoop::publish_frames() {
     surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
   }
   ++report_.frames;
+  for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
   if (newest.sense_ns != shown_sense_ns_)
     report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
   shown_sense_ns_ = newest.sense_ns;
@@ -155,7 +157,9 @@ void DynamicLoop::keep_house(std::int64_t now) {
                                            : 1e9 * static_cast<double>(report_.ticks - last_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
-  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99), link_.silence("haptic", now));
+  const std::string silence = link_.silence("haptic", now);
+  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99),
+                     silence.empty() ? range_.warning() : silence);
   last_status_ns_ = now;
   last_ticks_ = report_.ticks;
 }

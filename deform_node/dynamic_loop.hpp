@@ -12,6 +12,7 @@
 #include "common/realtime/periodic.hpp"
 #include "common/sim/dynamic_world.hpp"
 #include "common/sim/local_models.hpp"
+#include "common/sim/range_monitor.hpp"
 #include "deform_node/earlier_cuts.hpp"
 #include "deform_node/surface_publisher.hpp"
 
@@ -37,6 +38,8 @@ class DynamicLoop {
   /// `deformer`: of the scene's quasi-static bodies.
   DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus, Presence& presence,
               const Scene& scene, std::uint64_t run, std::string code_path);
+
+  const RangeMonitor& range() const { return range_; }
 
   /// Begins with whole bodies, whatever others know of them.
   void forget_earlier_cuts() { whole_ = true; }
@@ -66,6 +69,7 @@ class DynamicLoop {
   LocalModels& local_models_;
   ContactFeed feed_;
   SurfacePublisher surfaces_;
+  RangeMonitor range_;
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Writer<TopologyChange>> changes_;
   std::unique_ptr<Writer<LocalContactModel>> models_;

@@ -7,6 +7,7 @@
 #include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/node/node_setup.hpp"
+#include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "deform_node/deform_loop.hpp"
 #include "deform_node/dynamic_loop.hpp"
@@ -28,7 +29,7 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "deform"));
   Presence presence(*bus, "deform", 0, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
-  DeformLoop loop(deformer, *bus, presence, loaded.scene.rates.visual_hz);
+  DeformLoop loop(loaded.scene, deformer, *bus, presence);
   say_ready(o);
   const DeformReport& r = loop.run(o.seconds);
   spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames,
@@ -40,6 +41,7 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
           {"latency_us_p50", us(r.latency, 0.5)},
           {"latency_us_p99", us(r.latency, 0.99)},
           {"deform_us_p50", us(r.deform, 0.5)},
+          {"range", range_summary(loop.range())},
           {"refused", r.refused}};
 }
 
@@ -79,6 +81,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
           {"tetrahedra_cut", r.cut},
           {"tetrahedra_torn", r.torn},
           {"tetrahedra_fallen", r.fallen},
+          {"range", range_summary(loop.range())},
           {"state_hash", fmt::format("{:016x}", world.hash())},
           {"refused", r.refused}};
 }

@@ -7,6 +7,7 @@
 
 #include "common/mesh/mesh_file.hpp"
 #include "common/node/node_setup.hpp"
+#include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "render_node/render_loop.hpp"
 
@@ -23,7 +24,7 @@ struct RenderOptions {
 RenderOptions options;
 
 std::unique_ptr<SurfaceSource> make_source(Bus& bus, const Presence& presence, const LoadedScene& loaded) {
-  if (options.deform) return deform_surfaces(bus, presence, Deformer(loaded.scene, loaded.archives));
+  if (options.deform) return deform_surfaces(loaded.scene, bus, presence, Deformer(loaded.scene, loaded.archives));
   std::vector<std::size_t> nodes;
   for (const Archive& archive : loaded.archives) nodes.push_back(archive.surface.position.size());
   return receive_surfaces(bus, presence, std::move(nodes));
@@ -46,20 +47,21 @@ void write_still(const Stage& stage, int width, int height) {
   write_png(image, options.still);
 }
 
-void summarise(const RenderReport& r, const Film* film, bool supervised) {
+void summarise(const RenderReport& r, const Film* film, const RangeMonitor* range, bool supervised) {
   const auto us = [](const Histogram& h, double share) { return 1e-3 * static_cast<double>(h.percentile(share)); };
-  const nlohmann::json summary{{"node", "render"},
-                               {"seconds", r.seconds},
-                               {"frames", r.frames},
-                               {"missed", r.missed},
-                               {"refused", r.refused},
-                               {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
-                               {"latency_us_p50", us(r.latency, 0.5)},
-                               {"latency_us_p99", us(r.latency, 0.99)},
-                               {"draw_us_p50", us(r.draw, 0.5)},
-                               {"draw_us_p99", us(r.draw, 0.99)},
-                               {"force_max_n", r.peak_force},
-                               {"film_frames", film ? film->frames() : 0}};
+  nlohmann::json summary{{"node", "render"},
+                         {"seconds", r.seconds},
+                         {"frames", r.frames},
+                         {"missed", r.missed},
+                         {"refused", r.refused},
+                         {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
+                         {"latency_us_p50", us(r.latency, 0.5)},
+                         {"latency_us_p99", us(r.latency, 0.99)},
+                         {"draw_us_p50", us(r.draw, 0.5)},
+                         {"draw_us_p99", us(r.draw, 0.99)},
+                         {"force_max_n", r.peak_force},
+                         {"film_frames", film ? film->frames() : 0}};
+  if (range) summary["range"] = range_summary(*range);
   if (supervised) fmt::print("{}\n", summary.dump());
   spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms", r.frames,
                summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
@@ -92,7 +94,7 @@ void run(const NodeOptions& o) {
   const RenderReport& report = loop.run(o.seconds);
   if (film) film->finish();
   if (!options.still.empty()) write_still(loop.best_moment(), picture.width, picture.height);
-  summarise(report, film ? &*film : nullptr, o.supervised);
+  summarise(report, film ? &*film : nullptr, source->range(), o.supervised);
 }
 
 }  // namespace

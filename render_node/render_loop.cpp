@@ -89,6 +89,7 @@ void RenderLoop::write_overlay() {
   if (!presence_.matched("haptic")) lines.push_back("waiting for a haptic node");
   for (const char* role : {"haptic", "deform"})
     if (const std::string silence = link_.silence(role, now_ns()); !silence.empty()) lines.push_back(silence);
+  if (const std::string warning = range_warning(); !warning.empty()) lines.push_back(warning);
   lines.push_back(fmt::format("haptic {:.0f} Hz   visual {:.0f} Hz", haptic_hz, rate_hz_));
   lines.push_back(shown_steps_ > 0 ? fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
                                                  1e-3 * shown_latency_.p99)
@@ -109,6 +110,13 @@ void RenderLoop::write_overlay() {
   }
 }
 
+/// By this process, or by the deform node.
+std::string RenderLoop::range_warning() const {
+  if (source_.range()) return source_.range()->warning();
+  const Presence::Peer* deform = presence_.last_met("deform");
+  return deform ? deform->status.text : std::string();
+}
+
 void RenderLoop::add_to_film(std::int64_t since_begin) {
   const long due = static_cast<long>(1e-9 * static_cast<double>(since_begin) * film_->rate()) + 1 - film_->frames();
   if (due > 0 && !film_->full()) film_->add(image_, static_cast<int>(due));
@@ -121,8 +129,9 @@ void RenderLoop::keep_house(std::int64_t now) {
   rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
   shown_steps_ = recent_latency_.count();
+  const std::string silence = link_.silence("haptic", now);
   presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99,
-                     link_.silence("haptic", now));
+                     silence.empty() && source_.range() ? source_.range()->warning() : silence);
   recent_latency_.clear();
   last_status_ns_ = now;
   last_frames_ = report_.frames;

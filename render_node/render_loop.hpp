@@ -49,6 +49,7 @@ class RenderLoop {
   void take();
   void follow_cuts();
   void write_overlay();
+  std::string range_warning() const;
   void add_to_film(std::int64_t since_begin);
   void tell_picture(std::int64_t done);
   void keep_house(std::int64_t now);

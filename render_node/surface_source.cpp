@@ -57,14 +57,17 @@ class ReceivedSurfaces : public SurfaceSource {
 
 class OwnSurfaces : public SurfaceSource {
  public:
-  OwnSurfaces(Bus& bus, const Presence& presence, Deformer deformer)
-      : deformer_(std::move(deformer)), feed_(bus, presence, deformer_) {
+  OwnSurfaces(const Scene& scene, Bus& bus, const Presence& presence, Deformer deformer)
+      : deformer_(std::move(deformer)), feed_(bus, presence, deformer_), range_(scene, deformer_) {
     deformer_.deform();
   }
 
   bool update() override {
     const bool news = feed_.take();
-    if (news) deformer_.deform();
+    if (news) {
+      deformer_.deform();
+      for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
+    }
     feed_.watch_haptic();
     return news;
   }
@@ -74,11 +77,13 @@ class OwnSurfaces : public SurfaceSource {
     return {surface.position, surface.normal};
   }
   Moment moment() const override { return {deformer_.run(), deformer_.step(), deformer_.sense_ns()}; }
+  const RangeMonitor* range() const override { return &range_; }
   std::uint64_t refused() const override { return feed_.refused(); }
 
  private:
   Deformer deformer_;
   ContactFeed feed_;
+  RangeMonitor range_;
 };
 
 }  // namespace
@@ -87,8 +92,9 @@ std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presen
   return std::make_unique<ReceivedSurfaces>(bus, presence, std::move(nodes));
 }
 
-std::unique_ptr<SurfaceSource> deform_surfaces(Bus& bus, const Presence& presence, Deformer deformer) {
-  return std::make_unique<OwnSurfaces>(bus, presence, std::move(deformer));
+std::unique_ptr<SurfaceSource> deform_surfaces(const Scene& scene, Bus& bus, const Presence& presence,
+                                               Deformer deformer) {
+  return std::make_unique<OwnSurfaces>(scene, bus, presence, std::move(deformer));
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/presence.hpp"
 #include "common/sim/deformer.hpp"
+#include "common/sim/range_monitor.hpp"
 
 namespace palpate {
 
@@ -24,6 +25,8 @@ class SurfaceSource {
     std::int64_t sense_ns = 0;        ///< on the haptic node's clock
   };
   virtual Moment moment() const = 0;
+  /// How far shapes that are superposed in this process have gone; null: that is another's to say.
+  virtual const RangeMonitor* range() const { return nullptr; }
   virtual std::uint64_t refused() const = 0;  ///< samples of foreign runs, or that do not fit the archives
 };
 
@@ -32,6 +35,7 @@ std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presen
 
 /// Superposes the received contacts in this process, and keeps them for a haptic node that dies and comes
 /// back.
-std::unique_ptr<SurfaceSource> deform_surfaces(Bus& bus, const Presence& presence, Deformer deformer);
+std::unique_ptr<SurfaceSource> deform_surfaces(const Scene& scene, Bus& bus, const Presence& presence,
+                                               Deformer deformer);
 
 }  // namespace palpate

@@ -116,7 +116,8 @@ void correct(const Scene& scene, const Body& body, Solved& solved) {
   if (!correction) return;
   ensure_archive(scene, body);  // it holds the press of the specimen
   const Archive archive = find_archive(scene, body, ArchivePart::header);
-  const double scale = correction(archive, {held_places(solved), solved.table.displacement, solved.table.force});
+  const double scale =
+      correction(archive, {held_places(solved), solved.table.position, solved.table.displacement, solved.table.force});
   fmt::print("corrected by [body.nonlinear]: forces are {:.4g} times the linear ones\n", scale);
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/archive/archive_dynamic.hpp"
 #include "common/archive/archive_modal.hpp"
+#include "common/archive/archive_presses.hpp"
 #include "common/archive/atomic_file.hpp"
 #include "common/archive/hdf5_file.hpp"
 #include "common/archive/rows.hpp"
@@ -24,7 +25,7 @@ std::size_t payload_bytes(const Archive& archive) {
                                2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
                                archive.material_of_element.size();
   return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive) +
-         modal_payload_bytes(archive);
+         modal_payload_bytes(archive) + presses_payload_bytes(archive);
 }
 
 void write_header(Hdf5Writer& file, const Archive& archive) {
@@ -103,7 +104,7 @@ void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart par
   bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
                     surface.touchable <= surface.size() && !archive.young.empty() &&
                     archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
-                    modal_part_fits(archive, part);
+                    modal_part_fits(archive, part) && presses_fit(archive);
   if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
   if (part == ArchivePart::surface)
     consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;
@@ -129,6 +130,7 @@ void write_archive(const Archive& archive, const std::filesystem::path& file) {
   write_compliance(writer, archive);
   write_dynamic_part(writer, archive);
   write_modal_part(writer, archive);
+  write_presses(writer, archive);
   writer.close();
   atomic.commit();
 }
@@ -159,6 +161,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   if (part == ArchivePart::surface) archive.other_compliance = reader.doubles("other/compliance");
   read_dynamic_part(reader, part, archive);
   read_modal_part(reader, part, archive);
+  read_presses(reader, archive);
   check_sizes(reader, archive, part);
   return archive;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/archive/hybrid_tensors.hpp"
+#include "common/archive/pressed_place.hpp"
 
 namespace palpate {
 
@@ -66,14 +67,15 @@ struct Archive {
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
   std::vector<double> other_compliance;
   /// Slopes of the linear model's specimen curves where the scene names a specimen mesh, else 0.
-  double specimen_force_slope = 0;   ///< [N/m]
-  double specimen_radial_slope = 0;  ///< [1]
+  double specimen_force_slope = 0;    ///< [N/m]
+  double specimen_radial_slope = 0;   ///< [1]
+  std::vector<PressedPlace> presses;  ///< empty unless the scene asks for them
   std::optional<HybridTensors> hybrid;
   std::optional<ModalTensors> modal;  ///< of a shell, beside the static compliance of its nodes
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 4;
+constexpr int kArchiveFormat = 5;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.

@@ -60,4 +60,12 @@ void set_linear_algebra_threads(int threads) {
   openblas_set_num_threads(threads);
 }
 
+OneLinearAlgebraThread::OneLinearAlgebraThread() : before_(openblas_get_num_threads()) {
+  set_linear_algebra_threads(1);
+}
+
+OneLinearAlgebraThread::~OneLinearAlgebraThread() {
+  set_linear_algebra_threads(before_);
+}
+
 }  // namespace palpate

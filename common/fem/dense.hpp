@@ -27,4 +27,16 @@ void pack_lower_by_rows(const ConstDenseRef& lower, double* packed);
 /// Largest number of threads that the functions here and the factorisation use.
 void set_linear_algebra_threads(int threads);
 
+/// While it lives, linear algebra takes one thread: for work that is shared among threads in larger pieces.
+class OneLinearAlgebraThread {
+ public:
+  OneLinearAlgebraThread();
+  ~OneLinearAlgebraThread();
+  OneLinearAlgebraThread(const OneLinearAlgebraThread&) = delete;
+  OneLinearAlgebraThread& operator=(const OneLinearAlgebraThread&) = delete;
+
+ private:
+  int before_;
+};
+
 }  // namespace palpate

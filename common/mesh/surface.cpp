@@ -1,5 +1,6 @@
 #include "common/mesh/surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace palpate {
@@ -54,6 +55,16 @@ Surface extract_surface(const TetMesh& mesh) {
   std::sort(surface.nodes.begin(), surface.nodes.end());
   surface.nodes.erase(std::unique(surface.nodes.begin(), surface.nodes.end()), surface.nodes.end());
   return surface;
+}
+
+std::vector<double> node_areas(const std::vector<Eigen::Vector3d>& nodes,
+                               const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<double> area(nodes.size(), 0.0);
+  for (const auto& [a, b, c] : triangles) {
+    const double whole = (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]).norm() / 2;
+    for (const int n : {a, b, c}) area[n] += whole / 3;
+  }
+  return area;
 }
 
 }  // namespace palpate

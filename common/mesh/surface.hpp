@@ -13,4 +13,8 @@ struct Surface {
 /// Faces that belong to one tetrahedron only, in order of (tetrahedron, face).
 Surface extract_surface(const TetMesh& mesh);
 
+/// [m^2] share of each of the nodes in the area of triangles: a third of those around it.
+std::vector<double> node_areas(const std::vector<Eigen::Vector3d>& nodes,
+                               const std::vector<std::array<int, 3>>& triangles);
+
 }  // namespace palpate

@@ -34,6 +34,9 @@ class BodyShape {
 
   /// Whether it follows from contacts.
   virtual bool superposed() const { return false; }
+  /// [1] Largest force of a tool in the last rebuild(), of those to which the body's correction was fitted; 0 without a
+  /// correction.
+  virtual double used_force() const { return 0; }
   /// Whether it follows from messages of this type.
   virtual bool hears(const BodyMessage&) const { return false; }
   /// Whether a message of that type is of this body: as many modes or particles, known nodes.

@@ -16,9 +16,10 @@ struct DirectProblem {
 
 /// A static state as lists with one entry a node.
 struct StaticField {
-  const std::vector<int>& held;                ///< places in the lists, ascending
-  std::vector<Eigen::Vector3d>& displacement;  ///< [m]
-  std::vector<Eigen::Vector3d>& force;         ///< [N] on the tissue
+  const std::vector<int>& held;                  ///< places in the lists, ascending
+  const std::vector<Eigen::Vector3d>& position;  ///< [m] at rest
+  std::vector<Eigen::Vector3d>& displacement;    ///< [m]
+  std::vector<Eigen::Vector3d>& force;           ///< [N] on the tissue
 };
 
 }  // namespace palpate

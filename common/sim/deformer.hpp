@@ -32,6 +32,7 @@ class Deformer {
   /// Whether some body follows from messages of this type.
   bool hears(const BodyMessage& message) const;
   const SurfaceMap& map(int body) const { return bodies_[body].shape->map(); }
+  const BodyShape& shape(int body) const { return *bodies_[body].shape; }
   const DeformedSurface& surface(int body) const { return bodies_[body].surface; }
   /// The newest contacts, by tool.
   const std::map<std::uint32_t, ContactState>& contacts() const { return contacts_; }

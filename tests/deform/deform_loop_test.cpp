@@ -30,7 +30,8 @@ struct Loop {
   /// Runs for `seconds` while `meanwhile` happens on a thread of its own.
   template <class F>
   std::vector<SurfaceState> run(double seconds, F&& meanwhile) {
-    DeformLoop loop(deformer, *bus, presence, 10);
+    s.scene.rates.visual_hz = 10;
+    DeformLoop loop(s.scene, deformer, *bus, presence);
     std::thread other(meanwhile);
     report = loop.run(seconds);
     other.join();

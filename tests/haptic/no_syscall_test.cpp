@@ -56,7 +56,8 @@ using testing::BlockScene;
 /// A tick as the haptic loop runs it: step, record into the ring, checkpoint now and then.
 class Ticks {
  public:
-  Ticks() : scene_(2), haptic_(scene_.scene, scene_.archives), ring_(64), state_(haptic_.state_size()) {
+  explicit Ticks(const BlockScene& scene = BlockScene(2))
+      : scene_(scene), haptic_(scene_.scene, scene_.archives), ring_(64), state_(haptic_.state_size()) {
     haptic_.start(input(0));
   }
   void run(int from, int to) {
@@ -70,10 +71,12 @@ class Ticks {
         ring_.commit_push();
       }
       if (ring_.begin_pop()) ring_.commit_pop();
+      touched_ += haptic_.force(0).norm() > 0;
       contacts_ += haptic_.law(0).contacts().size();
     }
   }
   long contacts() const { return contacts_; }
+  long touched() const { return touched_; }
 
  private:
   std::array<ToolDofs, 2> input(int i) const {
@@ -85,7 +88,7 @@ class Ticks {
   HapticStep haptic_;
   SpscRing<StepRecord> ring_;
   std::vector<std::uint8_t> state_;
-  long contacts_ = 0;
+  long contacts_ = 0, touched_ = 0;
 };
 
 /// The same with a body of moving tissue beside the block, whose models another thread has put where the loop finds
@@ -175,6 +178,23 @@ TEST(NoSyscall, TheHapticStepAllocatesNothing) {
   counting = false;
   EXPECT_EQ(allocations.exchange(0), 0);
   EXPECT_GT(ticks.contacts(), 100) << "the tools must touch for this to mean anything";
+}
+
+TEST(NoSyscall, TheStepOfABodyThatIsCorrectedFromPlaceToPlaceAllocatesNothing) {
+  for (const char* rule : {"barycentric", "patch"}) {
+    BlockScene scene(2);
+    scene.scene.contact.rule = rule;
+    std::get<QuasiStaticSpec>(scene.scene.bodies[0]).nonlinear = Nonlinear{NeoHookeanLaw{}};
+    scene.archives[0].presses = {{{-0.02, 0, 0}, 0.004, {{0.1, 0.11}, {1, 1.3}}, {{1e-4, 1.1e-4}, {1e-3, 1.2e-3}}},
+                                 {{0.02, 0, 0}, 0.004, {{0.1, 0.1}, {1, 0.9}}, {{1e-4, 1e-4}}}};
+    Ticks ticks(scene);
+    ticks.run(1, 10);
+    counting = true;
+    ticks.run(10, 2000);
+    counting = false;
+    EXPECT_EQ(allocations.exchange(0), 0) << rule;
+    EXPECT_GT(ticks.touched(), 100) << rule;
+  }
 }
 
 TEST(NoSyscall, TheHapticStepOnMovingTissueAllocatesNothing) {

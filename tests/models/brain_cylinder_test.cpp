@@ -29,8 +29,10 @@ class BrainCylinder : public ::testing::TestWithParam<const char*> {
     body.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
     body.nonlinear =
-        Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1};
+        Nonlinear{MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
   }
+
+  MeasuredLaw& curves() { return std::get<MeasuredLaw>(body.nonlinear->law); }
 
   /// Holds the bottom's height, one point of it and its turn about the axis.
   void slide_at_the_bottom() {
@@ -90,15 +92,15 @@ double measured(const std::filesystem::path& file, const char* column, double x)
 }
 
 TEST_P(BrainCylinder, FitFollowsTheMeasuredCurves) {
-  const QuasiNonlinear law = make_quasi_nonlinear(body, Archive{});
+  const QuasiNonlinear law = make_nonlinear(body, Archive{}).at(Eigen::Vector3d::Zero());
   const LinearSlopes linear = sliding_slopes(body.material, kCylinderRadius, kCylinderHeight);
-  const double greatest = measured(body.nonlinear->force_curve, "force_N", kDeepest);
-  const double widest = measured(body.nonlinear->radial_curve, "radial_m", kDeepest);
+  const double greatest = measured(curves().force_curve, "force_N", kDeepest);
+  const double widest = measured(curves().radial_curve, "radial_m", kDeepest);
   for (int i = 1; i <= 40; ++i) {
     const double x = kDeepest * i / 40;
-    EXPECT_NEAR(law.force_curve().value(linear.force * x), measured(body.nonlinear->force_curve, "force_N", x),
+    EXPECT_NEAR(law.force_curve().value(linear.force * x), measured(curves().force_curve, "force_N", x),
                 2e-3 * greatest);
-    EXPECT_NEAR(law.radial_curve().value(linear.radial * x), measured(body.nonlinear->radial_curve, "radial_m", x),
+    EXPECT_NEAR(law.radial_curve().value(linear.radial * x), measured(curves().radial_curve, "radial_m", x),
                 2e-3 * widest);
   }
 }
@@ -108,7 +110,7 @@ TEST_P(BrainCylinder, FitFollowsTheMeasuredCurves) {
 TEST_P(BrainCylinder, SlidingEndsReproduceTheFittedCurvesAtEveryStep) {
   mesh = make_cylinder(kCylinderRadius, kCylinderHeight, 16, 2);
   slide_at_the_bottom();
-  const QuasiNonlinear law = make_quasi_nonlinear(body, Archive{});
+  const QuasiNonlinear law = make_nonlinear(body, Archive{}).at(Eigen::Vector3d::Zero());
   const LinearSlopes linear = sliding_slopes(body.material, kCylinderRadius, kCylinderHeight);
   const StaticProblem problem = make_static_problem(body, mesh);
   ASSERT_EQ(middle_circle().size(), 96u);
@@ -125,12 +127,12 @@ TEST_P(BrainCylinder, SlidingEndsReproduceTheFittedCurvesAtEveryStep) {
 
 TEST_P(BrainCylinder, StuckEndsReproduceThemWithTheSlopesOfTheModelItself) {
   body.fixed = {{{{}, {}, "bottom"}, {true, true, true}}};
-  body.nonlinear->specimen_mesh = "specimen.msh";
+  curves().specimen_mesh = "specimen.msh";
   const SpecimenSlopes slopes = press_specimen(mesh, body.material);
   Archive archive;
   archive.specimen_force_slope = slopes.force;
   archive.specimen_radial_slope = slopes.radial;
-  const QuasiNonlinear law = make_quasi_nonlinear(body, archive);
+  const QuasiNonlinear law = make_nonlinear(body, archive).at(Eigen::Vector3d::Zero());
   const StaticProblem problem = make_static_problem(body, mesh);
   for (int i = 1; i <= kSteps; ++i) {
     const double x = kDeepest * i / kSteps;

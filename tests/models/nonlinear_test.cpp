@@ -20,7 +20,7 @@ class QuasiNonlinearLaw : public ::testing::Test {
     folder_ = mkdtemp(name);
     body.name = "specimen";
     body.material = {3000, 0.4, 1000};
-    body.nonlinear = Nonlinear{folder_ / "force.csv", folder_ / "radial.csv", kRadius, kHeight, 6, {}, 1};
+    body.nonlinear = Nonlinear{MeasuredLaw{folder_ / "force.csv", folder_ / "radial.csv", kRadius, kHeight, 6, {}, 1}};
     write_force([](double x) { return 100 * x + 3e4 * x * x; });
     write_radial([](double x) { return 0.5 * x + 20 * x * x; });
   }
@@ -43,7 +43,8 @@ class QuasiNonlinearLaw : public ::testing::Test {
     }
     return text;
   }
-  QuasiNonlinear law() const { return make_quasi_nonlinear(body, Archive{}); }
+  MeasuredLaw& measured() { return std::get<MeasuredLaw>(body.nonlinear->law); }
+  QuasiNonlinear law() const { return make_nonlinear(body, Archive{}).at(Eigen::Vector3d::Zero()); }
   std::string refusal() const {
     try {
       law();
@@ -71,12 +72,12 @@ TEST_F(QuasiNonlinearLaw, TurnsTheClosedLinearCurvesIntoTheMeasuredOnes) {
 }
 
 TEST_F(QuasiNonlinearLaw, TakesTheSlopesOfTheSpecimenFromTheArchive) {
-  body.nonlinear->specimen_mesh = "specimen.msh";
+  measured().specimen_mesh = "specimen.msh";
   EXPECT_THROW(law(), std::runtime_error);
   Archive archive;
   archive.specimen_force_slope = 250;
   archive.specimen_radial_slope = 0.3;
-  const QuasiNonlinear q = make_quasi_nonlinear(body, archive);
+  const QuasiNonlinear q = make_nonlinear(body, archive).at(Eigen::Vector3d::Zero());
   const double x = 0.003;
   EXPECT_NEAR(250 * x * q.force_scale(250 * x), 100 * x + 3e4 * x * x, 1e-9);
   EXPECT_NEAR(0.3 * x * q.radial_scale(0.3 * x), 0.5 * x + 20 * x * x, 1e-12);
@@ -127,7 +128,7 @@ TEST_F(QuasiNonlinearLaw, AForceThatFallsIsRefusedWithItsPlace) {
 
 TEST_F(QuasiNonlinearLaw, AFitThatOscillatesIsRefusedThoughTheDataRise) {
   write_force([](double x) { return x < 0.002 ? 1e-3 * x : 1 + 1e-3 * x; });
-  body.nonlinear->degree = 10;
+  measured().degree = 10;
   EXPECT_NE(refusal().find("would fall while the tool advances"), std::string::npos);
 }
 

@@ -188,7 +188,7 @@ struct TaskWorld {
     presence.watch();
   }
   std::vector<std::string> lines(const TaskRecord& task) {
-    const auto source = deform_surfaces(*bus, presence, Deformer(d.s.scene, d.s.archives));
+    const auto source = deform_surfaces(d.s.scene, *bus, presence, Deformer(d.s.scene, d.s.archives));
     Renderer renderer(160, 120);
     RenderLoop loop(d.s.scene, d.stage(), *source, *bus, presence, renderer);
     EXPECT_EQ(tasks->readers(), 1);
@@ -229,7 +229,8 @@ TEST(DuctStage, ScenesWithoutACatheterAskForNoTaskRecord) {
   TaskWorld world;
   world.d.s.scene.bodies.resize(1);
   world.d.s.archives.resize(1);
-  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.d.s.scene, world.d.s.archives));
+  const auto source =
+      deform_surfaces(world.d.s.scene, *world.bus, world.presence, Deformer(world.d.s.scene, world.d.s.archives));
   Renderer renderer(160, 120);
   std::vector<SurfaceMap> surfaces{world.d.s.archives[0].surface};
   const RenderLoop loop(world.d.s.scene, Stage(world.d.s.scene, surfaces, {}), *source, *world.bus, world.presence,

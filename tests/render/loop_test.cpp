@@ -59,7 +59,7 @@ struct World {
 TEST(SurfaceSource, DeformsReceivedContacts) {
   World world;
   const auto writer = world.haptic_bus->writer(topics::contact_state);
-  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}));
   EXPECT_FALSE(source->update());
   writer->write(world.press(20, 4));
   EXPECT_TRUE(source->update());
@@ -72,7 +72,7 @@ TEST(SurfaceSource, KeepsTheContactsOfADeadHapticNode) {
   World world;
   auto writer = world.haptic_bus->writer(topics::contact_state);
   const auto held = world.haptic_bus->reader(topics::held_contacts);
-  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}));
   ContactState contacts = world.press(20, 4);
   contacts.contacts.resize(1);
   contacts.contacts[0].normal = {0, 1, 0};
@@ -170,7 +170,7 @@ TEST(RenderLoop, DrawsAtTheVisualRateAndFilmsInRealTime) {
   const auto tools = world.haptic_bus->writer(topics::tool_state);
   const auto forces = world.haptic_bus->writer(topics::force_state);
   const auto contacts = world.haptic_bus->writer(topics::contact_state);
-  const auto source = deform_surfaces(*world.bus, world.presence, Deformer(world.scene, {world.archive}));
+  const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}));
   Renderer renderer(160, 120);
   Film film(folder.path / "a.mp4", 160, 120, 25);
   RenderLoop loop(world.scene, world.stage(), *source, *world.bus, world.presence, renderer);

@@ -43,9 +43,10 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(body.materials[0].material.poisson, 0.45);  // the body's
   EXPECT_EQ(body.materials[2].where.group, "7");
   EXPECT_EQ(body.materials[2].material.density, 900);
-  EXPECT_EQ(body.nonlinear->radial_curve, folder / "radial.csv");
-  EXPECT_EQ(body.nonlinear->degree, 5);
-  EXPECT_EQ(body.nonlinear->specimen_scale, 0.1);
+  const MeasuredLaw& measured = std::get<MeasuredLaw>(body.nonlinear->law);
+  EXPECT_EQ(measured.radial_curve, folder / "radial.csv");
+  EXPECT_EQ(measured.degree, 5);
+  EXPECT_EQ(measured.specimen_scale, 0.1);
   EXPECT_EQ(body.touchable->indices, (std::vector<int>{10, 11}));
   EXPECT_EQ(as<MeshedSpec>(scene.bodies[1])->touchable->box->max, Eigen::Vector3d(1, 1, 0));
   const Relaxation& relaxation = *as<QuasiStaticSpec>(scene.bodies[1])->relaxation;
@@ -223,7 +224,9 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   };
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->material.young *= 1 + 1e-15; }));
   EXPECT_TRUE(changed([](Scene& s) { as<SolidSpec>(s.bodies[0])->fixed[0].axes[1] = true; }));
-  EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->degree = 6; }));
+  EXPECT_TRUE(
+      changed([](Scene& s) { std::get<MeasuredLaw>(as<QuasiStaticSpec>(s.bodies[0])->nonlinear->law).degree = 6; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear->law = NeoHookeanLaw{}; }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->nonlinear.reset(); }));
   EXPECT_TRUE(changed([](Scene& s) { as<QuasiStaticSpec>(s.bodies[1])->relaxation->shares[1] = 0.2; }));
   EXPECT_TRUE(changed([](Scene& s) { std::get<ProbeSpec>(s.tools[0].end).radius = 0.007; }));

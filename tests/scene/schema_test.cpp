@@ -51,6 +51,8 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         } else if (key == "material" || key == "nonlinear" || key == "relaxation" || key == "touchable" ||
                    key == "offline") {
           text = held + line;
+        } else if (key == "ball_radius" || key == "places") {
+          text = held + "[body.nonlinear]\nlaw = \"neo_hookean\"\n" + line;
         } else if (key == "dynamic" || key == "tearing" || key == "hybrid") {
           text = held + "model = \"hybrid\"\n" + line;
         } else if (key == "region") {

@@ -29,7 +29,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     body_.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
     body_.nonlinear =
-        Nonlinear{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1};
+        Nonlinear{MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
     // The bottom slides: its height is held, one point of it, and its turn about the axis.
     const auto on_x_axis = [&](int n) {
       return std::hypot(mesh_.nodes[n].x() - kCylinderRadius, mesh_.nodes[n].y()) < 1e-9;
@@ -80,7 +80,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
 TEST_P(PressedBrainCylinder, GivesTheHandAndTheEyeTheMeasuredCurves) {
   constexpr double turn = 2 * std::numbers::pi / kSides;
   const double area = std::sin(turn) / turn;
-  const QuasiNonlinear law = make_quasi_nonlinear(body_, archives_[0]);
+  const QuasiNonlinear law = make_nonlinear(body_, archives_[0]).at(Eigen::Vector3d::Zero());
   const LinearSlopes linear = sliding_slopes(body_.material, kCylinderRadius, kCylinderHeight);
   Simulator simulator(scene_, archives_);
   simulator.start(std::array{at(-1e-4)});

@@ -5,12 +5,12 @@
 #include <random>
 
 #include "common/fem/dense.hpp"
+#include "common/fem/linear_contact.hpp"
+#include "common/fem/newton_solid.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/surface.hpp"
 #include "tools/rig/example_bodies.hpp"
-#include "tools/study/reference/graded.hpp"
-#include "tools/study/reference/linear_contact.hpp"
-#include "tools/study/reference/newton.hpp"
 
 /// The solvers that the study's references come from.
 namespace palpate::study {

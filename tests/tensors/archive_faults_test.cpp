@@ -87,7 +87,7 @@ TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
   later.attribute("format", "palpate compliance archive");
   later.attribute("format_version", std::int64_t{kArchiveFormat + 1});
   later.close();
-  EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": format version 5, this program reads 4");
+  EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": format version 6, this program reads 5");
 }
 
 TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
@@ -98,6 +98,12 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
       [](Archive& a) { a.tetrahedra.pop_back(); },  // materials are left over
       [](Archive& a) { a.density.pop_back(); },
       [](Archive& a) { a.parts.hybrid = false; },
+      [](Archive& a) {
+        a.presses = {{{0, 0, 0}, 0.001, {}, {}}};
+      },
+      [](Archive& a) {
+        a.presses = {{{0, 0, 0}, 0.001, {{2, 2}, {1, 3}}, {}}};
+      },
       [](Archive& a) { a.hybrid.reset(); },
       [](Archive& a) { a.hybrid->connection[0] = -1; },
       [](Archive& a) { a.hybrid->mass.pop_back(); },

@@ -32,6 +32,15 @@ TEST(Archive, ReadsBackWithoutOtherNodesAndRegions) {
   EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
 }
 
+TEST(Archive, ReadsBackThePressesOfABody) {
+  const TemporaryFolder folder;
+  auto archive = make_archive(20, 8);
+  archive.presses = {{{1, 2, 3}, 0.002, {{1, 1.5}, {2, 3.5}}, {{0.1, 0.2}}}, {{4, 5, 6}, 0.001, {{1, 1}}, {}}};
+  write_archive(archive, folder / "a.h5");
+  EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
+  EXPECT_EQ(read_archive(folder / "a.h5", ArchivePart::header, {}).presses, archive.presses);
+}
+
 TEST(Archive, ReadsBackWhatMovesWithInertia) {
   const TemporaryFolder folder;
   auto archive = make_hybrid_archive(20, 8);
@@ -128,7 +137,7 @@ TEST(Archive, OpensInH5pyWithUnitsAndDescriptions) {
       "assert f['surface/position'].shape == (28, 3) and f['surface/node_number'][3] == 6\n"
       "assert f.attrs['content_hash'] in ('0123456789abcdef0123456789abcdef', "
       "b'0123456789abcdef0123456789abcdef')\n"
-      "assert f.attrs['format_version'] == 4 and f['material/young'][1] == 2e4\n\" ";
+      "assert f.attrs['format_version'] == 5 and f['material/young'][1] == 2e4\n\" ";
   EXPECT_EQ(std::system((script + (folder / "a.h5").string()).c_str()), 0);
 }
 

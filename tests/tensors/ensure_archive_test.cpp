@@ -170,7 +170,7 @@ TEST_F(EnsureArchive, StoresMaterialRegionsAndSpecimen) {
   half.material = {5e4, 0.3, 1000};
   solid().materials = {half};
   write_mesh(make_cylinder(0.015, 0.013, 3, 2), folder / "specimen.msh");
-  std::get<QuasiStaticSpec>(body()).nonlinear.emplace().specimen_mesh = folder / "specimen.msh";
+  std::get<QuasiStaticSpec>(body()).nonlinear = Nonlinear{MeasuredLaw{.specimen_mesh = folder / "specimen.msh"}};
   const auto archives = load_or_precompute(scene, ArchivePart::header);
   ASSERT_EQ(archives.size(), 1u);
   EXPECT_EQ(archives[0].young, (std::vector<double>{10e3, 5e4}));

@@ -132,8 +132,8 @@ inline bool same_dofs(const std::vector<Dof>& a, const std::vector<Dof>& b) {
 
 inline bool same(const Archive& a, const Archive& b) {
   return a.body == b.body && a.model == b.model && a.density == b.density && a.tetrahedra == b.tetrahedra &&
-         a.hybrid == b.hybrid && a.modal == b.modal && a.content_hash == b.content_hash && a.software == b.software &&
-         a.mesh_nodes == b.mesh_nodes && a.young == b.young && a.poisson == b.poisson &&
+         a.hybrid == b.hybrid && a.modal == b.modal && a.presses == b.presses && a.content_hash == b.content_hash &&
+         a.software == b.software && a.mesh_nodes == b.mesh_nodes && a.young == b.young && a.poisson == b.poisson &&
          a.material_of_element == b.material_of_element && a.surface.position == b.surface.position &&
          a.surface.node_number == b.surface.node_number && a.surface.fixed == b.surface.fixed &&
          a.surface.triangles == b.surface.triangles && a.surface.touchable == b.surface.touchable &&

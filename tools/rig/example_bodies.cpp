@@ -36,6 +36,24 @@ TetMesh middle_block_mesh(int cells) {
   return make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {cells, cells, cells / 2});
 }
 
+TetMesh kidney_mesh(int cells) {
+  TetMesh mesh = make_block({-1, -1, -1}, {1, 1, 1}, {cells, cells, cells});
+  for (Eigen::Vector3d& x : mesh.nodes) {  // the cube's shells become ellipsoids
+    const double size = x.norm();
+    if (size > 0) x *= x.cwiseAbs().maxCoeff() / size;
+    x = x.cwiseProduct(Eigen::Vector3d(0.055, 0.03, kKidneyTop));
+  }
+  return mesh;
+}
+
+QuasiStaticSpec kidney_body() {
+  QuasiStaticSpec body;
+  body.name = "kidney";
+  body.material = {.young = 6000, .poisson = 0.45, .density = 1000};
+  body.fixed.push_back({.where = {.indices = {}, .box = Box{{-1, -1, -1}, {1, 1, -0.75 * kKidneyTop}}, .group = {}}});
+  return body;
+}
+
 Scene scene_of_moving(Body body) {
   Scene scene;
   scene.bodies.push_back(std::move(body));

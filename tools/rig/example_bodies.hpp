@@ -28,6 +28,12 @@ QuasiStaticSpec& block_of(Scene& scene);
 TetMesh small_block_mesh(int cells = 4);
 /// 60 x 60 x 30 mm on z = 0, in half as many cells of height as across.
 TetMesh middle_block_mesh(int cells = 12);
+/// An ellipsoid of a kidney's size, 110 x 60 x 45 mm about the origin, and as one of soft tissue on the lowest eighth
+/// of its height.
+TetMesh kidney_mesh(int cells = 10);
+inline constexpr double kKidneyTop = 0.0225;  // [m] z
+QuasiStaticSpec kidney_body();
+
 /// One body that moves, and a probe above it along -z.
 Scene scene_of_moving(Body body);
 /// A block that moves.

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/fem/refine_graded.hpp"
 #include "tools/rig/kinds.hpp"
 #include "tools/study/measure.hpp"
-#include "tools/study/reference/graded.hpp"
 
 namespace palpate::study {
 namespace {

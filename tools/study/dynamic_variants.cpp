@@ -1,6 +1,6 @@
+#include "common/fem/refine_graded.hpp"
 #include "common/models/hybrid/hybrid_split.hpp"
 #include "tools/study/kinds.hpp"
-#include "tools/study/reference/graded.hpp"
 
 namespace palpate::study {
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/mesh/shell_file.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
@@ -61,7 +62,8 @@ class Modal : public Method {
         mesh_(load_shell_mesh(of(scene).mesh, of(scene).scale)),
         name_(scene.bodies.size() == 1 ? "modal_shell" : fmt::format("{}:modal_shell", of(scene).name)),
         as_is_(precompute(of(scene), mesh_)),
-        errors_(node_areas(as_is_.surface), choose_presses(scene, as_is_.surface, quick)) {}
+        errors_(node_areas(as_is_.surface.position, as_is_.surface.triangles),
+                choose_presses(scene, as_is_.surface, quick)) {}
 
   int body() const override { return body_; }
 

@@ -59,15 +59,6 @@ double study_radius(const Scene& scene, const SurfaceMap& surface, std::string& 
 
 }  // namespace
 
-std::vector<double> node_areas(const SurfaceMap& s) {
-  std::vector<double> area(s.size(), 0.0);
-  for (const auto& t : s.triangles) {
-    const double of = (s.position[t[1]] - s.position[t[0]]).cross(s.position[t[2]] - s.position[t[0]]).norm() / 2;
-    for (const int n : t) area[n] += of / 3;
-  }
-  return area;
-}
-
 Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick) {
   Presses presses;
   presses.radius = study_radius(scene, surface, presses.radius_from);

@@ -29,7 +29,4 @@ struct Presses {
 /// same surface gives the same places. Throws std::runtime_error if no triangle serves.
 Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick);
 
-/// [m^2] share of the surface of each node.
-std::vector<double> node_areas(const SurfaceMap& surface);
-
 }  // namespace palpate::study

@@ -150,11 +150,8 @@ class QuasiStatic : public Method {
   }
 
   Archive compute(const QuasiStaticSpec& body) const {
-    if (body.nonlinear && !body.nonlinear->specimen_mesh.empty()) {
-      const TetMesh specimen = load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
-      return precompute(body, solid_->mesh(), &specimen);
-    }
-    return precompute(body, solid_->mesh());
+    const std::optional<TetMesh> specimen = load_specimen(body);
+    return precompute(body, solid_->mesh(), specimen ? &*specimen : nullptr);
   }
 
   /// Fewer touchable nodes come in another order.

@@ -12,7 +12,7 @@
 namespace palpate::study {
 namespace {
 
-constexpr SolidCase::Fineness kMesh{0.8, 1 / 7.0, 0.4, 18500}, kQuickMesh{1, 1 / 5.0, 0.5, 10500};
+constexpr Fineness kMesh{0.8, 1 / 7.0, 0.4, 18500}, kQuickMesh{1, 1 / 5.0, 0.5, 10500};
 constexpr double kApart = 1 / 6.0;  // radii between two places of the converged solution
 
 }  // namespace

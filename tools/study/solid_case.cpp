@@ -9,23 +9,21 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/fem/newton_solid.hpp"
+#include "common/fem/refine_graded.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/models/content_hash.hpp"
 #include "common/models/solid/precompute.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/measure.hpp"
-#include "tools/study/reference/graded.hpp"
-#include "tools/study/reference/newton.hpp"
 
 namespace palpate::study {
 namespace {
 
-using Fineness = SolidCase::Fineness;
 constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 40000}, neo_mesh{1, 1 / 5.0, 0.4, 4500};
 constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_neo{1, 1 / 4.0, 0.6, 4500};
 constexpr double kLevel = std::numbers::sqrt2;  // edges of a mesh against those of the next finer one
-constexpr double kStride = 1.15;
-constexpr int kMaxStrides = 12;
 
 void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
   numbers.push_back(answer.force);
@@ -49,7 +47,7 @@ SolidCase::SolidCase(const Scene& scene, int body, OneMesh whole, bool quick, Re
       say_(std::move(say)),
       problem_(make_static_problem(solid(), std::move(whole.mesh))),
       surface_(make_surface_map(solid(), problem_.mesh, problem_.dofs)),
-      errors_(node_areas(surface_), choose_presses(scene, surface_, quick)) {}
+      errors_(node_areas(surface_.position, surface_.triangles), choose_presses(scene, surface_, quick)) {}
 
 std::string SolidCase::name(const std::string& model) const {
   return scene_.bodies.size() == 1 ? model : fmt::format("{}:{}", solid().name, model);
@@ -65,25 +63,11 @@ double SolidCase::reach(double depth) const {
   return 1.1 * std::sqrt((2 * presses().radius - depth) * depth);
 }
 
-StaticProblem SolidCase::refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const {
-  const int max_nodes = static_cast<int>(problem_.mesh.nodes.size()) + fineness.more_nodes;
-  for (;; ++strides) {
-    const double faster = std::pow(kStride, strides);
-    const double outer = faster * fineness.edge * mean_edge(problem_.mesh);
-    const double inner = std::min(outer, fineness.ball * presses().radius);
-    const SizeField size = [&](const Eigen::Vector3d& x) {
-      double least = outer;
-      for (const Patch& at : places)
-        least = std::min(least,
-                         size_around(x, at.point, at.inward, 0.8 * presses().radius, inner, faster * fineness.growth));
-      return least;
-    };
-    try {
-      return refine_graded(problem_, size, max_nodes);
-    } catch (const std::runtime_error&) {
-      if (strides == kMaxStrides) throw;
-    }
-  }
+StaticProblem SolidCase::refined(std::span<const Patch> places, Fineness fineness, int& strides) const {
+  fineness.max_nodes += static_cast<int>(problem_.mesh.nodes.size());
+  std::vector<PressedSpot> spots;
+  for (const Patch& at : places) spots.push_back({at.point, at.inward, presses().radius});
+  return refine_under_ball(problem_, spots, fineness, strides);
 }
 
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,

@@ -6,9 +6,10 @@
 #include <span>
 
 #include "common/fem/direct.hpp"
+#include "common/fem/linear_contact.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/press_errors.hpp"
-#include "tools/study/reference/linear_contact.hpp"
 #include "tools/study/reference_cache.hpp"
 
 namespace palpate::study {
@@ -54,16 +55,8 @@ class SolidCase {
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
   std::vector<Eigen::Vector3d> at_surface(const std::vector<Eigen::Vector3d>& of_nodes) const;
-  /// How fine a reference's mesh is: edges far away against the body's own and under the ball against its
-  /// radius [1], by how much they grow per distance between, and how many nodes it may have beyond the body's own. A
-  /// mesh with more is coarser far away and graded faster, in as many strides of 15 % as it takes.
-  struct Fineness {
-    double edge, ball, growth;
-    int more_nodes;
-
-    Fineness coarser(double by) const { return {by * edge, by * ball, by * growth, more_nodes}; }
-  };
-  StaticProblem refined(std::span<const Patch> places, const Fineness& fineness, int& strides) const;
+  /// The body on a mesh that is fine under a ball at each place; `fineness` counts the nodes beyond the body's own.
+  StaticProblem refined(std::span<const Patch> places, Fineness fineness, int& strides) const;
   double reach(double depth) const;  ///< [m] about a patch within which nodes may touch the ball
 
   /// The same contact with large strain and rotation (neo-Hookean), and with linear elasticity by the same

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 
@@ -13,10 +14,13 @@
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 #include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
+
+constexpr double kLikeBall = 0.25;  // by which a tip may differ from the ball that pressed
 
 bool has_linear_displacement(const std::optional<Offline>& offline) {
   return !offline || (offline->element == "p1" && offline->formulation == "displacement");
@@ -33,25 +37,50 @@ void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, CheckReport& 
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));
 }
 
-void say_nonlinear(const QuasiStaticSpec& body, CheckReport& report) {
+std::string say_law(const MeasuredLaw& law, const QuasiStaticSpec& body, const CheckSettings&) {
+  Archive slopes;
+  if (const auto specimen = load_specimen(body)) {
+    const auto pressed = press_specimen(*specimen, body.material);
+    slopes.specimen_force_slope = pressed.force;
+    slopes.specimen_radial_slope = pressed.radial;
+  }
+  const QuasiNonlinear curves = make_nonlinear(body, slopes).at(Eigen::Vector3d::Zero());
+  return fmt::format(
+      "degree {}, {} ends; fitted up to a linear force of {:.3g} N and a linear radial displacement of "
+      "{:.3g} m",
+      law.degree, law.specimen_mesh.empty() ? "sliding" : "stuck", curves.force_curve().end(),
+      curves.radial_curve().end());
+}
+
+std::string say_law(const NeoHookeanLaw& law, const QuasiStaticSpec&, const CheckSettings& settings) {
+  const auto archive = settings.stored(ArchivePart::header);
+  if (!archive) return fmt::format("to be fitted to presses at {} places", law.places);
+  const auto [least, most] = std::ranges::minmax(archive->presses, {}, &PressedPlace::depth);
+  return fmt::format("fitted to presses at {} places, to depths of {:.3g} to {:.3g} m", archive->presses.size(),
+                     least.depth, most.depth);
+}
+
+void say_nonlinear(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   if (!body.nonlinear) {
     report.left_out.emplace_back("no quasi non-linear correction");
     return;
   }
-  const Nonlinear& nonlinear = *body.nonlinear;
-  Archive slopes;
-  if (!nonlinear.specimen_mesh.empty()) {
-    const auto pressed =
-        press_specimen(load_tet_mesh(nonlinear.specimen_mesh, nonlinear.specimen_scale), body.material);
-    slopes.specimen_force_slope = pressed.force;
-    slopes.specimen_radial_slope = pressed.radial;
+  report.say("  quasi non-linear correction: " +
+             std::visit([&](const auto& law) { return say_law(law, body, settings); }, body.nonlinear->law));
+}
+
+/// Forces of one ball say little of another's.
+void warn_of_ball(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
+  const auto* law = law_of<NeoHookeanLaw>(body.nonlinear);
+  if (!law) return;
+  for (const Tool& tool : settings.tools) {
+    const double radius = abilities_of(tool).radius;
+    if (std::abs(radius / law->ball_radius - 1) > kLikeBall)
+      report.warnings.push_back(fmt::format(
+          "tool '{}' has {} of {:.3g} m, and the correction of body '{}' is of presses with a ball of {:.3g} "
+          "m: give [body.nonlinear] that ball_radius",
+          tool.name, abilities_of(tool).radius_of, radius, body.name, law->ball_radius));
   }
-  const QuasiNonlinear law = make_quasi_nonlinear(body, slopes);
-  report.say(
-      fmt::format("  quasi non-linear correction: degree {}, {} ends; fitted up to a linear force of {:.3g} N and a "
-                  "linear radial displacement of {:.3g} m",
-                  nonlinear.degree, nonlinear.specimen_mesh.empty() ? "sliding" : "stuck", law.force_curve().end(),
-                  law.radial_curve().end()));
 }
 
 void say_relaxation(const QuasiStaticSpec& body, CheckReport& report) {
@@ -105,7 +134,7 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
   say_offline(body, solid.mesh, report);
-  say_nonlinear(body, report);
+  say_nonlinear(body, settings, report);
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
@@ -114,6 +143,7 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   report.warnings = warnings_of_size(body, settings, solid.surface);
   std::ranges::copy(locking_warnings(body), std::back_inserter(report.warnings));
   warn_of_tensors(body, settings, report);
+  warn_of_ball(body, settings, report);
 }
 
 std::vector<std::string> locking_warnings(const QuasiStaticSpec& body) {

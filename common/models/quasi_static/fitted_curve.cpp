@@ -7,8 +7,13 @@
 #include <utility>
 
 namespace palpate {
+namespace {
 
-FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree)
+constexpr double kBegin = 1e-3;  // of the first point: where a curve is as good as at its beginning
+
+}  // namespace
+
+FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree, Error error)
     : count_(degree), end_(s.empty() ? 0 : s.back()) {
   const auto points = static_cast<Eigen::Index>(s.size());
   if (degree < 1 || degree > kMaxDegree || points < degree || s.size() != y.size() || !(s.front() > 0))
@@ -16,23 +21,33 @@ FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>
 
   Eigen::MatrixXd basis(points, degree);
   for (Eigen::Index i = 0; i < points; ++i) {
-    const double t = 2 * s[i] / end_ - 1, weight = s[i] / end_;
+    const double t = 2 * s[i] / end_ - 1, weight = error == Error::relative ? 1 : s[i] / end_;
     double before = t, now = 1;  // T_-1 = T_1
     for (int k = 0; k < degree; ++k) {
       basis(i, k) = weight * now;
       before = std::exchange(now, 2 * t * now - before);
     }
   }
-  const Eigen::Map<const Eigen::VectorXd> right(y.data(), points);
+  Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(y.data(), points);
+  if (error == Error::relative)
+    for (Eigen::Index i = 0; i < points; ++i) right[i] *= end_ / s[i];
   const Eigen::VectorXd solution = basis.colPivHouseholderQr().solve(right) / end_;
   std::copy_n(solution.data(), degree, coefficient_.begin());
-  end_value_ = value(end_);
+  end_ratio_ = ratio(end_);
   end_slope_ = slope(end_);
+}
+
+void FittedCurve::add(double share, const FittedCurve& other) {
+  count_ = std::max(count_, other.count_);
+  for (int k = 0; k < other.count_; ++k) coefficient_[k] += share * other.coefficient_[k];
+  end_ += share * other.end_;
+  end_ratio_ += share * other.end_ratio_;
+  end_slope_ += share * other.end_slope_;
 }
 
 double FittedCurve::ratio(double s) const {
   s = std::abs(s);
-  if (s > end_) return (end_value_ + end_slope_ * (s - end_)) / s;
+  if (s > end_) return (end_ * end_ratio_ + end_slope_ * (s - end_)) / s;
   const double t = 2 * s / end_ - 1;
   double b1 = 0, b2 = 0;  // Clenshaw
   for (int k = count_ - 1; k > 0; --k) b2 = std::exchange(b1, 2 * t * b1 - b2 + coefficient_[k]);
@@ -63,6 +78,15 @@ double FittedCurve::first_fall() const {
     if (slope(s) <= 1e-4 * greatest) return s;
   }
   return -1;
+}
+
+FittedCurve fit_rising(std::vector<double> s, std::vector<double> y, int degree) {
+  const double begin = kBegin * s.front();
+  s.insert(s.begin(), begin);
+  y.insert(y.begin(), begin);
+  for (int d = std::min(degree, static_cast<int>(s.size())); d > 0; --d)
+    if (const FittedCurve curve(s, y, d, FittedCurve::Error::relative); curve.first_fall() < 0) return curve;
+  return {{s.back()}, {s.back()}, 1};
 }
 
 }  // namespace palpate

@@ -11,9 +11,16 @@ class FittedCurve {
  public:
   static constexpr int kMaxDegree = 10;
 
+  /// A curve through which nothing goes yet: see add().
+  FittedCurve() = default;
+  enum class Error { absolute, relative };  ///< whose squares are least: of y, or of y(s)/s
   /// Fits y of the given degree (1 .. 10). `s` is positive and increases strictly; at least `degree` points.
   /// Throws std::invalid_argument.
-  FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree);
+  FittedCurve(const std::vector<double>& s, const std::vector<double>& y, int degree, Error error = Error::absolute);
+
+  /// Adds a share of another curve: its end by that share, and by that share its shape y/end over s/end. Shares of
+  /// rising curves that sum to 1 make a rising curve, and one that goes over evenly as the shares do.
+  void add(double share, const FittedCurve& other);
 
   double end() const { return end_; }  ///< the last data point's s
   double ratio(double s) const;        ///< y(s)/s, and y'(0) at s = 0; a few nanoseconds
@@ -26,9 +33,14 @@ class FittedCurve {
   double first_fall() const;
 
  private:
-  int count_;                                     ///< coefficients of R: the degree of y
+  int count_ = 0;                                 ///< coefficients of R: the degree of y
   std::array<double, kMaxDegree> coefficient_{};  ///< of R
-  double end_, end_value_ = 0, end_slope_ = 0;
+  double end_ = 0, end_ratio_ = 0, end_slope_ = 0;
 };
+
+/// A curve that rises throughout and begins as y = s: of the highest degree up to `degree` whose fit of least relative
+/// error does. A straight line where no other does, and y = s where that falls too. Points as for a FittedCurve, of any
+/// number above zero.
+FittedCurve fit_rising(std::vector<double> s, std::vector<double> y, int degree);
 
 }  // namespace palpate

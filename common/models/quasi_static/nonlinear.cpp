@@ -14,6 +14,24 @@ namespace palpate {
 
 namespace {
 
+constexpr int kDegree = 4;      // of the curves through computed presses
+constexpr double kSpot = 1e-4;  // [m] about a place within which the others do not count
+
+/// The true answer over the linear one.
+FittedCurve fit_pairs(const std::vector<PressedPlace::Pair>& pairs) {
+  std::vector<double> linear, truth;
+  for (const auto& [l, t] : pairs) {
+    linear.push_back(l);
+    truth.push_back(t);
+  }
+  return fit_rising(linear, truth, kDegree);
+}
+
+/// y = s.
+FittedCurve unchanged() {
+  return {{1.0}, {1.0}, 1};
+}
+
 /// Fits the measured values over the linear answer `slope` x to the same displacements x.
 FittedCurve read_curve(const std::filesystem::path& file, std::string_view column, double slope, int degree) {
   const CsvTable table = read_csv(file, {"displacement_m", column});
@@ -38,7 +56,7 @@ FittedCurve read_curve(const std::filesystem::path& file, std::string_view colum
   return {linear, measured, degree};
 }
 
-FittedCurve read_force_curve(const Nonlinear& nonlinear, double slope) {
+FittedCurve read_force_curve(const MeasuredLaw& nonlinear, double slope) {
   FittedCurve curve = read_curve(nonlinear.force_curve, "force_N", slope, nonlinear.degree);
   const double fall = curve.first_fall();
   if (fall >= 0)
@@ -49,7 +67,7 @@ FittedCurve read_force_curve(const Nonlinear& nonlinear, double slope) {
   return curve;
 }
 
-FittedCurve read_radial_curve(const Nonlinear& nonlinear, double slope) {
+FittedCurve read_radial_curve(const MeasuredLaw& nonlinear, double slope) {
   if (!(slope > 0))
     throw std::runtime_error(fmt::format(
         "{}: the radial curve needs a linear model that widens under a press: poisson must be greater than 0",
@@ -64,16 +82,52 @@ LinearSlopes sliding_slopes(const Material& material, double radius, double heig
   return {section * material.young / height, material.poisson * radius / height};
 }
 
-QuasiNonlinear::QuasiNonlinear(const Nonlinear& nonlinear, const LinearSlopes& linear)
-    : force_(read_force_curve(nonlinear, linear.force)), radial_(read_radial_curve(nonlinear, linear.radial)) {}
+QuasiNonlinear measured_correction(const MeasuredLaw& law, const LinearSlopes& linear) {
+  return {read_force_curve(law, linear.force), read_radial_curve(law, linear.radial)};
+}
 
-QuasiNonlinear make_quasi_nonlinear(const QuasiStaticSpec& body, const Archive& archive) {
-  const Nonlinear& nonlinear = *body.nonlinear;
-  if (nonlinear.specimen_mesh.empty())
-    return {nonlinear, sliding_slopes(body.material, nonlinear.specimen_radius, nonlinear.specimen_height)};
+BodyNonlinear::BodyNonlinear(const std::vector<PressedPlace>& presses) {
+  for (const PressedPlace& press : presses) {
+    place_.push_back(press.at);
+    law_.emplace_back(fit_pairs(press.force), press.radial.empty() ? unchanged() : fit_pairs(press.radial));
+  }
+}
+
+QuasiNonlinear BodyNonlinear::at(const Eigen::Vector3d& place) const {
+  if (place_.empty()) return law_.front();
+  const auto weight = [&](std::size_t i) {
+    const double square = (place - place_[i]).squaredNorm() + kSpot * kSpot;
+    return 1 / (square * square);
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < place_.size(); ++i) sum += weight(i);
+  QuasiNonlinear law;
+  for (std::size_t i = 0; i < place_.size(); ++i) law.add(weight(i) / sum, law_[i]);
+  return law;
+}
+
+namespace {
+
+QuasiNonlinear correction_of(const MeasuredLaw& law, const QuasiStaticSpec& body, const Archive& archive) {
+  if (law.specimen_mesh.empty())
+    return measured_correction(law, sliding_slopes(body.material, law.specimen_radius, law.specimen_height));
   if (!(archive.specimen_force_slope > 0))
     throw std::runtime_error(fmt::format("the archive of body '{}' holds no press of its specimen", body.name));
-  return {nonlinear, {archive.specimen_force_slope, archive.specimen_radial_slope}};
+  return measured_correction(law, {archive.specimen_force_slope, archive.specimen_radial_slope});
+}
+
+const std::vector<PressedPlace>& correction_of(const NeoHookeanLaw&, const QuasiStaticSpec& body,
+                                               const Archive& archive) {
+  if (archive.presses.empty())
+    throw std::runtime_error(fmt::format("the archive of body '{}' holds no presses of it", body.name));
+  return archive.presses;
+}
+
+}  // namespace
+
+BodyNonlinear make_nonlinear(const QuasiStaticSpec& body, const Archive& archive) {
+  return std::visit([&](const auto& law) { return BodyNonlinear(correction_of(law, body, archive)); },
+                    body.nonlinear->law);
 }
 
 template <class Scalar>

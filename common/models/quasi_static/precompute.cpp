@@ -9,6 +9,7 @@
 #include "common/fem/specimen.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/quasi_static/press_by_laws.hpp"
 #include "common/models/solid/precompute.hpp"
 
 namespace palpate {
@@ -41,19 +42,18 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
     archive.specimen_radial_slope = slopes.radial;
     specimen_watch.lap("specimen");
   }
+  if (const auto* law = law_of<NeoHookeanLaw>(body.nonlinear))
+    archive.presses = press_by_laws({mesh, materials, dofs}, surface, *law, body.name, progress);
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
 }
 
-namespace {
-
 std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body) {
-  if (!body.nonlinear || body.nonlinear->specimen_mesh.empty()) return {};
-  return load_tet_mesh(body.nonlinear->specimen_mesh, body.nonlinear->specimen_scale);
+  const auto* law = law_of<MeasuredLaw>(body.nonlinear);
+  if (!law || law->specimen_mesh.empty()) return {};
+  return load_tet_mesh(law->specimen_mesh, law->specimen_scale);
 }
-
-}  // namespace
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress) {
   return [&, mesh = load_tet_mesh(body.mesh, body.scale)] {

@@ -36,7 +36,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
     : TouchBody(archive.surface, softened(archive, creep), settings, {.tips = !by_patch(settings)}) {
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
   if (by_patch(settings)) patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings, creep);
-  if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
+  if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
   const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->most_loads() : 0);
@@ -67,7 +67,7 @@ void QuasiStaticBody::correct(std::span<const MovingTool> tools) {
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
     superpose(t, of_tool_);
     const Eigen::Vector3d press = press_of(t);
-    add_corrected<double>(*nonlinear_, of_tool_, press, displacement_);
+    add_corrected<double>(correction_of(t), of_tool_, press, displacement_);
   }
   superpose(-1, of_tool_);
   const std::span<const int> marked = surface().marked();
@@ -204,11 +204,21 @@ void QuasiStaticBody::load(std::span<const MovingTool> tools, std::span<ToolLoad
   TouchBody::load(tools, loads);
   if (patch_) patch_->load(tools, loads);
   if (!nonlinear_) return;
-  for (ToolLoad& load : loads) {
-    const double scale = nonlinear_->force_scale(-load.force.dot(load.press));
+  for (int t = 0; t < static_cast<int>(loads.size()); ++t) {
+    ToolLoad& load = loads[t];
+    const double scale = correction_of(t).force_scale(-load.force.dot(load.press));
     load.force *= scale;
     load.torque *= scale;
   }
+}
+
+QuasiNonlinear QuasiStaticBody::correction_of(int tool) const {
+  PressPlace place;
+  const auto add = [&](int of_tool, int node, const Eigen::Vector3d& force) {
+    if (of_tool == tool) place.add(map().position[node], force.norm());
+  };
+  for_each_force(std::ref(add));  // a reference, which takes no memory
+  return nonlinear_->at(place.mean());
 }
 
 std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& spec, const Archive& archive,

@@ -38,6 +38,7 @@ class QuasiStaticBody : public TouchBody {
   bool is_held(int node) const;
   void superpose(int tool, std::vector<double>& displacement);
   void correct(std::span<const MovingTool> tools);
+  QuasiNonlinear correction_of(int tool) const;
   void recall(Moment moment, std::span<const int> nodes, std::span<double> displacement);
   void recall_ahead(std::span<const int> nodes, std::span<double> displacement);
   void combine(std::span<const int> nodes, std::span<double> displacement);
@@ -45,7 +46,7 @@ class QuasiStaticBody : public TouchBody {
   void lay_ground();
   void remember();
 
-  std::optional<QuasiNonlinear> nonlinear_;
+  std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
   std::unique_ptr<PatchTouch> patch_;    ///< null: spheres touch as everything else does
   std::vector<const double*> columns_;

@@ -2,7 +2,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
+#include "common/describe/meanings.hpp"
 #include "common/fem/offline_spec.hpp"
 #include "common/fem/relaxation_spec.hpp"
 #include "common/fem/solid_spec.hpp"
@@ -10,8 +12,10 @@
 
 namespace palpate {
 
-/// Quasi non-linear correction (TVCG99 sec. 3-4, 4-3).
-struct Nonlinear {
+/// The correction follows curves that were measured on a specimen.
+struct MeasuredLaw {
+  static constexpr std::string_view kKind = "measured";
+  static constexpr std::string_view kMeaning = "curves of a loading test of a specimen";
   std::filesystem::path force_curve;    ///< CSV `displacement_m,force_N`
   std::filesystem::path radial_curve;   ///< CSV `displacement_m,radial_m`
   double specimen_radius = 0;           ///< [m]
@@ -21,7 +25,7 @@ struct Nonlinear {
   double specimen_scale = 1;            ///< [m per unit of specimen_mesh]
 };
 
-inline void describe(Description& d, Nonlinear& n) {
+inline void describe(Description& d, MeasuredLaw& n) {
   d.file({"force_curve", "", "axial force: CSV with the header `displacement_m,force_N`", Need::required},
          n.force_curve);
   d.file({"radial_curve", "", "radial displacement: CSV with the header `displacement_m,radial_m`", Need::required},
@@ -40,6 +44,43 @@ inline void describe(Description& d, Nonlinear& n) {
   d.only_with("specimen_scale", "specimen_mesh");
 }
 
+/// The correction follows presses of the body itself, which are computed beforehand by linear and by neo-Hookean
+/// elasticity.
+struct NeoHookeanLaw {
+  static constexpr std::string_view kKind = "neo_hookean";
+  static constexpr std::string_view kMeaning = "presses of the body itself, computed with large strains and rotations";
+  static constexpr int kMaxPlaces = 64;
+  double ball_radius = 0.006;  ///< [m]
+  int places = 8;
+};
+
+inline void describe(Description& d, NeoHookeanLaw& n) {
+  d.number({"ball_radius", "m", "radius of the ball that presses: that of the tips that will touch the body",
+            Need::optional, Use::stored},
+           n.ball_radius, above(0));
+  d.integer({"places", "",
+             "number of places that it presses, spread over what can be touched; between them the "
+             "correction goes over evenly",
+             Need::optional, Use::stored},
+            n.places, 1, NeoHookeanLaw::kMaxPlaces);
+}
+
+/// Quasi non-linear correction (TVCG99 sec. 3-4, 4-3).
+struct Nonlinear {
+  std::variant<MeasuredLaw, NeoHookeanLaw> law;
+};
+
+inline void describe(Description& d, Nonlinear& n) {
+  static const std::string laws = meanings(std::type_identity<decltype(n.law)>{});
+  d.variant({"law", "", laws}, n.law);
+}
+
+/// What the body says of such a law; null if it has none, or another.
+template <class Law>
+const Law* law_of(const std::optional<Nonlinear>& nonlinear) {
+  return nonlinear ? std::get_if<Law>(&nonlinear->law) : nullptr;
+}
+
 /// Linear elasticity, solved beforehand (TVCG99 sec. 4).
 struct QuasiStaticSpec : SolidSpec {
   static constexpr std::string_view kKind = "quasi_static";
@@ -54,7 +95,7 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
   d.table({"relaxation", "", "how its moduli fall with time", Need::optional, Use::agreed, "does not relax"},
           b.relaxation);
   d.require(!b.nonlinear || !b.relaxation, "relaxation",
-            "[body.relaxation] does not go with [body.nonlinear], whose curves were measured at one rate");
+            "[body.relaxation] does not go with [body.nonlinear], whose curves are those of one rate");
   d.table({"offline", "", "what the tensors are computed from", Need::optional, Use::stored, "the mesh itself"},
           b.offline);
 }

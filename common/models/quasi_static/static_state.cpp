@@ -13,11 +13,16 @@ namespace {
 /// 4-3): all that is held presses along the direction of its resultant force F; every force is scaled by Q(F)/F, the
 /// part of every displacement across the press by P, and what is held stays where it is held. Returns Q(F)/F; 1, and
 /// nothing has changed, where the resultant is zero.
-double correct(const QuasiNonlinear& law, const StaticField& state) {
+double correct(const BodyNonlinear& of_body, const StaticField& state) {
   Eigen::Vector3d resultant = Eigen::Vector3d::Zero();
-  for (const int place : state.held) resultant += state.force[place];
+  PressPlace at;
+  for (const int place : state.held) {
+    resultant += state.force[place];
+    at.add(state.position[place], state.force[place].norm());
+  }
   const double size = resultant.norm();
   if (!(size > 0)) return 1;
+  const QuasiNonlinear law = of_body.at(at.mean());
   const std::span<double> field(state.displacement.data()->data(), 3 * state.displacement.size());
   const std::vector<double> linear(field.begin(), field.end());
   std::ranges::fill(field, 0.0);
@@ -42,7 +47,7 @@ DirectProblem direct_problem(const QuasiStaticSpec& body) {
 StaticCorrection static_correction(const QuasiStaticSpec& body) {
   if (!body.nonlinear) return {};
   return [&body](const Archive& archive, const StaticField& state) {
-    return correct(make_quasi_nonlinear(body, archive), state);
+    return correct(make_nonlinear(body, archive), state);
   };
 }
 

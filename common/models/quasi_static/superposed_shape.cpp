@@ -1,6 +1,7 @@
 #include "common/models/quasi_static/superposed_shape.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/models/quasi_static/relaxing_shape.hpp"
 
@@ -26,13 +27,14 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 
 SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive)
     : BodyShape(archive.surface), sum_(archive) {
-  if (body.nonlinear) nonlinear_ = make_quasi_nonlinear(body, archive);
+  if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
 }
 
 void SuperposedShape::displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
   sum_.clear();
   for (const auto& [tool, state] : contacts.of_tool) sum_.add(state, contacts.body);
   sum_.combine(total);
+  used_force_ = 0;
   if (nonlinear_ && !sum_.empty()) correct(contacts, total);
 }
 
@@ -45,14 +47,28 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
     sum_.add(state, contacts.body);
     if (sum_.empty()) continue;
     sum_.combine(of_tool_);
-    const Eigen::Vector3d press = press_direction(state, contacts.body);
-    add_corrected<float>(*nonlinear_, flat(of_tool_), press, flat(total));
+    const Press press = press_of(state, contacts.body);
+    add_corrected<float>(press.law, flat(of_tool_), press.direction, flat(total));
+    used_force_ = std::max(used_force_, press.force / press.law.force_curve().end());
   }
   held_.clear();
   for (const auto& [tool, state] : contacts.of_tool)
     for (const NodalForce& f : state.forces)
       if (f.body == contacts.body) held_.push_back(static_cast<int>(f.node));
   keep_held<float>(held_, flat(linear_), flat(total));
+}
+
+SuperposedShape::Press SuperposedShape::press_of(const ContactState& tool, std::uint32_t body) const {
+  PressPlace place;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const NodalForce& f : tool.forces) {
+    if (f.body != body) continue;
+    const Eigen::Map<const Eigen::Vector3d> force(f.force.data());
+    place.add(map().position[f.node], force.norm());
+    sum += force;
+  }
+  const Eigen::Vector3d direction = press_direction(tool, body);
+  return {nonlinear_->at(place.mean()), direction, std::abs(sum.dot(direction))};
 }
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive) {

@@ -15,16 +15,25 @@ class SuperposedShape : public BodyShape {
   SuperposedShape(const QuasiStaticSpec& body, const Archive& archive);
 
   bool superposed() const override { return true; }
+  double used_force() const override { return used_force_; }
 
  private:
   void displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) override;
   void correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total);
+  /// One tool's press on the body.
+  struct Press {
+    QuasiNonlinear law;
+    Eigen::Vector3d direction;
+    double force;  ///< [N] linear, along it
+  };
+  Press press_of(const ContactState& tool, std::uint32_t body) const;
 
   ColumnSum sum_;
-  std::optional<QuasiNonlinear> nonlinear_;
+  std::optional<BodyNonlinear> nonlinear_;
   std::vector<int> held_;
   std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
   std::vector<Eigen::Vector3f> of_tool_;
+  double used_force_ = 0;
 };
 
 /// Unit direction of one tool's press on one body: the sum of the contacts' normal forces; zero without contact.

@@ -1,10 +1,10 @@
-#include "tools/study/reference/neo_hookean.hpp"
+#include "common/fem/neo_hookean.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
-namespace palpate::study {
+namespace palpate {
 namespace {
 
 using Corners = Eigen::Matrix<double, 4, 3>;
@@ -54,4 +54,4 @@ ElementResponse element_response(Law law, const TetGradients& tet, const Lame& l
   return r;
 }
 
-}  // namespace palpate::study
+}  // namespace palpate

@@ -1,7 +1,7 @@
 #pragma once
 #include "common/fem/elasticity.hpp"
 
-namespace palpate::study {
+namespace palpate {
 
 /// How an element answers a deformation.
 enum class Law {
@@ -21,4 +21,4 @@ double element_energy(Law law, const TetGradients& tet, const Lame& lame, const 
 ElementResponse element_response(Law law, const TetGradients& tet, const Lame& lame,
                                  const Eigen::Matrix<double, 4, 3>& u);
 
-}  // namespace palpate::study
+}  // namespace palpate

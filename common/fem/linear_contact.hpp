@@ -2,9 +2,9 @@
 #include <span>
 
 #include "common/fem/direct.hpp"
-#include "tools/study/reference/sphere.hpp"
+#include "common/fem/sphere.hpp"
 
-namespace palpate::study {
+namespace palpate {
 
 /// Linear elasticity under a ball that is pressed into its surface, on a mesh of any fineness: nodes that
 /// would be inside the ball lie on it, are pushed along the ball's own normal and never pulled. One
@@ -36,4 +36,4 @@ class LinearContact {
   Factorisation factor_;
 };
 
-}  // namespace palpate::study
+}  // namespace palpate

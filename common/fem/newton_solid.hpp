@@ -3,10 +3,10 @@
 #include <span>
 
 #include "common/fem/direct.hpp"
-#include "tools/study/reference/neo_hookean.hpp"
-#include "tools/study/reference/sphere.hpp"
+#include "common/fem/neo_hookean.hpp"
+#include "common/fem/sphere.hpp"
 
-namespace palpate::study {
+namespace palpate {
 
 /// How a solve went.
 struct NewtonOutcome {
@@ -30,10 +30,15 @@ class NewtonSolid {
   void prescribe(int node, int axis, double value);
   /// Goes on from the last converged state; on failure the state stays as it was.
   NewtonOutcome solve(const std::optional<Sphere>& ball);
-  /// Solves with the ball brought from `from` (the last one) to `to` in steps of a tenth of its radius, or
-  /// shorter ones where those do not converge. Throws std::runtime_error if twelve halvings on end do not
-  /// help.
-  PressState press(const Sphere& from, const Sphere& to);
+  /// How a ball is brought nearer.
+  struct Stepping {
+    double stride = 0.1;    ///< of its radius, in one step of load
+    int max_halvings = 12;  ///< of a step, on end
+  };
+  /// Solves with the ball brought from `from` (the last one) to `to` in steps, or shorter ones where those do not
+  /// converge. Throws std::runtime_error if the halvings do not help.
+  PressState press(const Sphere& from, const Sphere& to, const Stepping& stepping);
+  PressState press(const Sphere& from, const Sphere& to) { return press(from, to, Stepping()); }
 
   const std::vector<Eigen::Vector3d>& displacement() const { return u_; }
   PressState state(const std::optional<Sphere>& ball) const;
@@ -70,4 +75,4 @@ class NewtonSolid {
   int steps_ = 0, iterations_ = 0;
 };
 
-}  // namespace palpate::study
+}  // namespace palpate

@@ -1,4 +1,4 @@
-#include "tools/study/reference/linear_contact.hpp"
+#include "common/fem/linear_contact.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "common/fem/ordering.hpp"
 #include "common/mesh/surface.hpp"
 
-namespace palpate::study {
+namespace palpate {
 namespace {
 
 constexpr int kMaxRounds = 200;
@@ -99,7 +99,7 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball, const Can
     }
     if (!changed) return force;
   }
-  throw std::runtime_error("the reference's contact does not settle");
+  throw std::runtime_error("the contact does not settle");
 }
 
 PressState LinearContact::press(const Sphere& ball) const {
@@ -110,7 +110,7 @@ PressState LinearContact::press(const Sphere& ball) const {
   std::vector<char> active(n, 0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * n), nodal = u, force;
   for (int round = 0;; ++round) {
-    if (round == kMaxRounds) throw std::runtime_error("the reference's contact normals do not settle");
+    if (round == kMaxRounds) throw std::runtime_error("the normals of the contact do not settle");
     double turned = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Eigen::Vector3d now = (problem_.mesh.nodes[node[i]] + u.segment<3>(3 * i) - ball.centre).normalized();
@@ -137,8 +137,8 @@ PressState LinearContact::press(const Sphere& ball) const {
     state.penetration = std::max(state.penetration,
                                  ball.radius - (problem_.mesh.nodes[s] + state.displacement[s] - ball.centre).norm());
   if (state.penetration > 1e-3 * ball.radius)
-    throw std::runtime_error("the ball comes to nodes beyond the reach of the reference's contact");
+    throw std::runtime_error("the ball comes to nodes beyond the reach of the contact");
   return state;
 }
 
-}  // namespace palpate::study
+}  // namespace palpate

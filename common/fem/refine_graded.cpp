@@ -1,4 +1,4 @@
-#include "tools/study/reference/graded.hpp"
+#include "common/fem/refine_graded.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,14 @@
 
 #include "common/mesh/surface.hpp"
 
-namespace palpate::study {
+namespace palpate {
 namespace {
 
 using Edge = std::array<int, 2>;
+
+constexpr double kStride = 1.15;
+constexpr int kMaxStrides = 12;
+constexpr double kUnderBall = 0.8;  // of its radius: the disc on which the mesh is finest
 
 Edge edge_of(int a, int b) {
   return {std::min(a, b), std::max(a, b)};
@@ -39,7 +43,7 @@ class Splitter {
       const auto [ratio, edge] = longest_.top();
       longest_.pop();
       if (static_cast<int>(nodes_.size()) >= max_nodes)
-        throw std::runtime_error(fmt::format("the reference's mesh would have more than {} nodes", max_nodes));
+        throw std::runtime_error(fmt::format("the graded mesh would have more than {} nodes", max_nodes));
       split(edge);
     }
   }
@@ -177,4 +181,26 @@ double size_around(const Eigen::Vector3d& place, const Eigen::Vector3d& centre, 
   return inner + growth * std::hypot(high, std::max(0.0, out));
 }
 
-}  // namespace palpate::study
+StaticProblem refine_under_ball(const StaticProblem& problem, std::span<const PressedSpot> spots,
+                                const Fineness& fineness, int& strides) {
+  for (;; ++strides) {
+    const double faster = std::pow(kStride, strides);
+    const double outer = faster * fineness.edge * mean_edge(problem.mesh);
+    const SizeField size = [&](const Eigen::Vector3d& x) {
+      double least = outer;
+      for (const PressedSpot& spot : spots) {
+        const double inner = std::min(outer, fineness.ball * spot.radius);
+        least = std::min(least, size_around(x, spot.point, spot.inward, kUnderBall * spot.radius, inner,
+                                            faster * fineness.growth));
+      }
+      return least;
+    };
+    try {
+      return refine_graded(problem, size, fineness.max_nodes);
+    } catch (const std::runtime_error&) {
+      if (strides == kMaxStrides) throw;
+    }
+  }
+}
+
+}  // namespace palpate

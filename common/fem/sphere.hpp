@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace palpate::study {
+namespace palpate {
 
 /// A rigid frictionless ball.
 struct Sphere {
@@ -17,4 +17,4 @@ struct PressState {
   double penetration = 0;                           ///< [m] largest depth of a node in the ball
 };
 
-}  // namespace palpate::study
+}  // namespace palpate

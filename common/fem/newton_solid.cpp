@@ -1,4 +1,4 @@
-#include "tools/study/reference/newton.hpp"
+#include "common/fem/newton_solid.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,13 +7,11 @@
 
 #include "common/mesh/surface.hpp"
 
-namespace palpate::study {
+namespace palpate {
 namespace {
 
 constexpr int kMaxIterations = 30;
 constexpr double kTolerance = 1e-8;  // of the unbalanced force
-constexpr int kMaxHalvings = 12;     // of a step of load, on end
-constexpr double kMaxStride = 0.1;   // of the ball's radius in one step of load
 constexpr double kMinShare = 1e-3;   // of Newton's step that the line search tries
 
 /// Where an entry of the lower triangle stands among the matrix's values; -1 outside it.
@@ -39,9 +37,7 @@ NewtonSolid::NewtonSolid(StaticProblem problem, Law law, double stiffness)
   }
   const Surface surface = extract_surface(problem_.mesh);
   surface_ = surface.nodes;
-  std::vector<double> area(x.size(), 0.0);
-  for (const auto& [a, b, c] : surface.triangles)
-    for (const int n : {a, b, c}) area[n] += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 6;
+  const std::vector<double> area = node_areas(x, surface.triangles);
   for (const int n : surface_) area_.push_back(area[n]);
   tangent_ = assemble_stiffness(problem_.mesh, problem_.materials, problem_.dofs);
   gradient_.resize(problem_.dofs.size());
@@ -86,7 +82,7 @@ double NewtonSolid::contact_stiffness(int s, const Sphere& ball) const {
 double NewtonSolid::energy(const std::vector<Eigen::Vector3d>& u, const std::optional<Sphere>& ball) const {
   double sum = 0;
   for (std::size_t t = 0; t < tets_.size() && std::isfinite(sum); ++t)
-    sum += study::element_energy(law_, tets_[t], lame_[t], corners(t, u));
+    sum += palpate::element_energy(law_, tets_[t], lame_[t], corners(t, u));
   for (std::size_t s = 0; ball && s < surface_.size(); ++s) {
     const int n = surface_[s];
     const double depth = ball->radius - (problem_.mesh.nodes[n] + u[n] - ball->centre).norm();
@@ -151,7 +147,7 @@ Eigen::VectorXd NewtonSolid::direction(int& shifted) {
       ++shifted;
     }
   }
-  throw std::runtime_error("the reference's tangent cannot be made positive definite");
+  throw std::runtime_error("Newton's tangent cannot be made positive definite");
 }
 
 NewtonOutcome NewtonSolid::solve(const std::optional<Sphere>& ball) {
@@ -192,9 +188,9 @@ void NewtonSolid::predict(const Sphere& ball, double ratio) {
   if (energy(guess, ball) < energy(u_, ball)) u_ = std::move(guess);
 }
 
-PressState NewtonSolid::press(const Sphere& from, const Sphere& to) {
+PressState NewtonSolid::press(const Sphere& from, const Sphere& to, const Stepping& stepping) {
   const double way = (to.centre - from.centre).norm();
-  double done = 0, stride = std::min(1.0, kMaxStride * to.radius / std::max(way, 1e-300));
+  double done = 0, stride = std::min(1.0, stepping.stride * to.radius / std::max(way, 1e-300));
   for (int halvings = 0; done < 1;) {
     const double next = std::min(1.0, done + stride);
     const Sphere ball{from.centre + next * (to.centre - from.centre), to.radius};
@@ -210,7 +206,8 @@ PressState NewtonSolid::press(const Sphere& from, const Sphere& to) {
     }
     u_ = reached;
     stride /= 2;
-    if (++halvings > kMaxHalvings) throw std::runtime_error("Newton's method does not converge under the ball");
+    if (++halvings > stepping.max_halvings)
+      throw std::runtime_error("Newton's method does not converge under the ball");
   }
   return state(to);
 }
@@ -237,4 +234,4 @@ std::vector<Eigen::Vector3d> NewtonSolid::internal_force() const {
   return force;
 }
 
-}  // namespace palpate::study
+}  // namespace palpate

@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include "common/models/quasi_static/nonlinear.hpp"
+#include "common/models/quasi_static/precompute.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/press_rig.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A block whose left half is soft in what was fitted and whose right half is stiff, under a probe.
+class CorrectedPress : public ::testing::TestWithParam<const char*> {
+ protected:
+  CorrectedPress() {
+    scene_.contact.rule = GetParam();
+    scene_.contact.friction = 0;
+    archives_ = {precompute(block_of(scene_), block_mesh(10))};
+    archives_[0].presses = {{{-0.02, 0, 0}, 0.004, {{0.1, 0.09}, {1, 0.7}}, {{1e-4, 0.9e-4}, {1e-3, 0.8e-3}}},
+                            {{0.02, 0, 0}, 0.004, {{0.1, 0.11}, {1, 1.4}}, {{1e-4, 1.1e-4}, {1e-3, 1.3e-3}}}};
+    corrected_ = scene_;
+    block_of(corrected_).nonlinear = Nonlinear{NeoHookeanLaw{}};
+  }
+
+  /// A press of 3 mm at x [m], beside any node.
+  static void press(PressRig& rig, double x) {
+    const double radius = std::get<ProbeSpec>(rig.scene().tools[0].end).radius;
+    const auto tip = [&](double depth) { return Vector3d(x, 0.003, radius - depth); };
+    rig.start(tip(-1e-4));
+    for (int i = 1; i <= 30; ++i) rig.step(tip(1e-4 * i));
+  }
+
+  Scene scene_ = block_scene(), corrected_;
+  std::vector<Archive> archives_;
+};
+
+TEST_P(CorrectedPress, TheHandFeelsTheForceOfThePlaceThatIsPressed) {
+  const BodyNonlinear law(archives_[0].presses);
+  double before = 0;
+  for (const double x : {-0.025, -0.005, 0.015}) {
+    PressRig rig(corrected_, archives_);
+    press(rig, x);
+    PressPlace place;
+    Vector3d linear = Vector3d::Zero();
+    for (const NodalForce& f : rig.simulator().contacts(0).forces) {
+      linear += Eigen::Map<const Vector3d>(f.force.data());
+      place.add(archives_[0].surface.position[f.node], Eigen::Map<const Vector3d>(f.force.data()).norm());
+    }
+    EXPECT_NEAR(place.mean().x(), x, 0.006);
+    const double scale = rig.force().norm() / linear.norm();
+    EXPECT_NEAR(scale, law.at(place.mean()).force_scale(linear.norm()), 1e-3) << x;
+    EXPECT_GT(scale, before) << x;
+    before = scale;
+  }
+  EXPECT_GT(before, 1.05);
+}
+
+TEST_P(CorrectedPress, TheShapeWidensByTheLawOfThePlaceAlone) {
+  PressRig rig(corrected_, archives_);
+  press(rig, 0.021);
+  ContactState state = rig.simulator().contacts(0);
+  state.run = 1;
+  Deformer linear(scene_, archives_), corrected(corrected_, archives_);
+  for (Deformer* deformer : {&linear, &corrected}) {
+    ASSERT_TRUE(deformer->take(state));
+    deformer->deform();
+  }
+  const auto &u = linear.surface(0).displacement, &v = corrected.surface(0).displacement;
+  const Eigen::Vector3f press = Eigen::Map<const Vector3d>(state.press.data()).cast<float>();
+  PressPlace place;
+  for (const NodalForce& f : state.forces)
+    place.add(archives_[0].surface.position[f.node], Eigen::Map<const Vector3d>(f.force.data()).norm());
+  const QuasiNonlinear law = BodyNonlinear(archives_[0].presses).at(place.mean());
+  double most = 0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    EXPECT_NEAR(u[n].dot(press), v[n].dot(press), 1e-6);
+    const float across = (u[n] - u[n].dot(press) * press).norm();
+    if (across < 2e-5 || u[n] == v[n]) continue;  // hardly moved, or held
+    const double scale = (v[n] - v[n].dot(press) * press).norm() / across;
+    EXPECT_NEAR(scale, law.radial_scale(across), 1e-3);
+    most = std::max(most, scale);
+  }
+  EXPECT_GT(most, 1.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rules, CorrectedPress, ::testing::Values("barycentric", "patch"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace palpate
