@@ -34,7 +34,7 @@ void press(const std::string& name, const SolidSpec& body, const TetMesh& mesh, 
   const SurfaceAtRest rest(map.position, map.triangles);
   const PressedSpot spot = choose_spots(map, kRadius, 1).front();
   int strides = 0;
-  const StaticProblem fine = refine_under_ball(problem, spot, {1, 0.25, 0.6, 4000}, strides);
+  const StaticProblem fine = refine_under_ball(problem, std::array{spot}, {1, 0.25, 0.6, 4000}, strides);
   const std::vector<double> area = node_areas(fine.mesh.nodes, extract_surface(fine.mesh).triangles);
   NewtonSolid linear(fine, Law::linear), truth(fine, Law::neo_hookean);
   const auto ball = [&](double depth) { return Sphere{spot.point + (depth - kRadius) * spot.inward, kRadius}; };

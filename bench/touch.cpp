@@ -7,11 +7,11 @@
 #include "bench/report.hpp"
 #include "bench/touch_block.hpp"
 #include "common/fem/dense.hpp"
+#include "common/fem/refine_graded.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tools/rig/slide.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/kinds.hpp"
-#include "common/fem/refine_graded.hpp"
 #include "tools/study/slides.hpp"
 
 namespace palpate {
@@ -211,8 +211,8 @@ double block_force(double depth, double share) {
     return std::min(4 * kTipRadius,
                     size_around(x, Vector3d::Zero(), Vector3d::UnitZ(), contact, share * contact, 2 * share));
   };
-  const study::LinearContact reference(study::refine_graded(coarse, size, 100000),
-                                       std::array{Vector3d(Vector3d::Zero())}, 1.15 * contact);
+  const LinearContact reference(refine_graded(coarse, size, 100000), std::array{Vector3d(Vector3d::Zero())},
+                                1.15 * contact);
   return reference.press({{0, 0, kTipRadius - depth}, kTipRadius}).force.norm();
 }
 

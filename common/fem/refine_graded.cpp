@@ -190,8 +190,8 @@ StaticProblem refine_under_ball(const StaticProblem& problem, std::span<const Pr
       double least = outer;
       for (const PressedSpot& spot : spots) {
         const double inner = std::min(outer, fineness.ball * spot.radius);
-        least = std::min(least, size_around(x, spot.point, spot.inward, kUnderBall * spot.radius, inner,
-                                            faster * fineness.growth));
+        least = std::min(
+            least, size_around(x, spot.point, spot.inward, kUnderBall * spot.radius, inner, faster * fineness.growth));
       }
       return least;
     };

@@ -40,9 +40,9 @@ struct Fineness {
   Fineness coarser(double by) const { return {by * edge, by * ball, by * growth, max_nodes}; }
 };
 
-/// The body on a mesh that is fine under a ball at each spot. One with too many nodes is made coarser far away and graded faster, in
-/// as many strides of 15 % beyond the given ones as it takes; `strides` becomes their number. Throws std::runtime_error
-/// where twelve do not help.
+/// The body on a mesh that is fine under a ball at each spot. One with too many nodes is made coarser far away and
+/// graded faster, in as many strides of 15 % beyond the given ones as it takes; `strides` becomes their number. Throws
+/// std::runtime_error where twelve do not help.
 StaticProblem refine_under_ball(const StaticProblem& problem, std::span<const PressedSpot> spots,
                                 const Fineness& fineness, int& strides);
 

@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector3d;
-using Edges = Eigen::Matrix<double, 3, 2>;
+using EdgePair = Eigen::Matrix<double, 3, 2>;
 
-Edges edges_of(const std::array<Vector3d, 3>& corners) {
-  Edges edges;
+EdgePair edges_of(const std::array<Vector3d, 3>& corners) {
+  EdgePair edges;
   edges << corners[1] - corners[0], corners[2] - corners[0];
   return edges;
 }
 
-Vector3d normal_of(const Edges& edges) {
+Vector3d normal_of(const EdgePair& edges) {
   return edges.col(0).cross(edges.col(1)).normalized();
 }
 
@@ -32,7 +32,7 @@ SurfaceAtRest::SurfaceAtRest(const std::vector<Vector3d>& position, std::vector<
     : triangles_(std::move(triangles)) {
   for (const auto& [a, b, c] : triangles_) {
     const std::array corners{position[a], position[b], position[c]};
-    const Edges edges = edges_of(corners);
+    const EdgePair edges = edges_of(corners);
     Frame frame;
     frame.normal = normal_of(edges);
     frame.tangent << edges.col(0).normalized(), frame.normal.cross(edges.col(0).normalized());
@@ -51,7 +51,7 @@ SurfaceChange SurfaceAtRest::change(std::span<const Eigen::Vector3f> position) c
     const std::array<Vector3d, 3> corners{position[a].cast<double>(), position[b].cast<double>(),
                                           position[c].cast<double>()};
     sum += six_volumes(corners);
-    const Edges edges = edges_of(corners), gradient = edges * frames_[t].from_edges;
+    const EdgePair edges = edges_of(corners), gradient = edges * frames_[t].from_edges;
     const Matrix2d square = gradient.transpose() * gradient;
     const double area = std::sqrt(std::max(0.0, square.determinant())), trace = square.trace() + 2 * area;
     const double apart = std::sqrt(std::max(0.0, square.trace() - 2 * area)), together = std::sqrt(trace);
@@ -59,7 +59,7 @@ SurfaceChange SurfaceAtRest::change(std::span<const Eigen::Vector3f> position) c
     least = std::min(least, 0.5 * (together - apart));
     if (!(area > 0)) continue;
     const Matrix2d stretch = (square + area * Matrix2d::Identity()) / together;
-    const Edges turned = gradient * stretch.inverse();
+    const EdgePair turned = gradient * stretch.inverse();
     const double diagonal =
         (turned.array() * frames_[t].tangent.array()).sum() + normal_of(edges).dot(frames_[t].normal);
     cosine = std::min(cosine, 0.5 * (diagonal - 1));

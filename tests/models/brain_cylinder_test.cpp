@@ -28,8 +28,8 @@ class BrainCylinder : public ::testing::TestWithParam<const char*> {
     body.name = "specimen";
     body.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
-    body.nonlinear =
-        Nonlinear{MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
+    body.nonlinear = Nonlinear{
+        MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
   }
 
   MeasuredLaw& curves() { return std::get<MeasuredLaw>(body.nonlinear->law); }

@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.008;
+constexpr double kPressRadius = 0.008;
 
 /// A block that is pressed at a few places once for all tests.
 struct Pressed {
   Pressed()
       : problem(make_static_problem(block_body<SolidSpec>({}, 0.45), middle_block_mesh(4))),
         surface(make_surface_map(block_body<SolidSpec>({}, 0.45), problem.mesh, problem.dofs)),
-        places(press_by_laws(problem, surface, {.ball_radius = kRadius, .places = 2}, "block",
+        places(press_by_laws(problem, surface, {.ball_radius = kPressRadius, .places = 2}, "block",
                              [this](std::string_view stage, double) { said.emplace_back(stage); })) {}
 
   StaticProblem problem;
@@ -40,7 +40,7 @@ const Pressed& pressed() {
 /// Force along a press at a depth, by Newton's method on a mesh of its own.
 double direct_force(Law law, const PressedSpot& spot, double depth) {
   int strides = 0;
-  NewtonSolid solid(refine_under_ball(pressed().problem, spot, {1, 0.3, 0.7, 3000}, strides), law);
+  NewtonSolid solid(refine_under_ball(pressed().problem, std::array{spot}, {1, 0.3, 0.7, 3000}, strides), law);
   const auto ball = [&](double d) { return Sphere{spot.point + (d - spot.radius) * spot.inward, spot.radius}; };
   return solid.press(ball(0), ball(depth)).force.dot(spot.inward);
 }
@@ -49,8 +49,10 @@ TEST(PressByLaws, PlacesAreSpreadAndTheirCurvesBeginAlike) {
   ASSERT_EQ(pressed().places.size(), 2u);
   for (const PressedPlace& place : pressed().places) {
     for (const PressedPlace& other : pressed().places)
-      if (&place != &other) EXPECT_GT((place.at - other.at).norm(), 2 * kRadius);
-    EXPECT_GE(place.depth, 0.5 * kRadius);
+      if (&place != &other) {
+        EXPECT_GT((place.at - other.at).norm(), 2 * kPressRadius);
+      }
+    EXPECT_GE(place.depth, 0.5 * kPressRadius);
     ASSERT_FALSE(place.force.empty());
     EXPECT_NEAR(place.force[0][1] / place.force[0][0], 1, 0.05);
     EXPECT_GT(std::abs(place.force.back()[1] / place.force.back()[0] - 1), 0.02);
@@ -65,9 +67,9 @@ TEST(PressByLaws, EveryPressIsToldWithItsRange) {
 // Where nobody pressed before, and at a depth between those that were pressed.
 TEST(PressByLaws, TheCorrectedForceIsTheNeoHookeanOneElsewhere) {
   const BodyNonlinear law(pressed().places);
-  const PressedSpot spot{{0.007, -0.004, 0.03}, {0, 0, -1}, kRadius};
-  for (const PressedPlace& place : pressed().places) EXPECT_GT((place.at - spot.point).norm(), 0.25 * kRadius);
-  const double depth = 0.47 * kRadius, linear = direct_force(Law::linear, spot, depth),
+  const PressedSpot spot{{0.007, -0.004, 0.03}, {0, 0, -1}, kPressRadius};
+  for (const PressedPlace& place : pressed().places) EXPECT_GT((place.at - spot.point).norm(), 0.25 * kPressRadius);
+  const double depth = 0.47 * kPressRadius, linear = direct_force(Law::linear, spot, depth),
                truth = direct_force(Law::neo_hookean, spot, depth);
   const double corrected = linear * law.at(spot.point).force_scale(linear);
   EXPECT_GT(std::abs(linear / truth - 1), 0.02);
@@ -86,7 +88,9 @@ TEST(PressByLaws, ATipThatSlidesFromPlaceToPlaceFeelsNoJump) {
     jump = std::max(jump, std::abs(now - std::exchange(before, now)));
     least = std::min(least, now);
     most = std::max(most, now);
-    if (i % 50 == 0) EXPECT_LT(here.force_curve().first_fall(), 0) << i;
+    if (i % 50 == 0) {
+      EXPECT_LT(here.force_curve().first_fall(), 0) << i;
+    }
   }
   EXPECT_GT(most - least, 1e-3);
   EXPECT_LT(jump, 0.02 * (most - least));
@@ -99,11 +103,11 @@ TEST(PressByLaws, BeyondItsRangeACurveGoesOnAlongItsTangent) {
 }
 
 TEST(PressSpots, AreAwayFromEdgesAndFixedNodes) {
-  const auto spots = choose_spots(pressed().surface, kRadius, 3);
+  const auto spots = choose_spots(pressed().surface, kPressRadius, 3);
   ASSERT_EQ(spots.size(), 3u);
   for (const PressedSpot& spot : spots) {
     EXPECT_NEAR(spot.inward.norm(), 1, 1e-12);
-    EXPECT_GT(spot.point.z(), 0.5 * kRadius);
+    EXPECT_GT(spot.point.z(), 0.5 * kPressRadius);
   }
 }
 

@@ -28,8 +28,8 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     body_.name = "specimen";
     body_.material = {6000, 0.45, 1040};
     const std::string curves = PALPATE_SOURCE_DIR "/scenes/curves/";
-    body_.nonlinear =
-        Nonlinear{MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
+    body_.nonlinear = Nonlinear{
+        MeasuredLaw{curves + GetParam(), curves + "brain_radial.csv", kCylinderRadius, kCylinderHeight, 6, {}, 1}};
     // The bottom slides: its height is held, one point of it, and its turn about the axis.
     const auto on_x_axis = [&](int n) {
       return std::hypot(mesh_.nodes[n].x() - kCylinderRadius, mesh_.nodes[n].y()) < 1e-9;

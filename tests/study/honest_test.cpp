@@ -13,7 +13,7 @@ namespace palpate::study {
 namespace {
 
 using namespace testing;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 PressErrors two_nodes() {
   return {{1, 3}, Presses{.radius = 0.01, .radius_from = {}, .depths = {0.001, 0.002}, .patches = {}}};
@@ -40,12 +40,12 @@ TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
   Result result;
   const PressAnswers good{{answer(1, 1), answer(2, 2)}};
   EXPECT_NO_THROW(two_nodes().add({}, good, good, "r", result));
-  EXPECT_THROW(two_nodes().add({}, {{answer(1, 1), answer(kNan, 2)}}, good, "r", result), std::runtime_error);
-  EXPECT_THROW(two_nodes().add({}, {{answer(1, kNan), answer(2, 2)}}, good, "r", result), std::runtime_error);
-  EXPECT_THROW(two_nodes().add({}, {{answer(kNan, 1), answer(2, 2)}}, {{answer(0, 0), answer(2, 2)}}, "r", result),
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, 1), answer(kNoNumber, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(1, kNoNumber), answer(2, 2)}}, good, "r", result), std::runtime_error);
+  EXPECT_THROW(two_nodes().add({}, {{answer(kNoNumber, 1), answer(2, 2)}}, {{answer(0, 0), answer(2, 2)}}, "r", result),
                std::runtime_error);
-  EXPECT_THROW(add_course({}, {{1, 2}, {kNan, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
-  EXPECT_THROW(add_course({}, {{1, 2}, {3, kNan}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {kNoNumber, 2}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
+  EXPECT_THROW(add_course({}, {{1, 2}, {3, kNoNumber}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
 }
 
 Scene catheter_scene(const Folder& folder) {

@@ -20,7 +20,8 @@ constexpr double kFacing = 0.2;           // cosine between a facet's normal and
 constexpr int kTurns = 6;                 // at most, of the normal towards that below the sphere's middle
 constexpr int kPasses = 24;               // at most, of the active set
 constexpr double kTouchTolerance = 1e-9;  // [m]
-constexpr double kPivotShare = 1e-9;      // of a square's own compliance, to which pivots are raised
+constexpr double kPivotShare =
+    0.05;  // of a square's own compliance, to which pivots are raised: a half-space leaves more
 
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
 // takes its z axis into the tissue.

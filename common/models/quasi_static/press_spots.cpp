@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kReach = 1.2;                // of the ball's radius: what has to be smooth
+constexpr double kSpotReach = 1.2;            // of the ball's radius: what has to be smooth
 constexpr double kSmooth[] = {0.8, 0.5, -1};  // cosines of the facets against the press
 constexpr double kClear[] = {1.5, 0};         // radii from what is fixed
 
@@ -53,7 +53,7 @@ std::vector<Candidate> candidates(const SurfaceMap& s, double radius) {
     Candidate& c = all.emplace_back(Candidate{{s.position[n], -normal[n].normalized(), radius}});
     c.clear = distance(fixed, c.spot.point);
     for (const Facet& f : facets)
-      if ((f.middle - c.spot.point).norm() < std::max(kReach * radius, 1.01 * f.size))
+      if ((f.middle - c.spot.point).norm() < std::max(kSpotReach * radius, 1.01 * f.size))
         c.smooth = std::min(c.smooth, -f.normal.dot(c.spot.inward));
   }
   return all;
