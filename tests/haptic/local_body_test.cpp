@@ -352,6 +352,7 @@ TEST_F(LocalBodyTest, TheFeedBringsTheNewestModelOfThisRunToTheStep) {
   };
   feed.give(*haptic_);
   EXPECT_EQ(haptic_->local(0).model().seq, 0u);
+  feel({0, 0, 0});  // step 0, whose pose the models have
   send(5, 1);
   send(5, 2);
   EXPECT_EQ(haptic_->local(0).model().seq, 2u);
