@@ -85,9 +85,9 @@ void DynamicLoop::tick() {
   step_.tick = number;
   step_.consumed.clear();
   for (int t = 0; t < world_.tools(); ++t) {
-    const ToolState& tool = world_.consumed(t);
-    if (world_.has_left(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool_left});
-    if (world_.consumed_anew(t)) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool.step});
+    const ToolState& tool = world_.tool(t).consumed();
+    if (world_.tool(t).has_left()) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool_left});
+    if (world_.tool(t).consumed_anew()) step_.consumed.push_back({static_cast<std::uint32_t>(t), tool.run, tool.step});
   }
   step_.hash = world_.hash();
   steps_->write(step_);
@@ -132,7 +132,7 @@ void DynamicLoop::publish_frames() {
   deformer_.deform();
   SurfacePublisher::Origin newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
   for (int t = 0; t < world_.tools(); ++t) {
-    const ToolState& s = world_.consumed(t);
+    const ToolState& s = world_.tool(t).consumed();
     if (s.sense_ns > newest.sense_ns) newest = {s.run, s.step, s.sense_ns};
   }
   for (int b = 0; b < deformer_.bodies(); ++b)

@@ -1,42 +1,14 @@
 #include "common/sim/dynamic_world.hpp"
 
-#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
-#include "common/tool/instrument.hpp"
-
 namespace palpate {
-namespace {
-
-constexpr double kGoneAfter = 120;  // [s] of silence, as the network forgets a participant
-
-ToolDofs dofs_of(const ToolState& s) {
-  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
-}
-
-}  // namespace
 
 DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archives)
-    : dt_(1.0 / scene.rates.haptic_hz),
-      tools_(scene.tools.size()),
-      playback_(scene.tools.size()),
-      newest_(scene.tools.size()),
-      consumed_(scene.tools.size()),
-      waiting_(scene.tools.size(), 0),
-      anew_(scene.tools.size(), 0),
-      leaving_(scene.tools.size(), 0),
-      left_(scene.tools.size(), 0),
-      heard_(scene.tools.size(), 0) {
-  for (const Tool& tool : scene.tools) {
-    trocars_.push_back(make_trocar(tool.pivot, tool.axis, tool.up));
-    parts_.push_back(tool_parts(tool));
-    jaws_.push_back(abilities_of(tool).turning);
-  }
-  parts_before_ = parts_;
-  for (std::size_t t = 0; t < tools_.size(); ++t) {
-    tools_[t].moving.parts = parts_[t];
-    tools_[t].moving.parts_before = parts_before_[t];
-  }
+    : dt_(1.0 / scene.rates.haptic_hz), in_tick_(scene.tools.size()) {
+  tools_.reserve(scene.tools.size());
+  for (const Tool& tool : scene.tools) tools_.emplace_back(tool, dt_);
   const StepSettings settings{scene.contact, scene.tools, dt_};
   for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
     const auto make = [&](const auto& spec) { return make_organ(spec, archives[b], settings); };
@@ -48,83 +20,30 @@ DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archi
 }
 
 bool DynamicWorld::take(const ToolState& state) {
-  if (state.tool >= tools_.size() || !tip_pose(trocars_[state.tool], dofs_of(state)).matrix().allFinite()) return false;
-  newest_[state.tool] = state;
-  waiting_[state.tool] = 1;
-  return true;
+  return state.tool < tools_.size() && tools_[state.tool].take(state);
 }
 
 void DynamicWorld::leave(int tool) {
-  waiting_[tool] = 0;
-  leaving_[tool] = tools_[tool].present;
-}
-
-void DynamicWorld::drop_absent() {
-  const auto patience = static_cast<std::uint64_t>(kGoneAfter / dt_);
-  for (int t = 0; t < tools(); ++t) {
-    left_[t] = std::exchange(leaving_[t], 0);
-    const bool silent = !waiting_[t] && heard_[t] + patience < ticks_;
-    if (left_[t] || silent) tools_[t].present = false;
-  }
-}
-
-void DynamicWorld::turn_jaws(int t) {
-  if (jaws_[t]) set_opening(std::clamp(tools_[t].opening, 0.0, jaws_[t]->max_open), parts_[t]);
-}
-
-void DynamicWorld::move(int t) {
-  ToolInTick& tool = tools_[t];
-  tool.moving.before = tool.moving.now;
-  parts_before_[t] = parts_[t];
-  anew_[t] = std::exchange(waiting_[t], 0);
-  const ToolState& newest = newest_[t];
-  // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
-  const bool begins = anew_[t] && (!tool.present || newest.run != consumed_[t].run);
-  if (begins)
-    playback_[t].begin(newest);
-  else if (tool.present)
-    playback_[t].tick(anew_[t] ? &newest : nullptr);
-  else
-    return;
-  if (anew_[t]) {
-    heard_[t] = ticks_;
-    tool.holding = newest.holding != 0;
-    tool.present = true;
-    consumed_[t] = newest;
-  }
-  tool.dofs = playback_[t].dofs();
-  tool.opening = playback_[t].opening();
-  tool.moving.now = tip_pose(trocars_[t], tool.dofs);
-  turn_jaws(t);
-  if (!begins) return;
-  tool.moving.before = tool.moving.now;
-  parts_before_[t] = parts_[t];
+  tools_[tool].leave();
 }
 
 void DynamicWorld::tick() {
-  drop_absent();
   if (ticks_ % keyframe_interval() == 0)
     for (auto& organ : organs_) organ->forget_factors();
-  for (int t = 0; t < tools(); ++t) move(t);
-  for (auto& organ : organs_) organ->tick(tools_, dt_);
+  for (int t = 0; t < tools(); ++t) {
+    tools_[t].tick(ticks_);
+    in_tick_[t] = tools_[t].in_tick();
+  }
+  for (auto& organ : organs_) organ->tick(in_tick_, dt_);
   ++ticks_;
 }
 
 void DynamicWorld::state(State& s) {
   s.value(ticks_);
   std::vector<MovingTool> moving;
-  for (int t = 0; t < tools(); ++t) {
-    ToolInTick& tool = tools_[t];
-    s.value(tool.moving.now.matrix());
-    s.value(tool.dofs);
-    playback_[t].state(s);
-    s.value(tool.opening);
-    s.value(tool.holding);
-    s.value(consumed_[t]);
-    s.value(heard_[t]);
-    s.value(tool.present);
-    if (s.restoring()) turn_jaws(t);
-    moving.push_back(tool.moving);
+  for (TissueTool& tool : tools_) {
+    tool.state(s);
+    moving.push_back(tool.in_tick().moving);
   }
   for (auto& organ : organs_) organ->state(s, moving);
 }

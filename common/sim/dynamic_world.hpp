@@ -2,14 +2,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/models/moving/dynamic_organ.hpp"
 #include "common/scene/scene.hpp"
-#include "common/sim/tool_playback.hpp"
-#include "common/tool/kinematics.hpp"
+#include "common/sim/tissue_tool.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
@@ -34,16 +32,12 @@ class DynamicWorld {
   bool take(const ToolState& state);
   /// The tool's haptic node has ended: from the next tick on it is gone, with what it held.
   void leave(int tool);
-  /// Moves everything on by dt(). A tool that falls silent stays where it was, since the network may have been cut,
-  /// for two minutes.
+  /// Moves everything on by dt().
   void tick();
 
   std::uint64_t ticks() const { return ticks_; }
-  const ToolInTick& tool(int t) const { return tools_[t]; }
-  /// The state that the last tick consumed; tool_run 0 before any.
-  const ToolState& consumed(int t) const { return consumed_[t]; }
-  bool consumed_anew(int t) const { return anew_[t]; }  ///< by the last tick
-  bool has_left(int t) const { return left_[t]; }       ///< in the last tick
+  const TissueTool& tool(int t) const { return tools_[t]; }
+  const ToolInTick& in_tick(int t) const { return in_tick_[t]; }  ///< as the organs met it in the last tick
 
   std::vector<std::uint8_t> save() const;
   void restore(std::span<const std::uint8_t> from);
@@ -51,19 +45,9 @@ class DynamicWorld {
   std::uint64_t hash() const;
 
  private:
-  void drop_absent();
-  void move(int tool);
-  void turn_jaws(int tool);
-
   double dt_;
-  std::vector<Trocar> trocars_;
-  std::vector<std::vector<ToolPart>> parts_, parts_before_;  ///< per tool; of jaws they turn
-  std::vector<std::optional<TurningJaws>> jaws_;             ///< per tool, where they turn
-  std::vector<ToolInTick> tools_;
-  std::vector<ToolPlayback> playback_;  ///< per tool
-  std::vector<ToolState> newest_, consumed_;
-  std::vector<char> waiting_, anew_, leaving_, left_;
-  std::vector<std::uint64_t> heard_;  ///< tick of the last state, per tool
+  std::vector<TissueTool> tools_;
+  std::vector<ToolInTick> in_tick_;  ///< the same tools as the organs meet them
   std::vector<std::unique_ptr<DynamicOrgan>> organs_;
   std::vector<int> body_of_;
   std::uint64_t ticks_ = 0;

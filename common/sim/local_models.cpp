@@ -60,7 +60,7 @@ void LocalModels::refresh() {
     by_distance_.clear();
     bool lacks = own.stiffness->current().topology != organ.removed().size();
     for (int t = 0; t < world_.tools(); ++t) {
-      const ToolInTick& tool = world_.tool(t);
+      const ToolInTick& tool = world_.in_tick(t);
       if (!tool.present) continue;
       for (int p = 0; p < tool.moving.size(); ++p) {
         const Segment axis = tool.moving.axis(p);
@@ -106,8 +106,8 @@ void LocalModels::condense(OfOrgan& own, const DynamicOrgan& organ) {
 
 // Of which moment the model is, and the pose that the tool had.
 void LocalModels::add_origin(int tool, LocalContactModel& model) const {
-  const ToolState& s = world_.consumed(tool);
-  const ToolDofs& pose = world_.tool(tool).dofs;
+  const ToolState& s = world_.tool(tool).consumed();
+  const ToolDofs& pose = world_.in_tick(tool).dofs;
   model.tool = static_cast<std::uint32_t>(tool);
   model.tool_run = s.run;
   model.tool_step = s.step;
@@ -140,7 +140,7 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
 // The surface nearest to the tool's parts, with each node's own static stiffness.
 void LocalModels::add_surface(int tool, int i, LocalContactModel& model) {
   const DynamicOrgan& organ = world_.organ(i);
-  const ToolInTick& t = world_.tool(tool);
+  const ToolInTick& t = world_.in_tick(tool);
   const LocalStiffness::Answer& answer = organs_[i].stiffness->current();
   by_distance_.clear();
   for (int p = 0; p < t.moving.size(); ++p) {
@@ -216,7 +216,7 @@ void LocalModels::add_still_surface(int tool, int i, LocalContactModel& model) {
   const HybridTouch& still = *world_.organ(i).still_part();
   const TouchSurface& surface = still.surface();
   by_distance_.clear();
-  const ToolInTick& t = world_.tool(tool);
+  const ToolInTick& t = world_.in_tick(tool);
   for (int p = 0; p < t.moving.size(); ++p) {
     const Segment axis = t.moving.axis(p);
     const double radius = t.moving.radius(p);
@@ -239,7 +239,7 @@ bool LocalModels::describe(int tool, LocalContactModel& model) {
   model.nodes.clear();
   model.triangles.clear();
   add_origin(tool, model);
-  if (!world_.tool(tool).present) return false;
+  if (!world_.in_tick(tool).present) return false;
   for (int i = 0; i < world_.organs(); ++i) {
     add_contacts(tool, i, model);
     add_surface(tool, i, model);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "common/geometry/buckets.hpp"
@@ -31,46 +32,57 @@ Found with_buckets(const MovingSurface& surface, const Buckets& buckets, std::ve
   return first;
 }
 
-/// Side of a point on a triangle's plane at a time, and whether it lies above the triangle.
+/// A triangle's corners from a point, both on their ways.
 template <class Scalar>
-struct Look {
+struct Ways {
   using Vector = Eigen::Matrix<Scalar, 3, 1>;
-  Look(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, Scalar t) {
-    const auto mix = [t](const Vector3d& x, const Vector3d& y) -> Vector {
-      return (1 - t) * x.cast<Scalar>() + t * y.cast<Scalar>();
-    };
-    const Vector p = mix(p0, p1), u = mix(a[0], b[0]) - p, v = mix(a[1], b[1]) - p, w = mix(a[2], b[2]) - p;
-    const Vector normal = (v - u).cross(w - u);
-    outside = -u.dot(normal) >= 0;
-    above = v.cross(w).dot(normal) >= 0 && w.cross(u).dot(normal) >= 0 && u.cross(v).dot(normal) >= 0;
+  Ways(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b) {
+    for (int v = 0; v < 3; ++v) {
+      from[v] = a[v].cast<Scalar>() - p0.cast<Scalar>();
+      change[v] = b[v].cast<Scalar>() - p1.cast<Scalar>() - from[v];
+    }
   }
-  bool outside, above;
+  Vector corner(int v, Scalar t) const { return from[v] + t * change[v]; }
+  Vector normal(Scalar t) const {
+    const Vector u = corner(0, t);
+    return (corner(1, t) - u).cross(corner(2, t) - u);
+  }
+  bool outside(Scalar t) const { return -corner(0, t).dot(normal(t)) >= 0; }  ///< of the triangle's plane
+  bool above(Scalar t) const {                                                ///< the triangle
+    const Vector u = corner(0, t), v = corner(1, t), w = corner(2, t), n = normal(t);
+    return v.cross(w).dot(n) >= 0 && w.cross(u).dot(n) >= 0 && u.cross(v).dot(n) >= 0;
+  }
+  Vector from[3], change[3];
 };
 
-/// The path cut into many short parts, halving where the side changes, in higher precision.
-Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, int parts) {
-  bool start = Look<double>(p0, p1, a, b, 0).outside;
-  for (int part = 0; part < parts; ++part) {
+/// The path cut into many short parts, halving where the side changes, in higher precision. What would come after
+/// `until` is not looked for.
+Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, int parts,
+               double until = 1) {
+  const Ways<double> ways(p0, p1, a, b);
+  const Ways<long double> exact(p0, p1, a, b);
+  bool start = ways.outside(0);
+  for (int part = 0; part < parts && part <= until * parts; ++part) {
     const double end = (part + 1.0) / parts;
-    const bool before = std::exchange(start, Look<double>(p0, p1, a, b, end).outside);
+    const bool before = std::exchange(start, ways.outside(end));
     if (before == start) continue;
     long double low = static_cast<double>(part) / parts, high = end;
     for (int i = 0; i < 64; ++i) {
       const long double middle = (low + high) / 2;
-      (Look<long double>(p0, p1, a, b, middle).outside == before ? low : high) = middle;
+      (exact.outside(middle) == before ? low : high) = middle;
     }
-    if (Look<long double>(p0, p1, a, b, low).above) return {static_cast<double>(low), 0, before};
+    if (exact.above(low)) return {static_cast<double>(low), 0, before};
   }
   return {};
 }
 
-/// The same for all triangles whose boxes meet the path.
-Found by_force(const MovingSurface& surface, const Vector3d& p0, const Vector3d& p1) {
+/// The same for all triangles, in their boxes, that the path meets.
+Found by_force(const MovingSurface& surface, std::span<const std::array<Vector3d, 2>> boxes, const Vector3d& p0,
+               const Vector3d& p1) {
   Found first;
   for (int t = 0; t < surface.size(); ++t) {
-    const Triangle a = surface.before(t), b = surface.after(t);
-    if (!meet(swept_box(a, b), {p0.cwiseMin(p1), p0.cwiseMax(p1)})) continue;
-    const Found found = by_force(p0, p1, a, b, 24);
+    if (!meet(boxes[t], {p0.cwiseMin(p1), p0.cwiseMax(p1)})) continue;
+    const Found found = by_force(p0, p1, surface.before(t), surface.after(t), 24, std::min(first.time, 1.0));
     if (found.time < first.time) first = {found.time, t, found.from_outside};
   }
   return first;
@@ -86,16 +98,17 @@ TEST(Sweep, AgreesWithBruteForceOverAHundredThousandSweepsOfADeformingSurface) {
   MovingSurface surface(21);
   Buckets buckets(surface.rest, surface.triangles, 0.01);
   std::vector<int> room(surface.size());
+  std::vector<std::array<Vector3d, 2>> boxes(surface.size());
   int hits = 0, sweeps = 0;
   for (int round = 0; round < 100; ++round) {
     surface.step(round % 3 ? 0.002 : 0);
     for (int t = 0; t < surface.size(); ++t) {
-      const auto box = swept_box(surface.before(t), surface.after(t));
-      buckets.move(t, box[0], box[1]);
+      boxes[t] = swept_box(surface.before(t), surface.after(t));
+      buckets.move(t, boxes[t][0], boxes[t][1]);
     }
     for (int trial = 0; trial < 1000; ++trial, ++sweeps) {
       const auto [p0, p1] = random_path(surface);
-      const Found expected = by_force(surface, p0, p1), found = with_buckets(surface, buckets, room, p0, p1);
+      const Found expected = by_force(surface, boxes, p0, p1), found = with_buckets(surface, buckets, room, p0, p1);
       ASSERT_EQ(found.triangle, expected.triangle) << "sweep " << sweeps;
       if (expected.triangle < 0) continue;
       ASSERT_NEAR(found.time, expected.time, 1e-10);
@@ -122,7 +135,7 @@ TEST(Sweep, AgreesWithBruteForceForTrianglesThatTurnOverWithinAStep) {
     ASSERT_NEAR(hit->time, expected.time, 1e-9) << "trial " << trial;
     ASSERT_EQ(hit->from_outside, expected.from_outside);
     ++hits;
-    late += hit->from_outside != Look<double>(p0, p1, a, b, 0).outside;
+    late += hit->from_outside != Ways<double>(p0, p1, a, b).outside(0);
   }
   EXPECT_GT(hits, 2000);
   EXPECT_GT(late, 20) << "crossings of the plane beside the triangle came first";

@@ -94,16 +94,16 @@ TEST(DynamicWorldWithASilentTool, KeepsItUntilItsNodeEnds) {
   ASSERT_LT(pressed, -0.005);
   for (int i = 0; i < 3000; ++i) bench.world().tick();
   EXPECT_NEAR(bench.force().z(), pressed, 0.2 * -pressed);
-  EXPECT_FALSE(bench.world().has_left(0));
+  EXPECT_FALSE(bench.world().tool(0).has_left());
   bench.world().leave(0);
   bench.world().tick();
-  EXPECT_TRUE(bench.world().has_left(0));
+  EXPECT_TRUE(bench.world().tool(0).has_left());
   EXPECT_TRUE(bench.force().isZero(0));
   bench.world().leave(0);
   bench.world().tick();
-  EXPECT_FALSE(bench.world().has_left(0)) << "once";
+  EXPECT_FALSE(bench.world().tool(0).has_left()) << "once";
   bench.tick(0.034);
-  EXPECT_TRUE(bench.world().tool(0).present);
+  EXPECT_TRUE(bench.world().in_tick(0).present);
 }
 
 }  // namespace

@@ -42,16 +42,12 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
       contacts_(mesh_, surface_, *model_, settings.contact.friction, parts_of(settings.tools)),
-      holding_(settings.tools.size(), 0),
       position_(mesh_.rest),
-      poses_(settings.tools.size(), Eigen::Isometry3d::Identity()),
-      poses_before_(poses_),
-      moving_(settings.tools.size()),
+      in_tick_(settings.tools.size()),
       in_step_(settings.tools.size()) {
   for (const Tool& tool : settings.tools) {
     const EndAbilities can = abilities_of(tool);
-    jaws_.push_back({can.closing, forceps_shape(tool)});
-    cautery_.push_back(can.cautery);
+    hands_.push_back({.closing = can.closing, .turning = forceps_shape(tool), .cautery = can.cautery});
   }
   if (still_) topology_.join(shown_.joints());
   surface_.hide(shown_.joints());
@@ -79,36 +75,40 @@ int DynamicOrgan::steps_in(double dt, bool touched) const {
   return std::max(1, static_cast<int>(std::ceil(dt / (touched ? touched_step_ : max_step_) - 1e-9)));
 }
 
+// Of a tool that is absent nothing is left, neither parts nor what it touched.
+void DynamicOrgan::take_tools(std::span<const ToolInTick> tools) {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    in_tick_[t] = tools[t].moving;
+    if (tools[t].present) continue;
+    in_tick_[t].parts = in_tick_[t].parts_before = {};
+    contacts_.drop_tool(t);
+    if (still_) still_->drop_tool(t);
+  }
+}
+
+// By one step, to a share of their way in the tick.
+void DynamicOrgan::move_tools(double share) {
+  for (std::size_t t = 0; t < in_tick_.size(); ++t) {
+    const Eigen::Isometry3d &a = in_tick_[t].before, &b = in_tick_[t].now;
+    in_step_[t].before = in_step_[t].now;
+    in_step_[t].now.translation() = (1 - share) * a.translation() + share * b.translation();
+    in_step_[t].now.linear() =
+        Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+  }
+}
+
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    moving_[t] = tools[t].moving;
-    if (!tools[t].present) {
-      moving_[t].parts = moving_[t].parts_before = {};
-      contacts_.drop_tool(static_cast<int>(t));
-      if (still_) still_->drop_tool(static_cast<int>(t));
-    }
-  }
+  take_tools(tools);
   work_jaws(tools);
-  contacts_.find(moving_);
-  if (still_) still_->find(moving_);
-  in_step_ = moving_;
+  contacts_.find(in_tick_);
+  if (still_) still_->find(in_tick_);
   const bool touched = !contacts_.contacts().empty();
   const int steps = steps_in(dt, touched);
-  for (std::size_t t = 0; t < moving_.size(); ++t) poses_[t] = moving_[t].before;
+  in_step_ = in_tick_;
+  for (MovingTool& tool : in_step_) tool.now = tool.before;
   for (int s = 1; s <= steps; ++s) {
-    const double share = static_cast<double>(s) / steps;
-    poses_.swap(poses_before_);
-    for (std::size_t t = 0; t < moving_.size(); ++t) {
-      const Eigen::Isometry3d &a = moving_[t].before, &b = moving_[t].now;
-      poses_[t].translation() = (1 - share) * a.translation() + share * b.translation();
-      poses_[t].linear() =
-          Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
-    }
-    for (std::size_t t = 0; t < moving_.size(); ++t) {
-      in_step_[t].before = poses_before_[t];
-      in_step_[t].now = poses_[t];
-    }
+    move_tools(static_cast<double>(s) / steps);
     if (still_) still_->hold(in_step_);
     if (touched)
       contacts_.step(in_step_, dt / steps);
@@ -116,8 +116,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
       model_->step(dt / steps);
     if (still_) still_->take();
   }
-  if (touched) contacts_.end_tick(moving_, dt);
-  if (still_) still_->end_tick(moving_);
+  if (touched) contacts_.end_tick(in_tick_, dt);
+  if (still_) still_->end_tick(in_tick_);
   update_positions();
   cut(tools);
   tear();
@@ -144,9 +144,9 @@ void DynamicOrgan::update_positions() {
 // Jaws that shut hold what is between them, until they open.
 void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-    if (!tools[t].present || tools[t].holding == (holding_[t] != 0)) continue;
-    holding_[t] = tools[t].holding;
-    if (holding_[t]) {
+    if (!tools[t].present || tools[t].holding == hands_[t].holding) continue;
+    hands_[t].holding = tools[t].holding;
+    if (tools[t].holding) {
       grasp(t, tools[t]);
     } else {
       contacts_.search().let_go(t);
@@ -159,8 +159,8 @@ void DynamicOrgan::work_jaws(std::span<const ToolInTick> tools) {
 void DynamicOrgan::grasp(int tool, const ToolInTick& with) {
   const auto take = [&](auto&& from, auto&& allowed) {
     const Eigen::Isometry3d& pose = with.moving.before;
-    if (const auto& jaws = jaws_[tool].closing) return from.grasp(tool, pose, jaws->length, jaws->width, allowed);
-    if (const auto& shape = jaws_[tool].turning)
+    if (const auto& jaws = hands_[tool].closing) return from.grasp(tool, pose, jaws->length, jaws->width, allowed);
+    if (const auto& shape = hands_[tool].turning)
       return from.grasp(OpenJaws{tool, *shape, pose, with.opening, 0}, allowed);
     return false;
   };
@@ -176,10 +176,10 @@ bool DynamicOrgan::holds(int tool) const {
 void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
   const std::size_t first = removed_.size();
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const auto& cautery = cautery_[t];
+    const auto& cautery = hands_[t].cautery;
     if (!cautery || !tools[t].present || tools[t].dofs.pedal < 0.5) continue;
     for (int i = 0; i < kMaxCuts; ++i) {
-      const Eigen::Vector3d tip = moving_[t].now.translation();
+      const Eigen::Vector3d tip = in_tick_[t].now.translation();
       double least = cautery->radius * cautery->radius;
       int nearest = -1;
       for (int facet : surface_.find(tip, tip, cautery->radius)) {
@@ -270,9 +270,11 @@ std::vector<std::uint8_t> DynamicOrgan::motion() const {
 }
 
 DynamicOrgan::Memory DynamicOrgan::memory() const {
+  std::vector<char> holding;
+  for (const Hand& hand : hands_) holding.push_back(hand.holding);
   return {removed_,
           motion(),
-          holding_,
+          holding,
           {surface_.previous().begin(), surface_.previous().end()},
           {surface_.positions().begin(), surface_.positions().end()}};
 }
@@ -291,7 +293,7 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 
 // Whether what was read can be of this body and these tools.
 bool DynamicOrgan::fits(const Memory& m) const {
-  const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == holding_.size() &&
+  const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == hands_.size() &&
                      m.previous.size() == position_.size() && m.present.size() == position_.size();
   return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
 }
@@ -305,7 +307,7 @@ void DynamicOrgan::recall(const Memory& m) {
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
   model_->restore(m.motion.data());
-  holding_ = m.holding;
+  for (std::size_t t = 0; t < hands_.size(); ++t) hands_[t].holding = m.holding[t] != 0;
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;

@@ -84,10 +84,12 @@ class DynamicOrgan {
   std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
-  /// How a tool takes hold: at most one of these.
-  struct Jaws {
+  /// What a tool can do to it, and whether its jaws hold. It takes hold by one of the two at most.
+  struct Hand {
     std::optional<ClosingJaws> closing;
     std::optional<ForcepsShape> turning;
+    std::optional<Cautery> cautery;
+    bool holding = false;
   };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
@@ -100,6 +102,8 @@ class DynamicOrgan {
   Memory memory() const;
   bool fits(const Memory& memory) const;
   void recall(const Memory& memory);
+  void take_tools(std::span<const ToolInTick> tools);
+  void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
@@ -111,8 +115,7 @@ class DynamicOrgan {
   void follow_change();
 
   std::string name_;
-  std::vector<Jaws> jaws_;                       ///< per tool
-  std::vector<std::optional<Cautery>> cautery_;  ///< per tool
+  std::vector<Hand> hands_;  ///< per tool
   ElasticMesh mesh_;
   CutMesh topology_;
   ShownSurface shown_;
@@ -122,13 +125,11 @@ class DynamicOrgan {
   TissueTouch contacts_;
   std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
-  double diagonal_;                                      ///< [m] of the body at rest
-  Eigen::Vector3d middle_;                               ///< [m] of the body at rest
-  std::vector<char> holding_;                            ///< per tool
-  std::vector<Eigen::Vector3d> position_;                ///< [m] per node
-  std::vector<Eigen::Isometry3d> poses_, poses_before_;  ///< at the end and beginning of a step, per tool
-  std::vector<MovingTool> moving_, in_step_;             ///< in_step_: now is the pose at a step's end
-  std::vector<int> removed_, part_of_, loose_;           ///< loose_: one tetrahedron of each part that floats
+  double diagonal_;                             ///< [m] of the body at rest
+  Eigen::Vector3d middle_;                      ///< [m] of the body at rest
+  std::vector<Eigen::Vector3d> position_;       ///< [m] per node
+  std::vector<MovingTool> in_tick_, in_step_;   ///< per tool: from before to now in the tick, and in one of its steps
+  std::vector<int> removed_, part_of_, loose_;  ///< loose_: one tetrahedron of each part that floats
   std::vector<Change> changes_;
 };
 

@@ -1,0 +1,23 @@
+#pragma once
+#include "common/devices/kind.hpp"
+
+namespace palpate {
+
+/// A device whose motion is in a file: all that its kinds share.
+struct MotionFileSpec {
+  std::filesystem::path trajectory;
+};
+
+inline void describe(Description& d, MotionFileSpec& m) {
+  d.file({"trajectory", "", "CSV for `\"scripted\"`, an LCM event log for `\"log\"`", Need::required, Use::local},
+         m.trajectory);
+}
+
+inline std::filesystem::path motion_file(const MotionFileSpec& spec) {
+  return spec.trajectory;
+}
+constexpr std::string_view absence(const MotionFileSpec&) {
+  return {};
+}
+
+}  // namespace palpate

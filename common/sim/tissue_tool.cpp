@@ -1,0 +1,92 @@
+#include "common/sim/tissue_tool.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/tool/instrument.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kGoneAfter = 120;  // [s] of silence, as the network forgets a participant
+
+ToolDofs dofs_of(const ToolState& s) {
+  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
+}
+
+}  // namespace
+
+TissueTool::TissueTool(const Tool& tool, double tick)
+    : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
+      parts_(tool_parts(tool)),
+      parts_before_(parts_),
+      jaws_(abilities_of(tool).turning),
+      patience_(static_cast<std::uint64_t>(kGoneAfter / tick)) {}
+
+bool TissueTool::take(const ToolState& state) {
+  if (!tip_pose(trocar_, dofs_of(state)).matrix().allFinite()) return false;
+  newest_ = state;
+  waiting_ = true;
+  return true;
+}
+
+void TissueTool::leave() {
+  waiting_ = false;
+  leaving_ = present_;
+}
+
+void TissueTool::turn_jaws() {
+  if (jaws_) set_opening(std::clamp(opening_, 0.0, jaws_->max_open), parts_);
+}
+
+void TissueTool::tick(std::uint64_t number) {
+  left_ = std::exchange(leaving_, false);
+  const bool silent = !waiting_ && heard_ + patience_ < number;
+  if (left_ || silent) present_ = false;
+  before_ = now_;
+  parts_before_ = parts_;
+  anew_ = std::exchange(waiting_, false);
+  // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
+  const bool begins = anew_ && (!present_ || newest_.run != consumed_.run);
+  if (begins)
+    playback_.begin(newest_);
+  else if (present_)
+    playback_.tick(anew_ ? &newest_ : nullptr);
+  else
+    return;
+  if (anew_) {
+    heard_ = number;
+    holding_ = newest_.holding != 0;
+    present_ = true;
+    consumed_ = newest_;
+  }
+  dofs_ = playback_.dofs();
+  opening_ = playback_.opening();
+  now_ = tip_pose(trocar_, dofs_);
+  turn_jaws();
+  if (!begins) return;
+  before_ = now_;
+  parts_before_ = parts_;
+}
+
+ToolInTick TissueTool::in_tick() const {
+  return {.moving = {before_, now_, parts_before_, parts_},
+          .dofs = dofs_,
+          .opening = opening_,
+          .holding = holding_,
+          .present = present_};
+}
+
+void TissueTool::state(State& s) {
+  s.value(now_.matrix());
+  s.value(dofs_);
+  playback_.state(s);
+  s.value(opening_);
+  s.value(holding_);
+  s.value(consumed_);
+  s.value(heard_);
+  s.value(present_);
+  if (s.restoring()) turn_jaws();
+}
+
+}  // namespace palpate
