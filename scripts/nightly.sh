@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), stability (every
-# case), address (with undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs).
-# All of them where none is named.
+# nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
+# undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
+# an error while docs/stability.md names failed ones). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long stability address thread tidy
+[ $# -gt 0 ] || set -- long address thread tidy stability
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in

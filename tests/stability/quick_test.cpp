@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "tools/stability/case.hpp"
 
@@ -29,7 +30,8 @@ TEST(StabilityCases, TheClosedLoopKeepsToTheReserveWhereTheControllerIsOn) {
   int without = 0;
   for (const Point& p : loop_points({.quick = true})) {
     const Row row = run_guarded(p);
-    ASSERT_NE(row.outcome, "failed") << p.name << " " << p.parameter << " " << p.value << ": " << row.note;
+    EXPECT_EQ(row.outcome == "failed", row.energy_growth > 0.01)
+        << p.name << " " << p.parameter << " " << p.value << ": " << row.note;
     if (p.name.find("observer") == std::string::npos) {
       const double step = p.parameter.starts_with("quantisation") ? std::stod(p.value) : 0.0;
       EXPECT_LE(row.energy_growth, 0.01 + 20 * step) << p.name << " " << p.parameter << " " << p.value;
@@ -80,6 +82,16 @@ TEST(StabilityCases, MovingTissue) {
                                           {"step tensor_mass semi_implicit|step / bound [1]|1.5", "refused"},
                                           {"step spring_mass rk4|step / bound [1]|1.5", "refused"},
                                           {"step spring_mass semi_implicit|step / bound [1]|1.5", "refused"}});
+}
+
+/// A press by its number, however its words go on. Those that fail are what docs/stability.md says is not right.
+TEST(StabilityCases, MovingContact) {
+  const std::set<std::string> not_right{"0.005", "2:", "3:", "5:", "12:", "19:", "22:", "25:", "27:", "28:"};
+  for (const Point& p : moving_points({.quick = true})) {
+    const Row row = run_guarded(p);
+    const bool fails = not_right.contains(p.value.substr(0, p.value.find(' ')));
+    EXPECT_EQ(row.outcome, fails ? "failed" : "stable") << p.parameter << ", " << p.value << ": " << row.note;
+  }
 }
 TEST(StabilityCases, Cuts) {
   check(cut_points({.quick = true}), {});

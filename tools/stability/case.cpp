@@ -100,7 +100,7 @@ Row run_guarded(const Point& point) {
 std::vector<Point> all_points(const Extent& extent) {
   std::vector<Point> all;
   for (const auto subject : {loop_points, material_points, geometry_points, hold_points, press_points, curve_points,
-                             dynamic_points, cut_points, hybrid_points, shell_points, catheter_points}) {
+                             dynamic_points, moving_points, cut_points, hybrid_points, shell_points, catheter_points}) {
     const std::vector<Point> points = subject(extent);
     all.insert(all.end(), points.begin(), points.end());
   }

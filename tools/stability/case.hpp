@@ -64,6 +64,7 @@ std::vector<Point> geometry_points(const Extent& extent);
 std::vector<Point> hold_points(const Extent& extent);
 std::vector<Point> press_points(const Extent& extent);
 std::vector<Point> dynamic_points(const Extent& extent);
+std::vector<Point> moving_points(const Extent& extent);
 std::vector<Point> cut_points(const Extent& extent);
 std::vector<Point> curve_points(const Extent& extent);
 std::vector<Point> hybrid_points(const Extent& extent);

@@ -1,0 +1,78 @@
+// Contact with moving tissue, where it is stiff, soft, thin, small, heavy, light or far away.
+#include <fmt/format.h>
+
+#include <random>
+
+#include "tools/stability/moving_press.hpp"
+
+namespace palpate::stability {
+namespace {
+
+constexpr int kCombinations = 500, kQuickCombinations = 30;
+constexpr double kMaxSteps = 300;
+
+std::string words_of(const MovingPress& p) {
+  return fmt::format("E {:.2g} Pa, cells {:.2g} x {:.2g} mm, R {:.2g} mm, friction {:g}, {}, {} {}", p.young,
+                     1e3 * p.cell.x(), 1e3 * p.cell.z(), 1e3 * p.radius, p.friction, p.gesture, p.integrator,
+                     p.precision);
+}
+
+/// Whether the rule of contact by nodes and facets knows of the press, and a tick takes less than some hundred steps.
+bool makes_sense(const MovingPress& p) {
+  const bool facet = p.radius<p.cell.x(), node = 2 * p.radius * p.depth> 0.75 * p.cell.x() * p.cell.x();
+  const double step = 0.25 * p.cell.z() * std::sqrt(p.density / p.young);
+  return (facet || node) && 1e-3 / step < kMaxSteps;
+}
+
+/// Any values, each drawn from its range.
+MovingPress drawn(std::mt19937& random) {
+  const auto share = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
+  const auto between = [&](double a, double b) { return a * std::pow(b / a, share()); };
+  const auto one_of = [&](auto list) { return list[std::min<std::size_t>(list.size() * share(), list.size() - 1)]; };
+  MovingPress p{.cells = {4, 4, 2}};
+  const double size = between(40e-6, 0.05);
+  p.cell = {size, size, size * one_of(std::array{1.0, 1.0, 0.3, 0.1})};
+  p.young = between(1e2, 1e8);
+  p.poisson = one_of(std::array{0.0, 0.3, 0.45});
+  p.density = one_of(std::array{300.0, 1000.0, 3000.0});
+  p.damping = one_of(std::array{5.0, 60.0});
+  p.integrator = one_of(std::array{"rk4", "semi_implicit"});
+  p.precision = one_of(std::array{"single", "double"});
+  p.radius = size * between(0.2, 4);
+  p.depth = std::min(0.3 * p.radius, 0.2 * p.cells.z() * p.cell.z());
+  p.beside = {share() - 0.5, share() - 0.5};
+  p.friction = one_of(std::array{0.0, 0.05, 0.3, 1.0});
+  p.gesture = one_of(std::array{"held", "tapped", "slid", "stabbed"});
+  if (share() < 0.1) p.origin = {1e3, -2e3, 500};
+  return p;
+}
+
+MovingPress any_press(std::mt19937& random) {
+  MovingPress p = drawn(random);
+  while (!makes_sense(p)) p = drawn(random);
+  return p;
+}
+
+}  // namespace
+
+std::vector<Point> moving_points(const Extent& extent) {
+  std::vector<Point> points;
+  const auto add = [&](const char* name, const char* parameter, const std::string& value, const MovingPress& p) {
+    points.push_back({name, parameter, value, [p] { return press_moving(p); }, 300});
+  };
+  const std::vector<double> stiff =
+      extent.quick ? std::vector{2e5, 5e6} : std::vector{1e2, 5e3, 2e5, 5e5, 1e6, 5e6, 1e8};
+  for (double e : stiff) add("moving contact", "E [Pa], 10 mm cells, R 5 mm", fmt::format("{:g}", e), {.young = e});
+  for (double r : extent.quick ? std::vector{0.005} : std::vector{0.002, 0.005, 0.02})
+    add("moving contact", "R [m], slab of 10 x 10 x 1 mm cells", fmt::format("{:g}", r),
+        {.cell = {0.01, 0.01, 0.001}, .radius = r, .depth = std::min(0.002, 0.4 * r)});
+  add("moving contact", "film", "cells of 40 um", {.cell = {4e-5, 4e-5, 4e-5}, .radius = 2e-5, .depth = 8e-6});
+  std::mt19937 random(5);
+  for (int i = 0; i < (extent.quick ? kQuickCombinations : kCombinations); ++i) {
+    const MovingPress p = any_press(random);
+    add("moving contact, any", "combination", fmt::format("{}: {}", i, words_of(p)), p);
+  }
+  return points;
+}
+
+}  // namespace palpate::stability

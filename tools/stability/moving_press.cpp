@@ -1,0 +1,129 @@
+#include "tools/stability/moving_press.hpp"
+
+#include <algorithm>
+
+#include "common/mesh/generators.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/rig/press_rig.hpp"
+#include "tools/stability/press.hpp"
+#include "tools/stability/stand_judge.hpp"
+
+namespace palpate::stability {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTick = 1e-3;    // [s]
+constexpr double kPivot = 1e3;    // [m] above the tissue: all of a tool so long moves as its tip does
+constexpr double kStabSpeed = 1;  // [m/s]
+constexpr double kSlideSpeed = 0.02;
+constexpr double kStand = 1;    // [s] of standing before nothing but chatter is left
+constexpr double kDecay = 12;   // [1] time constants of damping that slow tissue is given to come to rest
+constexpr double kSlow = 0.02;  // [s] period from which tissue swings on after the press
+
+struct Stroke {
+  Path path;
+  int ticks;  // until it stands
+};
+
+double smooth(double t) {
+  const double x = std::clamp(t, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+/// The tip's centre, as the gesture leads it.
+Stroke stroke_of(const MovingPress& p) {
+  const Vector3d place = p.origin + Vector3d(p.beside.x() * p.cell.x(), p.beside.y() * p.cell.y(), p.radius);
+  const double above = 0.1 * p.depth, way = p.depth + above, slide = 0.5 * p.cell.x();
+  const auto at = [=](double share, double along = 0) -> Vector3d {
+    return place + Vector3d(along, 0, above - share * way);
+  };
+  if (p.gesture == "stabbed") {
+    const int ticks = std::max(1, static_cast<int>(std::ceil(way / kStabSpeed / kTick)));
+    return {[=](int i) { return at(std::min(1.0, static_cast<double>(i) / ticks)); }, ticks};
+  }
+  if (p.gesture == "tapped") {
+    constexpr int kTap = 100, kTaps = 5;
+    return {[=](int i) {
+              if (i >= kTaps * kTap) return at(smooth((i - kTaps * kTap) / 200.0));
+              return at(0.5 * (1 - std::cos(2 * M_PI * (i % kTap) / kTap)));
+            },
+            kTaps * kTap + 200};
+  }
+  const int down = 200, across = p.gesture == "slid" ? static_cast<int>(slide / kSlideSpeed / kTick) + 1 : 0;
+  return {[=](int i) {
+            return at(smooth(i / static_cast<double>(down)),
+                      across ? slide * smooth((i - down) / static_cast<double>(across)) : 0);
+          },
+          down + across};
+}
+
+Scene scene_of(const MovingPress& p) {
+  TensorMassSpec body = block_body<TensorMassSpec>({}, p.poisson);
+  body.material.young = p.young;
+  body.material.density = p.density;
+  body.dynamic.damping = p.damping;
+  body.dynamic.integrator = p.integrator;
+  body.dynamic.precision = p.precision;
+  Scene scene = scene_of_moving(body);
+  scene.contact.friction = p.friction;
+  scene.contact.rule = "barycentric";
+  scene.passivity.controller = false;
+  Tool& tool = scene.tools[0];
+  tool.pivot = p.origin + Vector3d(0, 0, kPivot);
+  std::get<ProbeSpec>(tool.end).radius = p.radius;
+  tool.shaft_length = 0;
+  tool.max_force = 1e12;
+  tool.max_force_rate = 1e15;
+  return scene;
+}
+
+TetMesh mesh_of(const MovingPress& p) {
+  const Vector3d size = p.cells.cast<double>().cwiseProduct(p.cell);
+  return make_block(p.origin + Vector3d(-0.5 * size.x(), -0.5 * size.y(), -size.z()),
+                    p.origin + Vector3d(0.5 * size.x(), 0.5 * size.y(), 0), {p.cells.x(), p.cells.y(), p.cells.z()});
+}
+
+/// [N] of the same contact with the same tissue without inertia, at the end of the path.
+double static_force(Scene scene, const TetMesh& mesh, const Stroke& stroke) {
+  scene.bodies[0] = as_kind<QuasiStaticSpec>(scene.bodies[0]);
+  PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
+  rig.start(stroke.path(0));
+  for (int i = 1; i <= stroke.ticks + 50; ++i) rig.press(stroke.path(i));
+  return -rig.force().z();
+}
+
+int standing_ticks(const MovingPress& p) {
+  const double period = 4 * p.cells.z() * p.cell.z() * std::sqrt(p.density / p.young);
+  const double rest = period > kSlow && p.damping > 0 ? kDecay / p.damping : 0;
+  return static_cast<int>((kStand + rest) / kTick);
+}
+
+double reach_of(const DynamicOrgan& organ) {
+  double reach = 0;
+  for (int n = 0; n < organ.mesh().nodes(); ++n) reach = larger(reach, organ.model().displacement(n).norm());
+  return reach;
+}
+
+}  // namespace
+
+Result press_moving(const MovingPress& p) {
+  const Scene scene = scene_of(p);
+  const TetMesh mesh = mesh_of(p);
+  const Stroke stroke = stroke_of(p);
+  PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
+  StandJudge judge;
+  Vector3d before = stroke.path(0);
+  rig.press(before);
+  for (int i = 1; i <= stroke.ticks + standing_ticks(p); ++i) {
+    const Vector3d tip = stroke.path(i), step = tip - before;
+    rig.press(tip);
+    const Vector3d force = rig.force();
+    judge.look(-force.z(), force.dot(step), rig.organ().model().energy(), reach_of(rig.organ()));
+    before = tip;
+  }
+  return judge.result(static_force(scene, mesh, stroke), p.cells.cast<double>().cwiseProduct(p.cell).norm());
+}
+
+}  // namespace palpate::stability

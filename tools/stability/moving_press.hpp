@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "tools/stability/case.hpp"
+
+namespace palpate::stability {
+
+/// A block of moving tissue on its bottom, and a ball that is pressed into its top beside any node and stands there.
+struct MovingPress {
+  Eigen::Vector3i cells{6, 6, 4};
+  Eigen::Vector3d cell{0.01, 0.01, 0.01};              ///< [m]
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] the middle of its top
+  double young = 5000, poisson = 0.3, density = 1000;  ///< [Pa], [1], [kg/m^3]
+  double damping = 5;                                  ///< [1/s]
+  std::string integrator = "rk4", precision = "single";
+  double radius = 0.005, depth = 0.002;  ///< [m]
+  Eigen::Vector2d beside{0.12, -0.23};   ///< [1] of a cell, from the node nearest to the middle
+  double friction = 0;
+  std::string gesture = "held";  ///< held | tapped | slid | stabbed; then it stands
+};
+
+/// Moves it by moving tissue and, on the same path, at rest; judged by StandJudge. Throws std::runtime_error for a
+/// scene that the product refuses.
+Result press_moving(const MovingPress& press);
+
+}  // namespace palpate::stability
