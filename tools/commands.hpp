@@ -8,6 +8,7 @@ namespace palpate {
 void add_check_command(cli::Command& app);
 void add_precompute_command(cli::Command& app);
 void add_solve_command(cli::Command& app);
+void add_modes_command(cli::Command& app);
 void add_stability_command(cli::Command& app);
 void add_study_command(cli::Command& app);
 void add_run_command(cli::Command& app);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   palpate::add_latency_command(app);
   palpate::add_replay_command(app);
   palpate::add_solve_command(app);
+  palpate::add_modes_command(app);
   palpate::add_stability_command(app);
   palpate::add_study_command(app);
   palpate::add_top_command(app);

@@ -11,6 +11,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
 #include "tools/solution_file.hpp"
@@ -28,16 +29,6 @@ struct Solved {
   SolutionTable table;
   std::vector<Constraint> held;
 };
-
-const Body& choose_body(const Scene& scene, const std::string& name) {
-  if (name.empty() && scene.bodies.size() == 1) return scene.bodies[0];
-  for (const auto& body : scene.bodies)
-    if (name_of(body) == name) return body;
-  std::string names;
-  for (const auto& body : scene.bodies) names += (names.empty() ? "" : ", ") + name_of(body);
-  throw std::runtime_error(name.empty() ? "the scene has several bodies: choose one with --body: " + names
-                                        : fmt::format("the scene has no body '{}': it has {}", name, names));
-}
 
 /// Every hold and touch of the command line; positions, numbers and triangles are those of the surface.
 std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh_nodes,

@@ -22,9 +22,10 @@ void list_vtk_points(FileCursor& cursor, Lister& lister) {
   const std::string_view real = cursor.word();
   if (real != "double" && real != "float") throw std::runtime_error("its points are neither double nor float");
   cursor.rest_of_line();
+  const bool single = real == "float" && cursor.binary;  // as text, numbers have the digits that they have
   lister.reserve_nodes(points);
   for (std::size_t i = 0; i < points; ++i) {
-    lister.add_node(i, real == "double" ? take_point<double>(cursor) : take_point<float>(cursor));
+    lister.add_node(i, single ? take_point<float>(cursor) : take_point<double>(cursor));
   }
 }
 

@@ -16,6 +16,7 @@ struct Archive;
 struct CheckReport;
 struct CheckSettings;
 struct DirectProblem;
+struct FreeVibration;
 struct NamedSpec;
 struct MeshedSpec;
 struct MovingSpec;
@@ -140,6 +141,10 @@ std::vector<std::string> locking_warnings(const MovingSpec& body);
 /// none of tetrahedra.
 DirectProblem direct_problem(const NamedSpec& body);
 DirectProblem direct_problem(const SolidSpec& body);
+
+/// vibration(spec): how it swings freely. Throws std::runtime_error for a body that has no modes.
+FreeVibration vibration(const NamedSpec& body);
+FreeVibration vibration(const SolidSpec& body);
 
 /// static_correction(spec): what is done to a linear static state with the archive's help; returns the factor of the
 /// forces. Empty: nothing.

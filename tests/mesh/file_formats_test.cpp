@@ -73,6 +73,27 @@ TEST(LiteralFile, VtkTextAndBinaryKeepOrderAndUnusedNodes) {
   expect_literal_mesh(load_tet_mesh(folder.write("c.vtk", vtk_binary<float>("float")), 1), 1);
 }
 
+TEST(LiteralFile, PointsOfATextThatAreCalledFloatKeepAllTheirDigits) {
+  const TestFolder folder;
+  const TetMesh mesh = load_tet_mesh(folder.write("a.vtk", R"(# vtk DataFile Version 3.0
+one tetrahedron, as others write it
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 4 float
+0 0 0 0.1 0 0
+0 0.1 0
+0 0 0.12345678
+CELLS 1 5
+4 0 1 2 3
+CELL_TYPES 1
+10
+)"),
+                                     1);
+  ASSERT_EQ(mesh.nodes.size(), 4u);
+  EXPECT_EQ(mesh.nodes[1].x(), 0.1);
+  EXPECT_EQ(mesh.nodes[3].z(), 0.12345678);
+}
+
 TEST(LiteralFile, IsScaledToMetres) {
   const TestFolder folder;
   expect_literal_mesh(load_tet_mesh(folder.write("a.msh", kGmsh2), 0.001), 0.001);

@@ -40,6 +40,7 @@ inline void describe(Description& d, HybridSpec& b) {
   d.table({"hybrid", "", "which part is tensor-mass", Need::required, Use::stored}, b.hybrid);
 }
 
+FreeVibration vibration(const HybridSpec& body);
 ArchiveJob archive_job(const HybridSpec& body, const Progress& progress);
 
 inline bool has_own_mesh(const HybridSpec& body) {

@@ -21,6 +21,10 @@ using Eigen::Index;
 
 constexpr std::size_t kBlock = 64;  // right-hand sides at once
 
+ShellMaterial material_of(const ShellSpec& body) {
+  return {body.material.young, body.material.poisson, body.material.density, body.shell.thickness};
+}
+
 bool any_free(const ShellDofs& dofs, int node) {
   return dofs.index(node, 0) >= 0 || dofs.index(node, 1) >= 0 || dofs.index(node, 2) >= 0;
 }
@@ -104,11 +108,18 @@ SurfaceMap make_surface_map(const ShellSpec& body, const ShellMesh& mesh, const 
   return map;
 }
 
+ShellSystem shell_system(const ModalShellSpec& body, const ShellMesh& mesh, const std::string& where) {
+  auto dofs = apply_boundary_conditions(mesh, body, where);
+  check_shell(body, mesh, dofs, where);
+  const auto bending = body.shell.bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
+  return make_shell_system(mesh, material_of(body), bending, std::move(dofs), where);
+}
+
 Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Progress& progress) try {
   const std::string where = fmt::format("body '{}'", body.name);
   Stopwatch watch(progress);
-  auto dofs = apply_boundary_conditions(mesh, body, where);
-  check_shell(body, mesh, dofs, where);
+  const ShellSystem system = shell_system(body, mesh, where);
+  watch.lap("assembly");
   Archive archive;
   archive.body = body.name;
   archive.model = ModalShellSpec::kKind;
@@ -118,16 +129,12 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   archive.young = {body.material.young};
   archive.poisson = {body.material.poisson};
   archive.density = {body.material.density};
-  archive.surface = make_surface_map(body, mesh, dofs);
+  archive.surface = make_surface_map(body, mesh, system.dofs);
   archive.touchable_dofs = free_dofs(archive.surface, 0, archive.surface.touchable);
   archive.other_dofs = free_dofs(archive.surface, archive.surface.touchable, archive.surface.size());
   watch.lap("surface");
 
-  const ShellMaterial material{body.material.young, body.material.poisson, body.material.density, body.shell.thickness};
-  const auto bending = body.shell.bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
-  const auto system = make_shell_system(mesh, material, bending, std::move(dofs), where);
-  watch.lap("assembly");
-  add_modes(body, system, lumped_shell_mass(mesh, material), archive);
+  add_modes(body, system, lumped_shell_mass(mesh, material_of(body)), archive);
   watch.lap(fmt::format("{} modes", body.shell.modes));
   add_compliance(system.stiffness, system.dofs, archive);
   watch.lap("compliance");

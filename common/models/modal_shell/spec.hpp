@@ -25,5 +25,6 @@ std::unique_ptr<BodyShape> make_shape(const ModalShellSpec& body, const Archive&
 void check(const ModalShellSpec& body, const CheckSettings& settings, CheckReport& report);
 
 DirectProblem direct_problem(const ModalShellSpec& body);
+FreeVibration vibration(const ModalShellSpec& body);
 
 }  // namespace palpate

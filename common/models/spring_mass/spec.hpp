@@ -18,6 +18,8 @@ inline void describe(Description& d, SpringMassSpec& b) {
 
 std::unique_ptr<DynamicModel> make_model(const SpringMassSpec& body, const ElasticMesh& mesh);
 
+FreeVibration vibration(const SpringMassSpec& body);
+
 /// Springs have a Poisson's ratio of their own.
 inline std::vector<std::string> locking_warnings(const SpringMassSpec&) {
   return {};

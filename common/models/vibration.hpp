@@ -1,0 +1,15 @@
+#pragma once
+#include "common/fem/direct.hpp"
+
+namespace palpate {
+
+/// A body that swings freely about its rest shape: M u'' + K u = 0. See vibration() in common/models/kind.hpp.
+struct FreeVibration {
+  SparseMatrix stiffness;  ///< [N/m] lower triangle over the free dofs, those without mass last
+  Eigen::VectorXd mass;    ///< [kg] lumped, per dof with mass
+};
+
+/// Of tetrahedra: linear elements, a quarter of each one's mass at each of its nodes.
+FreeVibration vibration_of(const StaticProblem& problem);
+
+}  // namespace palpate

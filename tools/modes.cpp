@@ -1,0 +1,45 @@
+#include "common/shell/modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "common/models/vibration.hpp"
+#include "common/scene/scene.hpp"
+#include "tools/choose_body.hpp"
+#include "tools/commands.hpp"
+
+namespace palpate {
+namespace {
+
+struct ModesArguments {
+  std::string scene, body;
+  int count = 10;
+};
+
+void print_modes(const ModesArguments& arguments) {
+  const Scene scene = load_scene(arguments.scene);
+  const Body& body = choose_body(scene, arguments.body);
+  const FreeVibration free = std::visit([](const auto& spec) { return vibration(spec); }, body);
+  const int count = std::min(arguments.count, static_cast<int>(free.mass.size()));
+  const Modes modes = lowest_modes(free.stiffness, free.mass, count);
+  fmt::print("mode,frequency_hz\n");
+  for (int m = 0; m < count; ++m) fmt::print("{},{:.6g}\n", m + 1, modes.omega[m] / (2 * std::numbers::pi));
+}
+
+}  // namespace
+
+void add_modes_command(cli::Command& app) {
+  cli::Command command = app.add_command(
+      "modes", "Frequencies at which a body swings freely, of its own elements: CSV on the standard output");
+  auto arguments = std::make_shared<ModesArguments>();
+  command.add_option("SCENE", arguments->scene, "scene file").required();
+  command.add_option("--body", arguments->body, "name of the body; needed where the scene has several");
+  command.add_option("--count", arguments->count, "how many, from the lowest").between(1, 1000).show_default();
+  command.does([arguments] { print_modes(*arguments); });
+}
+
+}  // namespace palpate
