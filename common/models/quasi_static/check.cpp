@@ -116,7 +116,7 @@ void add_near_field(const CheckSettings& settings, const SurfaceMap& surface, Ch
   double width = 0;
   for (const Tool& tool : settings.tools) width = std::max(width, 2 * abilities_of(tool).ball.value_or(0));
   if (settings.contact.rule != "patch" || width == 0) return;
-  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width)});
+  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width / 2)});
 }
 
 /// The patch is as true as the tensors are near the tip.
