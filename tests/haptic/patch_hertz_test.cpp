@@ -23,7 +23,7 @@ class PatchOnEdges : public ::testing::TestWithParam<double> {
   static double edge() { return kTipRadius / GetParam(); }
   static PressRig rig() {
     QuasiStaticSpec block = bench::touch_block();
-    block.offline.reset();
+    block.offline = Offline{};
     const double reach = 1.3 * kTipRadius + 2 * edge();
     block.touchable =
         NodeSelector{{.indices = {}, .box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1}}, .group = {}}};

@@ -43,7 +43,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
   if (by_patch(settings))
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
-                                          edges_resolved(body.offline.value_or(Offline{})), creep);
+                                          edges_resolved(offline_of(body, map().size())), creep);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
