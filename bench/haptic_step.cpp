@@ -69,6 +69,7 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
     tool.pivot = centre - tool.axis;
     scene.tools.push_back(tool);
   }
+  scene.contact.rule = "barycentric";
   scene.contact.friction = 10;  // all stick, so that all three displacements of every node are held
   PressRig rig(scene, archives);
   std::vector<ToolDofs> dofs(scene.tools.size());

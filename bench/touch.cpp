@@ -239,7 +239,7 @@ void hertz_over_edges(bool quick) {
     if (quick && per_edge > 1) break;
     const double h = kTipRadius / per_edge;
     QuasiStaticSpec block = bench::touch_block();
-    if (per_edge > 2) block.offline.reset();  // linear elements are good enough, and quadratic ones too many
+    if (per_edge > 2) block.offline = Offline{};  // linear elements are good enough, and quadratic ones too many
     const double reach = 1.3 * kTipRadius + 2 * h;
     block.touchable =
         NodeSelector{{.indices = {}, .box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1}}, .group = {}}};

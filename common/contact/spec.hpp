@@ -7,18 +7,19 @@ namespace palpate {
 
 /// The law of contact.
 struct ContactSpec {
-  std::string rule = "barycentric";  ///< barycentric | alpha (TVCG99 sec. 5) | patch
-  double friction = 0.3;             ///< [1] Coulomb coefficient; 0 slides freely
-  double bucket_size = 0;            ///< [m] 0: twice the mean edge length of the surface
+  std::string rule = "patch";  ///< patch | barycentric | alpha (TVCG99 sec. 5)
+  double friction = 0.3;       ///< [1] Coulomb coefficient; 0 slides freely
+  double bucket_size = 0;      ///< [m] 0: twice the mean edge length of the surface
 };
 
 inline void describe(Description& d, ContactSpec& c) {
-  d.choice(
-      {"rule", "",
-       "`\"barycentric\"` holds the touched point; `\"alpha\"` holds the three nodes of its triangle, for "
-       "comparison; `\"patch\"` spreads a probe tip's pressure over squares of its own, on quasi-static bodies, so "
-       "that the mesh is not felt"},
-      c.rule, {"barycentric", "alpha", "patch"});
+  d.choice({"rule", "",
+            "`\"patch\"` spreads a probe tip's pressure over squares of its own, on quasi-static bodies, so that the "
+            "mesh is "
+            "not felt; all else touches as under `\"barycentric\"`, which holds the touched point; `\"alpha\"` holds "
+            "the three "
+            "nodes of its triangle, for comparison"},
+           c.rule, {"patch", "barycentric", "alpha"});
   d.number({"friction", "1", "Coulomb's coefficient; 0 slides freely"}, c.friction, at_least(0));
   d.number({"bucket_size", "m", "edge of the collision grid's cells; 0 means twice the surface's mean edge length"},
            c.bucket_size, at_least(0));

@@ -39,15 +39,15 @@ class PatchRule : public ::testing::Test {
 };
 std::unique_ptr<PatchBlock> PatchRule::block_;
 
-// Quadratic elements without a refinement leave 11 % (docs/contact.md has the better tensors); the rule of the mesh
-// gives two to three times Hertz.
+// A mesh of an eighth of the radius converges to 1.03 to 1.07 (docs/contact.md); the rule of the mesh gives two to
+// three times Hertz.
 TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
   for (const double depth : {0.25 * PatchBlock::kRadius, 0.5 * PatchBlock::kRadius})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, 0.001}, {0.006, 0.006}, {-0.011, 0.003}}) {
       PressRig rig = PatchRule::rig(0);
       rig.start(at(x, y, -0.001));
       for (int i = 1; i <= 100; ++i) rig.step(at(x, y, -0.001 + (depth + 0.001) * i / 100));
-      EXPECT_NEAR(-rig.force().z() / hertz(depth), 1.1, 0.1) << x << " " << y << " " << depth;
+      EXPECT_NEAR(-rig.force().z() / hertz(depth), 1.05, 0.03) << x << " " << y << " " << depth;
     }
 }
 
@@ -77,7 +77,7 @@ TEST_F(PatchRule, ASlideIsSmoothAndFrictionHoldsBack) {
       before = now;
     }
     const double mean = sum / count;
-    EXPECT_LT(std::sqrt(of_squares / count - mean * mean), 0.03 * mean);
+    EXPECT_LT(std::sqrt(of_squares / count - mean * mean), 0.005 * mean);
   }
 }
 

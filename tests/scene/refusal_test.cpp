@@ -243,7 +243,7 @@ const Refusal kRefusals[] = {
     {"trajectory = \"move.csv\"", "", "[[tool]]", "[[tool]] needs the key 'trajectory'"},
     {"device = \"bus\"", "device = \"bus\"\ntrajectory = \"move.csv\"", "\"move.csv\"\n\n[[tool]]\nname = \"ghost\"",
      "trajectory means nothing for the device 'bus'"},
-    {"rule = \"alpha\"", "rule = \"beta\"", "\"beta\"", "rule 'beta' is unknown; known: barycentric, alpha, patch"},
+    {"rule = \"alpha\"", "rule = \"beta\"", "\"beta\"", "rule 'beta' is unknown; known: patch, barycentric, alpha"},
     {"friction = 0.1", "friction = -0.1", "-0.1\nbucket", "friction must be at least 0, and is -0.1"},
     {"domain = 7", "domain = 300", "300", "domain must be at least 0 and at most 230, and is 300"},
     {"domain = 7", "domain = 99999999999999", "99999",

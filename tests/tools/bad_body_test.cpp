@@ -38,17 +38,19 @@ TEST_F(ToolsBadBody, TheSceneIsGoodBeforeItIsSpoiled) {
   EXPECT_EQ(testing::run_program(program("palpate check") + " " + scene_.scene()).status, 0);
 }
 
-TEST_F(ToolsBadBody, APatchOnTensorsOfLinearElementsIsWarnedOf) {
-  const auto warned = [&] {
+TEST_F(ToolsBadBody, ACheckSaysWhatTouchesHowAndWhatTheTensorsAreFrom) {
+  const auto says = [&](const std::string& sentence) {
     const auto said = testing::run_program(program("palpate check") + " " + scene_.scene());
     EXPECT_EQ(said.status, 0) << said.err;
-    return (said.out + said.err).find("contact.rule = \"patch\" with tensors") != std::string::npos;
+    return said.out.find(sentence) != std::string::npos;
   };
-  EXPECT_FALSE(warned());
-  replace("[render]\n", "[contact]\nrule = \"patch\"\n[render]\n");
-  EXPECT_TRUE(warned());
-  replace("[[tool]]\n", "[body.offline]\nelement = \"p2\"\n[[tool]]\n");
-  EXPECT_FALSE(warned());
+  const std::string patch = "by a patch of its own", chosen = "chosen, for they are true under a tip of any size";
+  EXPECT_TRUE(says(patch));
+  EXPECT_TRUE(says("quadratic tetrahedra") && says(chosen));
+  replace("[[tool]]\n", "[body.offline]\nelement = \"p1\"\n[[tool]]\n");
+  EXPECT_TRUE(says("linear tetrahedra") && !says(chosen));
+  replace("[render]\n", "[contact]\nrule = \"barycentric\"\n[render]\n");
+  EXPECT_FALSE(says(patch));
 }
 
 TEST_F(ToolsBadBody, AMissingMeshIsNamedWithItsLine) {

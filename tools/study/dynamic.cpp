@@ -177,6 +177,7 @@ class Dynamic : public Method {
   const PressAnswers& same_mesh() {
     if (!same_mesh_.empty()) return same_mesh_;
     Scene scene = solid_->scene();
+    scene.contact.rule = "barycentric";  // as tissue in motion is touched
     const auto still = as_kind<QuasiStaticSpec>(solid_->solid());
     scene.bodies[body()] = still;
     const Archive archive = precompute(still, solid_->mesh());

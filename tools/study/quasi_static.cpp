@@ -75,12 +75,13 @@ class QuasiStatic : public Method {
     all.push_back({name_, "precision", "single", {}, serves});
     all.push_back({name_, "precision", "double", {}, serves});
     const std::vector<std::pair<std::string, Offline>> better{
+        {"p1", {}},
         {"refine 1", {.refine = 1}},
-        {"p2", {.element = "p2"}},
+        {"p2 refine 1", {.refine = 1, .element = "p2"}},
         {"locking_free refine 1", {.refine = 1, .formulation = "locking_free"}},
         {"refine 2", {.refine = 2}}};
     for (const auto& [value, offline] : better) {
-      if (solid_->quick() && value != "refine 1") continue;
+      if (solid_->quick() && value != "p1") continue;
       add(
           "offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; },
           !own.offline);
@@ -151,7 +152,7 @@ class QuasiStatic : public Method {
 
   Archive compute(const QuasiStaticSpec& body) const {
     const std::optional<TetMesh> specimen = load_specimen(body);
-    return precompute(body, solid_->mesh(), specimen ? &*specimen : nullptr);
+    return precompute(with_offline(body, solid_->mesh()), solid_->mesh(), specimen ? &*specimen : nullptr);
   }
 
   /// Fewer touchable nodes come in another order.

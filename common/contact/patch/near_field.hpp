@@ -1,38 +1,35 @@
 #pragma once
-#include <Eigen/Core>
 #include <vector>
 
 #include "common/archive/compliance.hpp"
-#include "common/contact/patch/half_space.hpp"
+#include "common/contact/patch/hat_kernel.hpp"
 
 namespace palpate {
 
-/// What a body's compliance among near surface nodes has beyond the half-space's: K_ij = C_ij - W_i^T G W_j, with G the
-/// half-space's kernel and W_i = (4 phi_i - 1) / integral of phi_i over the triangles about node i, which are dual to
-/// the surface's hats. Under a patch of pressures of its own, G takes the place of what the mesh cannot resolve, and K
-/// brings in the body's shape, its thickness and its boundary conditions.
+/// What a body's compliance among near surface nodes has beyond the half-space's,
+///   K = S (C - W^T G W) S^T,
+/// with C the archive's and W^T G W the half-space's between the same nodes (HatKernel). Under a patch of pressures of
+/// its own, G takes the place of what the mesh cannot resolve, and K brings in the body's shape, its thickness and its
+/// boundary conditions.
+///
+/// S averages over the nodes about each that look the same way. What C has beyond the half-space is smooth; what the
+/// elements do wrong, too stiff for all that changes from edge to edge, is not. Without the average, edges finer than
+/// the patch make that error larger than G itself, and G + K negative.
 class NearField {
  public:
-  /// Of all pairs of nodes whose hats reach into one patch that is `width` [m] wide, wherever it lies.
-  NearField(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space, double width);
+  /// For patches of a ball of `radius` [m]; `resolved` [1]: over how many edges the elements behind C know the true
+  /// compliance.
+  NearField(const SmoothSurface& surface, const Compliance<double>& compliance, const HalfSpace& half_space,
+            double radius, double resolved);
 
   /// [m/N] symmetric under (i, j) and transposition; zero of nodes that are not near each other.
   Eigen::Matrix3d between(int i, int j) const;
 
   /// [bytes] that it will take.
-  static std::size_t bytes_of(const SurfaceMap& map, double width);
-  std::size_t bytes() const { return blocks_.size() * sizeof blocks_[0] + neighbours_.size() * sizeof neighbours_[0]; }
+  static std::size_t bytes_of(const SurfaceMap& map, double radius);
 
  private:
-  NearField(const SurfaceMap& map, double width);  ///< knows which pairs there are
-  void find_edges(const SurfaceMap& map);
-  void find_pairs(const SurfaceMap& map, double width);
-  void take_half_space(const SurfaceMap& map, const HalfSpace& half_space, double width);
-  int place(int i, int j) const;
-
-  std::vector<double> edge_;             ///< [m] per node: its longest
-  std::vector<int> first_, neighbours_;  ///< of node i, those j <= i that are near: neighbours_[first_[i] ..]
-  std::vector<Eigen::Matrix3d> blocks_;  ///< like neighbours_
+  NearPairs pairs_;
 };
 
 }  // namespace palpate

@@ -226,7 +226,11 @@ void Patch::fill_near_field(const NearField& near_field) {
   known_ = nodes_;
   const int count = static_cast<int>(nodes_.size());
   for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j) near_field_[i * kMaxNodes + j] = near_field.between(nodes_[i], nodes_[j]);
+    for (int j = 0; j <= i; ++j) {
+      const Eigen::Matrix3d block = near_field.between(nodes_[i], nodes_[j]);
+      near_field_[i * kMaxNodes + j] = block;
+      near_field_[j * kMaxNodes + i] = block.transpose();
+    }
 }
 
 // The compliance between squares along the normal [m/N].

@@ -22,7 +22,7 @@ Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3
 }  // namespace
 
 PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
-                       const StepSettings& settings, const std::optional<CreepStep>& creep)
+                       const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep)
     : compliance_(compliance), friction_(settings.contact.friction), surface_(map) {
   double largest = 0;
   for (std::size_t t = 0; t < settings.tools.size(); ++t) {
@@ -33,7 +33,7 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
     tips_.push_back({static_cast<int>(t), Patch(**grid, creep)});
     largest = std::max(largest, *ball);
   }
-  near_field_ = std::make_unique<NearField>(map, compliance, half_space, 2 * largest);
+  near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
   moved_.reserve(Patch::kMaxNodes);
 }
 

@@ -12,10 +12,11 @@ namespace palpate {
 /// construction.
 class PatchTouch {
  public:
-  /// `map` and `compliance` outlive this object; `half_space`: the material at the surface. `creep`: of tissue that
+  /// `map` and `compliance` outlive this object; `half_space`: the material at the surface; `resolved`: see
+  /// NearField. `creep`: of tissue that
   /// relaxes; compliance and material are softer by its instant() then.
   PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
-             const StepSettings& settings, const std::optional<CreepStep>& creep = {});
+             const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep = {});
 
   /// Visits (tool, node, force [N] on the tissue).
   using VisitForce = BodyPart::VisitForce;

@@ -12,13 +12,16 @@ using Eigen::Vector3d;
 SmoothSurface::SmoothSurface(const SurfaceMap& map)
     : map_(map),
       node_normal_(map.size(), Vector3d::Zero()),
+      weight_(map.size(), 0.0),
       buckets_(map.position, map.triangles, 2 * mean_edge(map)),
       found_(map.triangles.size()) {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const Triangle c = corners(static_cast<int>(t));
-    facet_normal_.push_back((c[1] - c[0]).cross(c[2] - c[0]).normalized());
+    const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
+    facet_normal_.push_back(doubled_area.normalized());
     for (int v = 0; v < 3; ++v) {
       const Vector3d a = (c[(v + 1) % 3] - c[v]).normalized(), b = (c[(v + 2) % 3] - c[v]).normalized();
+      weight_[map.triangles[t][v]] += doubled_area.norm() / 6;
       node_normal_[map.triangles[t][v]] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * facet_normal_.back();
     }
   }

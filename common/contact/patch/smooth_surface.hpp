@@ -22,6 +22,8 @@ class SmoothSurface {
   }
   const Eigen::Vector3d& facet_normal(int t) const { return facet_normal_[t]; }  ///< outward, unit
   Eigen::Vector3d normal(int t, const Eigen::Vector3d& weights) const;           ///< outward, unit, continuous
+  const Eigen::Vector3d& node_normal(int n) const { return node_normal_[n]; }    ///< outward, unit
+  double weight(int n) const { return weight_[n]; }                              ///< [m^2] integral of its hat
 
   /// Triangles that come within `radius` of a point; ascending, a few others among them. Valid until the next call.
   std::span<const int> near(const Eigen::Vector3d& point, double radius) const;
@@ -29,6 +31,7 @@ class SmoothSurface {
  private:
   const SurfaceMap& map_;
   std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
+  std::vector<double> weight_;
   Buckets buckets_;
   mutable std::vector<int> found_;
 };

@@ -73,6 +73,11 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
   return parts;
 }
 
+void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report) {
+  if (settings.contact.rule == "patch" && !settings.tools.empty())
+    report.say("  touch: by its mesh, as under rule \"barycentric\": patches are for quasi-static bodies alone");
+}
+
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
                                        const SurfaceMap& surface) {
   std::vector<std::string> warnings;

@@ -18,6 +18,9 @@ std::string letters(const std::array<bool, 3>& axes);
 std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const SurfaceMap& surface,
                                           std::size_t elements, int fields);
 
+/// One sentence for bodies without patches, where the rule asks for them.
+void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report);
+
 /// A tool smaller than the elements, a scale that is off. `body`: its name.
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
                                        const SurfaceMap& surface);

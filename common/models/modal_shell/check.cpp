@@ -81,6 +81,7 @@ void check(const ModalShellSpec& body, const CheckSettings& settings, CheckRepor
   report.say(fmt::format("  material: young {} Pa, poisson {}, density {} kg/m3", body.material.young,
                          body.material.poisson, body.material.density));
   say_wall(body.shell, mesh, report);
+  say_touched_by_mesh(settings, report);
   say_modes(body.shell, dofs.translations(), settings.stored(ArchivePart::header), report);
   report.memory = memory(body.shell, settings, surface);
   report.left_out.emplace_back("one material, nothing per element");

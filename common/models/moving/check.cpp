@@ -125,6 +125,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
                          d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
                          d.corotational ? ", corotational" : ""));
   say_step(body, kind, archive, report);
+  say_touched_by_mesh(settings, report);
   if (body.tearing)
     report.say(fmt::format("  tearing: {} above {}", body.tearing->criterion, body.tearing->threshold));
   else

@@ -26,13 +26,17 @@ bool has_linear_displacement(const std::optional<Offline>& offline) {
   return !offline || (offline->element == "p1" && offline->formulation == "displacement");
 }
 
-/// What the tensors come from where that is not the mesh itself.
-void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, CheckReport& report) try {
-  if (!is_finer(body.offline)) return;
-  const auto space = make_fine_space(mesh, *body.offline);
-  report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}", space.elements.size(),
+/// What the tensors come from, and why where the scene does not say.
+void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, int surface_nodes, CheckReport& report) try {
+  const Offline offline = offline_of(body, surface_nodes);
+  const auto space = make_fine_space(mesh, offline);
+  const std::string why = body.offline ? ""
+                          : offline.element == "p2"
+                              ? "; chosen, for they are true under a tip of any size"
+                              : fmt::format("; chosen, the mesh has more than {} surface nodes", kMostQuadratic);
+  report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}{}", space.elements.size(),
                          space.per_element == 4 ? "linear" : "quadratic", space.nodes.size(),
-                         body.offline->formulation == "locking_free" ? "locking-free" : "displacement formulation"));
+                         offline.formulation == "locking_free" ? "locking-free" : "displacement formulation", why));
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));
 }
@@ -111,21 +115,23 @@ std::vector<std::string> warnings_of_size(const QuasiStaticSpec& body, const Che
   return size_warnings(of_mesh, body.name, surface);
 }
 
+/// Which parts of tools press by patches of their own, and what the others do.
+void say_patches(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
+  if (settings.contact.rule != "patch") return;
+  for (const Tool& tool : settings.tools)
+    report.say(
+        abilities_of(tool).ball
+            ? fmt::format("  touch: the tip of '{}' presses '{}' by a patch of its own, its shaft by the mesh",
+                          tool.name, body.name)
+            : fmt::format("  touch: '{}' has no ball at its tip and touches '{}' by the mesh", tool.name, body.name));
+}
+
 /// What the haptic node computes for patches when it starts; nothing where there are none.
 void add_near_field(const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report) {
   double width = 0;
   for (const Tool& tool : settings.tools) width = std::max(width, 2 * abilities_of(tool).ball.value_or(0));
   if (settings.contact.rule != "patch" || width == 0) return;
-  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width)});
-}
-
-/// The patch is as true as the tensors are near the tip.
-void warn_of_tensors(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
-  if (settings.contact.rule != "patch" || !has_linear_displacement(body.offline)) return;
-  report.warnings.push_back(fmt::format(
-      "body '{}': contact.rule = \"patch\" with tensors from linear elements gives up to half as much force "
-      "again: give it a [body.offline] with element = \"p2\" and refine = 1",
-      body.name));
+  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width / 2)});
 }
 
 }  // namespace
@@ -133,7 +139,8 @@ void warn_of_tensors(const QuasiStaticSpec& body, const CheckSettings& settings,
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
-  say_offline(body, solid.mesh, report);
+  say_offline(body, solid.mesh, solid.surface.size(), report);
+  say_patches(body, settings, report);
   say_nonlinear(body, settings, report);
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
@@ -141,8 +148,9 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   add_near_field(settings, solid.surface, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
   report.warnings = warnings_of_size(body, settings, solid.surface);
-  std::ranges::copy(locking_warnings(body), std::back_inserter(report.warnings));
-  warn_of_tensors(body, settings, report);
+  QuasiStaticSpec chosen = body;
+  chosen.offline = offline_of(body, solid.surface.size());
+  std::ranges::copy(locking_warnings(chosen), std::back_inserter(report.warnings));
   warn_of_ball(body, settings, report);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -9,6 +10,7 @@
 #include "common/fem/specimen.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/surface.hpp"
 #include "common/models/quasi_static/press_by_laws.hpp"
 #include "common/models/solid/precompute.hpp"
 
@@ -55,10 +57,18 @@ std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body) {
   return load_tet_mesh(law->specimen_mesh, law->specimen_scale);
 }
 
+QuasiStaticSpec with_offline(QuasiStaticSpec body, const TetMesh& mesh) {
+  std::vector<bool> on_surface(mesh.nodes.size(), false);
+  for (const auto& triangle : extract_surface(mesh).triangles)
+    for (const int node : triangle) on_surface[node] = true;
+  body.offline = offline_of(body, static_cast<int>(std::ranges::count(on_surface, true)));
+  return body;
+}
+
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress) {
   return [&, mesh = load_tet_mesh(body.mesh, body.scale)] {
     const auto specimen = load_specimen(body);
-    return precompute(body, mesh, specimen ? &*specimen : nullptr, progress);
+    return precompute(with_offline(body, mesh), mesh, specimen ? &*specimen : nullptr, progress);
   };
 }
 

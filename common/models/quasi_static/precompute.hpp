@@ -22,6 +22,9 @@ struct PrecomputeCost {
 Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMesh* specimen = nullptr,
                    const Progress& progress = {}, Route route = Route::fastest, PrecomputeCost* cost = nullptr);
 
+/// The body with its offline_of(), on a mesh.
+QuasiStaticSpec with_offline(QuasiStaticSpec body, const TetMesh& mesh);
+
 /// The mesh of MeasuredLaw::specimen_mesh; empty without one.
 std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body);
 

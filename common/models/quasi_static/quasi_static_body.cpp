@@ -12,6 +12,12 @@ bool by_patch(const StepSettings& settings) {
   return settings.contact.rule == "patch";
 }
 
+// [1] Over how many edges of the mesh the elements behind the tensors know its compliance: nearer by they are too
+// stiff.
+double edges_resolved(const Offline& offline) {
+  return (offline.element == "p2" ? 2.0 : 4.0) / (1 << offline.refine);
+}
+
 constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
 std::optional<CreepStep> creep_of(const QuasiStaticSpec& body, double dt) {
@@ -35,7 +41,9 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
                                  const std::optional<CreepStep>& creep)
     : TouchBody(archive.surface, softened(archive, creep), settings, {.tips = !by_patch(settings)}) {
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
-  if (by_patch(settings)) patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings, creep);
+  if (by_patch(settings))
+    patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
+                                          edges_resolved(offline_of(body, map().size())), creep);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);

@@ -86,7 +86,7 @@ struct QuasiStaticSpec : SolidSpec {
   static constexpr std::string_view kKind = "quasi_static";
   std::optional<Nonlinear> nonlinear;
   std::optional<Relaxation> relaxation;  ///< absent: forces do not depend on the rate
-  std::optional<Offline> offline;        ///< absent: the mesh itself with linear elements
+  std::optional<Offline> offline;        ///< absent: see offline_of()
 };
 
 inline void describe(Description& d, QuasiStaticSpec& b) {
@@ -96,9 +96,16 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
           b.relaxation);
   d.require(!b.nonlinear || !b.relaxation, "relaxation",
             "[body.relaxation] does not go with [body.nonlinear], whose curves are those of one rate");
-  d.table({"offline", "", "what the tensors are computed from", Need::optional, Use::stored, "the mesh itself"},
+  d.table({"offline", "", "what the tensors are computed from", Need::optional, Use::stored,
+           "quadratic elements, on a fine mesh linear ones"},
           b.offline);
 }
+
+/// What the tensors of a body are computed from: what it says, else quadratic elements, which bend as the tissue does
+/// and are true near a tip; beyond kMostQuadratic nodes of its surface linear ones, since the mesh is fine and they
+/// would take minutes.
+Offline offline_of(const QuasiStaticSpec& body, int surface_nodes);
+inline constexpr int kMostQuadratic = 2000;
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 

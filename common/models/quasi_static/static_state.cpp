@@ -5,6 +5,7 @@
 #include "common/fem/fine_problem.hpp"
 #include "common/fem/fine_space.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
+#include "common/models/quasi_static/precompute.hpp"
 
 namespace palpate {
 namespace {
@@ -37,9 +38,10 @@ double correct(const BodyNonlinear& of_body, const StaticField& state) {
 
 DirectProblem direct_problem(const QuasiStaticSpec& body) {
   DirectProblem problem = direct_problem(static_cast<const SolidSpec&>(body));
-  if (is_finer(body.offline))
-    problem.solve = [&body, mesh = problem.mesh](const std::vector<Constraint>& constraints) {
-      return solve_direct(make_fine_problem(body, mesh, *body.offline), constraints);
+  const Offline offline = *with_offline(body, problem.mesh).offline;
+  if (is_finer(offline))
+    problem.solve = [&body, offline, mesh = problem.mesh](const std::vector<Constraint>& constraints) {
+      return solve_direct(make_fine_problem(body, mesh, offline), constraints);
     };
   return problem;
 }

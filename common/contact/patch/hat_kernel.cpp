@@ -1,0 +1,86 @@
+#include "common/contact/patch/hat_kernel.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kIntegrated = 1.5;  // of two nodes' longest edges, up to which their kernel is an integral
+
+/// Coefficients of node `corner`'s dual function among the barycentric coordinates: 4 L_corner - 1.
+Vector3d dual(int corner) {
+  Vector3d c = Vector3d::Constant(-1);
+  c[corner] = 3;
+  return c;
+}
+
+std::vector<double> reach_of(const std::vector<bool>& nodes, const SurfaceMap& map) {
+  std::vector<double> reach(map.size(), NearPairs::kNone);
+  for (const auto& t : map.triangles)
+    for (int v = 0; v < 3; ++v) {
+      const int a = t[v], b = t[(v + 1) % 3];
+      const double edge = (map.position[a] - map.position[b]).norm();
+      for (const int n : {a, b})
+        if (nodes[n]) reach[n] = std::max(reach[n], kIntegrated * edge);
+    }
+  return reach;
+}
+
+}  // namespace
+
+HatKernel::HatKernel(const SmoothSurface& surface, const HalfSpace& half_space, const std::vector<bool>& nodes)
+    : surface_(surface),
+      half_space_(half_space),
+      reach_(reach_of(nodes, surface.map())),
+      near_(surface.map().position, reach_) {
+  integrate();
+}
+
+// Pair of triangles by pair of triangles, each once: what they give to the pairs of their corners.
+void HatKernel::integrate() {
+  const SurfaceMap& map = surface_.map();
+  const int count = static_cast<int>(map.triangles.size());
+  std::vector<Vector3d> middle;
+  std::vector<double> reach;
+  for (int t = 0; t < count; ++t) {
+    const Triangle c = surface_.corners(t);
+    middle.push_back((c[0] + c[1] + c[2]) / 3);
+    reach.push_back(NearPairs::kNone);
+    for (int v = 0; v < 3; ++v) reach[t] = std::max(reach[t], reach_[map.triangles[t][v]] + (c[v] - middle[t]).norm());
+  }
+  for_each_near_pair(middle, reach, [&](int s, int t) {
+    const auto &of_s = map.triangles[s], &of_t = map.triangles[t];
+    const Vector3d &n_s = surface_.facet_normal(s), &n_t = surface_.facet_normal(t);
+    const auto wanted = [&](int i) {
+      return std::ranges::any_of(of_t, [&](int j) { return near_.find(std::max(i, j), std::min(i, j)); });
+    };
+    if (n_s.dot(n_t) <= 0 || std::ranges::none_of(of_s, wanted)) return;
+    const auto moments =
+        kernel_moments(half_space_, surface_.corners(s), surface_.corners(t), (n_s + n_t).normalized());
+    for (int p = 0; p < 3; ++p)
+      for (int q = 0; q < 3; ++q) {
+        const int i = of_s[p], j = of_t[q];
+        Matrix3d* block = near_.find(std::max(i, j), std::min(i, j));
+        if (!block || (s == t && i < j)) continue;
+        Matrix3d sum = Matrix3d::Zero();
+        for (int x = 0; x < 3; ++x)
+          for (int y = 0; y < 3; ++y) sum += dual(p)[x] * dual(q)[y] * moments[x][y];
+        sum /= surface_.weight(i) * surface_.weight(j);
+        if (i == j && s != t) sum += sum.transpose().eval();  // (t, s), the kernel being even
+        *block += i >= j ? sum : Matrix3d(sum.transpose());
+      }
+  });
+}
+
+Matrix3d HatKernel::between(int i, int j) const {
+  if (const Matrix3d* block = near_.find(std::max(i, j), std::min(i, j)))
+    return i >= j ? *block : Matrix3d(block->transpose());
+  const Vector3d &n_i = surface_.node_normal(i), &n_j = surface_.node_normal(j);
+  if (n_i.dot(n_j) <= 0) return Matrix3d::Zero();
+  return half_space_.at(surface_.map().position[i] - surface_.map().position[j], (n_i + n_j).normalized());
+}
+
+}  // namespace palpate
