@@ -8,7 +8,11 @@
 namespace palpate {
 namespace {
 
-constexpr double kGoneAfter = 120;  // [s] of silence, as the network forgets a participant
+constexpr double kGoneAfter = 120;   // [s] of silence, as the network forgets a participant
+constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its states may be behind them
+
+// Settling, in ticks: under the tissue's own weight, while tools enter, and until what they press has come to rest.
+constexpr int kRestTicks = 400, kEnterTicks = 300, kCalmTicks = 300;
 
 ToolDofs dofs_of(const ToolState& s) {
   return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
@@ -52,6 +56,10 @@ bool DynamicWorld::take(const ToolState& state) {
   newest_[state.tool] = state;
   waiting_[state.tool] = 1;
   return true;
+}
+
+bool DynamicWorld::follows(int t) const {
+  return playback_[t].behind() <= kMaxBehind;
 }
 
 void DynamicWorld::leave(int tool) {
@@ -108,6 +116,37 @@ void DynamicWorld::tick() {
   for (int t = 0; t < tools(); ++t) move(t);
   for (auto& organ : organs_) organ->tick(tools_, dt_);
   ++ticks_;
+}
+
+// A tool that has come in by this share of its depth; what it holds it takes in the first tick.
+void DynamicWorld::enter(int t, double share) {
+  ToolInTick& tool = tools_[t];
+  consumed_[t] = newest_[t];
+  consumed_[t].depth *= share;
+  playback_[t].begin(consumed_[t]);
+  tool.dofs = playback_[t].dofs();
+  tool.opening = playback_[t].opening();
+  tool.moving.before = tool.moving.now;
+  parts_before_[t] = parts_[t];
+  tool.moving.now = tip_pose(trocars_[t], tool.dofs);
+  turn_jaws(t);
+  if (tool.present) return;
+  tool.moving.before = tool.moving.now;
+  parts_before_[t] = parts_[t];
+  tool.present = true;
+}
+
+bool DynamicWorld::settle() {
+  const int entering = settled_ - kRestTicks;
+  // Fast through free space, slowly at the end, where it meets the tissue.
+  const double left = std::clamp(1 - static_cast<double>(entering) / kEnterTicks, 0.0, 1.0);
+  for (int t = 0; t < tools(); ++t)
+    if (entering >= 0 && (waiting_[t] || tools_[t].present)) enter(t, 1 - left * left);
+  for (auto& organ : organs_) {
+    organ->tick(tools_, dt_);
+    organ->calm();
+  }
+  return ++settled_ >= kRestTicks + kEnterTicks + kCalmTicks;
 }
 
 void DynamicWorld::state(State& s) {

@@ -38,12 +38,21 @@ class DynamicWorld {
   /// for two minutes.
   void tick();
 
+  /// Before the first tick, in a node that comes when tools are in the tissue already: one tick's length of coming to
+  /// rest, first under the tissue's own weight, then with the tools, which enter along their shafts to where their
+  /// newest states say. What they cut or tear on their way is gone. True when it is over; call until then, after
+  /// taking the newest states.
+  bool settle();
+
   std::uint64_t ticks() const { return ticks_; }
   const ToolInTick& tool(int t) const { return tools_[t]; }
   /// The state that the last tick consumed; tool_run 0 before any.
   const ToolState& consumed(int t) const { return consumed_[t]; }
   bool consumed_anew(int t) const { return anew_[t]; }  ///< by the last tick
   bool has_left(int t) const { return left_[t]; }       ///< in the last tick
+  /// The tool stands where its newest states say, or nearly: what was missed in a silence has been made up for. A model
+  /// of where a tool was long ago is none of where it is.
+  bool follows(int t) const;
 
   std::vector<std::uint8_t> save() const;
   void restore(std::span<const std::uint8_t> from);
@@ -52,6 +61,7 @@ class DynamicWorld {
 
  private:
   void drop_absent();
+  void enter(int tool, double share);
   void move(int tool);
   void turn_jaws(int tool);
 
@@ -67,6 +77,7 @@ class DynamicWorld {
   std::vector<std::unique_ptr<DynamicOrgan>> organs_;
   std::vector<int> body_of_;
   std::uint64_t ticks_ = 0;
+  int settled_ = 0;  ///< ticks of settling
 };
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/geometry/segment.hpp"
+#include "common/tool/safety.hpp"
 
 namespace palpate {
 namespace {
@@ -34,12 +35,22 @@ LocalBody::LocalBody(const Tool& tool, double friction, double dt)
     : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       jaws_(abilities_of(tool).holding),
       friction_(friction),
-      dt_(dt) {
+      dt_(dt),
+      rises_(static_cast<std::uint64_t>(std::lround(kRises / dt))),
+      silent_(static_cast<std::uint64_t>(std::lround(kSilent / dt))) {
   position_.fill(Vector3d::Zero());
   for (auto& box : box_) box.fill(Vector3d::Zero());
 }
 
 void LocalBody::consume(const LocalModel& model) {
+  const bool after_silence = state_.silent > silent_;
+  if (state_.model.seq != 0 && (after_silence || model.run != state_.model.run)) {
+    state_.from_force = state_.force;
+    state_.from_torque = state_.torque;
+    state_.from_share = 1;
+    state_.weight = 0;
+  }
+  state_.silent = 0;
   state_.model = model;
   model_pose_ = tip_pose(trocar_, model.pose());
 }
@@ -62,11 +73,33 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
     if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
   }
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
-  if (fresh && !felt) state_.weight = 1;  // what begins from nothing needs no fading
+  const bool coming = state_.from_share > 0;
+  if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
   stale_ = state_.weight < 1 && felt;
+  keep_from_rising(load);
   load.force *= state_.weight;
   load.torque *= state_.weight;
+  come_from_before(change, load);
   return load;
+}
+
+// Nobody knows how the tissue answers to a tool that goes on while no model comes.
+void LocalBody::keep_from_rising(ToolLoad& load) {
+  const double size = std::max(load.force.norm(), load.torque.norm() / SafetyChain::kMaxLever);
+  if (++state_.silent <= rises_) {
+    state_.ceiling = size;
+  } else if (size > state_.ceiling) {
+    load.force *= state_.ceiling / size;
+    load.torque *= state_.ceiling / size;
+  }
+}
+
+void LocalBody::come_from_before(double change, ToolLoad& load) {
+  state_.from_share = std::max(state_.from_share - change, 0.0);
+  load.force += state_.from_share * vector(state_.from_force);
+  load.torque += state_.from_share * vector(state_.from_torque);
+  Eigen::Map<Vector3d>(state_.force.data()) = load.force;
+  Eigen::Map<Vector3d>(state_.torque.data()) = load.torque;
 }
 
 void LocalBody::add(const Vector3d& at, const Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const {
