@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
+constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
 
 Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
@@ -47,6 +48,7 @@ void LocalBody::consume(const LocalModel& model) {
   if (state_.model.seq != 0 && (after_silence || model.run != state_.model.run)) {
     state_.from_force = state_.force;
     state_.from_torque = state_.torque;
+    state_.from_weight = weight();
     state_.from_share = 1;
     state_.weight = 0;
   }
@@ -63,6 +65,7 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   const bool fresh = m.seq != 0 && age <= kOldest;
   const double change = dt_ / kFadeSeconds;
   state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
+  state_.from_share = std::max(state_.from_share - change, 0.0);
   if (m.seq == 0) return load;
   const int held = hold(tool, load);
   extrapolate(std::min(age, kExtrapolated));
@@ -75,11 +78,11 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
   const bool coming = state_.from_share > 0;
   if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
-  stale_ = state_.weight < 1 && felt;
+  stale_ = weight() < 1 - kRounding && felt;
   keep_from_rising(load);
   load.force *= state_.weight;
   load.torque *= state_.weight;
-  come_from_before(change, load);
+  come_from_before(load);
   return load;
 }
 
@@ -94,8 +97,7 @@ void LocalBody::keep_from_rising(ToolLoad& load) {
   }
 }
 
-void LocalBody::come_from_before(double change, ToolLoad& load) {
-  state_.from_share = std::max(state_.from_share - change, 0.0);
+void LocalBody::come_from_before(ToolLoad& load) {
   load.force += state_.from_share * vector(state_.from_force);
   load.torque += state_.from_share * vector(state_.from_torque);
   Eigen::Map<Vector3d>(state_.force.data()) = load.force;

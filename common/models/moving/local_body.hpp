@@ -50,6 +50,7 @@ class LocalBody {
     std::array<double, 3> force{}, torque{};  ///< [N], [N m] of the last load
     std::array<double, 3> from_force{}, from_torque{};  ///< of the load from which the model comes in
     double from_share = 0;                              ///< of that load, which is still rendered
+    double from_weight = 0;                             ///< share of the force that it was
   };
   struct Held {
     Eigen::Vector3d at;  ///< [m] where the tool holds tissue now
@@ -62,7 +63,8 @@ class LocalBody {
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
   void keep_from_rising(ToolLoad& load);
-  void come_from_before(double change, ToolLoad& load);
+  void come_from_before(ToolLoad& load);
+  double weight() const { return state_.weight + state_.from_share * state_.from_weight; }  ///< of all that is rendered
   void extrapolate(double seconds);
   bool touch(const Segment& axis, double radius, Touched& touched) const;
   bool holds(const Segment& axis, double radius, int part, int held) const;
