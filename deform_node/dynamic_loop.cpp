@@ -10,7 +10,8 @@ namespace palpate {
 namespace {
 
 constexpr std::uint64_t kReminderTicks = 64;
-constexpr int kLoopPriority = 50;  // below the haptic loop, above the picture
+constexpr double kSettlingShare = 0.8;  // of a tick's time
+constexpr int kLoopPriority = 50;       // below the haptic loop, above the picture
 
 }  // namespace
 
@@ -44,6 +45,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
 void DynamicLoop::take_tools() {
   while (const auto state = tools_->take()) {
     const bool good = presence_.accepts(state->run) && world_.take(*state);
+    late_ |= good && !heard_ && state->step > world_.keyframe_interval();
     heard_ |= good;
     report_.refused += !good;
   }
@@ -51,8 +53,7 @@ void DynamicLoop::take_tools() {
     for (int t = 0; t < world_.tools(); ++t) world_.leave(t);
 }
 
-void DynamicLoop::begin_tissue(std::int64_t now) {
-  if (!earlier_.complete(presence_, now)) return;
+void DynamicLoop::take_earlier_cuts() {
   if (!earlier_.in_time())
     spdlog::warn("not every node has told what had been cut before: what those know that have is taken");
   for (int i = 0; i < world_.organs(); ++i) {
@@ -61,9 +62,33 @@ void DynamicLoop::begin_tissue(std::int64_t now) {
     if (held && world_.organ(i).begin_without(held->removed))
       spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(),
                    held->node);
-    publish_change(i, gone_before, world_.organ(i).removed());
   }
-  begun_ = true;
+}
+
+void DynamicLoop::begin_tissue(std::int64_t now) {
+  if (!earlier_.complete(presence_, now)) return;
+  presence_.claim("the moving tissue of this scene");
+  take_earlier_cuts();
+  phase_ = late_ || earlier_.another_had_them() ? Phase::settling : Phase::moving;
+  if (phase_ == Phase::settling)
+    spdlog::info("the tools are there already: the tissue comes to rest around them first");
+  if (phase_ == Phase::moving) tell_begin();
+}
+
+// As much as fits into one tick's time, so that the newest states and the house are not kept waiting.
+void DynamicLoop::settle(std::int64_t now) {
+  const auto until = now + static_cast<std::int64_t>(kSettlingShare * 1e9 * world_.dt());
+  bool over = false;
+  do over = world_.settle();
+  while (!over && now_ns() < until);
+  if (!over) return;
+  phase_ = Phase::moving;
+  tell_begin();
+}
+
+// The first message of a run for each body: all that is gone.
+void DynamicLoop::tell_begin() {
+  for (int i = 0; i < world_.organs(); ++i) publish_change(i, gone_before, world_.organ(i).removed());
 }
 
 void DynamicLoop::tick() {
@@ -116,6 +141,7 @@ void DynamicLoop::publish_changes() {
 void DynamicLoop::publish_models() {
   local_models_.refresh();
   for (int t = 0; t < world_.tools(); ++t) {
+    if (!world_.tool(t).follows()) continue;  // silence is understood, and its end as well
     LocalContactModel& m = model_[t];
     const bool was_near = !m.triangles.empty() || !m.contacts.empty();
     const bool near = local_models_.describe(t, m);
@@ -176,8 +202,9 @@ const DynamicReport& DynamicLoop::run(double seconds) {
     if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
     clock_.follow();
     take_tools();
-    if (heard_ && !begun_) begin_tissue(now);
-    if (begun_) {
+    if (heard_ && phase_ == Phase::waiting) begin_tissue(now);
+    if (phase_ == Phase::settling) settle(now);
+    if (phase_ == Phase::moving) {
       tick();
       ++report_.ticks;
       report_.period.skipped = timer.statistics().skipped;

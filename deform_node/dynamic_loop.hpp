@@ -32,7 +32,8 @@ struct DynamicReport {
 /// Advances moving tissue in real time: takes the tools' newest states, ticks the world, journals, sends local contact
 /// models and cuts, and publishes all surfaces at the visual rate. A tick that comes late is left out: time in the
 /// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of, and others
-/// have told what it had lost before this node started.
+/// have told what it had lost before this node started; if it comes back to tools that are in the tissue, that first
+/// comes to rest around them.
 class DynamicLoop {
  public:
   /// `deformer`: of the scene's quasi-static bodies.
@@ -49,7 +50,10 @@ class DynamicLoop {
 
  private:
   void take_tools();
+  void take_earlier_cuts();
   void begin_tissue(std::int64_t now);
+  void settle(std::int64_t now);
+  void tell_begin();
   void tick();
   void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed);
   void publish_changes();
@@ -82,8 +86,10 @@ class DynamicLoop {
   std::vector<Eigen::Vector3f> position_, normal_;
   EarlierCuts earlier_;
   bool whole_ = false;  ///< they do not count
+  enum class Phase { waiting, settling, moving };
+  Phase phase_ = Phase::waiting;
   bool heard_ = false;  ///< a tool has been heard of
-  bool begun_ = false;
+  bool late_ = false;   ///< the tools had been moving without this node
   std::int64_t shown_sense_ns_ = 0, last_status_ns_ = 0;
   std::uint64_t last_ticks_ = 0;
   DynamicReport report_;

@@ -20,6 +20,7 @@ bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
   while (auto held = reader_->take()) {
     const int body = static_cast<int>(held->body);
     told_.insert({held->node, body});
+    another_ |= held->run != 0;
     HeldTopology& most = most_[body];
     if (held->removed.size() > most.removed.size()) most = std::move(*held);
   }

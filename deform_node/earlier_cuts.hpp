@@ -26,8 +26,9 @@ class EarlierCuts {
   /// Call again until then.
   bool complete(const Presence& presence, std::int64_t now_ns);
 
-  bool in_time() const { return in_time_; }  ///< nobody kept it waiting for too long
-  const HeldTopology* of(int body) const;    ///< nullptr if nobody knows of any
+  bool in_time() const { return in_time_; }           ///< nobody kept it waiting for too long
+  const HeldTopology* of(int body) const;             ///< nullptr if nobody knows of any
+  bool another_had_them() const { return another_; }  ///< the bodies were another deformation node's before
 
  private:
   bool told_by_all(const Presence& presence) const;
@@ -37,7 +38,7 @@ class EarlierCuts {
   std::set<std::pair<std::string, int>> told_;  ///< node and body
   std::map<int, HeldTopology> most_;
   std::optional<std::int64_t> asked_ns_;
-  bool in_time_ = true;
+  bool in_time_ = true, another_ = false;
 };
 
 }  // namespace palpate

@@ -1,5 +1,7 @@
 #include "haptic_node/bus_devices.hpp"
 
+#include "common/tool/motion_guard.hpp"
+
 namespace palpate {
 
 BusDevices::BusDevices(Bus& bus, std::vector<std::unique_ptr<Device>>& devices) {
@@ -13,11 +15,16 @@ bool BusDevices::needed() const {
 }
 
 void BusDevices::take() {
-  while (const auto sample = reader_->take())
-    for (const Target& target : targets_)
-      if (target.tool == sample->tool)
-        target.device->put(
-            {{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal}, sample->seq});
+  while (const auto sample = reader_->take()) {
+    const ToolDofs dofs{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal};
+    for (const Target& target : targets_) {
+      if (target.tool != sample->tool) continue;
+      if (MotionGuard::in_range(dofs))
+        target.device->put({dofs, sample->seq});
+      else
+        refused_.fetch_add(1, std::memory_order_relaxed);
+    }
+  }
 }
 
 }  // namespace palpate

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -14,6 +16,7 @@ class BusDevices {
   /// Takes what has come.
   void take();
   bool needed() const;  ///< some tool waits for a driver elsewhere
+  std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }  ///< samples of no possible pose
 
  private:
   struct Target {
@@ -22,6 +25,7 @@ class BusDevices {
   };
   std::unique_ptr<Reader<DeviceState>> reader_;
   std::vector<Target> targets_;
+  std::atomic<std::uint64_t> refused_ = 0;
 };
 
 }  // namespace palpate

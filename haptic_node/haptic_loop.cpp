@@ -32,6 +32,7 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
       local_feed_(bus, haptic, run),
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
       samples_(haptic.tools()),
+      guards_(haptic.tools(), MotionGuard(haptic.dt())),
       dofs_(haptic.tools()),
       ring_(kRingSlots) {
   ring_.for_each_slot([&](StepRecord& slot) { prepare_record(haptic, slot); });
@@ -75,6 +76,9 @@ const LoopReport& HapticLoop::run(double seconds) {
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
   report_.ticks = step_;
   report_.period = timer.statistics();
+  report_.refused_samples = refused_samples();
+  report_.followed_samples = shown_followed_.load(std::memory_order_relaxed);
+  report_.refused_models = local_feed_.refused();
   over_.store(true);
   wake_.release();
   return report_;
@@ -84,7 +88,7 @@ void HapticLoop::tick(double time) {
   const std::int64_t sense = now_ns();
   for (std::size_t t = 0; t < devices_.size(); ++t) {
     samples_[t] = devices_[t]->read(time);
-    dofs_[t] = samples_[t].dofs;
+    dofs_[t] = samples_[t].dofs = guards_[t].follow(samples_[t].dofs, samples_[t].seq);
   }
   local_feed_.give(haptic_);
   if (step_ % keyframe_interval_ == 0) checkpoint();
@@ -115,7 +119,11 @@ void HapticLoop::tick(double time) {
   report_.damped += (flags & passivity_limited) != 0;
   report_.min_energy = std::min(report_.min_energy, haptic_.energy());
   report_.stale += (flags & stale_model) != 0;
-  if (flags & stale_model) shown_stale_.store(true, std::memory_order_relaxed);
+  shown_flags_.fetch_or(flags, std::memory_order_relaxed);
+  std::uint64_t refused = 0, followed = 0;
+  for (const MotionGuard& guard : guards_) refused += guard.refused(), followed += guard.followed();
+  shown_refused_.store(refused, std::memory_order_relaxed);
+  shown_followed_.store(followed, std::memory_order_relaxed);
   shown_ticks_.store(step_, std::memory_order_relaxed);
 }
 
@@ -141,6 +149,7 @@ void HapticLoop::publish_loop() {
     if (topology_) topology_->take();
   }
   drain();
+  say_interventions();
   publisher_.finish();
 }
 
@@ -164,15 +173,27 @@ void HapticLoop::report_status(std::int64_t now) {
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(ticks - last_status_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
-  const bool stale = shown_stale_.exchange(false, std::memory_order_relaxed);
-  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0,
-                     stale ? "the force of moving tissue fades: its local contact models come too late" : "");
+  say_interventions();
+  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0, told_.status());
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
 }
 
+void HapticLoop::say_interventions() {
+  told_.look({.flags = shown_flags_.exchange(0, std::memory_order_relaxed),
+              .refused_samples = refused_samples(),
+              .followed = shown_followed_.load(std::memory_order_relaxed),
+              .refused_models = local_feed_.refused()});
+  for (const std::string& said : told_.news()) spdlog::warn("{}", said);
+}
+
+std::uint64_t HapticLoop::refused_samples() const {
+  return bus_devices_.refused() + shown_refused_.load(std::memory_order_relaxed);
+}
+
 void HapticLoop::check_peers() {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  if (const Presence::Peer* deform = presence_.last_met("deform")) local_feed_.follow(deform->status.run);
 }
 
 }  // namespace palpate

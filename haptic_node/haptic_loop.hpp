@@ -14,7 +14,9 @@
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/sim/haptic_step.hpp"
+#include "common/tool/motion_guard.hpp"
 #include "haptic_node/bus_devices.hpp"
+#include "haptic_node/interventions.hpp"
 #include "haptic_node/local_feed.hpp"
 #include "haptic_node/publisher.hpp"
 
@@ -31,6 +33,9 @@ struct LoopReport {
   double max_force = 0;                                                           ///< [N]
   std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
   double min_energy = 0;                                                          ///< [J] of all tools together
+  std::uint64_t refused_samples = 0;   ///< of devices: no possible pose, or a jump that the next did not confirm
+  std::uint64_t followed_samples = 0;  ///< steps in which a tool followed its device at a bounded speed
+  std::uint64_t refused_models = 0;    ///< local contact models of steps to come
 };
 
 /// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and
@@ -55,6 +60,8 @@ class HapticLoop {
   void drain();
   void report_status(std::int64_t now);
   void check_peers();
+  void say_interventions();
+  std::uint64_t refused_samples() const;
   bool all_finished(double seconds) const;
 
   HapticStep& haptic_;
@@ -68,6 +75,7 @@ class HapticLoop {
   TopologyMemory* topology_ = nullptr;
   std::uint64_t step_ = 0, keyframe_interval_;
   std::vector<DeviceSample> samples_;
+  std::vector<MotionGuard> guards_;  ///< per tool
   std::vector<ToolDofs> dofs_;
   SpscRing<StepRecord> ring_;
   HapticKeyframe keyframe_;
@@ -75,7 +83,9 @@ class HapticLoop {
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> over_{false};
   std::atomic<std::uint64_t> shown_ticks_{0}, shown_missed_{0};
-  std::atomic<bool> shown_stale_{false};
+  std::atomic<std::uint32_t> shown_flags_{0};  ///< of all steps since they were told
+  std::atomic<std::uint64_t> shown_refused_{0}, shown_followed_{0};
+  Interventions told_;
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_status_ticks_ = 0;
   LoopReport report_;

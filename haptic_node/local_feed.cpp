@@ -1,7 +1,5 @@
 #include "haptic_node/local_feed.hpp"
 
-#include <spdlog/spdlog.h>
-
 namespace palpate {
 
 struct LocalFeed::OfTool {
@@ -19,12 +17,9 @@ LocalFeed::LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run) : ru
 LocalFeed::~LocalFeed() = default;
 
 void LocalFeed::take() {
-  if (!said_ && refused() > 0) {
-    spdlog::warn("a local contact model names a haptic step that is still to come; such models are refused");
-    said_ = true;
-  }
   while (const auto message = reader_->take()) {
-    if (message->tool_run != run_ || message->tool >= of_tool_.size()) continue;
+    const bool ours = message->tool_run == run_ && message->run == owner_.load(std::memory_order_relaxed);
+    if (!ours || message->tool >= of_tool_.size()) continue;
     if (copy_model(*message, dynamic_, *copy_)) of_tool_[message->tool]->newest.put(*copy_);
   }
 }

@@ -20,6 +20,8 @@ class LocalFeed {
   ~LocalFeed();
 
   bool needed() const { return reader_ != nullptr; }
+  /// From now on models of this run of a deform node are taken, and no others; 0, as at first: none. On any thread.
+  void follow(std::uint64_t deform_run) { owner_.store(deform_run, std::memory_order_relaxed); }
   /// Takes what has come.
   void take();
   /// Hands each tool's newest model to the step, if it is not the one in use. A model that names a step which is not
@@ -31,11 +33,11 @@ class LocalFeed {
   struct OfTool;
   std::unique_ptr<Reader<LocalContactModel>> reader_;
   std::uint64_t run_;
+  std::atomic<std::uint64_t> owner_ = 0;
   std::vector<std::uint8_t> dynamic_;
   std::vector<std::unique_ptr<OfTool>> of_tool_;
   std::unique_ptr<LocalModel> copy_;
   std::atomic<std::uint64_t> refused_ = 0;
-  bool said_ = false;
 };
 
 }  // namespace palpate

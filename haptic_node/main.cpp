@@ -29,15 +29,24 @@ void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
   }
 }
 
+bool fit(const HapticStep& haptic, const ContactState& kept) {
+  return std::ranges::all_of(kept.contacts, [&](const HeldContact& held) { return haptic.fits(kept.tool, held); });
+}
+
 /// The last contacts of a haptic node that died, if a peer with the same scene keeps them.
-std::vector<ContactState> contacts_kept_by_peers(Bus& bus, Presence& presence) {
+std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& bus, Presence& presence) {
   const auto reader = bus.reader(topics::held_contacts);
   std::vector<ContactState> kept;
   const auto limit = std::chrono::steady_clock::now() + 1s;
   while (kept.empty() && std::chrono::steady_clock::now() < limit) {
     for (const std::string& said : presence.watch()) spdlog::info("{}", said);
-    while (auto contacts = reader->take())
-      if (presence.matched("deform") || presence.matched("render")) kept.push_back(std::move(*contacts));
+    while (auto contacts = reader->take()) {
+      if (!presence.matched("deform") && !presence.matched("render")) continue;
+      if (fit(haptic, *contacts))
+        kept.push_back(std::move(*contacts));
+      else
+        spdlog::warn("a peer keeps contacts that cannot be of this scene; they are left");
+    }
     bus.wait(20ms);
   }
   return kept;
@@ -49,7 +58,7 @@ void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bu
   try {
     haptic.start(dofs);
   } catch (const std::runtime_error&) {
-    const std::vector<ContactState> kept = contacts_kept_by_peers(bus, presence);
+    const std::vector<ContactState> kept = contacts_kept_by_peers(haptic, bus, presence);
     if (kept.empty()) throw;
     haptic.start(dofs, true);
     for (const ContactState& c : kept)
@@ -106,6 +115,9 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"regularised_steps", r.regularised},
           {"fault_steps", r.faults},
           {"stale_model_steps", r.stale},
+          {"refused_samples", r.refused_samples},
+          {"followed_steps", r.followed_samples},
+          {"refused_models", r.refused_models},
           {"passivity_limited_steps", r.damped},
           {"energy_min_j", r.min_energy}};
 }
@@ -140,6 +152,7 @@ void run(const NodeOptions& o) {
     for (const std::string& said : presence.watch()) spdlog::info("{}", said);
     bus->wait(20ms);
   }
+  presence.claim("the tools of this scene");
   spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
   for (const HapticStep::Entry& entry : haptic.entries())
     if (const std::string said = entry.part->introduction(); !said.empty())

@@ -14,6 +14,7 @@
 #include "common/scene/scene.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
+#include "tools/domain_claim.hpp"
 
 namespace palpate {
 namespace {
@@ -22,9 +23,10 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 struct RunOptions {
-  std::string scene, record, film, still, summary, keys;
+  std::string scene, record, film, still, summary, keys, domain;
   double seconds = 0;
-  int domain = -1, processes = 2;
+  int processes = 2;
+  bool strict = false;
 };
 
 struct Node {
@@ -126,8 +128,18 @@ std::vector<std::string> recorder_command(const Scene& scene, const std::string&
   return command;
 }
 
-void start_nodes(Nodes& nodes, const Scene& scene, const RunOptions& o) {
-  const std::string domain = std::to_string(o.domain >= 0 ? o.domain : scene.network.domain);
+// The scene's domain or the first free one after it, unless one is asked for.
+DomainClaim claim_domain(const Scene& scene, const RunOptions& o) {
+  if (!o.domain.empty() && o.domain != "auto") return DomainClaim(parse_domain(o.domain));
+  DomainClaim claim = DomainClaim::first_free(scene.network.domain);
+  if (claim.domain() != scene.network.domain)
+    fmt::print(stderr, "domain {} is another run's on this host; this one takes domain {}\n", scene.network.domain,
+               claim.domain());
+  return claim;
+}
+
+void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
+  const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
     if (!o.keys.empty()) arguments.insert(arguments.end(), {"--keys", o.keys});
@@ -151,6 +163,21 @@ void start_nodes(Nodes& nodes, const Scene& scene, const RunOptions& o) {
   std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
   if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
   nodes.start("haptic_node", haptic);
+}
+
+// What the guards before the hand had to do that a sound run does not need, in a sentence; empty: nothing.
+std::string interventions_in(const nlohmann::json& summary) {
+  const nlohmann::json haptic = summary.value("haptic_node", nlohmann::json());
+  if (!haptic.is_object()) return {};
+  std::string said;
+  for (const auto& [key, what] : {std::pair{"fault_steps", "steps without force after a fault"},
+                                  {"refused_samples", "samples of a device refused"},
+                                  {"followed_steps", "steps in which a tool followed its device at a bounded speed"},
+                                  {"refused_models", "local contact models refused"},
+                                  {"stale_model_steps", "steps in which the force of moving tissue faded"}})
+    if (const auto count = haptic.value(key, std::uint64_t{0}); count > 0)
+      said += fmt::format("{}{} {}", said.empty() ? "the hand was guarded: " : ", ", count, what);
+  return said;
 }
 
 void print_summary(const nlohmann::json& s) {
@@ -200,8 +227,9 @@ void run(const RunOptions& o) {
   for (const Body& body : scene.bodies) ensure_archive(scene, body);
   catch_shutdown_signals();
   const auto begin = Clock::now();
+  const DomainClaim claim = claim_domain(scene, o);
   Nodes nodes;
-  start_nodes(nodes, scene, o);
+  start_nodes(nodes, scene, claim.domain(), o);
   while (!shutdown_requested() && nodes.last_runs()) {
     nodes.read();
     nodes.check();
@@ -221,6 +249,10 @@ void run(const RunOptions& o) {
     if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot write the summary", o.summary));
   }
   nodes.check();
+  if (const std::string said = interventions_in(summary); !said.empty()) {
+    if (o.strict) throw std::runtime_error(said);
+    fmt::print(stderr, "{}\n", said);
+  }
 }
 
 }  // namespace
@@ -238,12 +270,16 @@ void add_run_command(cli::Command& app) {
   run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force")
       .output_file(".png");
   run_command.add_option("--summary", o->summary, "Write rates, latencies and forces as JSON").output_file(".json");
-  run_command.add_option("--domain", o->domain, "DDS domain in place of the scene's").between(0, 230);
+  run_command.add_option(
+      "--domain", o->domain,
+      "DDS domain, 0 to 230, in place of the scene's; auto, the default: the scene's, or the first free "
+      "one if another run on this host has it");
   run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command
       .add_option("--processes", o->processes,
                   "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")
       .one_of({2, 3});
+  run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.does([o] { run(*o); });
 }
 

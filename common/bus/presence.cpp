@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
@@ -12,6 +13,8 @@ namespace palpate {
 namespace {
 
 constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
+constexpr std::string_view kRecorder = "recorder";
+constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;  // each node says once a second how it is
 
 std::string node_name(const std::string& role) {
   char host[256] = "localhost";
@@ -53,8 +56,9 @@ void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t misse
 }
 
 bool Presence::same_scene(const NodeStatus& peer) const {
-  const auto agree = [](const std::string& a, const std::string& b) { return a.empty() || b.empty() || a == b; };
-  return agree(peer.scene_hash, status_.scene_hash) && agree(peer.archive_hash, status_.archive_hash);
+  // A recorder has no scene; nobody else may leave out which it has.
+  if (peer.role == kRecorder || status_.role == kRecorder) return true;
+  return peer.scene_hash == status_.scene_hash && peer.archive_hash == status_.archive_hash;
 }
 
 std::string Presence::meet(const NodeStatus& peer) const {
@@ -94,6 +98,25 @@ bool Presence::accepts(std::uint64_t run) const {
     const Peer& peer = entry.second;
     return peer.accepted && peer.status.role == "haptic" && peer.status.run == run;
   });
+}
+
+// Of two that begin at once one gives way: the same one for both.
+const NodeStatus* Presence::owner() const {
+  const std::int64_t now = now_ns();
+  for (const auto& [name, peer] : peers_) {
+    const NodeStatus& s = peer.status;
+    const bool rival = peer.accepted && s.role == status_.role && s.run != 0 && now - peer.heard_ns < kAliveNs;
+    if (rival && (s.ticks > 0 || s.run < status_.run)) return &s;
+  }
+  return nullptr;
+}
+
+void Presence::claim(const std::string& what) const {
+  if (const NodeStatus* other = owner())
+    throw std::runtime_error(
+        fmt::format("{} has {} in {}: a second owner would fight with it. Stop it, or give another "
+                    "--domain",
+                    other->node, what, bus_->place()));
 }
 
 const Presence::Peer* Presence::last_met(const std::string& role) const {

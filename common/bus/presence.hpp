@@ -41,6 +41,11 @@ class Presence {
   };
   /// The accepted node of this role that was met last; nullptr if there is none.
   const Peer* last_met(const std::string& role) const;
+  /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
+  /// if there is none.
+  const NodeStatus* owner() const;
+  /// Throws std::runtime_error, which names the other, where there is one.
+  void claim(const std::string& what) const;
   /// Those heard of within the last ten minutes, by name.
   const std::map<std::string, Peer>& peers() const { return peers_; }
 

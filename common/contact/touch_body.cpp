@@ -56,7 +56,8 @@ void TouchBody::for_each_force(const VisitForce& visit) const {
 
 bool TouchBody::adopt(const TouchContact& contact) {
   const int nodes = static_cast<int>(surface().positions().size());
-  if (!std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n < nodes; })) return false;
+  if (law_.full() || !std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n >= 0 && n < nodes; }))
+    return false;
   contacts_.adopt(contact);
   return true;
 }

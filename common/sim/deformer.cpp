@@ -5,7 +5,8 @@
 
 namespace palpate {
 
-Deformer::Deformer(const Scene& scene, const std::vector<Archive>& archives) {
+Deformer::Deformer(const Scene& scene, const std::vector<Archive>& archives)
+    : tools_(std::max<std::size_t>(scene.tools.size(), 1)) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
     DeformableBody& body = bodies_.emplace_back();
     body.shape = std::visit([&](const auto& spec) { return make_shape(spec, archives[b]); }, scene.bodies[b]);
@@ -48,6 +49,7 @@ void Deformer::show(std::uint64_t step, std::int64_t sense_ns) {
 }
 
 bool Deformer::take(const ContactState& contacts) {
+  if (contacts.tool >= tools_) return false;
   for (const NodalForce& f : contacts.forces)
     if (f.body >= bodies_.size() || f.node >= bodies_[f.body].shape->map().position.size()) return false;
   if (!follow(contacts.run, contacts.sense_ns)) return false;

@@ -51,6 +51,7 @@ class Deformer {
 
   std::vector<DeformableBody> bodies_;
   std::map<std::uint32_t, ContactState> contacts_;
+  std::size_t tools_;  ///< of the scene; contacts of others are refused. One at least
   std::uint64_t run_ = 0, step_ = 0;
   std::int64_t sense_ns_ = 0;
   std::vector<std::uint64_t> past_runs_;

@@ -1,9 +1,16 @@
 #include "common/sim/dynamic_world.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 namespace palpate {
+namespace {
+
+// Settling, in ticks: under the tissue's own weight, while tools enter, and until what they press has come to rest.
+constexpr int kRestTicks = 400, kEnterTicks = 300, kCalmTicks = 300;
+
+}  // namespace
 
 DynamicWorld::DynamicWorld(const Scene& scene, const std::vector<Archive>& archives)
     : dt_(1.0 / scene.rates.haptic_hz), in_tick_(scene.tools.size()) {
@@ -30,12 +37,25 @@ void DynamicWorld::leave(int tool) {
 void DynamicWorld::tick() {
   if (ticks_ % keyframe_interval() == 0)
     for (auto& organ : organs_) organ->forget_factors();
-  for (int t = 0; t < tools(); ++t) {
-    tools_[t].tick(ticks_);
-    in_tick_[t] = tools_[t].in_tick();
-  }
-  for (auto& organ : organs_) organ->tick(in_tick_, dt_);
+  for (TissueTool& tool : tools_) tool.tick(ticks_);
+  tick_organs();
   ++ticks_;
+}
+
+void DynamicWorld::tick_organs() {
+  for (int t = 0; t < tools(); ++t) in_tick_[t] = tools_[t].in_tick();
+  for (auto& organ : organs_) organ->tick(in_tick_, dt_);
+}
+
+bool DynamicWorld::settle() {
+  const int entering = settled_ - kRestTicks;
+  // Fast through free space, slowly at the end, where it meets the tissue.
+  const double left = std::clamp(1 - static_cast<double>(entering) / kEnterTicks, 0.0, 1.0);
+  if (entering >= 0)
+    for (TissueTool& tool : tools_) tool.enter(1 - left * left);
+  tick_organs();
+  for (auto& organ : organs_) organ->calm();
+  return ++settled_ >= kRestTicks + kEnterTicks + kCalmTicks;
 }
 
 void DynamicWorld::state(State& s) {

@@ -35,6 +35,12 @@ class DynamicWorld {
   /// Moves everything on by dt().
   void tick();
 
+  /// Before the first tick, in a node that comes when tools are in the tissue already: one tick's length of coming to
+  /// rest, first under the tissue's own weight, then with the tools, which enter along their shafts to where their
+  /// newest states say. What they cut or tear on their way is gone. True when it is over; call until then, after
+  /// taking the newest states.
+  bool settle();
+
   std::uint64_t ticks() const { return ticks_; }
   const TissueTool& tool(int t) const { return tools_[t]; }
   const ToolInTick& in_tick(int t) const { return in_tick_[t]; }  ///< as the organs met it in the last tick
@@ -45,12 +51,15 @@ class DynamicWorld {
   std::uint64_t hash() const;
 
  private:
+  void tick_organs();
+
   double dt_;
   std::vector<TissueTool> tools_;
   std::vector<ToolInTick> in_tick_;  ///< the same tools as the organs meet them
   std::vector<std::unique_ptr<DynamicOrgan>> organs_;
   std::vector<int> body_of_;
   std::uint64_t ticks_ = 0;
+  int settled_ = 0;  ///< ticks of settling
 };
 
 }  // namespace palpate

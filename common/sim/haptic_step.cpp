@@ -9,15 +9,18 @@
 namespace palpate {
 namespace {
 
+constexpr double kWeightSlack = 1e-6;
+
 double sum_of_force_limits(const Scene& scene) {
   double sum = 0;
   for (const Tool& tool : scene.tools) sum += tool.max_force;
   return sum;
 }
 
+// [N/s] at which a force falls.
 double min_slew(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Tool& tool : scene.tools) least = std::min(least, tool.max_force_rate);
+  for (const Tool& tool : scene.tools) least = std::min(least, SafetyChain::kFall * tool.max_force_rate);
   return least;
 }
 
@@ -107,10 +110,22 @@ void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
       }
 }
 
+bool HapticStep::fits(std::uint32_t tool, const HeldContact& held) const {
+  if (tool >= rigs_.size() || held.body >= static_cast<std::uint32_t>(bodies_) || !part(static_cast<int>(held.body)))
+    return false;
+  if (held.sample >= rigs_[tool]->end().parts().size()) return false;
+  constexpr auto most = static_cast<std::uint32_t>(std::numeric_limits<int>::max());
+  const bool numbers = std::ranges::all_of(held.nodes, [](std::uint32_t n) { return n <= most; });
+  const Eigen::Map<const Eigen::Vector3d> weights(held.weights.data()), at(held.offset.data()),
+      force(held.force.data());
+  const bool within = weights.minCoeff() >= -kWeightSlack && std::abs(weights.sum() - 1) <= kWeightSlack;
+  return numbers && within && rigs_[tool]->can_hold(static_cast<int>(held.sample), at) &&
+         force.norm() <= rigs_[tool]->max_force();
+}
+
 void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
+  if (!fits(tool, held)) throw std::runtime_error("a peer keeps a contact that cannot be of this scene");
   const auto entry = std::ranges::find(entries_, static_cast<int>(held.body), &Entry::body);
-  const bool fits = tool < rigs_.size() && entry != entries_.end() && held.sample < rigs_[tool]->end().parts().size();
-  if (!fits) throw std::runtime_error("a peer keeps a contact of a tool or body that this scene does not have");
   TouchContact c{.by = ToolPoint{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)}};
   for (int v = 0; v < 3; ++v) {
     c.anchor.nodes[v] = static_cast<int>(held.nodes[v]);
@@ -121,7 +136,8 @@ void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
   }
   c.face = held.nodes[0] != held.nodes[1];
   c.touch = held.sticking ? Touch::sticking : Touch::sliding;
-  if (!entry->part->adopt(c)) throw std::runtime_error("a peer keeps a contact on a node that the body lacks");
+  if (!entry->part->adopt(c))
+    throw std::runtime_error("a peer keeps a contact on a node that the body lacks, or more than it can hold");
 }
 
 void HapticStep::see_tools() {

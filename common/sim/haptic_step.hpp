@@ -30,6 +30,8 @@ class HapticStep {
   /// Sets the tools' poses before the first step. Throws std::runtime_error naming tool and body if one starts in
   /// contact, unless `resuming` (a peer keeps this run's contacts).
   void start(std::span<const ToolDofs> dofs, bool resuming = false);
+  /// Whether a contact that a peer kept can be of this scene: tool, body, part and magnitudes.
+  bool fits(std::uint32_t tool, const HeldContact& contact) const;
   /// Takes up a contact that a peer kept. Throws std::runtime_error if it does not fit this scene.
   void adopt(std::uint32_t tool, const HeldContact& contact);
 

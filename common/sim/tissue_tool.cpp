@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kGoneAfter = 120;  // [s] of silence, as the network forgets a participant
+constexpr double kGoneAfter = 120;   // [s] of silence, as the network forgets a participant
+constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its states may be behind them
 
 ToolDofs dofs_of(const ToolState& s) {
   return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
@@ -43,30 +44,48 @@ void TissueTool::tick(std::uint64_t number) {
   left_ = std::exchange(leaving_, false);
   const bool silent = !waiting_ && heard_ + patience_ < number;
   if (left_ || silent) present_ = false;
-  before_ = now_;
-  parts_before_ = parts_;
   anew_ = std::exchange(waiting_, false);
-  // A tool that comes anew, or of another run, does not sweep through the tissue on its way here.
   const bool begins = anew_ && (!present_ || newest_.run != consumed_.run);
   if (begins)
     playback_.begin(newest_);
   else if (present_)
     playback_.tick(anew_ ? &newest_ : nullptr);
   else
-    return;
+    return stand();
   if (anew_) {
     heard_ = number;
     holding_ = newest_.holding != 0;
     present_ = true;
     consumed_ = newest_;
   }
+  move(begins);
+}
+
+void TissueTool::stand() {
+  before_ = now_;
+  parts_before_ = parts_;
+}
+
+// To where it is played; one that begins there does not sweep through the tissue on its way.
+void TissueTool::move(bool begins) {
+  stand();
   dofs_ = playback_.dofs();
   opening_ = playback_.opening();
   now_ = tip_pose(trocar_, dofs_);
   turn_jaws();
-  if (!begins) return;
-  before_ = now_;
-  parts_before_ = parts_;
+  if (begins) stand();
+}
+
+void TissueTool::enter(double share) {
+  if (!waiting_ && !present_) return;
+  consumed_ = newest_;
+  consumed_.depth *= share;
+  playback_.begin(consumed_);
+  move(!std::exchange(present_, true));
+}
+
+bool TissueTool::follows() const {
+  return playback_.behind() <= kMaxBehind;
 }
 
 ToolInTick TissueTool::in_tick() const {

@@ -26,10 +26,17 @@ class TissueTool {
   /// may have been cut, for two minutes.
   void tick(std::uint64_t number);
 
+  /// In place of a tick: it has come in along its shaft by this share of the depth that its newest state says; what it
+  /// holds it takes in the first tick. Nothing, of a tool of which no state has come.
+  void enter(double share);
+
   /// As the organs meet it in this tick. Refers to this object.
   ToolInTick in_tick() const;
   /// The state that the last tick consumed; run 0 before any.
   const ToolState& consumed() const { return consumed_; }
+  /// It stands where its newest states say, or nearly: what was missed in a silence has been made up for. A model of
+  /// where a tool was long ago is none of where it is.
+  bool follows() const;
   bool consumed_anew() const { return anew_; }  ///< by the last tick
   bool has_left() const { return left_; }       ///< in the last tick
 
@@ -37,6 +44,8 @@ class TissueTool {
 
  private:
   void turn_jaws();
+  void stand();
+  void move(bool begins);
 
   Trocar trocar_;
   std::vector<ToolPart> parts_, parts_before_;  ///< of jaws they turn

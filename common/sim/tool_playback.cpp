@@ -57,6 +57,11 @@ ToolDofs ToolPlayback::dofs() const {
   return {now_[0], now_[1], now_[2], now_[3], now_[4], pedal_};
 }
 
+double ToolPlayback::behind() const {
+  const double turned = std::abs(missed_[0]) + std::abs(missed_[1]);
+  return turned * std::abs(newest_[2]) + std::abs(missed_[2]);
+}
+
 void ToolPlayback::state(State& s) {
   s.value(newest_);
   s.value(pace_);

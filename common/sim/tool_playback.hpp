@@ -24,6 +24,8 @@ class ToolPlayback {
 
   ToolDofs dofs() const;
   double opening() const { return now_[5]; }  ///< [rad] of a forceps' jaws
+  /// [m] at most by which the tip is behind where the states say, since none came for long: what is made up for now.
+  double behind() const;
 
   void state(State& s);
 

@@ -1,13 +1,27 @@
 #include "common/sim/tool_rig.hpp"
 
+#include <algorithm>
+
+#include "common/geometry/segment.hpp"
+#include "common/tool/instrument.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr double kSkin = 2;  // radii of a part within which what it touches lies
+
+double jaw_length(const EndAbilities& can) {
+  return can.closing ? can.closing->length : can.turning ? can.turning->length : 0.0;
+}
+
+}  // namespace
 
 ToolRig::ToolRig(int index, const Tool& tool, double dt)
     : name_(tool.name),
       trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       shaft_length_(tool.shaft_length),
+      jaw_length_(jaw_length(abilities_of(tool))),
       end_(std::visit(
           [&](const auto& end) {
             return make_tool_end(end, EndPlace{index, tool, dt});
@@ -30,6 +44,12 @@ bool ToolRig::sense(const ToolDofs& dofs) {
   const bool finite = pose.matrix().allFinite();
   if (finite) now_ = pose;
   return finite;
+}
+
+bool ToolRig::can_hold(int part, const Eigen::Vector3d& at) const {
+  const ToolPart& p = end_->parts()[part];
+  const Segment axis{Eigen::Vector3d::Zero(), p.length * Eigen::Vector3d::UnitZ()};
+  return (at - nearest_point(axis, at)).norm() <= std::max(kSkin * p.radius, 2 * jaw_length_);
 }
 
 void ToolRig::count_motion() {

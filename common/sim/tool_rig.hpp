@@ -27,6 +27,9 @@ class ToolRig {
   const std::string& name() const { return name_; }
   const Trocar& trocar() const { return trocar_; }
   const ToolEnd& end() const { return *end_; }
+  double max_force() const { return safety_.max_force(); }  ///< [N] that the hand gets
+  /// Whether tissue can be held at a place [m] in a part's own frame, or between the jaws in the tip frame.
+  bool can_hold(int part, const Eigen::Vector3d& at) const;
   const Eigen::Isometry3d& pose() const { return now_; }  ///< tip frame, world
   MovingTool moving() const {
     return {.before = before_, .now = now_, .parts_before = end_->parts_before(), .parts = end_->parts()};
@@ -57,6 +60,7 @@ class ToolRig {
   std::string name_;
   Trocar trocar_;
   double shaft_length_;
+  double jaw_length_;  ///< [m] 0 without jaws
   std::unique_ptr<ToolEnd> end_;
   SafetyChain safety_;
   ToolDofs dofs_{};

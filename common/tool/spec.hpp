@@ -20,9 +20,9 @@ struct Tool {
   double shaft_radius = 0.0025;                      ///< [m]
   double shaft_length = 0.3;                         ///< [m] from the tip back along the shaft
   ToolEndSpec end;
-  double compliance = 1e-4;      ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
-  double max_force = 10;         ///< [N] limit of the safety chain
-  double max_force_rate = 5000;  ///< [N/s] slew limit
+  double compliance = 1e-4;     ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
+  double max_force = 10;        ///< [N] limit of the safety chain
+  double max_force_rate = 250;  ///< [N/s] at which the force rises at most; it falls 20 times as fast
   DeviceSpec device;
 };
 
@@ -53,7 +53,8 @@ inline void describe(Description& d, Tool& t) {
       {"max_force", "N",
        "limit of the force that goes to the hand; 0.3 m times it is that of the torque, and both are scaled alike"},
       t.max_force, above(0));
-  d.number({"max_force_rate", "N/s", "limit of its change"}, t.max_force_rate, above(0));
+  d.number({"max_force_rate", "N/s", "at which it rises at most; it falls up to 20 times as fast"}, t.max_force_rate,
+           above(0));
   static const std::string ends = meanings(std::type_identity<ToolEndSpec>{});
   d.variant({"kind", "", ends}, t.end);
 }

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <functional>
 
 #include "common/bus/memory_bus.hpp"
 #include "haptic_node/haptic_loop.hpp"
@@ -66,6 +68,66 @@ TEST(HapticLoop, ADeviceInTheProcessGetsItsForceInTheSameTickAndIsPushedOut) {
   EXPECT_LT(deepest, 0.006);
   EXPECT_GT(largest, 0.05);
   EXPECT_GT(log.height[MassOnATip::kMaxTicks - 1], 0.008) << "the tissue pushes the hand out";
+}
+
+/// Holds a tip pressed into the tissue, but for some samples.
+class FaultyDevice : public Device {
+ public:
+  using Fault = std::function<double(std::size_t)>;  ///< depth [m] in place of the right one
+  FaultyDevice(double depth, Fault fault, std::vector<double>& force)
+      : depth_(depth), fault_(std::move(fault)), force_(force) {}
+
+  DeviceSample read(double) override {
+    ++reads_;
+    const double down = std::min(1.0, static_cast<double>(reads_) / 100);
+    const double fault = fault_(reads_);
+    return {{.depth = fault != 0 ? fault : 0.19 + down * (depth_ - 0.19)}, reads_};
+  }
+  void render(const Wrench& wrench, double) override { force_.push_back(wrench.force.norm()); }
+  bool finished(double) const override { return reads_ >= 400; }
+
+ private:
+  double depth_;
+  Fault fault_;
+  std::vector<double>& force_;
+  std::size_t reads_ = 0;
+};
+
+LoopReport run_with(const FaultyDevice::Fault& fault, std::vector<double>& force) {
+  testing::BlockScene block;
+  HapticStep haptic(block.scene, block.archives);
+  const std::unique_ptr<Bus> bus = make_memory_bus(make_memory_network());
+  Presence presence(*bus, "haptic", 1, "scene", "archive");
+  std::vector<std::unique_ptr<Device>> devices;
+  force.reserve(1000);
+  devices.push_back(std::make_unique<FaultyDevice>(0.197, fault, force));
+  haptic.start(std::array{ToolDofs{.depth = 0.19}});
+  HapticLoop loop(haptic, devices, *bus, presence, 1, "a test");
+  return loop.run(0);
+}
+
+TEST(HapticLoop, ASampleThatCannotBeDoesNotTakeTheForceAwayForGood) {
+  std::vector<double> force, undisturbed;
+  run_with([](std::size_t) { return 0.0; }, undisturbed);
+  for (const double bad : {1e300, std::nan(""), -3.0}) {
+    force.clear();
+    const LoopReport report = run_with([&](std::size_t k) { return k == 200 ? bad : 0.0; }, force);
+    EXPECT_EQ(report.faults, 0u);
+    EXPECT_EQ(report.refused_samples, 1u);
+    ASSERT_GE(force.size(), 350u);
+    EXPECT_GT(undisturbed[340], 0.05);
+    EXPECT_NEAR(force[340], undisturbed[340], 0.01 * undisturbed[340]);
+    for (std::size_t k = 1; k < 350; ++k) ASSERT_LT(std::abs(force[k] - undisturbed[k]), 1e-3) << k;
+  }
+}
+
+TEST(HapticLoop, ADeviceThatJumpsToAndFroIsNotFollowed) {
+  std::vector<double> force, undisturbed;
+  run_with([](std::size_t) { return 0.0; }, undisturbed);
+  const LoopReport report = run_with([](std::size_t k) { return k > 200 && k % 2 == 0 ? 0.55 : 0.0; }, force);
+  EXPECT_GT(report.refused_samples, 90u);
+  EXPECT_EQ(report.followed_samples, 0u);
+  for (std::size_t k = 1; k < 350; ++k) ASSERT_LT(std::abs(force[k] - undisturbed[k]), 1e-3) << k;
 }
 
 }  // namespace

@@ -340,6 +340,7 @@ TEST_F(LocalBodyTest, TheFeedBringsTheNewestModelOfThisRunToTheStep) {
   auto here = make_memory_bus(network), there = make_memory_bus(network);
   LocalFeed feed(*here, *haptic_, 5);
   ASSERT_TRUE(feed.needed());
+  feed.follow(77);  // as empty_model() names it
   const auto writer = there->writer(topics::local_contact_model);
   EXPECT_EQ(writer->readers(), 1);
   const auto send = [&](std::uint64_t tool_run, std::uint64_t seq) {

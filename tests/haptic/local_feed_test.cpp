@@ -11,13 +11,14 @@ namespace palpate {
 namespace {
 
 constexpr double kTip = 0.008;  // [m] of the tip's radius
-constexpr std::uint64_t kRun = 5;
+constexpr std::uint64_t kRun = 5, kDeformRun = 77;
 
 /// A haptic step in free air that is told of tissue over the bus.
 class ToldOverTheBus : public ::testing::Test {
  protected:
   ToldOverTheBus() : feed_(*bus_, haptic_, kRun), models_(bus_->writer(topics::local_contact_model)) {
     haptic_.start(std::array{free_air()});
+    feed_.follow(kDeformRun);
   }
 
   ToolDofs free_air() const { return tip_at(scene_.tools[0], {0, 0, 0.05}); }
@@ -36,6 +37,7 @@ class ToldOverTheBus : public ::testing::Test {
   LocalContactModel press(std::uint64_t step, std::uint64_t seq) const {
     LocalContactModel m = testing::empty_model(scene_.tools[0], {0, 0, 0.05}, step, seq);
     m.tool_run = kRun;
+    m.run = kDeformRun;
     testing::add_contact(m, {0, 0, 0.042}, {0, 0, -10}, 0);
     return m;
   }
@@ -69,6 +71,14 @@ TEST_F(ToldOverTheBus, AModelOfAStepToComeIsRefused) {
   EXPECT_GE(feed_.refused(), 3);
   models_->write(press(510, ++seq));
   EXPECT_NEAR(feel(60), 10, 1e-9) << "the next good one is felt";
+}
+
+TEST_F(ToldOverTheBus, AModelOfAStrangerIsPassedOver) {
+  feel(10);
+  LocalContactModel m = press(9, 1);
+  m.run = kDeformRun + 1;
+  models_->write(m);
+  EXPECT_EQ(feel(100), 0);
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ class TicksOnMovingTissue {
         feed_(*models_, haptic_, 5),
         ring_(64),
         state_(haptic_.state_size()) {
+    feed_.follow(77);  // as empty_model() names it
     haptic_.start(input(0));
   }
   /// A model as the deform node would send it with the pose of step i: the other thread's part of the work.

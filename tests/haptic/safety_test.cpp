@@ -34,15 +34,32 @@ TEST(Safety, ATorqueWithoutForceIsLimitedToo) {
   EXPECT_NEAR(last.norm(), most, 1e-9);
 }
 
-TEST(Safety, TheForceChangesNoFasterThanItsSlewLimit) {
-  SafetyChain chain(10.0, 1000, 1e-3);
-  Vector3d last = Vector3d::Zero();
-  for (int i = 0; i < 20; ++i) {
-    Vector3d force(0, 0, i < 10 ? 8 : -8), torque = Vector3d::Zero();
-    chain.apply(force, torque, true);
-    EXPECT_LE((force - last).norm(), 1.0 + 1e-12);
-    last = force;
+TEST(Safety, TheForceRisesNoFasterThanItsSlewLimitInAnyDirection) {
+  SafetyChain chain(10.0, 250, 1e-3);
+  Vector3d force(0, 0, 8), torque = Vector3d::Zero();
+  for (int i = 1; i <= 20; ++i) {
+    force = {0, 0, 8};
+    EXPECT_EQ(chain.apply(force, torque, true), slew_limited);
+    EXPECT_NEAR(force.z(), 0.25 * i, 1e-12);
   }
+  force = {8, 0, 5};
+  EXPECT_EQ(chain.apply(force, torque, true), slew_limited);
+  EXPECT_LT((force - Vector3d(0.25, 0, 5)).norm(), 1e-12) << "turned aside";
+}
+
+TEST(Safety, AForceThatGoesIsNotHeldButNoneComesFromTheOtherSideAtOnce) {
+  SafetyChain chain(10.0, 250, 1e-3);
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
+  for (int i = 0; i < 40; ++i) {
+    force = {0, 0, 8};
+    chain.apply(force, torque, true);
+  }
+  force = {0, 0, 3.5};
+  EXPECT_EQ(chain.apply(force, torque, true), 0u);
+  EXPECT_EQ(force.z(), 3.5);
+  force = {0, 0, -8};
+  EXPECT_EQ(chain.apply(force, torque, true), slew_limited);
+  EXPECT_NEAR(force.z(), -0.25, 1e-12);
 }
 
 TEST(Safety, AFaultRampsToZeroWithinFiveMillisecondsAndStays) {

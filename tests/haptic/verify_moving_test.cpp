@@ -28,8 +28,10 @@ constexpr int kSteps = 2500;
 Scene moving_scene(const fs::path& folder) {
   std::string tools;
   for (const int x : {0, 2})
-    tools +=
-        fmt::format("[[tool]]\nname = \"probe{0}\"\npivot = [0.0{0}, 0.0, 0.2]\nradius = 0.008\ndevice = \"bus\"\n", x);
+    tools += fmt::format(
+        "[[tool]]\nname = \"probe{0}\"\npivot = [0.0{0}, 0.0, 0.2]\nradius = 0.008\nmax_force_rate = 1e6\n"
+        "device = \"bus\"\n",
+        x);
   return parse_scene(R"([[body]]
 name = "block"
 mesh = "block.msh"

@@ -129,6 +129,7 @@ TEST(Deformer, RefusesWhatDoesNotFitAndKeepsNothingOfIt) {
   ContactState contacts{.run = 5};
   contacts.forces.push_back({kDuctBody, surface, {1, 0, 0}});
   EXPECT_FALSE(deformer.take(contacts));
+  for (const std::uint32_t tool : {1u, 1u << 31}) EXPECT_FALSE(deformer.take(ContactState{.tool = tool, .run = 5}));
   EXPECT_EQ(deformer.run(), 0u);
   EXPECT_FALSE(deformer.fresh());
   EXPECT_TRUE(deformer.contacts().empty());

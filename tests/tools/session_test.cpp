@@ -154,5 +154,48 @@ TEST_P(ToolsSession, CtrlCWhileTheNodesStartEndsARunInOrder) {
 
 INSTANTIATE_TEST_SUITE_P(Processes, ToolsSession, ::testing::Values(2, 3));
 
+constexpr const char* kLongRest = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n60,0,0,0.17,0,0\n";
+
+TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
+  const LoopbackScene scene("domains");
+  scene.write("motion.csv", kLongRest);
+  const std::string domain = std::to_string(testing::own_domain()), run = program("palpate") + " run " + scene.scene();
+  ChildProcess first("palpate", {program("palpate"), "run", scene.scene(), "--domain", domain});
+  std::this_thread::sleep_for(1s);
+  const auto same = run_program(run + " --domain " + domain);
+  EXPECT_EQ(same.status, 1);
+  EXPECT_NE(same.err.find("domain " + domain + " is another run's"), std::string::npos) << same.err;
+  scene.replace("[render]", "[network]\ndomain = " + domain + "\n\n[render]");
+  const auto other = run_program(run + " --seconds 1");
+  EXPECT_EQ(other.status, 0) << other.err;
+  EXPECT_NE(other.err.find("domain " + domain + " is another run's on this host; this one takes domain"),
+            std::string::npos)
+      << other.err;
+  EXPECT_TRUE(first.running());
+  first.interrupt();
+  ASSERT_TRUE(first.wait(30s));
+  EXPECT_EQ(first.status(), 0);
+  const auto word = run_program(run + " --domain one");
+  EXPECT_EQ(word.status, 1);
+  EXPECT_NE(word.err.find("give a number from 0 to 230, or auto"), std::string::npos) << word.err;
+}
+
+TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
+  const LoopbackScene scene("owners");
+  scene.write("motion.csv", kLongRest);
+  const std::vector<std::string> command{program("haptic_node"), scene.scene(), "--domain",
+                                         std::to_string(testing::own_domain())};
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  ChildProcess owner("haptic_node", command);
+  std::this_thread::sleep_for(3s);
+  const auto second = run_program(joined(command));
+  EXPECT_EQ(second.status, 1);
+  EXPECT_NE(second.err.find("a second owner would fight with it"), std::string::npos) << second.err;
+  EXPECT_TRUE(owner.running());
+  owner.interrupt();
+  ASSERT_TRUE(owner.wait(30s));
+  EXPECT_EQ(owner.status(), 0);
+}
+
 }  // namespace
 }  // namespace palpate

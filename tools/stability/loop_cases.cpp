@@ -43,7 +43,7 @@ struct Link {
   double jitter = 0;   ///< [ticks] more, at random
   double loss = 0;     ///< share of answers that are lost
   double quantum = 0;  ///< [m] of the sensed place
-  double slew = 1e5;   ///< [N/s]
+  double slew = 1e5;   ///< [N/s] at which the force rises
   bool local = false;  ///< the answer carries the stiffness, as a local contact model does
   bool controller = true;
 };
@@ -270,9 +270,9 @@ std::vector<Point> loop_points(const Extent& extent) {
       points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms]", std::to_string(d),
                         [=] { return told(touch_wall(2000, {.delay = d, .controller = controller})); }});
       if (!extent.quick || d > 0)
-        points.push_back(
-            {fmt::format("wall of 2000 N/m, {}", with), "delay [ms], slew limit 5000 N/s", std::to_string(d),
-             [=] { return told(touch_wall(2000, {.delay = d, .slew = 5000, .controller = controller})); }});
+        points.push_back({fmt::format("wall of 2000 N/m, {}", with), "delay [ms], slew limit 250 N/s",
+                          std::to_string(d),
+                          [=] { return told(touch_wall(2000, {.delay = d, .slew = 250, .controller = controller})); }});
       points.push_back({fmt::format("moving tissue, {}", with), "delay [ms]", std::to_string(d),
                         [=] { return told(touch_tissue(d, controller)); }, 120});
     }

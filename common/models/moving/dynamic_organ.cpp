@@ -136,6 +136,15 @@ bool DynamicOrgan::begin_without(std::span<const std::uint32_t> removed) {
   return true;
 }
 
+void DynamicOrgan::calm() {
+  double energy = 0;
+  for (int n = 0; n < mesh_.nodes(); ++n) energy += 0.5 * model_->mass(n) * model_->velocity(n).squaredNorm();
+  const bool slower = energy < moved_with_;
+  moved_with_ = slower ? 0 : energy;
+  for (int n = 0; slower && n < mesh_.nodes(); ++n)
+    model_->set_motion(n, model_->displacement(n), Eigen::Vector3d::Zero());
+}
+
 void DynamicOrgan::update_positions() {
   for (int n = 0; n < mesh_.nodes(); ++n) position_[n] = mesh_.rest[n] + model_->displacement(n);
   surface_.set_positions(position_);

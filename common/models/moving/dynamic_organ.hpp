@@ -47,6 +47,10 @@ class DynamicOrgan {
   /// happened, if one of them is not of this body.
   bool begin_without(std::span<const std::uint32_t> removed);
 
+  /// Stops all motion once it has begun to slow down: ticks with this after each lead to rest, as each stop finds the
+  /// tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic relaxation by kinetic damping).
+  void calm();
+
   /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
   void forget_factors() {
     contacts_.forget_factor();
@@ -131,6 +135,7 @@ class DynamicOrgan {
   std::vector<MovingTool> in_tick_, in_step_;   ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<int> removed_, part_of_, loose_;  ///< loose_: one tetrahedron of each part that floats
   std::vector<Change> changes_;
+  double moved_with_ = 0;  ///< [J] kinetic energy at the last calm()
 };
 
 }  // namespace palpate

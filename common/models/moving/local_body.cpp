@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/geometry/segment.hpp"
+#include "common/tool/safety.hpp"
 
 namespace palpate {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
+constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
 
 Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
@@ -34,12 +36,23 @@ LocalBody::LocalBody(const Tool& tool, double friction, double dt)
     : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       jaws_(abilities_of(tool).holding),
       friction_(friction),
-      dt_(dt) {
+      dt_(dt),
+      rises_(static_cast<std::uint64_t>(std::lround(kRises / dt))),
+      silent_(static_cast<std::uint64_t>(std::lround(kSilent / dt))) {
   position_.fill(Vector3d::Zero());
   for (auto& box : box_) box.fill(Vector3d::Zero());
 }
 
 void LocalBody::consume(const LocalModel& model) {
+  const bool after_silence = state_.silent > silent_;
+  if (state_.model.seq != 0 && (after_silence || model.run != state_.model.run)) {
+    state_.from_force = state_.force;
+    state_.from_torque = state_.torque;
+    state_.from_weight = weight();
+    state_.from_share = 1;
+    state_.weight = 0;
+  }
+  state_.silent = 0;
   state_.model = model;
   model_pose_ = tip_pose(trocar_, model.pose());
 }
@@ -52,6 +65,7 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   const bool fresh = m.seq != 0 && age <= kOldest;
   const double change = dt_ / kFadeSeconds;
   state_.weight = std::clamp(state_.weight + (fresh ? change : -change), 0.0, 1.0);
+  state_.from_share = std::max(state_.from_share - change, 0.0);
   if (m.seq == 0) return load;
   const int held = hold(tool, load);
   extrapolate(std::min(age, kExtrapolated));
@@ -62,11 +76,32 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
     if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
   }
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
-  if (fresh && !felt) state_.weight = 1;  // what begins from nothing needs no fading
-  stale_ = state_.weight < 1 && felt;
+  const bool coming = state_.from_share > 0;
+  if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
+  stale_ = weight() < 1 - kRounding && felt;
+  keep_from_rising(load);
   load.force *= state_.weight;
   load.torque *= state_.weight;
+  come_from_before(load);
   return load;
+}
+
+// Nobody knows how the tissue answers to a tool that goes on while no model comes.
+void LocalBody::keep_from_rising(ToolLoad& load) {
+  const double size = std::max(load.force.norm(), load.torque.norm() / SafetyChain::kMaxLever);
+  if (++state_.silent <= rises_) {
+    state_.ceiling = size;
+  } else if (size > state_.ceiling) {
+    load.force *= state_.ceiling / size;
+    load.torque *= state_.ceiling / size;
+  }
+}
+
+void LocalBody::come_from_before(ToolLoad& load) {
+  load.force += state_.from_share * vector(state_.from_force);
+  load.torque += state_.from_share * vector(state_.from_torque);
+  Eigen::Map<Vector3d>(state_.force.data()) = load.force;
+  Eigen::Map<Vector3d>(state_.torque.data()) = load.torque;
 }
 
 void LocalBody::add(const Vector3d& at, const Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const {

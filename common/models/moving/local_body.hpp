@@ -12,12 +12,15 @@ namespace palpate {
 /// Moving tissue as one tool feels it: the force of all dynamic bodies, from the newest local contact model that the
 /// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
 /// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface.
-/// Age counts in haptic steps, so that a replay gives the same bits. Never allocates.
+/// Age counts in haptic steps, so that a replay gives the same bits. While no model comes the force rises no more, then
+/// fades; what comes after a silence, or from another deform node, comes in from the present force. Never allocates.
 class LocalBody {
  public:
   static constexpr double kOldest = 0.15;        ///< [s] age of a model at which its force begins to fade
   static constexpr double kFadeSeconds = 0.05;   ///< [s] from full force to none, and back
   static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
+  static constexpr double kRises = 0.005;        ///< [s] without a model after which the force rises no more
+  static constexpr double kSilent = 0.02;        ///< [s] without a model after which the next comes in gradually
 
   /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
   LocalBody(const Tool& tool, double friction, double dt);
@@ -41,7 +44,13 @@ class LocalBody {
  private:
   struct Memory {
     LocalModel model;
-    double weight = 0;  ///< share of the force that is rendered
+    double weight = 0;                        ///< share of the model's force that is rendered
+    std::uint64_t silent = 0;                 ///< steps since a model came
+    double ceiling = 0;                       ///< [N] while silent: the size beyond which the force does not rise
+    std::array<double, 3> force{}, torque{};  ///< [N], [N m] of the last load
+    std::array<double, 3> from_force{}, from_torque{};  ///< of the load from which the model comes in
+    double from_share = 0;                              ///< of that load, which is still rendered
+    double from_weight = 0;                             ///< share of the force that it was
   };
   struct Held {
     Eigen::Vector3d at;  ///< [m] where the tool holds tissue now
@@ -53,6 +62,9 @@ class LocalBody {
 
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
+  void keep_from_rising(ToolLoad& load);
+  void come_from_before(ToolLoad& load);
+  double weight() const { return state_.weight + state_.from_share * state_.from_weight; }  ///< of all that is rendered
   void extrapolate(double seconds);
   bool touch(const Segment& axis, double radius, Touched& touched) const;
   bool holds(const Segment& axis, double radius, int part, int held) const;
@@ -60,6 +72,7 @@ class LocalBody {
   Trocar trocar_;
   JawParts jaws_;
   double friction_, dt_;
+  std::uint64_t rises_, silent_;  ///< steps in kRises and kSilent
   Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
   bool stale_ = false;

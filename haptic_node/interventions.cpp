@@ -1,0 +1,35 @@
+#include "haptic_node/interventions.hpp"
+
+#include <array>
+
+#include "idl/messages.hpp"
+
+namespace palpate {
+
+void Interventions::look(const Seen& seen) {
+  struct Kind {
+    bool now;
+    const char* said;
+  };
+  // The worst first.
+  const std::array kinds{
+      Kind{(seen.flags & fault) != 0, "a fault has taken the force away: a pose or a force was not a number"},
+      Kind{seen.refused_samples > last_.refused_samples,
+           "samples of a device are refused: out of range, or far from the tool and not confirmed by the next"},
+      Kind{seen.followed > last_.followed, "a tool follows its device at a bounded speed: the device has jumped"},
+      Kind{seen.refused_models > last_.refused_models,
+           "local contact models are refused: they name a haptic step that is still to come"},
+      Kind{(seen.flags & stale_model) != 0,
+           "the force of moving tissue fades: its local contact models come too late"}};
+  last_ = seen;
+  news_.clear();
+  status_.clear();
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (!kinds[k].now) continue;
+    if (status_.empty()) status_ = kinds[k].said;
+    if (!(told_ & 1u << k)) news_.emplace_back(kinds[k].said);
+    told_ |= 1u << k;
+  }
+}
+
+}  // namespace palpate

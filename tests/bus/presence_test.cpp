@@ -1,0 +1,68 @@
+#include "common/bus/presence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/bus/memory_bus.hpp"
+#include "common/realtime/clock.hpp"
+
+namespace palpate {
+namespace {
+
+/// A node, and others of which nothing is there but what they say.
+class PresenceTest : public ::testing::Test {
+ protected:
+  void say(const std::string& role, std::uint64_t run, std::uint64_t ticks, const std::string& scene = "scene",
+           const std::string& archive = "archive") {
+    NodeStatus status{.node = role + std::to_string(run), .role = role, .run = run, .seq = 1, .stamp_ns = now_ns()};
+    status.scene_hash = scene;
+    status.archive_hash = archive;
+    status.ticks = ticks;
+    ASSERT_TRUE(others_->write(status));
+  }
+
+  std::shared_ptr<MemoryNetwork> network_ = make_memory_network();
+  std::unique_ptr<Bus> here_ = make_memory_bus(network_), there_ = make_memory_bus(network_);
+  std::unique_ptr<Writer<NodeStatus>> others_ = there_->writer(topics::node_status);
+};
+
+TEST_F(PresenceTest, AnEmptyHashIsAnotherSceneUnlessItIsARecorders) {
+  Presence render(*here_, "render", 0, "scene", "archive"), recorder(*here_, "recorder", 0, "", "");
+  say("haptic", 1, 0);
+  say("haptic", 2, 0, "", "");
+  say("haptic", 3, 0, "scene", "");
+  say("recorder", 4, 0, "", "");
+  render.watch();
+  recorder.watch();
+  EXPECT_TRUE(render.accepts(1));
+  EXPECT_FALSE(render.accepts(2));
+  EXPECT_FALSE(render.accepts(3));
+  EXPECT_TRUE(render.matched("recorder"));
+  EXPECT_TRUE(recorder.accepts(1));
+}
+
+TEST_F(PresenceTest, AnOwnerThatRunsKeepsItAndTheNextIsTold) {
+  Presence second(*here_, "haptic", 4, "scene", "archive"), render(*here_, "render", 0, "scene", "archive");
+  say("haptic", 1, 700, "another scene");
+  second.watch();
+  EXPECT_NO_THROW(second.claim("the tools"));
+  say("haptic", 9, 500);
+  say("render", 0, 500);
+  second.watch();
+  render.watch();
+  EXPECT_THROW(second.claim("the tools"), std::runtime_error);
+  EXPECT_EQ(second.owner()->run, 9u);
+  EXPECT_NO_THROW(render.claim("the picture")) << "there may be any number of them";
+}
+
+TEST_F(PresenceTest, OfTwoThatBeginAtOnceOneGivesWay) {
+  Presence lower(*here_, "deform", 4, "scene", "archive"), higher(*here_, "deform", 12, "scene", "archive");
+  say("deform", 9, 0);
+  lower.watch();
+  higher.watch();
+  EXPECT_EQ(lower.owner(), nullptr);
+  ASSERT_NE(higher.owner(), nullptr);
+  EXPECT_EQ(higher.owner()->run, 9u);
+}
+
+}  // namespace
+}  // namespace palpate
