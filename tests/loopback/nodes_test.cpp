@@ -96,7 +96,9 @@ std::vector<Constraint> conditions(const Scene& scene, const Archive& archive, c
 class NodesTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scene_ = new LoopbackScene("nodes");
+    // Held points of linear elements, which the direct solver can take for its conditions.
+    scene_ = new LoopbackScene("nodes", "[body.offline]\nelement = \"p1\"\n");
+    scene_->replace("[render]", "[contact]\nrule = \"barycentric\"\n\n[render]");
     std::string said;
     ASSERT_EQ(run_command(program("palpate") + " precompute " + scene_->scene(), &said), 0) << said;
   }

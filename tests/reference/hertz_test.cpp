@@ -8,9 +8,9 @@
 #include "common/models/quasi_static/precompute.hpp"
 #include "common/sim/haptic_step.hpp"
 
-/// A frictionless tip of radius R pressed into the middle of a block, nu = 0.3, by the haptic step, against
-/// Hertz. The tip's axis stands at several places between the nodes: how many nodes carry the contact depends
-/// on it. The figures are on docs/verification.md.
+/// A frictionless tip of radius R pressed into the middle of a block, nu = 0.3, by the haptic step, which holds
+/// nodes, against Hertz. The tip's axis stands at several places between the nodes: how many nodes carry the contact
+/// depends on it. The figures are on docs/verification.md.
 namespace palpate {
 namespace {
 
@@ -54,6 +54,7 @@ class Block {
     archives_.push_back(precompute(body, block(h, extent)));
     scene_.bodies.push_back(body);
     scene_.contact.friction = 0;
+    scene_.contact.rule = "barycentric";
   }
 
   /// Force [N] on the tip at a depth [m].

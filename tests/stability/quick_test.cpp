@@ -57,8 +57,7 @@ TEST(StabilityCases, MovingTissueGivesTheSameRowEachTime) {
 // What each quick point is expected to be, where that is not plain `stable`.
 
 TEST(StabilityCases, Materials) {
-  check(material_points({.quick = true}),
-        {{"young|E [Pa]|1e+12", "regularised"}, {"contrast|E upper / E lower [1]|1e+08", "regularised"}});
+  check(material_points({.quick = true}), {{"young|E [Pa]|1e+12", "regularised"}});
 }
 TEST(StabilityCases, Geometry) {
   check(geometry_points({.quick = true}), {{"units|size of the block / 0.1 m [1]|1e+06", "regularised"}});

@@ -79,7 +79,18 @@ class ToolsSolve : public ::testing::Test {
     EXPECT_LT(error_f, 1e-8 * max_f) << holds.size() << " holds";
   }
 
-  static fs::path plate() { return fs::path(PALPATE_SOURCE) / "scenes/plate.toml"; }
+  /// A copy of an example scene in the test's folder, with tensors of linear elements, which take a second.
+  fs::path linear_elements(const std::string& name) {
+    const fs::path scene = fs::path(PALPATE_SOURCE) / "scenes" / (name + ".toml"), copy = folder_ / (name + ".toml");
+    std::string text = testing::text_of(scene);
+    for (const char* folder : {"\"meshes/", "\"trajectories/", "\"curves/"})
+      for (auto at = text.find(folder); at != text.npos; at = text.find(folder, at + 1))
+        text.insert(at + 1, scene.parent_path().string() + "/");
+    text.insert(text.find("[[body.fixed]]"), "[body.offline]\nelement = \"p1\"\n\n");
+    std::ofstream(copy) << text;
+    return copy;
+  }
+  fs::path plate() { return linear_elements("plate"); }
   static TetMesh plate_mesh() { return load_tet_mesh(fs::path(PALPATE_SOURCE) / "scenes/meshes/plate.msh", 1); }
 
   OwnFolder folder_{"solve"};
@@ -114,16 +125,13 @@ TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
 // The measured curves of the specimen hold: at a press of 1 mm the force is not the linear one, what is held stays, and
 // the rest moves by another share across the press; by both methods alike.
 TEST_F(ToolsSolve, TheQuasiNonLinearCorrectionOfTheSceneIsApplied) {
-  const fs::path scene = fs::path(PALPATE_SOURCE) / "scenes/brain_cylinder.toml", linear = folder_ / "linear.toml";
+  const fs::path scene = linear_elements("brain_cylinder"), linear = folder_ / "linear.toml";
   std::string text = testing::text_of(scene);
   const auto begin = text.find("[body.nonlinear]"), end = text.find("\n[", begin);
   ASSERT_LT(begin, end);
   text.erase(begin, end - begin);
-  for (const char* folder : {"\"meshes/", "\"trajectories/"})
-    for (auto at = text.find(folder); at != text.npos; at = text.find(folder, at + 1))
-      text.insert(at + 1, scene.parent_path().string() + "/");
   std::ofstream(linear) << text;
-  const TetMesh mesh = load_tet_mesh(scene.parent_path() / "meshes/cylinder.msh", 1);
+  const TetMesh mesh = load_tet_mesh(fs::path(PALPATE_SOURCE) / "scenes/meshes/cylinder.msh", 1);
   Vector3d top = mesh.nodes[0];
   for (const Vector3d& node : mesh.nodes)
     if (node.z() > top.z()) top = node;
