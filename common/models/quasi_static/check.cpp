@@ -32,7 +32,7 @@ void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, int surface_n
   const auto space = make_fine_space(mesh, offline);
   const std::string why = body.offline ? ""
                           : offline.element == "p2"
-                              ? "; chosen, for they are true under a tip of any size"
+                              ? "; chosen, since linear ones bend too stiffly"
                               : fmt::format("; chosen, the mesh has more than {} surface nodes", kMostQuadratic);
   report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}{}", space.elements.size(),
                          space.per_element == 4 ? "linear" : "quadratic", space.nodes.size(),
