@@ -60,8 +60,11 @@ struct Archive {
   std::vector<std::uint16_t> material_of_element;
   SurfaceMap surface;
   std::vector<std::array<int, 4>> tetrahedra;  ///< those that move with inertia: surface nodes, positively oriented
-  std::vector<Dof> touchable_dofs;             ///< free dofs of touchable nodes (hybrid: those among i), ascending
-  std::vector<Dof> other_dofs;                 ///< free dofs of the remaining visible nodes (hybrid: those among i)
+  std::vector<Dof> moving_dofs;                ///< free dofs of their touchable nodes, ascending; none of a hybrid body
+  /// Compliance of these tetrahedra at rest among those dofs, packed like C_tt [m/N].
+  std::vector<double> moving_compliance;
+  std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes (hybrid: those among i), ascending
+  std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes (hybrid: those among i)
   /// C_tt, packed lower triangle by rows: entry (i,j), j <= i, at i(i+1)/2 + j.  [m/N]
   std::vector<double> touchable_compliance;
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
@@ -75,7 +78,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 6;
+constexpr int kArchiveFormat = 7;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.

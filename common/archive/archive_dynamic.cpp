@@ -96,11 +96,18 @@ bool hybrid_fits(const Archive& archive, ArchivePart part) {
 void write_dynamic_part(Hdf5Writer& file, const Archive& archive) {
   file.dataset({"dynamic/tetrahedra", "1", "nodes of each tetrahedron that moves with inertia, positively oriented"},
                flatten_integers(archive.tetrahedra), 4);
+  file.dataset({"dynamic/dofs", "1", "node and axis of each free dof of their touchable nodes"},
+               flatten(archive.moving_dofs), 2);
+  file.dataset({"dynamic/compliance", "m/N",
+                "compliance of these tetrahedra at rest among their touchable dofs; lower triangle packed by rows"},
+               archive.moving_compliance);
   if (archive.hybrid) write_hybrid(file, *archive.hybrid);
 }
 
 void read_dynamic_part(const Hdf5Reader& file, ArchivePart part, Archive& archive) {
   archive.tetrahedra = rows_of<std::array<int, 4>>(4, file.integers("dynamic/tetrahedra"));
+  archive.moving_dofs = read_dofs(file, "dynamic/dofs");
+  if (part == ArchivePart::surface) archive.moving_compliance = file.doubles("dynamic/compliance");
   if (file.has_attribute("hybrid_bound")) archive.hybrid = read_hybrid(file, part);
 }
 
@@ -112,14 +119,18 @@ bool dynamic_part_fits(const Archive& archive, ArchivePart part) {
             (archive.material_of_element.empty() || archive.material_of_element.size() == count);
   for (const auto& tetrahedron : archive.tetrahedra)
     for (int node : tetrahedron) fits &= within(node, archive.surface.size());
+  const std::size_t dofs = archive.moving_dofs.size();
+  for (const Dof& dof : archive.moving_dofs) fits &= within(dof.node, archive.surface.touchable) && within(dof.axis, 3);
+  if (part == ArchivePart::surface) fits &= archive.moving_compliance.size() == dofs * (dofs + 1) / 2;
   return fits && (!archive.hybrid || hybrid_fits(archive, part));
 }
 
 std::size_t dynamic_payload_bytes(const Archive& archive) {
-  std::size_t doubles = 0, integers = 4 * archive.tetrahedra.size();
+  std::size_t doubles = archive.moving_compliance.size();
+  std::size_t integers = 4 * archive.tetrahedra.size() + 2 * archive.moving_dofs.size();
   if (archive.hybrid) {
     const HybridTensors& h = *archive.hybrid;
-    doubles =
+    doubles +=
         h.mass.size() + h.stiffness.size() + h.reaction.size() + h.follow.size() + h.sag.size() + 3 * h.gap.size();
     integers += h.connection.size() + 4 * h.interface.size() + 2 * h.dofs.size() + 4 * h.gap.size();
   }

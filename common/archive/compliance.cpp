@@ -67,16 +67,30 @@ void Compliance<Scalar>::Free::operator()(Scalar* p) const {
 }
 
 template <class Scalar>
+Compliance<Scalar>::Compliance(int row_nodes, int column_nodes)
+    : row_nodes_(row_nodes), column_nodes_(column_nodes), stride_(stride_of(row_nodes)) {
+  data_.reset(static_cast<Scalar*>(allocate_zeroed(bytes())));
+}
+
+template <class Scalar>
+Compliance<Scalar> Compliance<Scalar>::of_moving_part(const Archive& archive) {
+  const std::size_t dofs = archive.moving_dofs.size();
+  if (archive.moving_compliance.size() != dofs * (dofs + 1) / 2)
+    throw std::runtime_error("the archive was read without the compliance of what moves");
+  Compliance result(archive.surface.touchable, archive.surface.touchable);
+  expand_triangle(archive.moving_compliance, places(archive.moving_dofs), result.data_.get(), result.stride_);
+  return result;
+}
+
+template <class Scalar>
 Compliance<Scalar>::Compliance(const Archive& archive, Rows rows)
-    : row_nodes_(rows == Rows::surface ? archive.surface.size() : archive.surface.touchable),
-      column_nodes_(archive.surface.touchable),
-      stride_(stride_of(row_nodes_)) {
+    : Compliance(rows == Rows::surface ? archive.surface.size() : archive.surface.touchable,
+                 archive.surface.touchable) {
   const std::size_t touchable = archive.touchable_dofs.size();
   if (archive.touchable_compliance.size() != touchable * (touchable + 1) / 2)
     throw std::runtime_error("the archive was read without its touchable compliance");
   if (rows == Rows::surface && archive.other_compliance.size() != archive.other_dofs.size() * touchable)
     throw std::runtime_error("the archive was read without the compliance of the untouchable surface");
-  data_.reset(static_cast<Scalar*>(allocate_zeroed(bytes())));
   const auto columns = places(archive.touchable_dofs);
   expand_triangle(archive.touchable_compliance, columns, data_.get(), stride_);
   if (rows == Rows::surface)

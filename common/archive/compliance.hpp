@@ -17,6 +17,8 @@ class Compliance {
   /// `rows`: touchable nodes only (haptic node) or the whole visible surface (deformation node).
   enum class Rows { touchable, surface };
   Compliance(const Archive& archive, Rows rows);
+  /// That of the tetrahedra that move with inertia, at rest, among the touchable nodes; zero where they have none.
+  static Compliance of_moving_part(const Archive& archive);
 
   int row_nodes() const { return row_nodes_; }
   int column_nodes() const { return column_nodes_; }
@@ -41,6 +43,8 @@ class Compliance {
   struct Free {
     void operator()(Scalar* p) const;
   };
+  Compliance(int row_nodes, int column_nodes);
+
   int row_nodes_ = 0, column_nodes_ = 0;
   std::ptrdiff_t stride_ = 0;
   std::unique_ptr<Scalar[], Free> data_;

@@ -28,6 +28,8 @@ struct TouchContact {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();     ///< unit or zero: direction of friction on the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue, world; conjugate to the anchor's motion
+  /// [m/N] by which it gives way beyond what the nodes of its anchor do; of a patch.
+  Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< [N s] on the tissue, of a tick that has many steps
   // Set before each solve:
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m] world: where a sticking anchor is held

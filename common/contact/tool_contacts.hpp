@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,7 +25,8 @@ class ToolContacts {
   struct Options {
     double offset = 0;  ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
-    bool tips = true;              ///< false: others see to the spheres of probes' tips
+    /// Whether the spheres of probes' tips touch a triangle so; others see to the rest. Empty: all.
+    std::function<bool(int triangle)> tips;
   };
 
   /// `parts`: of all tools. Surface and law outlive this object.
@@ -130,6 +132,7 @@ class ToolContacts {
   double thrust(const MovingTool& moving, int part) const;
   Touching touch_of(const TouchContact& contact, const MovingTool& moving, const Segment& axis,
                     const Eigen::Vector3d& into) const;
+  bool is_left_out(const MovingTool& moving, int part, int triangle) const;
   double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
 
   ContactLaw& law_;
@@ -141,6 +144,7 @@ class ToolContacts {
   int vertex_clock_ = 0;
   std::vector<int> near_;              ///< triangles near each part, part by part
   std::vector<std::size_t> near_end_;  ///< where each part's end in near_
+  std::vector<int> tip_near_;          ///< those of a tip that are its own
   std::vector<Candidate> candidates_;  ///< triangles that a segment may touch
   std::vector<Crossing> crossings_;    ///< of points along a segment
 };

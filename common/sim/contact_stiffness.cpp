@@ -52,6 +52,9 @@ std::vector<Eigen::Matrix3d> contact_stiffness(const LocalStiffness::Answer& kno
       a.block(p.first, q.first, p.of_force.rows(), q.of_force.rows()) =
           p.of_force * compliance_between(known, contacts[p.contact].anchor, contacts[q.contact].anchor) *
           q.of_force.transpose();
+  for (const Rows& p : all)
+    a.block(p.first, p.first, p.of_force.rows(), p.of_force.rows()) +=
+        p.of_force * contacts[p.contact].give * p.of_force.transpose();
   const double typical = rows > 0 ? a.trace() / rows : 0;
   if (!(typical > 0)) return stiffness;
   a.diagonal().array() += kSoftening * typical;

@@ -30,7 +30,7 @@ TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
 TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   Scene scene = block_scene();
   moving_block_of(scene).dynamic.precision = "double";
-  scene.contact.friction = 10;
+  scene.contact = {.rule = "barycentric", .friction = 10};
   Bench bench(scene);
   for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   const auto contacts = bench.organ().contacts();
@@ -238,7 +238,7 @@ Vector3d settled_press(const Scene& scene, double x, const TetMesh& mesh = middl
 TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
   Scene whole = block_scene();
   moving_block_of(whole).dynamic.precision = "double";
-  whole.contact.friction = 0;
+  whole.contact = {.rule = "barycentric", .friction = 0};
   for (const double x : {-0.01, 0.002, 0.015}) {
     const Vector3d wanted = settled_press(whole, x);
     EXPECT_LT(wanted.z(), -0.03);
@@ -257,7 +257,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   HybridSpec joined;
   joined.hybrid.mesh = "coarse.msh";
   Scene scene = block_scene(joined);
-  scene.contact.friction = 0;
+  scene.contact = {.rule = "barycentric", .friction = 0};
   moving_block_of(scene).fixed[0].where = {.indices = {},
                                            .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)},
                                            .group = ""};  // not the coarse mesh's bottom

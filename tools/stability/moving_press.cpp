@@ -19,8 +19,8 @@ constexpr double kPivot = 1e3;    // [m] above the tissue: all of a tool so long
 constexpr double kStabSpeed = 1;  // [m/s]
 constexpr double kSlideSpeed = 0.02;
 constexpr double kStand = 1;    // [s] of standing before nothing but chatter is left
-constexpr double kDecay = 12;   // [1] time constants of damping that slow tissue is given to come to rest
-constexpr double kSlow = 0.02;  // [s] period from which tissue swings on after the press
+constexpr double kDecay = 8;    // [1] time constants that slow tissue is given to come to rest
+constexpr double kSlow = 0.02;  // [s] period from which it swings on after the press
 
 struct Stroke {
   Path path;
@@ -68,7 +68,6 @@ Scene scene_of(const MovingPress& p) {
   body.dynamic.precision = p.precision;
   Scene scene = scene_of_moving(body);
   scene.contact.friction = p.friction;
-  scene.contact.rule = "barycentric";
   scene.passivity.controller = false;
   Tool& tool = scene.tools[0];
   tool.pivot = p.origin + Vector3d(0, 0, kPivot);
@@ -87,16 +86,21 @@ TetMesh mesh_of(const MovingPress& p) {
 
 /// [N] of the same contact with the same tissue without inertia, at the end of the path.
 double static_force(Scene scene, const TetMesh& mesh, const Stroke& stroke) {
-  scene.bodies[0] = as_kind<QuasiStaticSpec>(scene.bodies[0]);
+  auto body = as_kind<QuasiStaticSpec>(scene.bodies[0]);
+  body.offline = Offline{.element = "p1"};
+  scene.bodies[0] = body;
   PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
   rig.start(stroke.path(0));
   for (int i = 1; i <= stroke.ticks + 50; ++i) rig.press(stroke.path(i));
   return -rig.force().z();
 }
 
+/// Until the slowest motion, in shear, has died away: it swings, or creeps where the damping is strong.
 int standing_ticks(const MovingPress& p) {
-  const double period = 4 * p.cells.z() * p.cell.z() * std::sqrt(p.density / p.young);
-  const double rest = period > kSlow && p.damping > 0 ? kDecay / p.damping : 0;
+  const double shear_modulus = p.young / (2 * (1 + p.poisson)), height = p.cells.z() * p.cell.z();
+  const double frequency = 0.5 * M_PI / height * std::sqrt(shear_modulus / p.density);
+  const double rate = std::min(0.5 * p.damping, frequency * frequency / p.damping);
+  const double rest = 2 * M_PI / frequency > kSlow ? kDecay / rate : 0;
   return static_cast<int>((kStand + rest) / kTick);
 }
 

@@ -117,6 +117,15 @@ NearField::NearField(const SmoothSurface& surface, const Compliance<double>& com
   }
 }
 
+void NearField::leave_out(const Compliance<double>& compliance) {
+  for (int i = 0; i < compliance.row_nodes(); ++i) {
+    const std::span<const int> near = pairs_.lower(i);
+    for (std::size_t n = 0; n < near.size(); ++n)
+      for (int axis = 0; axis < 3; ++axis)
+        pairs_.lower_blocks(i)[n].col(axis) -= Eigen::Map<const Vector3d>(compliance.column(near[n], axis) + 3 * i);
+  }
+}
+
 std::size_t NearField::bytes_of(const SurfaceMap& map, double radius) {
   return NearPairs(map.position, reach_of_patches(map, radius)).bytes();
 }

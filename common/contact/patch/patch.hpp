@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/contact/patch/near_field.hpp"
+#include "common/contact/patch/patch_grid.hpp"
 #include "common/contact/patch/patch_memory.hpp"
 #include "common/contact/patch/smooth_surface.hpp"
 #include "common/describe/state.hpp"
@@ -13,29 +14,6 @@
 #include "common/kernels/kernels.hpp"
 
 namespace palpate {
-
-/// The squares of a sphere's patch: their middles about the patch's own, and what the half-space makes of them. The
-/// same for all patches of one radius on one material.
-class PatchGrid {
- public:
-  static constexpr int kMaxPoints = 64;
-
-  PatchGrid(double radius, const HalfSpace& half_space);
-
-  int size() const { return static_cast<int>(middle_.size()); }
-  double radius() const { return radius_; }                                ///< [m] of the sphere
-  double edge() const { return edge_; }                                    ///< [m] of a square
-  const Eigen::Vector2d& middle(int p) const { return middle_[p]; }        ///< [m]
-  double rise(int p) const { return rise_[p]; }                            ///< [m] of the sphere's middle over it there
-  double pressed(int p, int q) const { return pressed_[size() * p + q]; }  ///< [m/N]
-  const Eigen::Matrix2d& sheared(int p, int q) const { return sheared_[size() * p + q]; }  ///< [m/N]
-
- private:
-  double radius_, edge_;
-  std::vector<Eigen::Vector2d> middle_;
-  std::vector<double> rise_, pressed_;
-  std::vector<Eigen::Matrix2d> sheared_;
-};
 
 /// A force on a surface node [N].
 struct PatchForce {
@@ -52,7 +30,8 @@ struct PatchForce {
 /// ground.
 class Patch {
  public:
-  static constexpr int kMaxNodes = 64;  ///< near nodes that a patch may rest on
+  static constexpr int kMaxNodes = 64;    ///< near nodes that a patch may rest on
+  static constexpr int kMaxSquares = 44;  ///< of a grid
 
   /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
   explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
@@ -63,16 +42,36 @@ class Patch {
     const NearField& near_field;
     double friction;
   };
+  /// One step of tissue that moves with inertia, as the patch meets it. Of the spans, one entry for each node of lay().
+  struct Step {
+    Eigen::Isometry3d before, now;           ///< of the tool
+    Eigen::Vector3d middle;                  ///< [m] of the sphere, now
+    std::span<const Eigen::Vector3d> moved;  ///< [m] from rest to the step's end, by all but this patch
+    std::span<const Eigen::Vector3d> went;   ///< [m] of that within the step
+    std::span<const Eigen::Matrix3d> give;   ///< [m/N] of each node within the step under a force on it
+    double ease = 0;                         ///< [m] of the depth that is not to be put right yet
+  };
   /// The nodes that lie under the sphere now, found by where it stands; empty: it does not touch, and forgets its
-  /// shear.
+  /// shear. `above` [m]: how far above the rest surface it may be, where that may come towards it.
   std::span<const int> lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
-                           const Eigen::Vector3d& middle);
+                           const Eigen::Vector3d& middle, double above = 0);
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
   /// the past.
   void press(const Ground& ground, std::span<const Eigen::Vector3d> moved);
+  /// Begins a tick of tissue that moves with inertia, after lay() for the tool as it is at the tick's end: what the
+  /// nodes do under forces comes from its steps, and K is what the body's compliance has beyond both the half-space's
+  /// and the nodes' own. `give`: as in Step; the same in all steps of the tick.
+  void meet(const Ground& ground, std::span<const Eigen::Matrix3d> give);
+  /// Solves for the pressures and the shear at the end of a step within that tick.
+  void step(const Ground& ground, const Step& step);
+  /// [m] By how much the sphere reaches below the surface at most, in such a step without this patch's forces;
+  /// -infinity where it lies beside it.
+  double depth(const Step& step) const;
   /// Ends a step on tissue that relaxes. `moved` [m]: displacement of those nodes by forces() alone.
   void remember(std::span<const Eigen::Vector3d> moved);
   void lift();  ///< no contact any more
+  /// What was worked out in earlier ticks, and holds for longer, is worked out anew.
+  void forget_factor() { known_.clear(); }
   /// Goes on from a force [N] on the tissue that the same patch had in an earlier life.
   void resume(const Eigen::Vector3d& force) { resumed_ = force; }
 
@@ -82,6 +81,9 @@ class Patch {
   const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
   const Eigen::Vector3d& normal() const { return normal_; }  ///< unit, into the tissue
   const Anchor& anchor() const { return anchor_; }           ///< of the surface, at its middle
+  /// [m/N] By how much the tissue gives way under the patch as it is pressed and sheared now, its nodes' own inertia
+  /// apart.
+  Eigen::Matrix3d give() const;
   bool sticks() const { return sticks_; }
   /// On the nodes under it.
   std::span<const PatchForce> forces() const { return std::span(forces_).first(loaded_); }
@@ -96,19 +98,36 @@ class Patch {
     double gap = 0;  ///< [m] by which the sphere reaches below the rest surface here
   };
 
+  /// What a step's forces are to bend, and what that takes.
+  struct Drag {
+    Eigen::Vector3d travel;                 ///< [m] of the tool over the step
+    std::span<const Eigen::Vector3d> went;  ///< empty: the nodes stay where they are but for the patch's forces
+    std::span<const Eigen::Matrix3d> give;
+  };
+
   int local(int node);
-  bool find_below(const Ground& ground, const Eigen::Vector3d& middle);
+  double gap(int square, const Step& step) const;
+  bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);
   void turn_to(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, const Eigen::Vector3d& middle);
   void lay_feet(const Ground& ground, const Eigen::Vector3d& middle);
   void fill_near_field(const NearField& near_field);
   void fill_normal();
+  void keep_positive();
+  void add_more(double sign);
+  bool is_positive();
+  void list_laid();
+  void find_more();
+  void add_inertia(std::span<const Eigen::Matrix3d> give);
   void settle_pressures();
   bool solve_active();
-  void shear(const Ground& ground);
+  void lift_nodes();
+  void sum_pressures();
+  void shear(const Ground& ground, const Drag& drag);
   void add_slip(const Eigen::Vector3d& bent_before);
 
   const PatchGrid& grid_;
   Eigen::Vector3d normal_, across_, up_, at_, force_, travel_;
+  Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();  ///< [m] the sphere's middle at lay()
   Anchor anchor_;
   Eigen::Vector3d bent_ = Eigen::Vector3d::Zero();     ///< [m] the tissue's shear under the patch
   Eigen::Vector3d resumed_ = Eigen::Vector3d::Zero();  ///< [N] not zero: the shear is to begin with its part
@@ -116,6 +135,11 @@ class Patch {
   Eigen::Vector3d sheared_ = Eigen::Vector3d::Zero();  ///< [m] that the step's own shear bends the tissue
   std::optional<PatchMemory> memory_;
   bool sticks_ = true;
+  Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
+  std::vector<double> more_;                                ///< [m/N] between squares: what keeps L positive
+  bool has_more_ = false;                                   ///< more_ is of known_
+  std::vector<double> inertia_;                             ///< [m/N] along the normal, per node of nodes_
+  std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;
   std::span<const int> near_;  ///< triangles, of lay() alone
   std::vector<Foot> feet_;     ///< per square

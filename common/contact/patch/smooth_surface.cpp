@@ -13,6 +13,7 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
     : map_(map),
       node_normal_(map.size(), Vector3d::Zero()),
       weight_(map.size(), 0.0),
+      left_out_(map.triangles.size(), 0),
       buckets_(map.position, map.triangles, 2 * mean_edge(map)),
       found_(map.triangles.size()) {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
@@ -38,6 +39,7 @@ std::span<const int> SmoothSurface::near(const Vector3d& point, double radius) c
   const int candidates = buckets_.query(point, point, radius, found_);
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
+    if (left_out_[found_[i]]) continue;
     const Triangle c = corners(found_[i]);
     const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]), high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
     const Vector3d apart = (low - point).cwiseMax(point - high).cwiseMax(0.0);

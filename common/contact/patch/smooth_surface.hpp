@@ -27,11 +27,14 @@ class SmoothSurface {
 
   /// Triangles that come within `radius` of a point; ascending, a few others among them. Valid until the next call.
   std::span<const int> near(const Eigen::Vector3d& point, double radius) const;
+  /// A triangle that is no longer there: near() leaves it out.
+  void leave_out(int t) { left_out_[t] = 1; }
 
  private:
   const SurfaceMap& map_;
   std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
   std::vector<double> weight_;
+  std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;
   mutable std::vector<int> found_;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/archive/compliance.hpp"
+#include "common/contact/patch/near_field.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/geometry/buckets.hpp"
@@ -75,7 +76,24 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
 
 void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report) {
   if (settings.contact.rule == "patch" && !settings.tools.empty())
-    report.say("  touch: by its mesh, as under rule \"barycentric\": patches are for quasi-static bodies alone");
+    report.say(
+        "  touch: by its mesh, as under rule \"barycentric\": patches are for bodies of one part, at rest or moving");
+}
+
+void say_patches(const CheckSettings& settings, const std::string& body, CheckReport& report) {
+  if (settings.contact.rule != "patch") return;
+  for (const Tool& tool : settings.tools)
+    report.say(abilities_of(tool).ball
+                   ? fmt::format("  touch: the tip of '{}' presses '{}' by a patch of its own, its shaft by the mesh",
+                                 tool.name, body)
+                   : fmt::format("  touch: '{}' has no ball at its tip and touches '{}' by the mesh", tool.name, body));
+}
+
+void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report) {
+  double radius = 0;
+  for (const Tool& tool : settings.tools) radius = std::max(radius, abilities_of(tool).ball.value_or(0));
+  if (settings.contact.rule != "patch" || radius == 0) return;
+  report.memory.push_back({owner, "near field of patches", NearField::bytes_of(surface, radius)});
 }
 
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
@@ -101,6 +119,16 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
   if (across > 3 || across < 1e-3)
     warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body, across));
   return warnings;
+}
+
+std::vector<std::string> size_warnings_by_mesh(const CheckSettings& settings, const std::string& body,
+                                               const SurfaceMap& surface) {
+  std::vector<Tool> by_mesh;
+  for (const Tool& tool : settings.tools)
+    if (settings.contact.rule != "patch" || !abilities_of(tool).ball) by_mesh.push_back(tool);
+  CheckSettings of_mesh = settings;
+  of_mesh.tools = by_mesh;
+  return size_warnings(of_mesh, body, surface);
 }
 
 std::function<bool(const Segment&, double)> meets_surface(const SurfaceMap& map, bool solid, double thickness) {

@@ -81,6 +81,8 @@ std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, c
   const std::size_t tetrahedra = archive.tetrahedra.size();
   add("disk", "archive: tetrahedra, surface and numbering",
       nodes * (3 * sizeof(double) + 4 * sizeof(int)) + 3 * triangles * sizeof(int) + 4 * tetrahedra * sizeof(int));
+  if (!archive.moving_compliance.empty())
+    add("disk", "archive: compliance at rest", sizeof(double) * archive.moving_compliance.size());
   if (archive.hybrid) {
     const HybridTensors& h = *archive.hybrid;
     add("disk", "archive: tensors of the connection nodes",
@@ -125,13 +127,19 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
                          d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
                          d.corotational ? ", corotational" : ""));
   say_step(body, kind, archive, report);
-  say_touched_by_mesh(settings, report);
+  if (archive.hybrid) {
+    say_touched_by_mesh(settings, report);
+  } else {
+    say_patches(settings, body.name, report);
+    report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
+  }
   if (body.tearing)
     report.say(fmt::format("  tearing: {} above {}", body.tearing->criterion, body.tearing->threshold));
   else
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
+  if (!archive.hybrid) add_near_field("deform_node", settings, archive.surface, report);
 }
 
 void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report) {

@@ -41,7 +41,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
-      contacts_(mesh_, surface_, *model_, settings.contact.friction, parts_of(settings.tools)),
+      contacts_(archive, mesh_, topology_, surface_, *model_, settings),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
       in_step_(settings.tools.size()) {
@@ -101,9 +101,9 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
   take_tools(tools);
   work_jaws(tools);
-  contacts_.find(in_tick_);
+  contacts_.find(in_tick_, dt / steps_in(dt, true));
   if (still_) still_->find(in_tick_);
-  const bool touched = !contacts_.contacts().empty();
+  const bool touched = contacts_.touched();
   const int steps = steps_in(dt, touched);
   in_step_ = in_tick_;
   for (MovingTool& tool : in_step_) tool.now = tool.before;
@@ -116,7 +116,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
       model_->step(dt / steps);
     if (still_) still_->take();
   }
-  if (touched) contacts_.end_tick(in_tick_, dt);
+  contacts_.end_tick(in_tick_, dt);
   if (still_) still_->end_tick(in_tick_);
   update_positions();
   cut(tools);
@@ -320,6 +320,7 @@ void DynamicOrgan::recall(const Memory& m) {
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;
+  contacts_.follow_cut(topology_);
   follow_change();
 }
 

@@ -5,7 +5,11 @@
 namespace palpate {
 namespace {
 
-constexpr double kWayOut = 0.02;  // [m/s] at which tissue that is found deep within a tool is led out of it
+ToolContacts::Options tips_beside(const TissuePatches* patches) {
+  ToolContacts::Options options;
+  if (patches) options.tips = [patches](int facet) { return !patches->covers(facet); };
+  return options;
+}
 
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
@@ -16,40 +20,55 @@ void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
 
 }  // namespace
 
-TissueTouch::TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicModel& model, double friction,
-                         std::size_t parts)
+TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
+                         DynamicModel& model, const StepSettings& settings)
     : mesh_(mesh),
       model_(model),
       surface_(surface),
       free_(mesh.rest),
       response_(mesh, model),
-      law_({response_, free_}, ContactLaw::Rule::barycentric, friction, kMaxContacts),
-      contacts_(surface, law_, parts) {
+      law_({response_, free_}, ContactLaw::Rule::barycentric, settings.contact.friction, kMaxContacts),
+      patches_(settings.contact.rule == "patch" && !archive.hybrid
+                   ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, response_, settings)
+                   : nullptr),
+      contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
   aimed_.reserve(kMaxContacts);
+  all_.reserve(kMaxContacts + settings.tools.size());
 }
 
-void TissueTouch::find(std::span<const MovingTool> tools) {
+void TissueTouch::find(std::span<const MovingTool> tools, double dt) {
+  if (dt != dt_) follow_response(dt);
   contacts_.look(tools);
   contacts_.collide(tools);
+  if (patches_) patches_->find(tools, [this](int tool) { return grasping(tool); });
 }
 
 void TissueTouch::drop_tool(int tool) {
-  for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
-    if (contacts()[i].is_by(tool)) law_.remove(i);
+  for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i)
+    if (law_.contacts()[i].is_by(tool)) law_.remove(i);
+  if (patches_) patches_->drop_tool(tool);
+  gather();
+}
+
+void TissueTouch::gather() {
+  all_.assign(law_.contacts().begin(), law_.contacts().end());
+  if (patches_) patches_->add_contacts(all_);
 }
 
 bool TissueTouch::grasping(int tool) const {
-  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
+  return std::ranges::any_of(law_.contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
 }
 
 void TissueTouch::follow_cut(const CutMesh& topology) {
-  for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i) {
-    const Anchor& a = contacts()[i].anchor;
+  for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
+    const Anchor& a = law_.contacts()[i].anchor;
     bool gone = false;
     for (int v = 0; v < 3; ++v) gone |= a.weights[v] != 0 && !topology.has_node(a.nodes[v]);
     if (gone) law_.remove(i);
   }
+  if (patches_) patches_->follow_cut(topology);
   follow_response(dt_);
+  gather();
 }
 
 void TissueTouch::follow_response(double dt) {
@@ -59,7 +78,7 @@ void TissueTouch::follow_response(double dt) {
 }
 
 void TissueTouch::solve(std::span<const MovingTool> tools) {
-  for_each_node(contacts(), [&](int node) { free_[node] = mesh_.rest[node] + model_.displacement(node); });
+  for_each_node(law_.contacts(), [&](int node) { free_[node] = mesh_.rest[node] + model_.displacement(node); });
   contacts_.aim(tools);
   aimed_.clear();
   for (TouchContact& c : law_.contacts()) {
@@ -67,7 +86,7 @@ void TissueTouch::solve(std::span<const MovingTool> tools) {
     lead_out(c, tools[c.tool_point().tool]);
   }
   law_.solve();
-  for (std::size_t c = 0; c < contacts().size(); ++c) law_.contacts()[c].target = aimed_[c];
+  for (std::size_t c = 0; c < law_.contacts().size(); ++c) law_.contacts()[c].target = aimed_[c];
 }
 
 // A tool that comes anew may stand in the tissue, and the surface that a point slides over has corners: put right
@@ -76,7 +95,7 @@ void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
   const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
   const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion;
-  const double depth = c.plane - c.normal.dot(carried), led = kWayOut * dt_;
+  const double depth = c.plane - c.normal.dot(carried), led = TissuePatches::kWayOut * dt_;
   if (depth <= led) return;
   const double share = led / depth;
   c.plane -= (1 - share) * depth;
@@ -88,16 +107,16 @@ void TissueTouch::put_right(double dt) {
     const Eigen::Vector3d moved = response_.of_node(node).cwiseProduct(f);
     model_.set_motion(node, model_.displacement(node) + moved, model_.velocity(node) + moved / dt);
   });
-  for_each_node(contacts(), [&](int node) { surface_.place(node, mesh_.rest[node] + model_.displacement(node)); });
+  for_each_node(law_.contacts(), [&](int node) { surface_.place(node, mesh_.rest[node] + model_.displacement(node)); });
 }
 
 void TissueTouch::step(std::span<const MovingTool> tools, double dt) {
-  if (dt != dt_) follow_response(dt);
   model_.step_semi_implicit(dt);
   solve(tools);
   put_right(dt);
   for (TouchContact& c : law_.contacts()) c.impulse += dt * c.force;
   contacts_.slide(tools);
+  if (patches_) patches_->step(tools, dt);
 }
 
 void TissueTouch::end_tick(std::span<const MovingTool> tools, double dt) {
@@ -106,6 +125,19 @@ void TissueTouch::end_tick(std::span<const MovingTool> tools, double dt) {
     c.impulse.setZero();
   }
   contacts_.settle(tools);
+  if (patches_) patches_->end_tick(tools, dt);
+  gather();
+}
+
+void TissueTouch::forget_factor() {
+  law_.forget_factor();
+  if (patches_) patches_->forget_factor();
+}
+
+void TissueTouch::state(State& s, std::span<const MovingTool> tools) {
+  contacts_.state(s, tools);
+  if (patches_) patches_->state(s);
+  if (s.restoring()) gather();
 }
 
 }  // namespace palpate

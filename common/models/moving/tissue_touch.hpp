@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/models/moving/inertial_response.hpp"
+#include "common/models/moving/tissue_patches.hpp"
 
 namespace palpate {
 
@@ -20,19 +22,24 @@ class TissueTouch {
  public:
   static constexpr int kMaxContacts = 32;
 
-  /// All outlive this object. `parts`: of all tools.
-  TissueTouch(const ElasticMesh& mesh, CutSurface& surface, DynamicModel& model, double friction, std::size_t parts);
+  /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. All else outlives this
+  /// object.
+  TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
+              DynamicModel& model, const StepSettings& settings);
 
-  std::span<const TouchContact> contacts() const { return law_.contacts(); }
+  /// Of the last tick.
+  std::span<const TouchContact> contacts() const { return all_; }
+  /// Whether tools touch the tissue, or nearly do, so that its steps are to be step()'s.
+  bool touched() const { return !law_.contacts().empty() || (patches_ && patches_->laid()); }
 
-  /// Once a tick: which points the tools' parts touch. Contacts that go on keep where they stick.
-  void find(std::span<const MovingTool> tools);
+  /// Once a tick of steps of `dt` [s]: which points the tools' parts touch. Contacts that go on keep where they stick.
+  void find(std::span<const MovingTool> tools, double dt);
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
   bool grasping(int tool) const;
 
-  /// One step of `dt` [s] of the tissue, with contacts. `tools`: as they are at its beginning and end.
+  /// One step of `dt` [s], as in find(), of the tissue with contacts. `tools`: as they are at its beginning and end.
   void step(std::span<const MovingTool> tools, double dt);
   /// After the last step of a tick of `dt` [s]: the contacts' forces become the tick's own, their impulses over its
   /// length; a single step's force of an impact grows as the step gets shorter. Contacts that have gone are dropped.
@@ -40,11 +47,12 @@ class TissueTouch {
   /// After a cut: contacts on what is gone are dropped; the masses of what is left have changed.
   void follow_cut(const CutMesh& topology);
 
-  void forget_factor() { law_.forget_factor(); }
-  void state(State& s, std::span<const MovingTool> tools) { contacts_.state(s, tools); }
+  void forget_factor();
+  void state(State& s, std::span<const MovingTool> tools);
 
  private:
   void follow_response(double dt);
+  void gather();
   void solve(std::span<const MovingTool> tools);
   void lead_out(TouchContact& contact, const MovingTool& tool) const;
   void put_right(double dt);
@@ -56,7 +64,9 @@ class TissueTouch {
   std::vector<Eigen::Vector3d> aimed_;  ///< [m] per contact: its target, however deep it lies within the tool
   InertialResponse response_;
   ContactLaw law_;
+  std::unique_ptr<TissuePatches> patches_;  ///< null: tips touch as everything else does
   ToolContacts contacts_;
+  std::vector<TouchContact> all_;
   double dt_ = 0;  ///< [s] of the step that the response is for
 };
 

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "common/contact/creep.hpp"
-#include "common/contact/patch/near_field.hpp"
 #include "common/fem/fine_space.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -104,50 +103,20 @@ MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface
   return {"haptic_node", "what is left of past forces", terms * 3 * sizeof(double) * surface.touchable};
 }
 
-/// What presses by a patch presses with a size of its own, not with the mesh's.
-std::vector<std::string> warnings_of_size(const QuasiStaticSpec& body, const CheckSettings& settings,
-                                          const SurfaceMap& surface) {
-  std::vector<Tool> by_mesh;
-  for (const Tool& tool : settings.tools)
-    if (settings.contact.rule != "patch" || !abilities_of(tool).ball) by_mesh.push_back(tool);
-  CheckSettings of_mesh = settings;
-  of_mesh.tools = by_mesh;
-  return size_warnings(of_mesh, body.name, surface);
-}
-
-/// Which parts of tools press by patches of their own, and what the others do.
-void say_patches(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
-  if (settings.contact.rule != "patch") return;
-  for (const Tool& tool : settings.tools)
-    report.say(
-        abilities_of(tool).ball
-            ? fmt::format("  touch: the tip of '{}' presses '{}' by a patch of its own, its shaft by the mesh",
-                          tool.name, body.name)
-            : fmt::format("  touch: '{}' has no ball at its tip and touches '{}' by the mesh", tool.name, body.name));
-}
-
-/// What the haptic node computes for patches when it starts; nothing where there are none.
-void add_near_field(const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report) {
-  double width = 0;
-  for (const Tool& tool : settings.tools) width = std::max(width, 2 * abilities_of(tool).ball.value_or(0));
-  if (settings.contact.rule != "patch" || width == 0) return;
-  report.memory.push_back({"haptic_node", "near field of patches", NearField::bytes_of(surface, width / 2)});
-}
-
 }  // namespace
 
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
   say_offline(body, solid.mesh, solid.surface.size(), report);
-  say_patches(body, settings, report);
+  say_patches(settings, body.name, report);
   say_nonlinear(body, settings, report);
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
-  add_near_field(settings, solid.surface, report);
+  add_near_field("haptic_node", settings, solid.surface, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
-  report.warnings = warnings_of_size(body, settings, solid.surface);
+  report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   QuasiStaticSpec chosen = body;
   chosen.offline = offline_of(body, solid.surface.size());
   std::ranges::copy(locking_warnings(chosen), std::back_inserter(report.warnings));

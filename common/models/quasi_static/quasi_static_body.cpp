@@ -12,6 +12,12 @@ bool by_patch(const StepSettings& settings) {
   return settings.contact.rule == "patch";
 }
 
+ToolContacts::Options tips_of(const StepSettings& settings) {
+  ToolContacts::Options options;
+  if (by_patch(settings)) options.tips = [](int) { return false; };
+  return options;
+}
+
 // [1] Over how many edges of the mesh the elements behind the tensors know its compliance: nearer by they are too
 // stiff.
 double edges_resolved(const Offline& offline) {
@@ -39,7 +45,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
 
 QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings,
                                  const std::optional<CreepStep>& creep)
-    : TouchBody(archive.surface, softened(archive, creep), settings, {.tips = !by_patch(settings)}) {
+    : TouchBody(archive.surface, softened(archive, creep), settings, tips_of(settings)) {
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
   if (by_patch(settings))
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,

@@ -1,0 +1,120 @@
+// By how much the tissue gives way under the squares of a patch.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "common/contact/patch/patch.hpp"
+
+namespace palpate {
+namespace {
+
+// Of a square's own compliance: the least that pressures of any pattern find beyond the nodes'.
+constexpr double kLeastGive = 0.02, kTolerated = 0.001;
+
+}  // namespace
+
+// From one step to the next the nodes are mostly the same.
+void Patch::fill_near_field(const NearField& near_field) {
+  if (nodes_ == known_) return;
+  known_ = nodes_;
+  has_more_ = false;
+  const int count = static_cast<int>(nodes_.size());
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const Eigen::Matrix3d block = near_field.between(nodes_[i], nodes_[j]);
+      near_field_[i * kMaxNodes + j] = block;
+      near_field_[j * kMaxNodes + i] = block.transpose();
+    }
+}
+
+// The compliance between squares along the normal [m/N].
+void Patch::fill_normal() {
+  const int n = grid_.size(), count = static_cast<int>(nodes_.size());
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j <= i; ++j)
+      k_[i * kMaxNodes + j] = k_[j * kMaxNodes + i] = normal_.dot(near_field_[i * kMaxNodes + j] * normal_);
+  for (int p = 0; p < n; ++p) {
+    const Foot& f = feet_[p];
+    if (!std::isfinite(f.gap)) continue;
+    for (int i = 0; i < count; ++i) {
+      double sum = 0;
+      for (int v = 0; v < 3; ++v) sum += f.weights[v] * k_[i * kMaxNodes + f.local[v]];
+      k_phi_[p * kMaxNodes + i] = sum;
+    }
+  }
+  for (int p = 0; p < n; ++p) {
+    if (!std::isfinite(feet_[p].gap)) continue;
+    for (int q = 0; q <= p; ++q) {
+      const Foot& f = feet_[q];
+      if (!std::isfinite(f.gap)) continue;
+      double sum = grid_.pressed(p, q);
+      for (int v = 0; v < 3; ++v) sum += f.weights[v] * k_phi_[p * kMaxNodes + f.local[v]];
+      compliance_[p * n + q] = compliance_[q * n + p] = sum;
+    }
+  }
+}
+
+// Where the nodes lie closer than the squares, they know of patterns that G does not: without these L is none the less
+// to be positive, or the contact would put out work.
+void Patch::keep_positive() {
+  if (has_more_) add_more(1);
+  if (is_positive()) return;
+  if (has_more_) add_more(-1);
+  find_more();
+  add_more(1);
+}
+
+void Patch::add_more(double sign) {
+  for (std::size_t i = 0; i < more_.size(); ++i) compliance_[i] += sign * more_[i];
+}
+
+bool Patch::is_positive() {
+  list_laid();
+  const int n = grid_.size(), m = static_cast<int>(rows_.size());
+  const std::ptrdiff_t ld = kernels::leading_dimension(n);
+  for (int c = 0; c < m; ++c) {
+    for (int r = c; r < m; ++r) factor_[ld * c + r] = compliance_[rows_[r] * n + rows_[c]];
+    floor_[c] = kTolerated * grid_.pressed(0, 0);
+  }
+  return kernels::active().cholesky(factor_.data(), m, ld, floor_.data()) == 0;
+}
+
+void Patch::list_laid() {
+  rows_.clear();
+  for (int p = 0; p < grid_.size(); ++p)
+    if (std::isfinite(feet_[p].gap)) rows_.push_back(p);
+}
+
+// The eigenvalues that are too small are raised.
+void Patch::find_more() {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSquares, kMaxSquares>;
+  const int n = grid_.size(), m = static_cast<int>(rows_.size());
+  Matrix a(m, m);
+  for (int r = 0; r < m; ++r)
+    for (int c = 0; c < m; ++c) a(r, c) = compliance_[rows_[r] * n + rows_[c]];
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
+  const double least = kLeastGive * grid_.pressed(0, 0);
+  std::ranges::fill(more_, 0.0);
+  for (int k = 0; k < m && eigen.eigenvalues()[k] < least; ++k) {
+    const double raise = least - eigen.eigenvalues()[k];
+    for (int r = 0; r < m; ++r)
+      for (int c = 0; c < m; ++c)
+        more_[rows_[r] * n + rows_[c]] += raise * eigen.eigenvectors()(r, k) * eigen.eigenvectors()(c, k);
+  }
+  has_more_ = true;
+}
+
+// What a step's forces do to the nodes by inertia, to all squares over them.
+void Patch::add_inertia(std::span<const Eigen::Matrix3d> give) {
+  inertia_.clear();
+  for (const Eigen::Matrix3d& of_node : give) inertia_.push_back(normal_.dot(of_node * normal_));
+  const int n = grid_.size();
+  for (const int p : rows_)
+    for (const int q : rows_)
+      for (int v = 0; v < 3; ++v)
+        for (int w = 0; w < 3; ++w)
+          if (feet_[p].local[v] == feet_[q].local[w])
+            compliance_[p * n + q] += feet_[p].weights[v] * feet_[q].weights[w] * inertia_[feet_[p].local[v]];
+}
+
+}  // namespace palpate

@@ -1,0 +1,93 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/archive/archive.hpp"
+#include "common/contact/contact_law.hpp"
+#include "common/contact/cut_surface.hpp"
+#include "common/contact/patch/patch.hpp"
+#include "common/contact/step_settings.hpp"
+#include "common/dynamics/dynamic_model.hpp"
+#include "common/dynamics/elastic_mesh.hpp"
+#include "common/models/moving/inertial_response.hpp"
+#include "common/tool/moving_tool.hpp"
+
+namespace palpate {
+
+/// The patches of probes' tips on moving tissue. Once a tick each is laid on the tissue's rest shape, seen from the
+/// rigid motion that the tissue has made there; in each step of the tissue its pressures and its shear are solved for
+/// the step's end, where
+///   (L + dt^2 Phi M^-1 Phi^T) p = gap of the step without them,   p >= 0, one of them an equality,
+///   L = G + Phi (K - C) Phi^T,
+/// K being what the tissue has at rest beyond the half-space G (NearField) and C its nodes' own compliance: at rest
+/// that is the answer of the patch on tissue without inertia. What has been cut open is left to contacts by nodes.
+class TissuePatches {
+ public:
+  /// [m/s] At which tissue that is found deep within a tool is led out of it.
+  static constexpr double kWayOut = 0.02;
+
+  /// `archive`: read with ArchivePart::surface. `settings` is looked at here alone; all else outlives this object.
+  TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, const CutSurface& surface,
+                DynamicModel& model, const InertialResponse& response, const StepSettings& settings);
+
+  /// Once a tick: lays the patches of what is near; none of a tool whose jaws hold the tissue.
+  void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds);
+  /// Whether one is laid.
+  bool laid() const;
+  /// Whether a facet of the CutMesh is theirs.
+  bool covers(int facet) const { return triangle_of_facet_[facet] >= 0; }
+  /// After a step of `dt` [s] of the tissue without them: their forces put it right. `tools`: as they are at its
+  /// beginning and end.
+  void step(std::span<const MovingTool> tools, double dt);
+  /// After the last step of a tick of `dt` [s].
+  void end_tick(std::span<const MovingTool> tools, double dt);
+
+  /// Visits the patches that touched in the last tick as one contact each.
+  void add_contacts(std::vector<TouchContact>& contacts) const;
+
+  void forget_factor();
+  void drop_tool(int tool);
+  void follow_cut(const CutMesh& topology);
+  void state(State& s);
+
+ private:
+  struct Tip {
+    int tool;
+    Patch patch;
+    double radius;                                             ///< [m]
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< of the tissue from rest
+    std::vector<int> nodes;                                    ///< under it; empty: it is not laid
+    std::vector<Eigen::Matrix3d> give;                         ///< [m/N] of those
+    std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
+    double ease = 0;                                           ///< [m] that it stands too deep, and is led out of
+    bool met = false;                                          ///< it has been so since before this tick
+    double approach = 0;                                       ///< [m] that it moves in this tick
+    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
+    TouchContact contact;                                      ///< of the last tick
+  };
+
+  bool find_place(const Tip& tip, const MovingTool& tool, Eigen::Vector3d& place) const;
+  void lay(Tip& tip, const MovingTool& tool);
+  void lift(Tip& tip);
+  void press(Tip& tip, const MovingTool& tool, double dt);
+  Eigen::Vector3d displacement(int node) const { return model_.displacement(node); }
+
+  const ElasticMesh& mesh_;
+  const CutSurface& cut_surface_;
+  DynamicModel& model_;
+  const InertialResponse& response_;
+  double friction_;
+  SurfaceMap map_;
+  SmoothSurface surface_;
+  double longest_edge_;                 ///< [m]
+  std::vector<int> triangle_of_facet_;  ///< of map_, per facet of the CutMesh; -1: none
+  std::vector<int> facet_of_triangle_;
+  std::unique_ptr<NearField> near_field_;
+  std::vector<std::unique_ptr<PatchGrid>> grids_;
+  std::vector<Tip> tips_;
+  std::vector<Eigen::Vector3d> moved_, went_;
+};
+
+}  // namespace palpate
