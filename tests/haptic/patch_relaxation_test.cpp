@@ -125,7 +125,7 @@ TEST_F(RelaxingPatch, TissueThatHasBeenPressedIsSofterUntilItHasComeBack) {
   PressRig rig = RelaxingPatch::rig(Relaxation{{2}, {0.6}});
   rig.start(above());
   const double first = over(rig, -0.006, 0.006), second = over(rig, -0.006, 0.006);
-  for (int n = 0; n < 20000; ++n) rig.haptic().step(std::array{tip_at(rig.scene().tools[0], at(0, 0, -0.002))});
+  for (int n = 0; n < 60000; ++n) rig.haptic().step(std::array{tip_at(rig.scene().tools[0], at(0, 0, -0.002))});
   const double rested = over(rig, -0.006, 0.006);
   EXPECT_LT(second, 0.98 * first);
   EXPECT_NEAR(rested, first, 0.001 * first);
