@@ -1,4 +1,4 @@
-# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME, or ALL, as such.
+# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME or ALONE, or ALL, as such.
 cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 get_filename_component(name ${PROGRAM} NAME)
@@ -12,7 +12,9 @@ foreach(line IN LISTS lines)
     set(suite ${CMAKE_MATCH_1})
     string(APPEND tests "add_test([=[${name}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n")
     set(properties ${PROPERTIES})
-    if("${suite}" IN_LIST ON_TIME OR ON_TIME STREQUAL "ALL")
+    if("${suite}" IN_LIST ALONE OR ALONE STREQUAL "ALL")
+      list(APPEND properties RUN_SERIAL TRUE)
+    elseif("${suite}" IN_LIST ON_TIME OR ON_TIME STREQUAL "ALL")
       list(APPEND properties ${on_time})
     endif()
     list(JOIN properties " " properties)
