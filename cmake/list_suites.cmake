@@ -1,16 +1,24 @@
-# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES.
+# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME or ALONE, or ALL, as such.
+cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 get_filename_component(name ${PROGRAM} NAME)
 string(REPLACE "\n" ";" lines "${listing}")
+# Tests run side by side: threads of OpenBLAS that wait for one another would take the time of the others.
+list(APPEND PROPERTIES ENVIRONMENT OPENBLAS_NUM_THREADS=1)
+set(on_time RESOURCE_LOCK on_time PROCESSORS 2 COST 100)
 set(tests "")
 foreach(line IN LISTS lines)
   if(line MATCHES "^([^ ]+)\\.( |$)")  # cases are indented
     set(suite ${CMAKE_MATCH_1})
     string(APPEND tests "add_test([=[${name}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n")
-    if(PROPERTIES)
-      string(REPLACE ";" " " properties "${PROPERTIES}")
-      string(APPEND tests "set_tests_properties([=[${name}.${suite}]=] PROPERTIES ${properties})\n")
+    set(properties ${PROPERTIES})
+    if("${suite}" IN_LIST ALONE OR ALONE STREQUAL "ALL")
+      list(APPEND properties RUN_SERIAL TRUE)
+    elseif("${suite}" IN_LIST ON_TIME OR ON_TIME STREQUAL "ALL")
+      list(APPEND properties ${on_time})
     endif()
+    list(JOIN properties " " properties)
+    string(APPEND tests "set_tests_properties([=[${name}.${suite}]=] PROPERTIES ${properties})\n")
   endif()
 endforeach()
 file(WRITE ${LIST} "${tests}")

@@ -1,10 +1,14 @@
-# palpate_test_suites(TARGET [PROPERTY VALUE ...]): one test of ctest for every GoogleTest suite of a program, so that the
-# cases of a suite share a process and what it has set up. Suites are listed after each build of the program.
+# palpate_test_suites(TARGET [ON_TIME ALL | SUITE...] [ALONE ALL | SUITE...] [PROPERTIES NAME VALUE ...]): one test of
+# ctest for every GoogleTest suite of a program, so that the cases of a suite share a process and what it has set up.
+# Suites are listed after each build of the program. Those ON_TIME judge when something comes: of these one runs at a
+# time, beside one of the others on two cores. Those ALONE measure lateness, and nothing runs beside them.
 function(palpate_test_suites target)
+  cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;PROPERTIES")
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   set(include_list ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
-    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${ARGN}"
+    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${suites_PROPERTIES}"
+            -D "ON_TIME=${suites_ON_TIME}" -D "ALONE=${suites_ALONE}"
             -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
     BYPRODUCTS ${list})
   # ctest reads it at its start; without the program the test fails by name.

@@ -11,5 +11,7 @@ namespace palpate {
 /// zero.
 void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const std::array<int, 3>> triangles,
                     std::span<Eigen::Vector3f> normals);
+void vertex_normals(std::span<const Eigen::Vector3d> positions, std::span<const std::array<int, 3>> triangles,
+                    std::span<Eigen::Vector3d> normals);
 
 }  // namespace palpate

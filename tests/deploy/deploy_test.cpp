@@ -23,7 +23,7 @@ constexpr int kDomain = 5;
 /// The loopback tests' block under a tool that presses for a minute.
 class PressedBlock : public LoopbackScene {
  public:
-  PressedBlock() : LoopbackScene("deploy") {
+  PressedBlock() : LoopbackScene("deploy", kLinear) {
     write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.198,0,0\n60,0.05,0,0.198,0,0\n");
     std::string said;
     if (run_command(program("palpate") + " precompute " + scene(), &said) != 0) throw std::runtime_error(said);

@@ -40,9 +40,10 @@ class MovedPrefix {
 
 TEST(Install, AMovedPrefixRunsItsScenes) {
   const MovedPrefix prefix("");
-  const std::string palpate = prefix / "bin/palpate", scene = prefix / "share/palpate/scenes/liver.toml";
+  const std::string palpate = prefix / "bin/palpate", scenes = prefix / "share/palpate/scenes/";
+  const std::string scene = scenes + "cylinder_tear.toml";  // whose archive takes the least time
   std::string said;
-  EXPECT_EQ(run_command(palpate + " check " + scene, &said), 0) << said;
+  EXPECT_EQ(run_command(palpate + " check " + scenes + "liver.toml", &said), 0) << said;
   EXPECT_EQ(run_command(fmt::format("{} run {} --seconds 1 --domain {}", palpate, scene, own_domain()), &said), 0)
       << said;
   EXPECT_NE(said.find("haptic "), std::string::npos) << said;

@@ -11,6 +11,9 @@
 
 namespace palpate::testing {
 
+/// For a body whose tensors may be the plainest.
+inline constexpr const char* kLinear = "[body.offline]\nelement = \"p1\"\n";
+
 /// A small complete scene in a folder of its own: a block under one scripted tool that presses 6 mm deep, slides
 /// and lets go within two seconds. Removed with the object.
 class LoopbackScene {

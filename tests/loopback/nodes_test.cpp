@@ -18,6 +18,7 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::kLinear;
 using testing::LoopbackScene;
 using testing::own_domain;
 using testing::program;
@@ -97,7 +98,7 @@ class NodesTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     // Held points of linear elements, which the direct solver can take for its conditions.
-    scene_ = new LoopbackScene("nodes", "[body.offline]\nelement = \"p1\"\n");
+    scene_ = new LoopbackScene("nodes", kLinear);
     scene_->replace("[render]", "[contact]\nrule = \"barycentric\"\n\n[render]");
     std::string said;
     ASSERT_EQ(run_command(program("palpate") + " precompute " + scene_->scene(), &said), 0) << said;
@@ -188,7 +189,7 @@ TEST_F(NodesTest, AnyNodeMayStartFirstDieAndComeBack) {
 }
 
 TEST_F(NodesTest, AnotherScenesContactsAreRefusedInWords) {
-  LoopbackScene other("other", "", 9000);
+  LoopbackScene other("other", kLinear, 9000);
   std::string said;
   ASSERT_EQ(run_command(program("palpate") + " precompute " + other.scene(), &said), 0) << said;
   Ear ear;

@@ -21,17 +21,17 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 TEST(OlderMessages, AreToldInWordsAndNeverTakenForOurs) {
-  const LoopbackScene scene("older");
+  const LoopbackScene scene("older", kLinear);
   std::string output;
   ASSERT_EQ(run_command(program("palpate") + " precompute " + scene.scene(), &output), 0) << output;
   const int domain = own_domain();
   const std::string said = scene.folder() / "said";
-  ChildProcess peer("older_peer", {program("older_peer"), std::to_string(domain), "5"});
+  ChildProcess peer("older_peer", {program("older_peer"), std::to_string(domain), "4"});
   ChildProcess deform("deform_node", {"/bin/sh", "-c",
                                       fmt::format("exec {} {} --supervised --domain {} 2>{}", program("deform_node"),
                                                   scene.scene(), domain, said)});
   ChildProcess haptic("haptic_node",
-                      {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--seconds", "3"});
+                      {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--seconds", "2"});
   const pid_t older = peer.pid();
   ASSERT_TRUE(peer.wait(20s));
   ASSERT_TRUE(haptic.wait(20s));

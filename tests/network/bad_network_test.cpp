@@ -80,7 +80,8 @@ TEST_F(OverRelay, TheForceStaysAndTheNewestStateIsShownThroughAllThatItDoes) {
 }
 
 TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
-  std::vector<std::chrono::milliseconds> cuts{1s, 5s};
+  constexpr auto told_after = 2500ms;
+  std::vector<std::chrono::milliseconds> cuts{1s, told_after + 1s};
   if (long_tests()) cuts.insert(cuts.end(), {10s, 90s});
   const Measured undisturbed = measure(kGood);
   for (const auto cut : cuts) {
@@ -93,13 +94,13 @@ TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
     const std::int64_t back = now_ns();
     EXPECT_EQ(first_since(observer_->surfaces, begin + 100'000'000), 0) << "nothing crosses the cut";
     hosts_->impair("both cut 0");
-    EXPECT_EQ(nodes_->said("deform_node").find("nothing from haptic") != std::string::npos, cut >= 5s)
+    EXPECT_EQ(nodes_->said("deform_node").find("nothing from haptic") != std::string::npos, cut > told_after)
         << "the operator is told";
     EXPECT_TRUE(observer_->listen(60s, [&] { return first_since(observer_->pictures, back) != 0; }));
     const double surface = 1e-9 * static_cast<double>(first_since(observer_->surfaces, back) - back);
     const double picture = 1e-9 * static_cast<double>(first_since(observer_->pictures, back) - back);
-    fmt::print("cut of {} s: surface back after {:.1f} ms, picture after {:.1f} ms\n", cut.count() / 1000,
-               1e3 * surface, 1e3 * picture);
+    fmt::print("cut of {} ms: surface back after {:.1f} ms, picture after {:.1f} ms\n", cut.count(), 1e3 * surface,
+               1e3 * picture);
     // Within 200 ms; what a loaded machine takes from the tool to the picture without any cut comes on top.
     EXPECT_LT(surface, 0.2 + at_share(undisturbed.surfaces, 1));
     EXPECT_LT(picture, 0.2 + at_share(undisturbed.pictures, 1));

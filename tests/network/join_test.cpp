@@ -54,6 +54,8 @@ TEST_F(OverVeth, AllNodesJoinAndTheSurfaceFollowsTheTool) {
 
 TEST_F(OverVeth, ANodeSaysWhereItListensAndWhomItRefuses) {
   ChildProcess deform = nodes_->on_b("deform_node");
+  const NetworkScene other("other", 9000);
+  precompute(other);
   const auto says = [&](const char* name, const std::string& words) {
     return nodes_->said(name).find(words) != std::string::npos;
   };
@@ -61,8 +63,6 @@ TEST_F(OverVeth, ANodeSaysWhereItListensAndWhomItRefuses) {
   EXPECT_TRUE(says("deform_node", "listening in domain 3 on link0 (10.77.0.2), UDP ports from 8150, asking 10.77.0.1"))
       << nodes_->said("deform_node");
 
-  const NetworkScene other("other", 9000);
-  precompute(other);
   const Nodes stranger(*hosts_, other);
   ChildProcess haptic = stranger.on_a("haptic_node");
   EXPECT_TRUE(observer_->listen(10s, [&] { return says("deform_node", "refusing haptic"); }));

@@ -74,8 +74,6 @@ class LogOf : public NodesTest<Scene, TwoHosts::Link::veth> {
   }
 };
 
-using LogOfQuasiStatic = LogOf<NetworkScene>;
-
 /// Receive times of one topic by its sequence number.
 std::map<std::uint64_t, std::int64_t> times_of_forces(const fs::path& file) {
   LogReader log(file);
@@ -86,18 +84,27 @@ std::map<std::uint64_t, std::int64_t> times_of_forces(const fs::path& file) {
   return times;
 }
 
-TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
-  record(1500ms);
+class LogOfQuasiStatic : public LogOf<NetworkScene> {
+ protected:
+  void expect_proof() const;
+  void expect_replay_at_its_own_pace() const;
+  void expect_gap_named() const;
+};
+
+void LogOfQuasiStatic::expect_proof() const {
   std::string said;
   EXPECT_EQ(verify(log(), said), 0) << said;
   EXPECT_GT(forces_in_log(), 500u);
   EXPECT_EQ(number_before(said, " forces of"), forces_in_log()) << said;
+}
 
+void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
   const fs::path again = scene_.folder() / "again.lcmlog";
   const auto on_a = std::make_unique<Inside>(hosts_->a());  // where nothing else is, on its loopback
   ChildProcess recorder = start("palpate", fmt::format("{} record --supervised --domain {} -o {}", program("palpate"),
                                                        own_domain(), again.string()));
   ASSERT_TRUE(says_ready(recorder));
+  std::string said;
   ASSERT_EQ(
       run_command(fmt::format("{} replay {} --domain {} --json", program("palpate"), log().string(), own_domain()),
                   &said),
@@ -129,8 +136,7 @@ TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPace) {
   EXPECT_LT(at_share(error, 0.5), 1e-6 * bound_us);
 }
 
-TEST_F(LogOfQuasiStatic, AGapIsNamedAndNotPassedOver) {
-  record(1500ms);
+void LogOfQuasiStatic::expect_gap_named() const {
   copy_without([](const LogEvent& event) {
     ToolState tool;
     return event.read(topics::tool_state, tool) && tool.step == 1300;
@@ -141,6 +147,13 @@ TEST_F(LogOfQuasiStatic, AGapIsNamedAndNotPassedOver) {
   const std::string until_end = "cannot verify from step 1300: its input is not in the log, and no keyframe follows";
   EXPECT_TRUE(said.find(until_next) != std::string::npos || said.find(until_end) != std::string::npos) << said;
   EXPECT_NE(said.find("not verified as a whole"), std::string::npos) << said;
+}
+
+TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPaceAndAGapIsNamed) {
+  record(1500ms);
+  expect_proof();
+  expect_replay_at_its_own_pace();
+  expect_gap_named();
 }
 
 /// The block in two halves: the middle of it moves and is cut, the rest is quasi-static.

@@ -5,7 +5,7 @@
 
 namespace palpate::testing {
 
-NetworkScene::NetworkScene(const std::string& name, double young) : LoopbackScene("network-" + name, "", young) {
+NetworkScene::NetworkScene(const std::string& name, double young) : LoopbackScene("network-" + name, kLinear, young) {
   std::string motion = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.197,0,0\n";
   for (int i = 1; i <= 4000; ++i) {
     const double phase = 0.05 * i * 2 * 3.14159265358979;

@@ -33,7 +33,7 @@ class Return : public NodesTest<CutScene, TwoHosts::Link::veth> {
   bool begins_after(std::uint64_t run) {
     return observer_->listen(20s, [&] { return last_run() != run; });
   }
-  /// For 300 ms nothing more is removed.
+  /// For a second and a half nothing more is removed.
   void wait_until_whole_cut() {
     std::size_t count = 0;
     while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; }))

@@ -48,9 +48,16 @@ class InterruptedPress : public ::testing::Test {
     }
     return felt;
   }
-  Felt undisturbed() const {
-    return feel(
-        -1, 0, [](auto&) {}, [](auto&) {});
+  /// For so many ticks, from any moment of the press on.
+  template <class Gone, class Back>
+  void expect_no_kicks(std::initializer_list<int> spans, Gone&& gone, Back&& back) const {
+    const auto nothing = [](auto&) {};
+    const Felt undisturbed = feel(-1, 0, nothing, nothing);
+    for (const int away : spans)
+      for (const int first : {200, 450, 800, 1200, 1700, 2400}) {
+        SCOPED_TRACE(fmt::format("{} ticks from {} on", away, first));
+        expect_no_kick(feel(first, away, gone, back), undisturbed);
+      }
   }
   void expect_no_kick(const Felt& felt, const Felt& undisturbed) const {
     EXPECT_LT(felt.largest, 1.1 * undisturbed.largest);
@@ -61,35 +68,14 @@ class InterruptedPress : public ::testing::Test {
   const testing::PlayedScene scene_ = testing::cut_block();
 };
 
-TEST_F(InterruptedPress, IsNoKickWhenTheTissueDiesAndComesBack) {
-  const Felt whole = undisturbed();
-  for (const int first : {200, 450, 800, 1200, 1700, 2400}) {
-    SCOPED_TRACE(first);
-    expect_no_kick(feel(
-                       first, 700, [](auto& t) { t.die(); }, [](auto& t) { t.come_back(); }),
-                   whole);
-  }
-}
-
-TEST_F(InterruptedPress, IsNoKickWhenAnotherTakesOverAtOnce) {
-  const Felt whole = undisturbed();
-  for (const int first : {450, 1200, 2400}) {
-    SCOPED_TRACE(first);
-    expect_no_kick(feel(
-                       first, 30, [](auto& t) { t.die(); }, [](auto& t) { t.come_back(); }),
-                   whole);
-  }
+TEST_F(InterruptedPress, IsNoKickWhenTheTissueDiesAndComesBackOrAnotherTakesOverAtOnce) {
+  expect_no_kicks(
+      {30, 700}, [](auto& t) { t.die(); }, [](auto& t) { t.come_back(); });
 }
 
 TEST_F(InterruptedPress, IsNoKickWhenTheTissueStopsForAWhile) {
-  const Felt whole = undisturbed();
-  for (const int away : {8, 30, 120, 400})
-    for (const int first : {200, 450, 800, 1200, 1700, 2400}) {
-      SCOPED_TRACE(fmt::format("{} ticks from {} on", away, first));
-      expect_no_kick(feel(
-                         first, away, [](auto& t) { t.stop(); }, [](auto& t) { t.go_on(); }),
-                     whole);
-    }
+  expect_no_kicks(
+      {8, 30, 120, 400}, [](auto& t) { t.stop(); }, [](auto& t) { t.go_on(); });
 }
 
 }  // namespace

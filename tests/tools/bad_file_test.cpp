@@ -32,7 +32,7 @@ class ToolsBadFile : public ::testing::Test {
   std::string haptic_node() const { return on_own_domain(program("haptic_node") + " " + scene_.scene()); }
   std::string file(const std::string& name) const { return scene_.folder() / name; }
 
-  LoopbackScene scene_{"bad-file"};
+  LoopbackScene scene_{"bad-file", testing::kLinear};
 };
 
 TEST_F(ToolsBadFile, ATrajectoryThatIsNotOneIsRefusedWithItsLine) {

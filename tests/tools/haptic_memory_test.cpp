@@ -15,10 +15,9 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::kLinear;
 using testing::LoopbackScene;
 using testing::program;
-
-constexpr const char* kLinear = "[body.offline]\nelement = \"p1\"\n";
 
 struct Footprint {
   double resident = 0;    ///< [bytes] of the haptic node that is ready, before it locks its threads' stacks

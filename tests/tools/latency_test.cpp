@@ -91,7 +91,7 @@ TEST(RoundTrips, CountWhatIsLostAndWhatIsLate) {
 
 TEST(ToolsLatency, MeasuresTheBusBesideBareDdsAndUdp) {
   const std::string domain = std::to_string(own_domain());
-  const ProgramResult result = run_program(program("palpate") + " latency --seconds 2 --rate 200 --json --udp-port " +
+  const ProgramResult result = run_program(program("palpate") + " latency --seconds 1 --rate 400 --json --udp-port " +
                                            std::to_string(own_udp_port()) + " --domain " + domain);
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);
@@ -110,7 +110,7 @@ TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
   const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string();
   const OwnFolder folder("latency");
   const ProgramResult result =
-      run_program(program("palpate") + " latency " + scene + " --seconds 2 --rate 100 -o " + folder.path().string() +
+      run_program(program("palpate") + " latency " + scene + " --seconds 1 --rate 100 -o " + folder.path().string() +
                   " --udp-port " + std::to_string(own_udp_port()) + " --domain " + std::to_string(own_domain()));
   ASSERT_EQ(result.status, 0) << result.err;
   const json hops = json::parse(text_of(folder / "latency.json"))["hops_us"];

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "common/bus/log_reader.hpp"
+#include "idl/topics.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
@@ -13,6 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::kLinear;
 using testing::LoopbackScene;
 using testing::program;
 using testing::run_program;
@@ -62,6 +65,16 @@ double film_seconds(const fs::path& film) {
   return std::stod(found["format"]["duration"].get<std::string>());
 }
 
+template <class Done>
+bool comes_within(std::chrono::seconds limit, Done&& done) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(50ms);
+  }
+  return true;
+}
+
 /// Processes whose command line names something in the folder.
 std::vector<std::string> processes_of(const fs::path& folder) {
   std::vector<std::string> found;
@@ -71,6 +84,16 @@ std::vector<std::string> processes_of(const fs::path& folder) {
     if (line.find(folder.string()) != std::string::npos) found.push_back(line);
   }
   return found;
+}
+
+/// Forces in a log that is still written.
+int forces_in(const fs::path& log) {
+  if (!fs::exists(log) || fs::file_size(log) == 0) return 0;
+  LogReader reader(log);
+  ForceState force;
+  int count = 0;
+  for (LogEvent event; reader.next(event);) count += event.read(topics::force_state, force);
+  return count;
 }
 
 json info_of(const fs::path& log) {
@@ -91,7 +114,7 @@ void expect_whole_session(const Session& session) {
 class ToolsSession : public ::testing::TestWithParam<int> {};
 
 TEST_P(ToolsSession, ARunLeavesFilmStillSummaryAndALogThatVerifies) {
-  const LoopbackScene scene(fmt::format("session{}", GetParam()));
+  const LoopbackScene scene(fmt::format("session{}", GetParam()), kLinear);
   const Session session(scene.folder());
   const auto run = run_program(joined(session.arguments(scene, GetParam())) + "--seconds 2.3");
   ASSERT_EQ(run.status, 0) << run.err;
@@ -115,13 +138,12 @@ TEST_P(ToolsSession, ARunLeavesFilmStillSummaryAndALogThatVerifies) {
 }
 
 TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
-  const LoopbackScene scene(fmt::format("interrupted{}", GetParam()));
+  const LoopbackScene scene(fmt::format("interrupted{}", GetParam()), kLinear);
   scene.write("motion.csv",
               "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0.06,0.02,0.199,0.3,0\n");
   const Session session(scene.folder());
   ChildProcess run("palpate", session.arguments(scene, GetParam()));
-  std::this_thread::sleep_for(5s);
-  ASSERT_TRUE(run.running());
+  ASSERT_TRUE(comes_within(30s, [&] { return run.running() && forces_in(session.log) > 2000; }));
   EXPECT_GT(processes_of(scene.folder()).size(), static_cast<std::size_t>(GetParam()))
       << "the run, the nodes and the recorder";
   run.interrupt();
@@ -138,7 +160,7 @@ TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
 
 // At any moment from the first node's start to the last one's.
 TEST_P(ToolsSession, CtrlCWhileTheNodesStartEndsARunInOrder) {
-  const LoopbackScene scene(fmt::format("stopped-early{}", GetParam()));
+  const LoopbackScene scene(fmt::format("stopped-early{}", GetParam()), kLinear);
   ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
   const Session session(scene.folder());
   for (const auto moment : {0ms, 30ms, 100ms, 250ms}) {
@@ -157,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(Processes, ToolsSession, ::testing::Values(2, 3));
 constexpr const char* kLongRest = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n60,0,0,0.17,0,0\n";
 
 TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
-  const LoopbackScene scene("domains");
+  const LoopbackScene scene("domains", kLinear);
   scene.write("motion.csv", kLongRest);
   // Beyond those that tests have of their own: the second run takes the next one.
   const std::string domain = std::to_string(100 + testing::own_domain()),
@@ -183,13 +205,16 @@ TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
 }
 
 TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
-  const LoopbackScene scene("owners");
+  const LoopbackScene scene("owners", kLinear);
   scene.write("motion.csv", kLongRest);
   const std::vector<std::string> command{program("haptic_node"), scene.scene(), "--domain",
                                          std::to_string(testing::own_domain())};
   ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
-  ChildProcess owner("haptic_node", command);
-  std::this_thread::sleep_for(3s);
+  std::vector<std::string> supervised = command;
+  supervised.push_back("--supervised");
+  ChildProcess owner("haptic_node", supervised);
+  ASSERT_TRUE(comes_within(20s, [&] { return !owner.take_lines().empty(); })) << "it is ready, and looks for others";
+  std::this_thread::sleep_for(1500ms);
   const auto second = run_program(joined(command));
   EXPECT_EQ(second.status, 1);
   EXPECT_NE(second.err.find("a second owner would fight with it"), std::string::npos) << second.err;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -41,22 +42,27 @@ void put_back(LogEvent& event, const M& message) {
   encode(message, event.payload);
 }
 
-/// A recorded session of the haptic node, made anew for each test.
+/// A recorded session of the haptic node, of which each test makes a changed copy.
 class ToolsVerify : public ::testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    scene_ = std::make_unique<LoopbackScene>("verify", testing::kLinear);
     const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"),
-                                             scene_.scene(), testing::own_domain(), log().string()));
+                                             scene_->scene(), testing::own_domain(), log().string()));
     ASSERT_EQ(run.status, 0) << run.err;
   }
-  fs::path log() const { return scene_.folder() / "session.lcmlog"; }
-  fs::path changed() const { return scene_.folder() / "changed.lcmlog"; }
+  static void TearDownTestSuite() { scene_.reset(); }
+  void SetUp() override { fs::remove(changed()); }
+
+  static fs::path log() { return scene_->folder() / "session.lcmlog"; }
+  static fs::path changed() { return scene_->folder() / "changed.lcmlog"; }
   static ProgramResult verify(const fs::path& file) {
     return run_program(program("palpate") + " replay " + file.string() + " --verify");
   }
 
-  LoopbackScene scene_{"verify"};
+  static std::unique_ptr<LoopbackScene> scene_;
 };
+std::unique_ptr<LoopbackScene> ToolsVerify::scene_;
 
 TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   rewrite(log(), changed(), [](LogEvent&) {});

@@ -29,13 +29,11 @@ bool has_linear_displacement(const std::optional<Offline>& offline) {
 void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, int surface_nodes, CheckReport& report) try {
   const Offline offline = offline_of(body, surface_nodes);
   const auto space = make_fine_space(mesh, offline);
-  const std::string why = body.offline ? ""
-                          : offline.element == "p2"
-                              ? "; chosen, since linear ones bend too stiffly"
-                              : fmt::format("; chosen, the mesh has more than {} surface nodes", kMostQuadratic);
+  const std::string why = why_offline(body, surface_nodes);
   report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}{}", space.elements.size(),
                          space.per_element == 4 ? "linear" : "quadratic", space.nodes.size(),
-                         offline.formulation == "locking_free" ? "locking-free" : "displacement formulation", why));
+                         offline.formulation == "locking_free" ? "locking-free" : "displacement formulation",
+                         why.empty() ? "" : "; chosen, " + why));
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/mesh/normals.hpp"
+
 namespace palpate {
 namespace {
 
@@ -30,27 +32,25 @@ struct Facet {
   double size;  // [m] from the middle to the farthest corner
 };
 
-std::vector<Facet> facets_of(const SurfaceMap& s, std::vector<Vector3d>& node_normal) {
+std::vector<Facet> facets_of(const SurfaceMap& s) {
   std::vector<Facet> facets;
-  node_normal.assign(s.size(), Vector3d::Zero());
   for (const auto& t : s.triangles) {
     const Vector3d &a = s.position[t[0]], &b = s.position[t[1]], &c = s.position[t[2]];
-    const Vector3d twice = (b - a).cross(c - a), middle = (a + b + c) / 3;
-    for (const int n : t) node_normal[n] += twice;
-    facets.push_back(
-        {middle, twice.normalized(), std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
+    const Vector3d normal = (b - a).cross(c - a).normalized(), middle = (a + b + c) / 3;
+    facets.push_back({middle, normal, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
   }
   return facets;
 }
 
 std::vector<Candidate> candidates(const SurfaceMap& s, double radius) {
-  std::vector<Vector3d> fixed, normal;
+  std::vector<Vector3d> fixed, normal(s.position.size());
   for (int n = 0; n < s.size(); ++n)
     if (std::ranges::count(s.fixed[n], true) > 0) fixed.push_back(s.position[n]);
-  const std::vector<Facet> facets = facets_of(s, normal);
+  vertex_normals(s.position, s.triangles, normal);
+  const std::vector<Facet> facets = facets_of(s);
   std::vector<Candidate> all;
   for (int n = 0; n < s.touchable; ++n) {
-    Candidate& c = all.emplace_back(Candidate{{s.position[n], -normal[n].normalized(), radius}});
+    Candidate& c = all.emplace_back(Candidate{{s.position[n], -normal[n], radius}});
     c.clear = distance(fixed, c.spot.point);
     for (const Facet& f : facets)
       if ((f.middle - c.spot.point).norm() < std::max(kSpotReach * radius, 1.01 * f.size))

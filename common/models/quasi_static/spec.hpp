@@ -105,6 +105,8 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
 /// and are true near a tip; beyond kMostQuadratic nodes of its surface linear ones, since the mesh is fine and they
 /// would take minutes.
 Offline offline_of(const QuasiStaticSpec& body, int surface_nodes);
+/// Why it is that, in words; empty where the body says so itself.
+std::string why_offline(const QuasiStaticSpec& body, int surface_nodes);
 inline constexpr int kMostQuadratic = 2000;
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);

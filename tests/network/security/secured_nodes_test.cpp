@@ -77,6 +77,7 @@ class NodesWithKeys : public ::testing::Test {
 
 using SecuredNodes = NodesWithKeys<TwoHosts::Link::veth>;
 using SecuredNodesOnABadLink = NodesWithKeys<TwoHosts::Link::relay>;
+class SecuredCommands : public SecuredNodes {};
 
 TEST_F(SecuredNodesOnABadLink, JoinDespiteLossesAndGoOnAtOnceAfterACut) {
   hosts_->impair("both delay 0.01 jitter 0.005 loss 0.05");
@@ -113,7 +114,7 @@ TEST_F(SecuredNodes, AllJoinTheSurfaceFollowsTheToolAndAKilledNodeComesBack) {
   RecordProperty("back_after_s", fmt::format("{:.2f}", 1e-9 * static_cast<double>(now_ns() - killed)));
 }
 
-TEST_F(SecuredNodes, RecordTopAndReplayTakePartWithTheirOwnKeysOnly) {
+TEST_F(SecuredCommands, RecordTopAndReplayTakePartWithTheirOwnKeysOnly) {
   ChildProcess haptic = nodes_->on_a("haptic_node"), deform = nodes_->on_b("deform_node");
   ASSERT_TRUE(joined(20s));
   const auto file = [&](const char* name) { return (scene_.folder() / name).string(); };
@@ -141,7 +142,7 @@ TEST_F(SecuredNodes, RecordTopAndReplayTakePartWithTheirOwnKeysOnly) {
   EXPECT_EQ(replay.get().status, 0);
 }
 
-TEST_F(SecuredNodes, LatencyIsMeasuredWithKeysAndNotWithout) {
+TEST_F(SecuredCommands, LatencyIsMeasuredWithKeysAndNotWithout) {
   const auto answer = [&](const std::string& keys) {
     const Inside here(hosts_->a());
     return ChildProcess("palpate",
@@ -208,7 +209,7 @@ std::set<std::string> libraries_with(const std::string& scene, const std::string
 }
 
 TEST(SecurityOff, NothingOfItIsLoaded) {
-  const LoopbackScene scene("security-off");
+  const LoopbackScene scene("security-off", kLinear);
   precompute(scene);
   keys::make_folder(scene.folder() / "keys", this_month());
   const std::set<std::string> plugins{"libdds_security_ac.so", "libdds_security_auth.so", "libdds_security_crypto.so"};
@@ -222,7 +223,7 @@ TEST(SecurityOff, NothingOfItIsLoaded) {
 }
 
 TEST(SecurityOff, MissingKeysAreSaidInWords) {
-  const LoopbackScene scene("security-missing");
+  const LoopbackScene scene("security-missing", kLinear);
   scene.replace("[render]\n", "[network.security]\nkeys = \"keys\"\n\n[render]\n");
   std::string said;
   EXPECT_EQ(run_command(program("palpate") + " check " + scene.scene(), &said), 0);

@@ -1,17 +1,17 @@
-// secured_peer DOMAIN INTERFACE PEER KEYS ROLE WRITES READS TOOL SECONDS
+// secured_peer DOMAIN INTERFACE PEER KEYS ROLE WRITES READS TOOL
 // Joins with the keys of a role, or without where KEYS is -, writes each of the topics in WRITES (a list with commas,
-// or
-// -) as the tool TOOL at 200 Hz, and reads those in READS. At the end it prints "wrote N to M readers" and, for each
-// other tool that was heard, "tool T: N samples", or the sentence by which it was refused. It does not count itself.
+// or -) as the tool TOOL at 200 Hz, and reads those in READS, until it is interrupted. It prints "heard" once another
+// tool is, and at the end "wrote N to M readers" and, for each other tool that was heard, "tool T: N samples", or the
+// sentence by which it was refused. It does not count itself.
 #include <fmt/format.h>
 
 #include <functional>
 #include <map>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "common/bus/dds_bus.hpp"
-#include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
 
@@ -59,6 +59,11 @@ void for_each_named(const std::string& list, F&& f) {
     });
 }
 
+void say(const char* word) {
+  fmt::print("{}\n", word);
+  std::fflush(stdout);
+}
+
 void run(char** a) {
   const std::string keys = a[4];
   const auto bus =
@@ -73,13 +78,12 @@ void run(char** a) {
     peer.writes(*bus, topic, std::string(a[7]).find(topic.name + 8) != std::string::npos);
   });
   for_each_named(a[7], [&](const auto& topic) { peer.reads(*bus, topic); });
-  fmt::print("ready\n");
-  std::fflush(stdout);
   PeriodicTimer timer(200, 0);
-  const std::int64_t end = now_ns() + static_cast<std::int64_t>(1e9 * std::stod(a[9]));
-  for (timer.wait(); now_ns() < end && !shutdown_requested(); timer.wait()) {
+  bool alone = true;
+  for (timer.wait(); !shutdown_requested(); timer.wait()) {
     ++peer.seq;
     for (const auto& port : peer.ports) port();
+    if (std::exchange(alone, peer.heard.empty()) != alone) say("heard");
   }
   fmt::print("wrote {} to {} readers\n", peer.wrote, peer.readers);
   for (const auto& [tool, samples] : peer.heard) fmt::print("tool {}: {} samples\n", tool, samples);
@@ -89,7 +93,7 @@ void run(char** a) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  if (argc != 10) return 2;
+  if (argc != 9) return 2;
   palpate::catch_shutdown_signals();
   try {
     palpate::run(argv);

@@ -38,32 +38,50 @@ struct PeerTask {
 /// A secured_peer that runs.
 class Peer {
  public:
-  Peer(const PeerTask& task, int domain, const std::string& device, const std::string& other, double seconds)
-      : process_("secured_peer", {"/bin/sh", "-c",
-                                  fmt::format("{} exec {} {} {} {} {} {} {} {} {} {}", task.environment,
-                                              program("secured_peer"), domain, device, other, task.keys.string(),
-                                              task.role, task.writes, task.reads, task.tool, seconds)}) {}
+  Peer(const PeerTask& task, int domain, const std::string& device, const std::string& other)
+      : process_("secured_peer",
+                 {"/bin/sh", "-c",
+                  fmt::format("{} exec {} {} {} {} {} {} {} {} {}", task.environment, program("secured_peer"), domain,
+                              device, other, task.keys.string(), task.role, task.writes, task.reads, task.tool)}) {}
 
-  /// Waits for its end.
+  /// Whether it has heard anybody.
+  bool heard() {
+    take();
+    return heard_;
+  }
+  /// Ends it if it does not by itself.
   Outcome outcome() {
+    process_.interrupt();
+    return outcome_of_itself();
+  }
+  /// Of one that is refused and ends.
+  Outcome outcome_of_itself() {
     EXPECT_TRUE(process_.wait(std::chrono::seconds(30)));
-    Outcome o;
-    for (const std::string& line : process_.take_lines()) {
-      unsigned tool = 0;
-      unsigned long long samples = 0, wrote = 0;
-      int readers = 0;
-      if (std::sscanf(line.c_str(), "wrote %llu to %d readers", &wrote, &readers) == 2)
-        o.wrote = wrote, o.readers = readers;
-      else if (std::sscanf(line.c_str(), "tool %u: %llu samples", &tool, &samples) == 2)
-        o.heard[tool] = samples;
-      else if (line != "ready")
-        o.refusal = line;
-    }
-    return o;
+    take();
+    return outcome_;
   }
 
  private:
+  void take() {
+    for (const std::string& line : process_.take_lines()) take(line);
+  }
+  void take(const std::string& line) {
+    unsigned tool = 0;
+    unsigned long long samples = 0, wrote = 0;
+    int readers = 0;
+    if (line == "heard")
+      heard_ = true;
+    else if (std::sscanf(line.c_str(), "wrote %llu to %d readers", &wrote, &readers) == 2)
+      outcome_.wrote = wrote, outcome_.readers = readers;
+    else if (std::sscanf(line.c_str(), "tool %u: %llu samples", &tool, &samples) == 2)
+      outcome_.heard[tool] = samples;
+    else
+      outcome_.refusal = line;
+  }
+
   ChildProcess process_;
+  Outcome outcome_;
+  bool heard_ = false;
 };
 
 /// A copy of the middleware in a folder of its own, with the plugins that a test wants.

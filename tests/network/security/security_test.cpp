@@ -5,6 +5,8 @@
 
 #include <cstring>
 #include <fstream>
+#include <thread>
+#include <utility>
 
 #include "tests/network/security/secured_test.hpp"
 
@@ -13,11 +15,23 @@ namespace palpate::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 
 constexpr int kDomain = 7;
-constexpr double kSeconds = 4;
+constexpr auto kLong = 1500ms;  ///< that all go on once they hear each other
 constexpr unsigned kTool = 1, kDriver = 2, kIntruder = 9;
-constexpr std::uint64_t kMany = 100;  ///< of about 800 that are sent
+constexpr std::uint64_t kMany = 100;  ///< of 300 that are sent then
+
+/// Each of them has heard somebody.
+template <class... Peers>
+bool all_hear(Peers&... peers) {
+  const auto limit = std::chrono::steady_clock::now() + 20s;
+  while (!(peers.heard() && ...)) {
+    if (std::chrono::steady_clock::now() > limit) return false;
+    std::this_thread::sleep_for(5ms);
+  }
+  return true;
+}
 
 class Secured : public ::testing::Test {
  protected:
@@ -28,13 +42,13 @@ class Secured : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Peer on_a(const PeerTask& task, double time = kSeconds) const {
+  Peer on_a(const PeerTask& task) const {
     const Inside here(hosts_->a());
-    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_b, time);
+    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_b);
   }
-  Peer on_b(const PeerTask& task, double time = kSeconds) const {
+  Peer on_b(const PeerTask& task) const {
     const Inside here(hosts_->b());
-    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_a, time);
+    return Peer(task, kDomain, TwoHosts::device, TwoHosts::address_a);
   }
 
   /// A haptic node's topics on host A, a driver and a render node on host B, and an intruder beside them, all at once.
@@ -43,6 +57,8 @@ class Secured : public ::testing::Test {
     Peer haptic = on_a({keys_, "haptic", "tool_state,force_state", "device_state", kTool});
     Peer drives = on_b({keys_, "driver", "device_state", "force_state", kDriver});
     Peer render = on_b({keys_, "render", "-", "tool_state,force_state", 0});
+    EXPECT_TRUE(all_hear(haptic, drives, render));
+    std::this_thread::sleep_for(kLong);
     haptic_ = haptic.outcome();
     driver_ = drives.outcome();
     render_ = render.outcome();
@@ -91,10 +107,10 @@ TEST_F(Secured, WhoHasAForeignCertificateNeitherReadsNorWrites) {
 TEST_F(Secured, TheWrongRoleIsRefusedByItsOwnMiddleware) {
   for (const PeerTask& task : {PeerTask{keys_, "observer", "force_state", "-", kIntruder},
                                PeerTask{keys_, "render", "tool_state", "-", kIntruder}})
-    EXPECT_EQ(on_b(task).outcome().refusal,
+    EXPECT_EQ(on_b(task).outcome_of_itself().refusal,
               fmt::format("network: creating the writer of palpate/{} is not permitted to the role of these keys",
                           task.writes));
-  EXPECT_EQ(on_b({keys_, "render", "-", "device_state", kIntruder}).outcome().refusal,
+  EXPECT_EQ(on_b({keys_, "render", "-", "device_state", kIntruder}).outcome_of_itself().refusal,
             "network: creating topic palpate/device_state is not permitted to the role of these keys");
 }
 
@@ -124,15 +140,17 @@ struct Seen {
   int frames = 0, readable = 0;
 };
 
-Seen listen_on(const NetworkNamespace& host, double time, Peer& writer, Peer& reader) {
+Seen listen_on(const NetworkNamespace& host, Peer& writer, Peer& reader) {
   const Inside here(host);
   const int wire = socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, htons(ETH_P_ALL));
   EXPECT_GE(wire, 0);
   const double depth = 0.0123456789;
   Seen seen;
   std::vector<char> frame(65536);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time - 0.3);
+  auto end = std::chrono::steady_clock::now() + 20s;
+  bool joined = false;
   while (std::chrono::steady_clock::now() < end) {
+    if (!std::exchange(joined, reader.heard()) && joined) end = std::chrono::steady_clock::now() + kLong;
     pollfd waiting{wire, POLLIN, 0};
     if (poll(&waiting, 1, 50) != 1) continue;
     const ssize_t size = recv(wire, frame.data(), frame.size(), 0);
@@ -148,32 +166,35 @@ Seen listen_on(const NetworkNamespace& host, double time, Peer& writer, Peer& re
 
 TEST_F(Secured, NobodyOnTheWireCanReadIt) {
   {
-    Peer writer = on_a({"-", "-", "tool_state", "-", kTool}, 2), reader = on_b({"-", "-", "-", "tool_state", 0}, 2);
-    const Seen open = listen_on(hosts_->b(), 2, writer, reader);
+    Peer writer = on_a({"-", "-", "tool_state", "-", kTool}), reader = on_b({"-", "-", "-", "tool_state", 0});
+    const Seen open = listen_on(hosts_->b(), writer, reader);
     EXPECT_GT(open.readable, static_cast<int>(kMany)) << "without keys it can be read";
   }
   Peer writer = on_a({keys_, "haptic", "tool_state", "-", kTool}),
        reader = on_b({keys_, "render", "-", "tool_state", 0});
-  const Seen secured = listen_on(hosts_->b(), kSeconds, writer, reader);
+  const Seen secured = listen_on(hosts_->b(), writer, reader);
   EXPECT_GT(secured.frames, static_cast<int>(kMany));
   EXPECT_EQ(secured.readable, 0);
 }
 
 TEST_F(Secured, KeysThatEndCutOffWhoeverHasThem) {
-  const std::time_t now = std::time(nullptr);
-  keys::add_keys(keys_, "render", "brief", {now - 60, now + 4});
-  Peer haptic = on_a({keys_, "haptic", "tool_state", "-", kTool}, 7);
-  Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}, 7),
-       brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0}, 7);
+  const std::time_t end = std::time(nullptr) + 4;
+  keys::add_keys(keys_, "render", "brief", {end - 64, end});
+  Peer haptic = on_a({keys_, "haptic", "tool_state", "-", kTool});
+  Peer lasting = on_b({keys_, "render", "-", "tool_state", 0}),
+       brief = on_b({keys_ / "brief", "render", "-", "tool_state", 0});
+  EXPECT_TRUE(all_hear(lasting, brief));
+  std::this_thread::sleep_until(std::chrono::system_clock::from_time_t(end) + kLong);
   const std::uint64_t all = lasting.outcome().of(kTool), until_the_end = brief.outcome().of(kTool);
   EXPECT_EQ(haptic.outcome().refusal, "");
   EXPECT_GT(until_the_end, kMany);
-  EXPECT_GT(all, until_the_end + 300) << "of 600 that follow";
+  EXPECT_GT(all, until_the_end + 150) << "of 300 that follow";
 }
 
 TEST_F(Secured, MissingPluginsAreNamedWithTheirPackage) {
   const OwnMiddleware bare(folder_ / "middleware");
-  const std::string said = on_b({keys_, "observer", "-", "tool_state", 0, bare.environment()}).outcome().refusal;
+  const std::string said =
+      on_b({keys_, "observer", "-", "tool_state", 0, bare.environment()}).outcome_of_itself().refusal;
   EXPECT_NE(said.find("libdds_security_auth.so"), said.npos) << said;
   EXPECT_NE(said.find("Debian's package libddsc0debian has them"), said.npos) << said;
 }
