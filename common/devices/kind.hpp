@@ -8,6 +8,16 @@
 
 namespace palpate {
 
+/// Whether a person may take the tool away from what moves it, by a driver elsewhere such as the live view.
+enum class ForHands { never, if_asked, always };
+
+/// The key of devices whose driver is elsewhere [s].
+inline void describe_lease(Description& d, double& lease) {
+  d.number({"lease", "s", "after which a driver that is silent has let go: the tool stands and its force fades",
+            Need::optional, Use::local},
+           lease, within(0.01, 10));
+}
+
 class Device;
 class Trajectory;
 struct DevicePlace;
@@ -21,6 +31,8 @@ struct DevicePlace;
 /// motion_file(spec): the file that its motion comes from; empty without one.
 ///
 /// script(spec): its motion, where it is known before the run. Throws as load_trajectory() does.
+///
+/// for_hands(spec): whether a person may take the tool.
 ///
 /// absence(spec): what programs leave out where no tool of a scene has such a device; empty: nothing.
 

@@ -213,6 +213,16 @@ closed_below = 0.2
 name = "hook"
 pivot = [0, 0, 0.3]
 device = "bus"
+lease = 0.2
+
+[[tool]]
+name = "finger"
+pivot = [0, 0, 0.3]
+device = "pointer"
+start = [0, 0, 0.1]
+lease = 0.3
+delay = 0.03
+max_speed = 0.2
 
 [[tool]]
 name = "ghost"
@@ -272,6 +282,10 @@ eye = [0, -0.3, 0.2]
 target = [0.01, 0.02, 0.03]
 up = [0, 0, 1]
 field_of_view = 60
+
+[web]
+address = "10.0.0.3"
+port = 9000
 )";
 
 /// The least that is a scene.

@@ -19,7 +19,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
       if (table == "scene") {
         text = line;
         if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" ||
-            key == "record" || key == "render")
+            key == "record" || key == "render" || key == "web")
           text += body;
         if (key == "title") text += body;
       } else {
