@@ -62,7 +62,7 @@ def share(options):
             here.wait("document.getElementById('ask').classList.contains('on')", 5)
             there.get("palpate.hand.rest()")
             closed = time.time()
-            first.close()
+            first.execute_cdp_cmd("Page.close", {})
             there.wait(f"seenHolder.at(-1).holder !== {mine}", 5)
             took = there.get("seenHolder.at(-1).at") - 1e3 * closed
             print(f"a closed page's hand was off the tool after {took:.0f} ms")

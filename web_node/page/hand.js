@@ -111,7 +111,7 @@ export class Hand {
     return sub(at, scale(shape.jaw_length, unit(sub(at, shape.pivot))));
   }
 
-  // Once a frame: a press goes above its place first, and then down.
+  // Sixty times a second: a press goes above its place first, and then down.
   follow(frame) {
     const { drag, pose } = this;
     if (!pose || !frame) return;

@@ -35,6 +35,7 @@ class App {
     this.input = new Input(canvas, this);
     this.wireButtons();
     this.setMode('press');
+    setInterval(() => this.lead(), 16);  // also while pictures take longer
     addEventListener('pagehide', () => this.hand.release());
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -104,8 +105,6 @@ class App {
     this.link.tellShown();
     if (!this.paused) this.build();
     if (!this.frame) return;
-    this.hand.shape = this.scenery.tools[this.hand.tool];
-    this.hand.follow(this.next ?? this.frame);
     this.adapt(seconds);
     const width = Math.round(canvas.clientWidth * this.scale), height = Math.round(canvas.clientHeight * this.scale);
     this.picture.resize(Math.max(width, 16), Math.max(height, 16));
@@ -118,6 +117,12 @@ class App {
     this.panel.legend(this.look.byScalar, this.look.legendMax);
     this.curve.draw();
     this.askOrGive();
+  }
+
+  lead() {
+    if (!this.frame || document.hidden) return;
+    this.hand.shape = this.scenery.tools[this.hand.tool];
+    this.hand.follow(this.next);
   }
 
   // Fewer pixels where the machine does not keep up.
