@@ -62,7 +62,7 @@ class Pages {
         return hands_.give(said.tool, page);
       case web::Said::sample:
         return move(page, said, now);
-      case web::Said::shown:
+      case web::Said::taken:
         break;
     }
   }

@@ -72,10 +72,10 @@ struct Sample {
   double pedal = 0;           ///< 0 or 1
 };
 struct Said {
-  enum Kind : std::uint8_t { sample = 1, take, release, give, shown } kind;
+  enum Kind : std::uint8_t { sample = 1, take, release, give, taken } kind;
   std::uint8_t tool = 0;
   Sample motion;             ///< of a sample
-  std::uint32_t number = 0;  ///< frames that have been shown
+  std::uint32_t number = 0;  ///< frames that have been taken
 };
 inline constexpr std::size_t kMostBytesSaid = 32;
 

@@ -38,8 +38,8 @@ void Session::heard(std::size_t bytes) {
       socket_.got_binary() ? decode({static_cast<const char*>(buffer_.data().data()), bytes}) : std::optional<Said>();
   buffer_.consume(buffer_.size());
   if (!said || flooded()) return throw_out();
-  if (said->kind == Said::shown) {
-    shown_ = std::min(said->number, sent_);
+  if (said->kind == Said::taken) {
+    taken_ = std::min(said->number, sent_);
     write_next();
   } else {
     host_.said(*this, *said);
@@ -70,7 +70,7 @@ void Session::offer(Slot slot, const std::shared_ptr<const Message>& message) {
 }
 
 bool Session::may_send(std::size_t slot) const {
-  return waiting_[slot] && (slot != frame || sent_ - shown_ < kInFlight);
+  return waiting_[slot] && (slot != frame || sent_ - taken_ < kInFlight);
 }
 
 void Session::write_next() {

@@ -36,7 +36,7 @@ class SessionHost {
 };
 
 /// One page's WebSocket. It is sent the newest message of each slot and never has more than kInFlight frames that it
-/// has not shown: what it is too slow for is not queued but left out.
+/// has not taken: what it is too slow for is not queued but left out.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   static constexpr std::uint32_t kInFlight = 3;
@@ -64,7 +64,7 @@ class Session : public std::enable_shared_from_this<Session> {
   beast::flat_buffer buffer_;
   std::array<std::shared_ptr<const Message>, kSlots> waiting_;
   std::shared_ptr<const Message> going_;
-  std::uint32_t sent_ = 0, shown_ = 0;  ///< frames
+  std::uint32_t sent_ = 0, taken_ = 0;  ///< frames
   int said_ = 0;                        ///< in the second that began at second_ns_
   std::int64_t second_ns_ = 0;
   bool over_ = false;

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kDt = 1e-3;
+constexpr double kTick = 1e-3;
 
 /// What a motion did, tick by tick [m].
 struct Seen {
@@ -15,7 +15,7 @@ struct Seen {
   double max_jerk = 0;   ///< [m/s] largest change of that speed between two ticks
   double last = 0, last_speed = 0;
   void look(double depth) {
-    const double speed = (depth - last) / kDt;
+    const double speed = (depth - last) / kTick;
     max_speed = std::max(max_speed, std::abs(speed));
     max_jerk = std::max(max_jerk, std::abs(speed - last_speed));
     last = depth;
@@ -24,7 +24,7 @@ struct Seen {
 };
 
 TEST(HandMotion, GoesWhereItIsLedWithinTheSpeedAndWithoutAJump) {
-  HandMotion motion({}, kDt);
+  HandMotion motion({}, kTick);
   motion.stand({.depth = 0.1});
   Seen seen{.last = 0.1};
   motion.aim({.depth = 0.2});
@@ -35,15 +35,15 @@ TEST(HandMotion, GoesWhereItIsLedWithinTheSpeedAndWithoutAJump) {
 }
 
 TEST(HandMotion, SixtySamplesASecondMakeAnEvenMotion) {
-  HandMotion motion({}, kDt);
+  HandMotion motion({}, kTick);
   motion.stand({.depth = 0.1});
   Seen seen{.last = 0.1};
   double slowest = 1;
   for (int i = 0; i < 1000; ++i) {
-    if (i % 17 == 0) motion.aim({.depth = 0.1 + 0.05 * i * kDt});  // 50 mm/s
+    if (i % 17 == 0) motion.aim({.depth = 0.1 + 0.05 * i * kTick});  // 50 mm/s
     const double before = seen.last;
     seen.look(motion.step().depth);
-    if (i > 200) slowest = std::min(slowest, (seen.last - before) / kDt);
+    if (i > 200) slowest = std::min(slowest, (seen.last - before) / kTick);
   }
   EXPECT_GT(slowest, 0.03);
   EXPECT_LT(seen.max_speed, 0.07);
@@ -51,11 +51,11 @@ TEST(HandMotion, SixtySamplesASecondMakeAnEvenMotion) {
 }
 
 TEST(HandMotion, LateAndMissingSamplesMakeNoJump) {
-  HandMotion motion({}, kDt);
+  HandMotion motion({}, kTick);
   motion.stand({.depth = 0.1});
   Seen seen{.last = 0.1};
   for (int i = 0; i < 1000; ++i) {
-    if (i % 17 == 0 && i % 5 != 0 && (i < 400 || i > 460)) motion.aim({.depth = 0.1 + 0.1 * i * kDt});
+    if (i % 17 == 0 && i % 5 != 0 && (i < 400 || i > 460)) motion.aim({.depth = 0.1 + 0.1 * i * kTick});
     seen.look(motion.step().depth);
   }
   EXPECT_LE(seen.max_speed, 0.25 + 1e-9);
@@ -63,14 +63,14 @@ TEST(HandMotion, LateAndMissingSamplesMakeNoJump) {
 }
 
 TEST(HandMotion, TurnsAndSwingsAreBoundedToo) {
-  HandMotion motion({}, kDt);
+  HandMotion motion({}, kTick);
   motion.stand({.depth = 0.2});
   motion.aim({.yaw = 0.5, .depth = 0.2, .roll = 3, .grip = -1});
   ToolDofs last{.depth = 0.2};
   for (int i = 0; i < 800; ++i) {
     const ToolDofs now = motion.step();
-    EXPECT_LE(0.2 * std::abs(now.yaw - last.yaw), 0.25 * kDt + 1e-12);
-    EXPECT_LE(std::abs(now.roll - last.roll), 6 * kDt + 1e-12);
+    EXPECT_LE(0.2 * std::abs(now.yaw - last.yaw), 0.25 * kTick + 1e-12);
+    EXPECT_LE(std::abs(now.roll - last.roll), 6 * kTick + 1e-12);
     last = now;
   }
   EXPECT_NEAR(last.yaw, 0.5, 1e-6);
@@ -78,7 +78,7 @@ TEST(HandMotion, TurnsAndSwingsAreBoundedToo) {
 }
 
 TEST(HandMotion, HoldsWhereItIsLedTo) {
-  HandMotion motion({}, kDt);
+  HandMotion motion({}, kTick);
   motion.stand({.depth = 0.1});
   motion.aim({.depth = 0.2});
   for (int i = 0; i < 100; ++i) motion.step();

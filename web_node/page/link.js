@@ -1,4 +1,4 @@
-import { shown } from './wire.js';
+import { taken } from './wire.js';
 
 // The WebSocket: connects, and connects again when the server has gone and come back.
 export class Link {
@@ -38,11 +38,11 @@ export class Link {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  // So that the server sends no more than is shown.
-  tellShown() {
+  // So that the server sends no more than is taken.
+  tellTaken() {
     if (this.told === this.received) return;
     this.told = this.received;
-    this.send(shown(this.received));
+    this.send(taken(this.received));
   }
 
   send(message) {

@@ -42,7 +42,7 @@ class App {
 
   lost() {
     this.hand.rest();
-    this.frame = undefined;
+    this.frame = this.next = this.topology = undefined;
     this.panel.link('no connection; trying again', false);
   }
 
@@ -102,7 +102,6 @@ class App {
     requestAnimationFrame((later) => this.tick(later));
     const seconds = Math.min((now - (this.last ?? now)) / 1e3, 0.1);
     this.last = now;
-    this.link.tellShown();
     if (!this.paused) this.build();
     if (!this.frame) return;
     this.adapt(seconds);
@@ -120,6 +119,7 @@ class App {
   }
 
   lead() {
+    this.link.tellTaken();
     if (!this.frame || document.hidden) return;
     this.hand.shape = this.scenery.tools[this.hand.tool];
     this.hand.follow(this.next);

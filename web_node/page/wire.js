@@ -1,7 +1,7 @@
 // Messages between this page and web_node; docs/live.md has the layout. All numbers are little-endian.
 export const SEEN = 1 << 31, OFFERED = 1 << 30;
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
-const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, SHOWN = 5;
+const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5;
 
 export function kindOf(buffer) {
   return new DataView(buffer).getUint32(0, true);
@@ -76,7 +76,7 @@ function short(kind, tool, number) {
 export const take = (tool) => short(TAKE, tool, 0);
 export const release = (tool) => short(RELEASE, tool, 0);
 export const give = (tool) => short(GIVE, tool, 0);
-export const shown = (count) => short(SHOWN, 0, count);
+export const taken = (count) => short(TAKEN, 0, count);
 
 // tip [m], roll and grip [rad], pedal 0 or 1.
 export function sample(tool, number, { tip, roll, grip, pedal }) {
