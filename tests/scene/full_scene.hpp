@@ -213,16 +213,6 @@ closed_below = 0.2
 name = "hook"
 pivot = [0, 0, 0.3]
 device = "bus"
-lease = 0.2
-
-[[tool]]
-name = "finger"
-pivot = [0, 0, 0.3]
-device = "pointer"
-start = [0, 0, 0.1]
-lease = 0.3
-delay = 0.03
-max_speed = 0.2
 
 [[tool]]
 name = "ghost"
@@ -235,6 +225,7 @@ name = "grasper"
 kind = "forceps"
 pivot = [0, 0.1, 0.3]
 device = "bus"
+lease = 0.2
 compliance = 0.0002
 
 [tool.jaws]
@@ -243,6 +234,15 @@ radius = 0.0012
 max_open = 0.9
 grip_stiffness = 0.4
 friction = 0.6
+
+[[tool]]
+name = "finger"
+pivot = [0, 0, 0.3]
+device = "pointer"
+start = [0, 0, 0.1]
+lease = 0.3
+delay = 0.03
+max_speed = 0.2
 
 [contact]
 rule = "alpha"

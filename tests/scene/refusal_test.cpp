@@ -179,7 +179,7 @@ const Refusal kRefusals[] = {
     {"integrator = \"semi_implicit\"\n\n[[tool]]", "integrator = \"rk4\"\n\n[[tool]]", "\"rk4\"",
      "integrator 'rk4' is unknown; known: implicit, semi_implicit"},
     {"kind = \"forceps\"", "kind = \"tweezers\"", "\"tweezers\"", "kind 'tweezers' is unknown; known: probe, forceps"},
-    {"kind = \"forceps\"\n", "", "0.6\n\n[contact]", "friction means nothing for the kind 'probe'"},
+    {"kind = \"forceps\"\n", "", "0.6\n\n[[tool]]", "friction means nothing for the kind 'probe'"},
     {"name = \"hook\"\n", "name = \"hook\"\nkind = \"forceps\"\n", "\"forceps\"\npivot = [0, 0, 0.3]",
      "the kind 'forceps' needs a [tool.jaws]: two jaws at the tip; needed for a forceps"},
     {"kind = \"forceps\"\n", "kind = \"forceps\"\nradius = 0.004\n", "0.004\npivot",
