@@ -193,7 +193,7 @@ const Refusal kRefusals[] = {
     {"max_open = 0.9", "max_open = 0", "0\ngrip", "max_open must be greater than 0 and at most 2.5, and is 0"},
     {"max_open = 0.9", "max_open = 2.6", "2.6\ngrip", "max_open must be greater than 0 and at most 2.5, and is 2.6"},
     {"grip_stiffness = 0.4", "grip_stiffness = 0", "0\nfriction", "grip_stiffness must be greater than 0, and is 0"},
-    {"friction = 0.6", "friction = -1", "-1\n\n[contact]", "friction must be at least 0, and is -1"},
+    {"friction = 0.6", "friction = -1", "-1\n\n[[tool]]", "friction must be at least 0, and is -1"},
     {"refine = 1", "refine = 3", "3\nelement", "refine must be at least 0 and at most 2, and is 3"},
     {"element = \"p2\"", "element = \"p3\"", "\"p3", "element 'p3' is unknown; known: p1, p2"},
     {"keys = \"keys\"", "", "[network.security]", "[network.security] needs the key 'keys'"},
