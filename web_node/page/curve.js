@@ -24,7 +24,7 @@ export class Curve {
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     const to = canvas.getContext('2d'), end = points.at(-1)?.t ?? 0;
     to.clearRect(0, 0, width, height);
-    const top = roundUp(Math.max(0.5, ...points.map((p) => Math.max(...p.forces, 0))));
+    const top = roundUp(Math.max(0.05, ...points.map((p) => Math.max(...p.forces, 0))));
     const x = (t) => width * (1 - (end - t) / seconds), y = (f) => height * (0.96 - 0.86 * f / top);
     this.grid(to, width, y, top, ratio);
     to.lineWidth = 1.6 * ratio;

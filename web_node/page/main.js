@@ -100,6 +100,7 @@ class App {
 
   tick(now) {
     requestAnimationFrame((later) => this.tick(later));
+    if (this.picture.busy()) return;
     const seconds = Math.min((now - (this.last ?? now)) / 1e3, 0.1);
     this.last = now;
     if (!this.paused) this.build();

@@ -51,6 +51,15 @@ export class Picture {
     this.canvas.height = height;
   }
 
+  // The last picture is still being made: another one would only wait behind it, and this page with it.
+  busy() {
+    const { gl, fence } = this;
+    if (!fence || gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return Boolean(fence);
+    gl.deleteSync(fence);
+    this.fence = undefined;
+    return false;
+  }
+
   // `bodies`: SoftBody; `tools`: of the frame. `look`: {byScalar, legendMax, through, arrows}.
   draw(camera, bodies, tools, look) {
     const { gl, canvas } = this, width = canvas.width, height = canvas.height;
@@ -69,6 +78,8 @@ export class Picture {
     for (const one of seen) this.drawInstrument(one);
     this.drawBodies(bodies, look, Math.min(seen.length, 8));
     if (look.arrows) for (const one of seen) this.drawArrow(one);
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
   }
 
   drawBodies(bodies, look, tools) {
