@@ -29,9 +29,8 @@ web::ServerSettings server_settings(const Web& scene) {
 }
 
 std::string link_to(const web::ServerSettings& settings, int port) {
-  const bool v6 = settings.address.find(':') != std::string::npos;
-  const std::string host = v6 ? fmt::format("[{}]", settings.address) : settings.address;
-  return fmt::format("http://{}:{}/{}", host, port, settings.secret.empty() ? "" : settings.secret + "/");
+  return fmt::format("http://{}:{}/{}", web::host_in_link(settings.address), port,
+                     settings.secret.empty() ? "" : settings.secret + "/");
 }
 
 std::vector<web::OfferedTool> offered_tools(const Scene& scene) {

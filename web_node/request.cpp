@@ -13,7 +13,7 @@ namespace {
 
 // No request to any other host, and nobody frames the page.
 constexpr const char* kPolicy =
-    "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+    "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "frame-ancestors 'none'";
 
 std::string_view view(boost::beast::string_view text) {

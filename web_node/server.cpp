@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <map>
 #include <stdexcept>
@@ -102,6 +103,12 @@ void Server::publish(Slot slot, Message message) {
 Server::Seen Server::seen() const {
   const Counts& c = impl_->counted;
   return {c.viewers, c.refused, c.malformed, c.skipped};
+}
+
+std::string host_in_link(const std::string& address) {
+  const auto parsed = asio::ip::make_address(address);
+  if (parsed.is_unspecified()) return asio::ip::host_name();
+  return parsed.is_v6() ? fmt::format("[{}]", address) : address;
 }
 
 bool is_loopback(const std::string& address) {

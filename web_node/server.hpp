@@ -43,6 +43,9 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
+/// How an address stands in a link: this host's name in place of one that means all of its addresses.
+std::string host_in_link(const std::string& address);
+
 /// Whether only this host can reach an address. Throws std::runtime_error for what is none.
 bool is_loopback(const std::string& address);
 

@@ -172,6 +172,9 @@ TEST(WebServerPort, ThatIsTakenIsSaid) {
   EXPECT_THROW(is_loopback("nowhere"), std::runtime_error);
   EXPECT_TRUE(is_loopback("::1"));
   EXPECT_FALSE(is_loopback("0.0.0.0"));
+  EXPECT_EQ(host_in_link("127.0.0.1"), "127.0.0.1");
+  EXPECT_EQ(host_in_link("::1"), "[::1]");
+  EXPECT_NE(host_in_link("0.0.0.0"), "0.0.0.0");
 }
 
 }  // namespace
