@@ -6,19 +6,16 @@ sample (event_to_picture) and to that state in the page (event_to_state), bytes 
 first drawn, and what sixteen viewers cost the haptic step. Needs chromium, chromium-driver and python3-selenium; run it
 with Debian's python3."""
 import argparse
-import base64
 import json
-import os
 import pathlib
-import socket
 import sys
 import tempfile
-import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/web"))
 from live_page import Nodes, Page, need_browser, open_browser  # noqa: E402
+from watcher import Watcher  # noqa: E402
 
 STATE_TIMES = """
 globalThis.stateDelays = [];
@@ -76,49 +73,6 @@ def one_page(options):
                     max(values), len(values))
         finally:
             browser.quit()
-
-
-class Watcher(threading.Thread):
-    """A page without a browser: takes every frame that it gets."""
-
-    def __init__(self, port):
-        super().__init__(daemon=True)
-        self.frames = self.bytes = 0
-        self.socket = socket.create_connection(("127.0.0.1", port))
-        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        key = base64.b64encode(os.urandom(16)).decode()
-        self.socket.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n"
-                            "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                            f"Sec-WebSocket-Key: {key}\r\n\r\n".encode())
-        self.file = self.socket.makefile("rb")
-        while self.file.readline() not in (b"\r\n", b""):
-            pass
-
-    def run(self):
-        try:
-            while self.take():
-                pass
-        except OSError:
-            pass
-
-    def take(self):
-        head = self.file.read(2)
-        if len(head) < 2:
-            return False
-        size = head[1] & 127
-        if size > 125:
-            size = int.from_bytes(self.file.read(2 if size == 126 else 8), "big")
-        body = self.file.read(size)
-        self.bytes += size
-        if head[0] & 15 == 9:
-            self.send(10, body)
-        if head[0] & 15 == 2 and body[:4] == b"\3\0\0\0":
-            self.frames += 1
-            self.send(2, b"\5\0\0\0" + self.frames.to_bytes(4, "little"))
-        return head[0] & 15 != 8
-
-    def send(self, kind, body):
-        self.socket.sendall(bytes([0x80 | kind, 0x80 | len(body), 0, 0, 0, 0]) + body)
 
 
 def haptic_p99(options, viewers):

@@ -18,6 +18,9 @@ inline void describe_lease(Description& d, double& lease) {
            lease, within(0.01, 10));
 }
 
+/// absence() of devices whose driver is elsewhere.
+inline constexpr std::string_view kNoDriverElsewhere = "no tool on the bus: no device topic and no thread for it";
+
 class Device;
 class Trajectory;
 struct DevicePlace;
@@ -34,6 +37,7 @@ struct DevicePlace;
 ///
 /// for_hands(spec): whether a person may take the tool.
 ///
-/// absence(spec): what programs leave out where no tool of a scene has such a device; empty: nothing.
+/// absence(spec): what programs leave out where no tool of a scene has such a device; kinds with the same sentence are
+/// left out together; empty: nothing.
 
 }  // namespace palpate

@@ -1,9 +1,15 @@
 #!/usr/bin/env python3
-"""browser.py CASE: what a person at the live view does and sees, in headless Chromium. Exit status 77: no browser."""
+"""browser.py CASE: what a person at the live view does and sees, in headless Chromium, and what a hostile page does
+to it. Exit status 77: no browser."""
 import argparse
+import json
+import os
+import pathlib
+import tempfile
 import time
 
 from live_page import Nodes, Page, need_browser, open_browser
+from watcher import Connection, Watcher
 
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
 MOVED = "Math.max(...palpate.bodies[0].displacement)"
@@ -92,14 +98,49 @@ def cut(options):
             browser.quit()
 
 
+def hostile(options):
+    """What pages should not send is dropped and counted, and the haptic loop keeps its rate."""
+    with tempfile.TemporaryDirectory() as folder:
+        summary = pathlib.Path(folder) / "summary.json"
+        with Nodes(options, "liver.toml", 0, ["--seconds", "5", "--summary", str(summary)]) as nodes:
+            good = Watcher(nodes.port)
+            good.start()
+            while nodes.process.poll() is None:
+                attack(nodes.port)
+        said = json.loads(summary.read_text())
+    web, haptic = said["web_node"], said["haptic_node"]
+    print(f"{web['thrown_out']} pages thrown out, {web['refused_requests']} requests refused, haptic loop at "
+          f"{haptic['rate_hz']:.1f} Hz, {good.frames} frames to the one that behaves")
+    expect(web["thrown_out"] > 10 and web["refused_requests"] > 10, web)
+    expect(haptic["rate_hz"] > 970, haptic["rate_hz"])
+    expect(good.frames > 100, good.frames)
+
+
+def attack(port):
+    """Garbage, a megabyte, a flood, text, and another origin."""
+    flood = b"\2\0\0\0\0\0\0\0"
+    for messages, kind in (([os.urandom(32)], 2), ([bytes(1 << 20)], 2), (1000 * [flood], 2), ([b"{}"], 1)):
+        try:
+            page = Connection(port)
+            for message in messages:
+                page.send(message, kind)
+        except OSError:
+            pass
+    try:
+        Connection(port, "http://elsewhere.example")
+    except (OSError, IndexError):
+        pass
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("case", choices=["press", "share", "cut"])
+    parser.add_argument("case", choices=["press", "share", "cut", "hostile"])
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
     options = parser.parse_args()
-    need_browser()
-    {"press": press, "share": share, "cut": cut}[options.case](options)
+    if options.case != "hostile":
+        need_browser()
+    {"press": press, "share": share, "cut": cut, "hostile": hostile}[options.case](options)
 
 
 if __name__ == "__main__":

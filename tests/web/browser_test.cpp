@@ -36,5 +36,9 @@ TEST(WebBrowser, ACutAppears) {
   run("cut");
 }
 
+TEST(WebHostile, PagesThatMisbehaveAreThrownOutAndTheForceKeepsItsRate) {
+  run("hostile");
+}
+
 }  // namespace
 }  // namespace palpate

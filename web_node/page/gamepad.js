@@ -1,4 +1,5 @@
-// A gamepad moves the tool that is held: left stick across the view, right stick depth and roll, triggers jaws and pedal.
+// A gamepad moves the tool that is held: left stick across the view, right stick depth and roll, triggers jaws and
+// pedal.
 import { add, scale } from './vec.js';
 
 const speed = 0.06, turning = 2, dead = 0.12;  // [m/s], [rad/s], of the sticks

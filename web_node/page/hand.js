@@ -6,6 +6,9 @@ import { origin } from './scene_block.js';
 import { add, dot, scale, sub, unit } from './vec.js';
 
 const hover = 0.012, nearLine = 0.004, open = 0.6;  // [m] above the surface; from the line; [rad]
+const settle = 1000;  // [ms]
+
+const standing = (state) => ({ tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 });
 
 export class Hand {
   constructor(link) {
@@ -32,13 +35,23 @@ export class Hand {
     const state = frame.tools[this.tool];
     if (!state?.offered || !state.seen) return false;
     this.link.send(wire.take(this.tool));
-    this.pose ??= { tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 };
+    this.changed = performance.now();
+    this.pose ??= standing(state);
     return true;
   }
 
   release() {
     if (this.pose) this.link.send(wire.release(this.tool));
+    this.changed = performance.now();
     this.rest();
+  }
+
+  // What was handed over is held where it is; what another holds is not told of. Frames come late after a change.
+  agree(frame, me) {
+    if (performance.now() - (this.changed ?? 0) < settle) return;
+    const mine = this.holds(frame, me);
+    if (mine) this.pose ??= standing(frame.tools[this.tool]);
+    else if (!this.drag) this.rest();
   }
 
   beginPress(frame, bodies, axes, at) {

@@ -7,6 +7,7 @@ import { Panel } from './panel.js';
 import { Picture } from './picture.js';
 import { SoftBody } from './soft_body.js';
 import { ViewCamera } from './camera.js';
+import { keyTable, wireButtons } from './controls.js';
 import { readGamepad } from './gamepad.js';
 import { size, sub } from './vec.js';
 import * as wire from './wire.js';
@@ -20,7 +21,7 @@ class App {
     this.camera = new ViewCamera();
     this.curve = new Curve(document.getElementById('curve'));
     this.bodies = [];
-    this.look = { byScalar: false, legendMax: 0.001, through: false, arrows: true };
+    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.1, through: false, arrows: true };
     this.mode = 'press';
     this.scale = Math.min(devicePixelRatio, 2);
     this.pictures = 0;
@@ -31,9 +32,9 @@ class App {
       binary: (buffer) => this.binary(buffer),
     });
     this.hand = new Hand(this.link);
-    this.keys = this.keyTable();
+    this.keys = keyTable(this);
     this.input = new Input(canvas, this);
-    this.wireButtons();
+    wireButtons(this);
     this.setMode('press');
     setInterval(() => this.lead(), 16);  // also while pictures take longer
     addEventListener('pagehide', () => this.hand.release());
@@ -86,6 +87,8 @@ class App {
     }
     if (this.frame === next) return;
     this.frame = next;
+    const strongest = Math.max(0, ...next.tools.map((tool) => size(tool.force)));
+    if (strongest > this.look.forceMax) this.look.forceMax = roundUp(strongest);
     let most = 0;
     this.bodies.forEach((body, b) => { most = Math.max(most, body.place(next.bodies[b])); });
     if (most > this.look.legendMax) this.look.legendMax = roundUp(most);
@@ -114,7 +117,7 @@ class App {
     ++this.pictures;
     this.firstDrawn ??= performance.now();
     this.panel.frame(this.frame, this.me);
-    this.panel.legend(this.look.byScalar, this.look.legendMax);
+    this.panel.legend(this.look);
     this.curve.draw();
     this.askOrGive();
   }
@@ -123,6 +126,7 @@ class App {
     this.link.tellTaken();
     if (!this.frame || document.hidden) return;
     this.hand.shape = this.scenery.tools[this.hand.tool];
+    this.hand.agree(this.next, this.me);
     this.hand.follow(this.next);
   }
 
@@ -139,7 +143,6 @@ class App {
     const tool = this.frame.tools[this.hand.tool];
     const asked = tool && this.hand.holds(this.frame, this.me) && tool.asker;
     this.panel.ask(asked ? `Page ${tool.asker} asks for the ${this.scenery.tools[this.hand.tool].name}.` : undefined);
-    if (!this.hand.holds(this.frame, this.me) && this.hand.pose && !this.hand.drag && tool?.holder) this.hand.rest();
   }
 
   status(status) {
@@ -223,35 +226,6 @@ class App {
   fullScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
     else document.getElementById('stage').requestFullscreen?.();
-  }
-
-  wireButtons() {
-    const acts = {
-      endoscope: () => this.camera.endoscope(), colour: () => this.toggle('colour'),
-      through: () => this.toggle('through'), pause: () => this.toggle('pause'), grip: () => this.toggle('grip'),
-      shot: () => this.save(), full: () => this.fullScreen(), give: () => this.link.send(wire.give(this.hand.tool)),
-    };
-    for (const button of document.querySelectorAll('[data-do]'))
-      if (acts[button.dataset.do]) button.addEventListener('click', acts[button.dataset.do]);
-    for (const button of document.querySelectorAll('[data-mode]'))
-      button.addEventListener('click', () => this.setMode(button.dataset.mode));
-    const pedal = document.querySelector('[data-do=pedal]');
-    pedal.addEventListener('pointerdown', () => this.withTool(() => this.hand.pedal(true)));
-    for (const type of ['pointerup', 'pointerleave']) pedal.addEventListener(type, () => this.hand.pedal(false));
-    document.getElementById('depth').addEventListener('input', (event) => this.setDepth(event.target.value));
-    document.querySelector('#tools select').addEventListener('change', (event) => this.selectTool(+event.target.value));
-  }
-
-  keyTable() {
-    const once = (act) => (down) => { if (down) act(); };
-    const roll = (by) => Object.assign(once(() => this.hand.roll(by)), { repeats: true });
-    return {
-      1: once(() => this.setMode('press')), 2: once(() => this.setMode('move')), 3: once(() => this.setMode('look')),
-      q: roll(-0.06), w: roll(0.06), g: once(() => this.toggle('grip')),
-      ' ': (down) => this.withTool(() => this.hand.pedal(down)), e: once(() => this.camera.endoscope()),
-      c: once(() => this.toggle('colour')), t: once(() => this.toggle('through')), p: once(() => this.toggle('pause')),
-      s: once(() => this.save()), f: once(() => this.fullScreen()),
-    };
   }
 }
 

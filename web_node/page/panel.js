@@ -44,12 +44,15 @@ export class Panel {
     to.putImageData(image, 0, 0);
   }
 
-  legend(on, max) {
-    byId('legend').classList.toggle('on', on);
-    const said = [1, 0.75, 0.5, 0.25, 0].map((share) => `${+(1e3 * share * max).toPrecision(3)} mm`);
-    if (this.scale === said.join()) return;
-    this.scale = said.join();
-    document.querySelector('#legend ol').replaceChildren(...said.map((text) => row('li', text)));
+  // `look`: the arrows' force, and the tissue's displacement where it is coloured by it, of the last colour.
+  legend({ forceMax, legendMax, byScalar }) {
+    const scale = (max, unit) => [1, 0.75, 0.5, 0.25, 0].map((share) => `${+(share * max).toPrecision(3)} ${unit}`);
+    const newtons = scale(forceMax, 'N'), lengths = byScalar ? scale(1e3 * legendMax, 'mm') : [];
+    const said = [...newtons, ...lengths].join();
+    if (this.said === said) return;
+    this.said = said;
+    byId('newtons').replaceChildren(...newtons.map((text) => row('li', text)));
+    byId('lengths').replaceChildren(...lengths.map((text) => row('li', text)));
   }
 
   frame(frame, me) {
@@ -105,6 +108,7 @@ export class Panel {
       look: 'Drag turns the camera.',
     };
     byId('help').textContent = `${words[mode]} Right button turns the camera, middle button pans, wheel zooms. ` +
-      'Keys: 1 2 3 mode, Q W roll, G jaws, space pedal, E endoscope, C colour, T through, P pause, S save, F full screen.';
+      'Keys: 1 2 3 mode, Q W roll, G jaws, space pedal, E endoscope, C colour, T through, P pause, S save, ' +
+      'F full screen.';
   }
 }

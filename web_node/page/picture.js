@@ -77,7 +77,7 @@ export class Picture {
     this.backdrop.cover();
     for (const one of seen) this.drawInstrument(one);
     this.drawBodies(bodies, look, Math.min(seen.length, 8));
-    if (look.arrows) for (const one of seen) this.drawArrow(one);
+    if (look.arrows) for (const one of seen) this.drawArrow(one, look.forceMax);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
   }
@@ -119,13 +119,13 @@ export class Picture {
   }
 
   // The force on the tool, at its tip, over whatever is in front of it.
-  drawArrow({ tool, shape }) {
+  drawArrow({ tool }, forceMax) {
     const { gl } = this, place = arrowPlace(origin(tool.parts[0]), tool.force, this.axes.reach);
     if (!place) return;
     const arrow = this.programs.get('arrow');
     gl.useProgram(arrow.program);
     gl.uniformMatrix4fv(arrow.placement, false, place);
-    gl.uniform1f(arrow.share, 0.4 + 0.6 * Math.min(1, Math.hypot(...tool.force) / (0.2 * shape.max_force)));
+    gl.uniform1f(arrow.share, Math.hypot(...tool.force) / forceMax);
     gl.disable(gl.DEPTH_TEST);
     this.arrow.draw();
     gl.enable(gl.DEPTH_TEST);

@@ -14,7 +14,9 @@ void main() { gl_Position = scene.view_projection * (placement * vec4(position, 
 const arrowFragment = `uniform float share;
 out vec4 pixel;
 void main() { pixel = vec4(scale_colour(share), 1.0); }`;
-const coverVertex = `void main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0); }`;
+const coverVertex = `void main() {
+  gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+}`;
 // What stands still, drawn before: colour and depth.
 const coverFragment = `uniform sampler2D colours, depths;
 out vec4 pixel;
@@ -76,8 +78,10 @@ export class Programs {
 
   finish({ name, program, shaders }) {
     const { gl } = this;
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-      throw new Error(`${name}: ${gl.getProgramInfoLog(program)} ${shaders.map((s) => gl.getShaderInfoLog(s)).join(' ')}`);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+      const said = [gl.getProgramInfoLog(program), ...shaders.map((shader) => gl.getShaderInfoLog(shader))];
+      throw new Error(`${name}: ${said.join(' ')}`);
+    }
     const block = gl.getUniformBlockIndex(program, 'SceneBlock');
     if (block !== gl.INVALID_INDEX) gl.uniformBlockBinding(program, block, 0);
     const at = (uniform) => gl.getUniformLocation(program, uniform);

@@ -21,7 +21,8 @@ function viewMatrix(eye, right, up, forward) {
     -dot(right, eye), -dot(up, eye), -dot(back, eye), 1]);
 }
 
-// The camera's axes and extent: eye, unit right, up and forward, distance to its target, half the picture at distance 1.
+// The camera's axes and extent: eye, unit right, up and forward, distance to its target, half the picture at
+// distance 1.
 export function axesOf(camera, width, height) {
   const toTarget = sub(camera.target, camera.eye), reach = size(toTarget);
   const forward = scale(1 / reach, toTarget);

@@ -24,7 +24,7 @@ constexpr ForHands for_hands(const BusDeviceSpec&) {
   return ForHands::never;
 }
 constexpr std::string_view absence(const BusDeviceSpec&) {
-  return "no tool on the bus: no device topic and no thread for it";
+  return kNoDriverElsewhere;
 }
 
 }  // namespace palpate

@@ -34,7 +34,7 @@ constexpr ForHands for_hands(const PointerDeviceSpec&) {
   return ForHands::always;
 }
 constexpr std::string_view absence(const PointerDeviceSpec&) {
-  return {};
+  return kNoDriverElsewhere;
 }
 
 }  // namespace palpate
