@@ -52,7 +52,8 @@ function decodeTool(view, at) {
   const flags = u(40);
   return {
     parts, force: [f(36), f(37), f(38)], gripTorque: f(39), flags: flags & 0xffff, seen: (flags & SEEN) !== 0,
-    offered: (flags & OFFERED) !== 0, sample: u(41), holder: u(42), asker: u(43), roll: f(44), grip: f(45), pedal: f(46),
+    offered: (flags & OFFERED) !== 0, sample: u(41), holder: u(42), asker: u(43), roll: f(44), grip: f(45),
+    pedal: f(46),
   };
 }
 
