@@ -60,8 +60,8 @@ class Client {
     socket_.write(boost::asio::buffer(bytes), error);
     return !error;
   }
-  /// Tells that so many frames have been shown.
-  bool shown(std::uint32_t count) {
+  /// Tells that so many frames have been taken.
+  bool taken(std::uint32_t count) {
     std::string bytes(8, '\0');
     bytes[0] = 5;
     std::memcpy(bytes.data() + 4, &count, 4);
