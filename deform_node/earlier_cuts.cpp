@@ -10,7 +10,8 @@ bool EarlierCuts::told_by_all(const Presence& presence) const {
   };
   return std::ranges::all_of(presence.peers(), [&](const auto& entry) {
     const auto& [name, peer] = entry;
-    const bool follows = peer.accepted && (peer.status.role == "haptic" || peer.status.role == "render");
+    const bool follows =
+        peer.accepted && (peer.status.role == "haptic" || peer.status.role == "render" || peer.status.role == "web");
     return !follows || told(name);
   });
 }

@@ -19,8 +19,8 @@ void Interventions::look(const Seen& seen) {
       Kind{seen.followed > last_.followed, "a tool follows its device at a bounded speed: the device has jumped"},
       Kind{seen.refused_models > last_.refused_models,
            "local contact models are refused: they name a haptic step that is still to come"},
-      Kind{(seen.flags & stale_model) != 0,
-           "the force of moving tissue fades: its local contact models come too late"}};
+      Kind{(seen.flags & stale_model) != 0, "the force of moving tissue fades: its local contact models come too late"},
+      Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"}};
   last_ = seen;
   news_.clear();
   status_.clear();

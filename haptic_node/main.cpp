@@ -16,6 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+bool hands = false;  // people may take tools that follow a file
+
 /// Waits until every driver elsewhere has spoken, saying once that it waits.
 void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
   BusDevices drivers(bus, devices);
@@ -130,7 +132,8 @@ void run(const NodeOptions& o) {
                                          StepRecord::kMaxTools));
   HapticStep haptic(scene, loaded.archives);
   std::vector<std::unique_ptr<Device>> devices;
-  for (std::size_t t = 0; t < scene.tools.size(); ++t) devices.push_back(make_device(scene, static_cast<int>(t)));
+  for (std::size_t t = 0; t < scene.tools.size(); ++t)
+    devices.push_back(make_device(scene, static_cast<int>(t), hands));
 
   const std::uint64_t run_id = new_run();
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "haptic"));
@@ -178,5 +181,6 @@ int main(int argc, char** argv) {
   palpate::NodeOptions options;
   palpate::cli::CommandLine app{"haptic_node: collision and force at the device's rate, from precomputed tensors"};
   palpate::add_node_options(app, options);
+  app.add_flag("--hands", palpate::hands, "People may take tools that follow a file; web_node needs the same");
   return palpate::node_main("haptic_node", argc, argv, app, palpate::run, options);
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 #include "render_node/gl.hpp"
 #include "render_node/overlay.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 #include "render_node/font.hpp"
 
 namespace palpate {

@@ -8,12 +8,12 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
+#include "common/node/surface_source.hpp"
 #include "common/node/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"
 #include "render_node/stage.hpp"
-#include "render_node/surface_source.hpp"
 
 namespace palpate {
 

@@ -6,21 +6,19 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "common/view/instrument.hpp"
+#include "common/view/looks.hpp"
+#include "common/view/shaders.hpp"
 #include "render_node/gl.hpp"
 #include "render_node/gpu_mesh.hpp"
-#include "render_node/instrument.hpp"
 #include "render_node/overlay.hpp"
 #include "render_node/render_target.hpp"
 #include "render_node/scene_block.hpp"
-#include "render_node/shaders.hpp"
 
 namespace palpate {
 namespace {
 
 const std::string head = "#version 450 core\n";
-constexpr float kBareSteel = 0.045f;  // behind a probe's tip [m]
-constexpr float kBareFork = 5;        // behind a forceps' hinge [radii of the shaft]
-constexpr float kSatin = 0.35;        // polish of a forceps: flat faces show their shape by shading
 
 }  // namespace
 
@@ -162,9 +160,8 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
   gl.UseProgram(metal);
   gl.Enable(GL_CULL_FACE);
   for (const InstrumentView& tool : frame.instruments) {
-    const bool forceps = tool.jaw_length > 0;
-    gl.ProgramUniform4f(metal, 4, forceps ? kSatin : 1, 0, 0,
-                        forceps ? kBareFork * float(tool.shaft_radius) : kBareSteel);
+    const Steel steel = steel_of(tool);
+    gl.ProgramUniform4f(metal, 4, steel.polish, 0, 0, steel.bare);
     Instrument& made =
         instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
     if (made.parts.empty()) {

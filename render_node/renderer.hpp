@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 #include "render_node/image.hpp"
 
 namespace palpate {

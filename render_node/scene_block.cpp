@@ -73,7 +73,7 @@ SceneBlock scene_block(const Frame& frame, int width, int height) {
   // The light fibres end beside the lens: a little way off it, small shadows show the shape.
   const Vector3d light = camera.eye + reach * (0.12 * up + 0.08 * right);
   block.light = with_w(light, 0);
-  block.viewport = Eigen::Vector4f(width, height, 2.0f / height, 0);
+  block.viewport = Eigen::Vector4f(width, height, 2.0f / height, -1);
   for (std::size_t i = 0; i < frame.instruments.size(); ++i) block.tools[i] = tool_block(frame.instruments[i], light);
   return block;
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 
 namespace palpate {
 

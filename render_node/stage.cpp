@@ -5,19 +5,10 @@
 #include <numbers>
 
 #include "common/mesh/normals.hpp"
-#include "common/models/appearance.hpp"
-#include "common/tool/instrument.hpp"
-#include "render_node/backdrop.hpp"
-#include "render_node/straighten.hpp"
+#include "common/view/backdrop.hpp"
 
 namespace palpate {
 namespace {
-
-// Of one body after refinement: what 60 frames a second allow. A wall has them twice; plastic comes smooth.
-constexpr std::size_t kMaxTrianglesOfOrgan = 16000, kMaxTrianglesOfWall = 6000, kMaxTrianglesOfPlastic = 0;
-// Linear RGB.
-constexpr std::array<double, 3> kBoneColour{0.80, 0.68, 0.54}, lining_colour{0.46, 0.20, 0.165},
-    duct_colour{0.60, 0.29, 0.23}, mucosa_colour{0.58, 0.27, 0.19}, plastic_colour{0.66, 0.74, 0.76};
 
 std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3f> out;
@@ -34,27 +25,6 @@ double round_up(double value) {
   return 10 * decade;
 }
 
-/// How a material is drawn.
-struct Drawn {
-  Finish finish;
-  std::size_t max_triangles;
-  std::array<double, 3> colour;
-};
-
-/// `render`: whose tissue colour is also a wall's, if it is given.
-Drawn drawn_as(Appearance::Material material, const Render& render) {
-  const bool given = render.tissue_colour != Render{}.tissue_colour;
-  switch (material) {
-    case Appearance::Material::wall:
-      return {Finish::duct, kMaxTrianglesOfWall, given ? render.tissue_colour : duct_colour};
-    case Appearance::Material::plastic:
-      return {Finish::plastic, kMaxTrianglesOfPlastic, plastic_colour};
-    case Appearance::Material::tissue:
-      break;
-  }
-  return {Finish::tissue, kMaxTrianglesOfOrgan, render.tissue_colour};
-}
-
 }  // namespace
 
 Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop)
@@ -62,13 +32,12 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   if (!scene.render) render_.camera = fit_camera(surfaces);
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const SurfaceMap& map = surfaces[b];
-    const Appearance look = std::visit([&](const auto& spec) { return appearance(spec, map); }, scene.bodies.at(b));
-    const Drawn drawn = drawn_as(look.material, render_);
+    const BodyLook look = look_of(scene.bodies.at(b), map, render_);
     Soft body;
     body.coarse = map.position.size();
-    body.max_triangles = drawn.max_triangles;
-    body.finish = drawn.finish;
-    body.colour = drawn.colour;
+    body.max_triangles = look.max_triangles;
+    body.finish = look.finish;
+    body.colour = look.colour;
     body.rest = to_float(map.position);
     refine(body, map.triangles);
     body.position = body.rest;
@@ -76,25 +45,17 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
     body.normal.resize(body.refinement.vertices());
     body.refinement.apply(body.position, body.normal);
-    body.texture = look.texture;
-    if (look.material == Appearance::Material::wall) add_wall(body, map, look.thickness);
+    if (look.finish == Finish::duct)
+      add_wall(body, look);
+    else
+      body.texture = look.texture;
     bodies_.push_back(std::move(body));
   }
   const Backdrop sorted = sort_backdrop(backdrop);
   add_backdrop(sorted.bones, Finish::bone, kBoneColour);
-  add_backdrop(sorted.lining, Finish::lining, lining_colour);
-  for (const Tool& tool : scene.tools) {
-    Instrument instrument{make_trocar(tool.pivot, tool.axis, tool.up), {}};
-    instrument.view.shaft_radius = tool.shaft_radius;
-    instrument.view.shaft_length = tool.shaft_length;
-    const EndAbilities can = abilities_of(tool);
-    if (can.ball) instrument.view.tip_radius = *can.ball;
-    if (can.turning) {
-      instrument.view.jaw_length = can.turning->length;
-      instrument.view.jaw_radius = can.turning->radius;
-    }
-    tools_.push_back(instrument);
-  }
+  add_backdrop(sorted.lining, Finish::lining, kLiningColour);
+  for (const Tool& tool : scene.tools)
+    tools_.push_back({make_trocar(tool.pivot, tool.axis, tool.up), instrument_of(tool)});
 }
 
 // A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
@@ -112,10 +73,10 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
   ++body.shape;
 }
 
-void Stage::add_wall(Soft& body, const SurfaceMap& map, double thickness) const {
-  body.wall = ThickWall(body.refinement.triangles(), body.refinement.vertices(), thickness);
+void Stage::add_wall(Soft& body, const BodyLook& look) const {
+  body.wall = ThickWall(body.refinement.triangles(), body.refinement.vertices(), look.thickness);
   body.wall.place(body.position, body.normal);
-  const std::vector<Eigen::Vector3f> coarse = straighten(map);
+  const std::vector<Eigen::Vector3f>& coarse = look.texture;
   body.texture.resize(body.refinement.vertices());
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> coordinate(body.refinement.vertices());
@@ -164,9 +125,7 @@ void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, st
 bool Stage::set_tool(const ToolState& s) {
   if (s.tool >= tools_.size()) return false;
   Instrument& tool = tools_[s.tool];
-  tool.view.tip = tip_pose(tool.trocar, {s.yaw, s.pitch, s.depth, s.roll, s.grip});
-  const bool forceps = tool.view.jaw_length > 0;
-  tool.view.jaw_opening = std::clamp(forceps ? s.opening : s.grip, 0.0, forceps ? std::numbers::pi : 1.2);
+  place(tool.view, tool.trocar, s);
   tool.seen = true;
   return true;
 }
@@ -194,7 +153,7 @@ void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {
   frame.meshes.push_back(view);
   view.id = inner_id;
   view.finish = Finish::mucosa;
-  view.colour = mucosa_colour;
+  view.colour = kMucosaColour;
   view.rest = body.inner_texture;
   view.position = inner.position;
   view.normal = inner.normal;
@@ -225,17 +184,6 @@ Frame Stage::frame() const {
   if (render_.colour == "displacement") frame.legend = Legend{"displacement", legend_max_};
   if (render_.overlay) frame.overlay = overlay_;
   return frame;
-}
-
-Camera fit_camera(std::span<const SurfaceMap> surfaces) {
-  Eigen::AlignedBox3d box;
-  for (const SurfaceMap& map : surfaces)
-    for (const auto& p : map.position) box.extend(p);
-  Camera camera;
-  if (box.isEmpty()) return camera;
-  camera.target = box.center();
-  camera.eye = box.center() + box.diagonal().norm() * Eigen::Vector3d(0.15, -0.85, 0.75);
-  return camera;
 }
 
 }  // namespace palpate

@@ -6,8 +6,9 @@
 #include "common/archive/archive.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/tool/kinematics.hpp"
+#include "common/view/draw_list.hpp"
+#include "common/view/looks.hpp"
 #include "idl/messages.hpp"
-#include "render_node/draw_list.hpp"
 #include "render_node/refine.hpp"
 #include "render_node/thick_wall.hpp"
 
@@ -35,7 +36,7 @@ class Stage {
   void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour);
   struct Soft;
   void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
-  void add_wall(Soft& body, const SurfaceMap& map, double thickness) const;
+  void add_wall(Soft& body, const BodyLook& look) const;
   static void add_views(const Soft& body, int id, int inner_id, Frame& frame);
 
   struct Soft {
@@ -71,8 +72,5 @@ class Stage {
   double legend_max_ = 1e-3;  ///< [m] grows with what is seen
   Overlay overlay_;
 };
-
-/// A camera that sees all the bodies, from in front (-y) and above.
-Camera fit_camera(std::span<const SurfaceMap> surfaces);
 
 }  // namespace palpate

@@ -6,8 +6,8 @@ packages=(
   libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-pthread libopenblas-pthread-dev
   cyclonedds-dev cyclonedds-tools libssl-dev liblcm-dev zlib1g-dev libxxhash-dev
   libgmsh-dev libhdf5-dev hdf5-tools libosmesa6-dev libpng-dev libfreetype-dev fonts-dejavu-core ffmpeg
-  libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev clang-format openssh-client openssh-server python3 python3-numpy python3-h5py python3-matplotlib
+  libboost-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libgtest-dev libbenchmark-dev clang-format openssh-client openssh-server chromium chromium-driver python3-selenium python3 python3-numpy python3-h5py python3-matplotlib
   "$@"
 )
 missing=()

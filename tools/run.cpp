@@ -22,8 +22,10 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+const std::string kScenesPort = "the scene's";  // for --web without a port
+
 struct RunOptions {
-  std::string scene, record, film, still, summary, keys, domain;
+  std::string scene, record, film, still, summary, keys, domain, web;
   double seconds = 0;
   int processes = 2;
   bool strict = false;
@@ -55,7 +57,7 @@ class Nodes {
         else if (line.starts_with('{'))
           n.summary = nlohmann::json::parse(line, nullptr, false);
         else
-          fmt::print("{}\n", line);
+          fmt::print("{}\n", line), std::fflush(stdout);
       }
     }
   }
@@ -138,6 +140,12 @@ DomainClaim claim_domain(const Scene& scene, const RunOptions& o) {
   return claim;
 }
 
+std::vector<std::string> web_command(const RunOptions& o) {
+  std::vector<std::string> command{sibling_program("web_node"), o.scene, "--hands"};
+  if (o.web != kScenesPort) command.insert(command.end(), {"--port", o.web});
+  return command;
+}
+
 void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
   const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {
@@ -147,10 +155,12 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
   };
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
   if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o.keys)));
-  const bool drawn = scene.render || !o.film.empty() || !o.still.empty();
+  const bool watched = !o.web.empty();
+  // In a browser or off screen: nobody would see a third picture.
+  const bool drawn = (scene.render && !watched) || !o.film.empty() || !o.still.empty();
   const bool moves = has_moving_tissue(scene);  // moving tissue needs the node that owns it
-  const bool three = o.processes == 3 || moves;
-  if (moves || (drawn && three)) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  const bool three = o.processes == 3 || moves || watched;
+  if (moves || watched || (drawn && three)) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (drawn) {
     std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
     if (!three) render.push_back("--deform");
@@ -158,10 +168,12 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     if (!o.still.empty()) render.insert(render.end(), {"--still", o.still});
     nodes.start("render_node", render);
   }
+  if (watched) nodes.start("web_node", with(web_command(o)));
   nodes.wait_ready();
   if (shutdown_requested()) return;
   std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
   if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
+  if (watched) haptic.push_back("--hands");
   nodes.start("haptic_node", haptic);
 }
 
@@ -218,6 +230,11 @@ void print_summary(const nlohmann::json& s) {
   if (deform.is_object())
     fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(deform, "rate_hz"),
                number(deform, "latency_us_p50"), number(deform, "latency_us_p99"));
+  if (const nlohmann::json web = said_by("web_node"); web.is_object())
+    fmt::print(
+        "web      {:8.1f} Hz   tool to frame p50 {:.2f} ms, p99 {:.2f} ms   {} requests refused, {} pages thrown out\n",
+        number(web, "rate_hz"), 1e-3 * number(web, "latency_us_p50"), 1e-3 * number(web, "latency_us_p99"),
+        web.value("refused_requests", 0), web.value("thrown_out", 0));
   if (recorder.is_object())
     fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
 }
@@ -263,12 +280,18 @@ void add_run_command(cli::Command& app) {
   run_command.add_option("scene", o->scene, "Scene file").required();
   run_command
       .add_option("--seconds", o->seconds,
-                  "Stop after so many seconds (default: when a scripted motion ends, or Ctrl-C)")
+                  "Stop after so many seconds (default: when a scripted motion ends, with --web never, or Ctrl-C)")
       .positive();
   run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file();
   run_command.add_option("--film", o->film, "Write a film (MP4)").output_file(".mp4");
   run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force")
       .output_file(".png");
+  run_command
+      .add_option(
+          "--web", o->web,
+          "Show it in browsers, and let people there take its tools; a port in place of the scene's may follow, "
+          "0 for any that is free. Runs until Ctrl-C")
+      .value_if_any(kScenesPort);
   run_command.add_option("--summary", o->summary, "Write rates, latencies and forces as JSON").output_file(".json");
   run_command.add_option(
       "--domain", o->domain,

@@ -9,7 +9,7 @@ struct Rights {
   std::vector<std::string> writes, reads;
 };
 
-/// Whoever joins the bus does so in one of these roles. haptic, deform, render, driver and recorder take part and
+/// Whoever joins the bus does so in one of these roles. haptic, deform, render, web, driver and recorder take part and
 /// announce themselves; an observer reads all and writes nothing; a player writes what a log holds; latency measures
 /// round trips over topics of its own and reads all.
 const std::vector<std::string>& bus_roles();

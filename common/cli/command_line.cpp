@@ -77,6 +77,11 @@ Option& Option::show_default() {
   return *this;
 }
 
+Option& Option::value_if_any(const std::string& without) {
+  option_->expected(0, 1)->default_str(without);
+  return *this;
+}
+
 Option& Option::one_value_each_time() {
   option_->allow_extra_args(false);
   return *this;

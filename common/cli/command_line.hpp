@@ -26,7 +26,8 @@ class Option {
   Option& one_of(std::initializer_list<int> values);
   Option& one_of(const std::vector<std::string>& values);
   Option& show_default();
-  Option& one_value_each_time();  ///< of a list: each value has the option's name before it
+  Option& value_if_any(const std::string& without);  ///< its name may stand alone, for this value
+  Option& one_value_each_time();                     ///< of a list: each value has the option's name before it
   Option& excludes(const std::vector<std::string>& names);
   Option& needs(const Option& other);
   Option& hidden();

@@ -37,7 +37,8 @@ struct DevicePlace {
   double haptic_hz;
 };
 
-/// The device that the scene names for this tool. Throws std::runtime_error for a missing or malformed file.
-std::unique_ptr<Device> make_device(const Scene& scene, int tool);
+/// The device that the scene names for this tool; with `hands` people may take it, unless it is theirs anyway or its
+/// driver is elsewhere. Throws std::runtime_error for a missing or malformed file.
+std::unique_ptr<Device> make_device(const Scene& scene, int tool, bool hands = false);
 
 }  // namespace palpate

@@ -8,6 +8,19 @@
 
 namespace palpate {
 
+/// Whether a person may take the tool away from what moves it, by a driver elsewhere such as the live view.
+enum class ForHands { never, if_asked, always };
+
+/// The key of devices whose driver is elsewhere [s].
+inline void describe_lease(Description& d, double& lease) {
+  d.number({"lease", "s", "after which a driver that is silent has let go: the tool stands and its force fades",
+            Need::optional, Use::local},
+           lease, within(0.01, 10));
+}
+
+/// absence() of devices whose driver is elsewhere.
+inline constexpr std::string_view kNoDriverElsewhere = "no tool on the bus: no device topic and no thread for it";
+
 class Device;
 class Trajectory;
 struct DevicePlace;
@@ -22,6 +35,9 @@ struct DevicePlace;
 ///
 /// script(spec): its motion, where it is known before the run. Throws as load_trajectory() does.
 ///
-/// absence(spec): what programs leave out where no tool of a scene has such a device; empty: nothing.
+/// for_hands(spec): whether a person may take the tool.
+///
+/// absence(spec): what programs leave out where no tool of a scene has such a device; kinds with the same sentence are
+/// left out together; empty: nothing.
 
 }  // namespace palpate

@@ -16,6 +16,9 @@ inline void describe(Description& d, MotionFileSpec& m) {
 inline std::filesystem::path motion_file(const MotionFileSpec& spec) {
   return spec.trajectory;
 }
+constexpr ForHands for_hands(const MotionFileSpec&) {
+  return ForHands::if_asked;
+}
 constexpr std::string_view absence(const MotionFileSpec&) {
   return {};
 }

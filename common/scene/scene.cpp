@@ -37,6 +37,7 @@ void describe(Description& d, Scene& scene) {
   d.table({"rates", "", "rates of the loops", Need::optional, Use::agreed, "defaults"}, scene.rates);
   d.table({"record", "", "recording", Need::optional, Use::local, "no recording"}, scene.record);
   d.table({"render", "", "the picture", Need::optional, Use::local, "defaults of the render node"}, scene.render);
+  d.table({"web", "", "the live view in a browser", Need::optional, Use::local, "defaults"}, scene.web);
 }
 
 }  // namespace palpate

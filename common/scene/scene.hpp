@@ -11,6 +11,7 @@
 #include "common/models/body.hpp"
 #include "common/realtime/rates.hpp"
 #include "common/scene/render_spec.hpp"
+#include "common/scene/web_spec.hpp"
 #include "common/tool/passivity_spec.hpp"
 #include "common/tool/spec.hpp"
 
@@ -29,6 +30,7 @@ struct Scene {
   Rates rates;
   std::optional<Record> record;
   std::optional<Render> render;
+  Web web;
 };
 
 /// Whether the state of some body is the deformation node's.
@@ -51,8 +53,8 @@ const KeyList& scene_keys();
 
 /// Hash (XXH3, 128 bits, 32 hexadecimal digits) of what two nodes must agree on: bodies, tools, contact law,
 /// rates and the contents of the curve files. What each node may choose for itself is left out: title, paths,
-/// devices, network, record, render. Meshes are compared by the hash of the archive. Throws std::runtime_error if a
-/// curve file cannot be read.
+/// devices, network, record, render, web. Meshes are compared by the hash of the archive. Throws std::runtime_error if
+/// a curve file cannot be read.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace palpate

@@ -18,6 +18,7 @@ ToolState tool_state(const StepRecord& r, int tool) {
           .opening = from.opening,
           .holding = from.holding,
           .pedal = from.dofs.pedal,
+          .silent = from.dofs.silent,
           .local_model_run = from.model_run,
           .local_model_seq = from.model_seq};
 }

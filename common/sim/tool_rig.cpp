@@ -27,7 +27,9 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
             return make_tool_end(end, EndPlace{index, tool, dt});
           },
           tool.end)),
-      safety_(tool.max_force, tool.max_force_rate, dt) {}
+      safety_(tool.max_force, tool.max_force_rate, dt),
+      fade_step_(dt / kFade),
+      return_step_(dt / kReturn) {}
 
 bool ToolRig::start(const ToolDofs& dofs) {
   if (!sense(dofs)) return false;
@@ -67,11 +69,21 @@ void ToolRig::ask(const ToolLoad& load) {
 void ToolRig::give(bool healthy) {
   PortForce& given = port_.held = port_.asked;
   if (port_.limited) output_.flags |= passivity_limited;
+  fade(given);
   output_.flags |= safety_.apply(given.force, given.torque, healthy);
   output_.force = given.force;
   output_.torque = given.torque;
   output_.grip = given.grip;
   output_.trocar = trocar_reaction(trocar_, dofs_, shaft_length_, given.force, given.torque).trocar;
+}
+
+void ToolRig::fade(PortForce& given) {
+  held_ = std::clamp(held_ + (dofs_.silent ? -fade_step_ : return_step_), 0.0, 1.0);
+  if (held_ == 1) return;
+  output_.flags |= silent_device;
+  given.force *= held_;
+  given.torque *= held_;
+  given.grip *= held_;
 }
 
 void ToolRig::state(State& s) {
@@ -82,6 +94,7 @@ void ToolRig::state(State& s) {
   if (s.restoring()) safety_.set_state(safety);
   end_->state(s);
   s.value(handle_);
+  s.value(held_);
 }
 
 }  // namespace palpate

@@ -52,6 +52,8 @@ class ToolRig {
   /// The hand gets what the watch left of it: slew limits and a second force limit have the last word. `healthy` false
   /// reports a fault of this step.
   void give(bool healthy);
+  /// A hand that has let go is given nothing any more, and one that is back gets its force by and by.
+  static constexpr double kFade = 0.02, kReturn = 0.05;  ///< [s] from all to nothing, and back
   void trip() { safety_.trip(); }
 
   void state(State& s);
@@ -65,9 +67,13 @@ class ToolRig {
   SafetyChain safety_;
   ToolDofs dofs_{};
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
-  double handle_ = 0;  ///< [rad] in the last step
+  double handle_ = 0;               ///< [rad] in the last step
+  double fade_step_, return_step_;  ///< of held_
+  double held_ = 1;                 ///< share of its force that the hand gets; below 1 once it has let go
   Port port_;
   Output output_;
+
+  void fade(PortForce& given);
 };
 
 }  // namespace palpate

@@ -5,12 +5,13 @@ namespace palpate {
 
 /// The five degrees of freedom of an instrument about its trocar, and its pedal.
 struct ToolDofs {
-  double yaw = 0;    ///< [rad] about the zero pose's y axis (up), positive by the right-hand rule
-  double pitch = 0;  ///< [rad] about the yawed x axis, positive by the right-hand rule
-  double depth = 0;  ///< [m] from the trocar to the tip's centre, along the shaft
-  double roll = 0;   ///< [rad] about the shaft, from handle to tip
-  double grip = 0;   ///< [rad] jaw opening
-  double pedal = 0;  ///< [-] 1 while the tool's pedal is down (cautery on), 0 while it is up
+  double yaw = 0;       ///< [rad] about the zero pose's y axis (up), positive by the right-hand rule
+  double pitch = 0;     ///< [rad] about the yawed x axis, positive by the right-hand rule
+  double depth = 0;     ///< [m] from the trocar to the tip's centre, along the shaft
+  double roll = 0;      ///< [rad] about the shaft, from handle to tip
+  double grip = 0;      ///< [rad] jaw opening
+  double pedal = 0;     ///< [-] 1 while the tool's pedal is down (cautery on), 0 while it is up
+  bool silent = false;  ///< its driver elsewhere has let go: the tool stands, and its force fades
 };
 
 /// Fixed frame of the trocar: origin at the pivot, z along the zero pose's shaft (handle to tip), y up.

@@ -46,6 +46,7 @@ ToolDofs MotionGuard::follow(const ToolDofs& sample, std::uint64_t seq) {
     if (in_range(sample)) seen_ = sample;
     seq_ = seq;
   }
+  at_->silent = sample.silent;
   if (!accepted_) return *at_;
   const Distance d = distance(*at_, sample);
   const double share = std::min({1.0, kMaxSpeed * dt_ / d.tip, kMaxTurn * dt_ / d.turn});

@@ -5,7 +5,7 @@
 namespace palpate::testing {
 
 inline ToolState tool_sample(std::uint64_t seq = 7, std::uint32_t tool = 3) {
-  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5, 0.6, 1, 1, 15, 16, 17};
+  return {tool, 11, seq, 12, 13, 14, 0.1, -0.2, 0.3, -0.4, 0.5, 0.6, 1, 1, 1, 15, 16, 17};
 }
 
 inline ContactState contact_sample(int contacts = 2) {

@@ -56,7 +56,7 @@ TEST(Install, AMovedPrefixRunsItsScenes) {
 }
 
 TEST(Install, AComponentIsOneNode) {
-  for (const std::string name : {"haptic", "deform", "render"})
+  for (const std::string name : {"haptic", "deform", "render", "web"})
     EXPECT_EQ(MovedPrefix("--component " + name).files(), std::set<std::string>{"bin/" + name + "_node"});
 }
 

@@ -4,8 +4,8 @@
 
 #include "common/mesh/shell_generators.hpp"
 #include "common/mesh/shell_quality.hpp"
-#include "render_node/instrument.hpp"
-#include "render_node/straighten.hpp"
+#include "common/view/instrument.hpp"
+#include "common/view/straighten.hpp"
 #include "render_node/thick_wall.hpp"
 #include "tests/render/scenery.hpp"
 

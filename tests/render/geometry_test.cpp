@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render_node/instrument.hpp"
+#include "common/view/instrument.hpp"
 #include "render_node/refine.hpp"
 #include "tests/render/scenery.hpp"
 

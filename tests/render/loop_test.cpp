@@ -2,7 +2,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
-#include "render_node/backdrop.hpp"
+#include "common/view/backdrop.hpp"
 #include "render_node/render_loop.hpp"
 #include "tests/render/scenery.hpp"
 

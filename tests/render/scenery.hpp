@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/mesh/normals.hpp"
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 #include "render_node/image.hpp"
 #include "render_node/renderer.hpp"
 

@@ -225,6 +225,7 @@ name = "grasper"
 kind = "forceps"
 pivot = [0, 0.1, 0.3]
 device = "bus"
+lease = 0.2
 compliance = 0.0002
 
 [tool.jaws]
@@ -233,6 +234,15 @@ radius = 0.0012
 max_open = 0.9
 grip_stiffness = 0.4
 friction = 0.6
+
+[[tool]]
+name = "finger"
+pivot = [0, 0, 0.3]
+device = "pointer"
+start = [0, 0, 0.1]
+lease = 0.3
+delay = 0.03
+max_speed = 0.2
 
 [contact]
 rule = "alpha"
@@ -272,6 +282,10 @@ eye = [0, -0.3, 0.2]
 target = [0.01, 0.02, 0.03]
 up = [0, 0, 1]
 field_of_view = 60
+
+[web]
+address = "10.0.0.3"
+port = 9000
 )";
 
 /// The least that is a scene.

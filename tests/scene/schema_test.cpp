@@ -19,7 +19,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
       if (table == "scene") {
         text = line;
         if (key == "tool" || key == "contact" || key == "passivity" || key == "network" || key == "rates" ||
-            key == "record" || key == "render")
+            key == "record" || key == "render" || key == "web")
           text += body;
         if (key == "title") text += body;
       } else {
@@ -44,6 +44,9 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
           text = body + tool + "kind = \"forceps\"\n[tool.jaws]\n" + line;
         } else if (key == "damping_ratio") {
           text = shell + "fixed = [{ group = \"a\" }]\n[body.shell]\nthickness = 1\n" + line;
+        } else if (key == "lease" || key == "start" || key == "delay" || key == "max_speed") {
+          const std::string start = key == "start" ? "" : "start = [0, 0, 0]\n";
+          text = body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"pointer\"\n" + start + line;
         } else if (key == "cautery" || key == "jaws") {
           text = body + tool + line;
         } else if (key == "fixed") {

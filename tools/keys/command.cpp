@@ -18,10 +18,15 @@ struct KeysOptions {
 /// Who uses the keys of a role.
 const std::map<std::string, std::string>& users() {
   static const std::map<std::string, std::string> programs{
-      {"haptic", "haptic_node"},      {"deform", "deform_node"},
-      {"render", "render_node"},      {"driver", "a program that moves a tool and feels its force"},
-      {"recorder", "palpate record"}, {"observer", "palpate top; reads all, writes nothing"},
-      {"player", "palpate replay"},   {"latency", "palpate latency"}};
+      {"haptic", "haptic_node"},
+      {"deform", "deform_node"},
+      {"render", "render_node"},
+      {"web", "web_node"},
+      {"driver", "a program that moves a tool and feels its force"},
+      {"recorder", "palpate record"},
+      {"observer", "palpate top; reads all, writes nothing"},
+      {"player", "palpate replay"},
+      {"latency", "palpate latency"}};
   return programs;
 }
 

@@ -1,16 +1,34 @@
 #include "common/devices/device.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
+#include "common/devices/lease.hpp"
 #include "common/realtime/latest.hpp"
+#include "common/tool/hand_motion.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
 
+/// Passes on what comes as it is. Once its driver has been silent, the tool comes to where the driver is by then at a
+/// hand's pace and without force.
 class BusDevice : public Device {
  public:
-  DeviceSample read(double) override { return newest_.get(); }
+  BusDevice(double lease, double haptic_hz) : lease_(lease), way_back_({.delay = kLead}, 1 / haptic_hz) {}
+
+  DeviceSample read(double seconds) override {
+    DeviceSample sample = newest_.get();
+    if (sample.seq != seq_) lease_.heard(seconds);
+    seq_ = sample.seq;
+    const bool over = lease_.over(seconds);
+    if (over && !away_) way_back_.stand(at_);
+    away_ |= over;
+    if (away_) sample.dofs = come_back(sample.dofs, over);
+    at_ = sample.dofs;
+    return sample;
+  }
   bool finished(double) const override { return false; }
   bool ready() const override { return ready_.load(std::memory_order_acquire); }
   bool on_bus() const override { return true; }
@@ -20,14 +38,37 @@ class BusDevice : public Device {
   }
 
  private:
+  static constexpr double kLead = 0.005;                  ///< [s]
+  static constexpr double kThere = 0.003, kTurned = 0.1;  ///< [m], [rad] near enough to be led on by the driver
+
+  ToolDofs come_back(const ToolDofs& wanted, bool over) {
+    if (over)
+      way_back_.hold();
+    else
+      way_back_.aim(wanted);
+    ToolDofs now = way_back_.step();
+    const double tip = std::abs(wanted.depth) * (std::abs(now.yaw - wanted.yaw) + std::abs(now.pitch - wanted.pitch)) +
+                       std::abs(now.depth - wanted.depth);
+    const double turn = std::max(std::abs(now.roll - wanted.roll), std::abs(now.grip - wanted.grip));
+    away_ = over || tip > kThere || turn > kTurned;
+    if (over) now.pedal = 0;
+    now.silent = away_;
+    return now;
+  }
+
+  Lease lease_;
+  HandMotion way_back_;
+  ToolDofs at_;
+  std::uint64_t seq_ = 0;
+  bool away_ = false;
   Latest<DeviceSample> newest_;
   std::atomic<bool> ready_{false};
 };
 
 }  // namespace
 
-std::unique_ptr<Device> make_device(const BusDeviceSpec&, const DevicePlace&) {
-  return std::make_unique<BusDevice>();
+std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace& place) {
+  return std::make_unique<BusDevice>(spec.lease, place.haptic_hz);
 }
 
 std::optional<Trajectory> script(const BusDeviceSpec&) {

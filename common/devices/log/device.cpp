@@ -25,7 +25,7 @@ class LogDevice : public Device {
       if (!event.read(topics::tool_state, state) || state.tool != place.index) continue;
       if (samples_.empty()) first = state.step;
       if (state.step < first) continue;
-      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal};
+      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal, state.silent != 0};
       // A step whose sample was lost repeats the one before it.
       while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < kMaxSamples)
         samples_.push_back(samples_.back());

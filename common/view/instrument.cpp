@@ -1,4 +1,4 @@
-#include "render_node/instrument.hpp"
+#include "common/view/instrument.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "render_node/draw_list.hpp"
+#include "common/view/draw_list.hpp"
 
 namespace palpate {
 

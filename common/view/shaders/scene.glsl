@@ -14,6 +14,6 @@ layout(std140, binding = 0) uniform SceneBlock {
   vec4 up;        // xyz: half the picture's height at distance 1; w: largest scalar of the legend [m]
   vec4 forward;   // xyz: unit; w: brightness
   vec4 light;     // xyz [m]
-  vec4 viewport;  // width, height [pixel]; 2 / height
+  vec4 viewport;  // width, height [pixel]; 2 / height; 1, or -1 where the picture is drawn upside down
   Tool tools[max_tools];
 } scene;

@@ -1,4 +1,4 @@
-#include "render_node/straighten.hpp"
+#include "common/view/straighten.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 
 /// The files of shaders/, built in.
 namespace palpate::shaders {
@@ -21,5 +22,12 @@ extern const char* const cavity_vert;
 extern const char* const cavity_frag;
 extern const char* const flat_vert;
 extern const char* const flat_frag;
+
+/// One of them under its name here.
+struct Source {
+  const char* name;
+  const char* text;
+};
+std::span<const Source> all();
 
 }  // namespace palpate::shaders

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "common/mesh/normals.hpp"
-#include "render_node/instrument.hpp"
+#include "common/view/instrument.hpp"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "render_node/backdrop.hpp"
+#include "common/view/backdrop.hpp"
 
 #include <algorithm>
 #include <map>

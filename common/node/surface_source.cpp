@@ -1,4 +1,4 @@
-#include "render_node/surface_source.hpp"
+#include "common/node/surface_source.hpp"
 
 #include <spdlog/spdlog.h>
 

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+
+#include "common/tool/kinematics.hpp"
+
+namespace palpate {
+
+/// Smooth motion at the haptic rate from poses that come some sixty times a second. Each new pose is led up to over
+/// `delay`, or longer where that would be faster than the bounds, and a critically damped filter rounds the corners:
+/// position and velocity have no jumps, and no speed exceeds the bounds.
+class HandMotion {
+ public:
+  static constexpr double kSmoothing = 0.004;  ///< [s] time constant of the filter; it lags by twice that
+
+  struct Bounds {
+    double delay = 0.02;  ///< [s] over which a new pose is led up to: longer than poses are apart
+    double speed = 0.25;  ///< [m/s] of the tip
+    double turn = 6;      ///< [rad/s] of roll and grip
+  };
+
+  HandMotion(const Bounds& bounds, double dt) : bounds_(bounds), dt_(dt) {}
+
+  /// The tool stands here.
+  void stand(const ToolDofs& at);
+  /// Somebody wants it there.
+  void aim(const ToolDofs& target);
+  /// It goes no further than where it is led up to now.
+  void hold() { left_ = 0; }
+  /// The next step's pose.
+  ToolDofs step();
+
+ private:
+  using Values = std::array<double, 5>;  ///< yaw, pitch, depth, roll, grip
+
+  Bounds bounds_;
+  double dt_;
+  Values led_{}, pace_{};      ///< where it is led up to, and how far in a step
+  Values first_{}, smooth_{};  ///< the filter's two stages
+  int left_ = 0;               ///< steps until it is led to the target
+  double pedal_ = 0;
+};
+
+}  // namespace palpate

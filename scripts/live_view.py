@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""live_view.py [--domain N] [--rounds N] [--picture FILE]: figures of the live view on this machine.
+
+Rows on standard output, as the benchmarks print them: from a pointer's move to the first picture whose state carries its
+sample (event_to_picture) and to that state in the page (event_to_state), bytes per second to one page, when the page is
+first drawn, and what sixteen viewers cost the haptic step. Needs chromium, chromium-driver and python3-selenium; run it
+with Debian's python3."""
+import argparse
+import json
+import pathlib
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests/web"))
+from live_page import Nodes, Page, need_browser, open_browser  # noqa: E402
+from watcher import Watcher  # noqa: E402
+
+STATE_TIMES = """
+globalThis.stateDelays = [];
+const own = palpate.binary.bind(palpate), waiting = [];
+palpate.binary = (buffer) => {
+  own(buffer);
+  const shown = palpate.next?.tools[0].sample ?? 0;
+  while (waiting.length && waiting[0].number <= shown) stateDelays.push(performance.now() - waiting.shift().event);
+};
+const drag = palpate.hand.dragTo.bind(palpate.hand);
+palpate.hand.dragTo = (axes, at, event) => { drag(axes, at, event); waiting.push({ number: palpate.hand.number, event }); };
+"""
+
+
+COUNTS = """
+globalThis.bytes = globalThis.pictures = 0;
+const on = palpate.binary, draw = palpate.picture.draw.bind(palpate.picture);
+palpate.binary = (buffer) => { bytes += buffer.byteLength; on(buffer); };
+palpate.picture.draw = (...of) => { ++pictures; draw(...of); };
+"""
+
+
+def percentile(values, share):
+    ordered = sorted(values)
+    return ordered[min(int(share * len(ordered)), len(ordered) - 1)]
+
+
+def row(name, unit, *values):
+    print(f"{name},{unit},{','.join(f'{v:.4g}' for v in values)}", flush=True)
+
+
+def one_page(options):
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_browser()
+        try:
+            page = Page(browser, nodes.address)
+            row("web,liver,first_drawn", "ms", page.get("palpate.firstDrawn"))
+            browser.execute_script(STATE_TIMES)
+            browser.execute_script(COUNTS)
+            page.press(0.45, 0.6)
+            page.wait("palpate.hand.drag?.down", 10)
+            begin, counted = time.monotonic(), page.get("[bytes, pictures]")
+            for step in range(options.moves):
+                page.drag(0.45 + 0.1 * (step % 40) / 40, 0.6 - 0.05 * (step % 40) / 40)
+                time.sleep(0.02)
+            seconds = time.monotonic() - begin
+            if options.picture:
+                browser.save_screenshot(options.picture)
+            grown = [now - before for now, before in zip(page.get("[bytes, pictures]"), counted)]
+            row("web,liver,bytes_per_s", "B/s", grown[0] / seconds)
+            row("web,liver,pictures", "Hz", grown[1] / seconds)
+            for name, list_of in (("event_to_picture", "palpate.hand.delays"), ("event_to_state", "stateDelays")):
+                values = page.get(list_of)
+                row(f"web,liver,{name}", "ms p50 p99 max n", percentile(values, 0.5), percentile(values, 0.99),
+                    max(values), len(values))
+        finally:
+            browser.quit()
+
+
+def haptic_p99(options, viewers):
+    """[us] of the haptic step in a run of the scripted press, and frames per second to a viewer."""
+    with tempfile.TemporaryDirectory() as folder:
+        summary = pathlib.Path(folder) / "summary.json"
+        with Nodes(options, "liver.toml", 0, ["--seconds", "8", "--summary", str(summary)]) as nodes:
+            watchers = [Watcher(nodes.port) for _ in range(viewers)]
+            for watcher in watchers:
+                watcher.start()
+            begin = time.monotonic()
+            nodes.process.wait(timeout=40)
+            rate = sum(w.frames for w in watchers) / max(viewers, 1) / (time.monotonic() - begin)
+        said = json.loads(summary.read_text())["haptic_node"]
+    return said["step_us_p99"], rate
+
+
+def viewers(options):
+    alone, watched, rates = [], [], []
+    for _ in range(options.rounds):
+        alone.append(haptic_p99(options, 0)[0])
+        p99, rate = haptic_p99(options, 16)
+        watched.append(p99)
+        rates.append(rate)
+    row("web,viewers0,haptic_step_p99", "us", *alone)
+    row("web,viewers16,haptic_step_p99", "us", *watched)
+    row("web,viewers16,frames_per_s_each", "Hz", *rates)
+    row("web,viewers16,haptic_p99_ratio", "1", percentile(watched, 0.5) / percentile(alone, 0.5))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", default=str(ROOT / "build/release/bin"))
+    parser.add_argument("--domain", default="99")
+    parser.add_argument("--cache", default=str(ROOT / "scenes/meshes/.palpate"))
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--picture", help="PNG of the page while the organ is pressed")
+    parser.add_argument("--moves", type=int, default=300)
+    options = parser.parse_args()
+    options.source = str(ROOT)
+    need_browser()
+    one_page(options)
+    viewers(options)
+
+
+if __name__ == "__main__":
+    main()

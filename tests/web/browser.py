@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""browser.py CASE: what a person at the live view does and sees, in headless Chromium, and what a hostile page does
+to it. Exit status 77: no browser."""
+import argparse
+import json
+import os
+import pathlib
+import tempfile
+import time
+
+from live_page import Nodes, Page, need_browser, open_browser
+from watcher import Connection, Watcher
+
+FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
+MOVED = "Math.max(...palpate.bodies[0].displacement)"
+
+
+def expect(holds, said):
+    if not holds:
+        raise AssertionError(said)
+
+
+def press(options):
+    """Click and drag deform the organ, the curve rises, release brings it back."""
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_browser()
+        try:
+            page = Page(browser, nodes.address)
+            page.press(0.45, 0.6)
+            page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05 && {MOVED} > 0.002", 10)
+            page.wait("palpate.curve.points.at(-1).forces[0] > 0.05", 3)
+            for step in range(15):
+                page.drag(0.45 + 0.006 * step, 0.6 - 0.003 * step)
+                time.sleep(0.03)
+            held = page.state()
+            expect(held["force"] > 0.05 and held["holder"] == held["me"], held)
+            expect(page.wait("palpate.hand.delays.length", 3), "no picture told of a sample")
+            page.let_go(0.54, 0.56)
+            page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
+            expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+        expect(nodes.stop() == 0, "palpate run failed")
+
+
+WATCH_HOLDER = """
+globalThis.seenHolder = [];
+setInterval(() => {
+  const holder = palpate.next?.tools[0].holder;
+  if (holder !== seenHolder.at(-1)?.holder) seenHolder.push({ holder, at: Date.now() });
+}, 4);"""
+
+
+def share(options):
+    """Two pages; a closed one loses the tool within 200 ms; a server that comes back is found again."""
+    with Nodes(options, "liver.toml") as nodes:
+        port = nodes.port
+        first, second = open_browser(), open_browser()
+        try:
+            here, there = Page(first, nodes.address), Page(second, nodes.address)
+            second.execute_script(WATCH_HOLDER)
+            here.press(0.45, 0.6)
+            here.wait("palpate.frame.tools[0].holder === palpate.me", 5)
+            mine = here.get("palpate.me")
+            there.wait(f"palpate.next.tools[0].holder === {mine}", 5)
+            there.get("palpate.hand.take(palpate.next)")
+            here.wait("document.getElementById('ask').classList.contains('on')", 5)
+            there.get("palpate.hand.rest()")
+            closed = time.time()
+            first.execute_cdp_cmd("Page.close", {})
+            there.wait(f"seenHolder.at(-1).holder !== {mine}", 5)
+            took = there.get("seenHolder.at(-1).at") - 1e3 * closed
+            print(f"a closed page's hand was off the tool after {took:.0f} ms")
+            expect(took < 200, took)
+            nodes.stop()
+            there.wait("!palpate.link.open", 10)
+            with Nodes(options, "liver.toml", port):
+                there.wait("palpate.link.open && palpate.frame", 15)
+                there.wait(f"{MOVED} >= 0 && palpate.frame.tools[0].seen", 10)
+            expect(not there.errors(), there.errors())
+        finally:
+            first.quit()
+            second.quit()
+
+
+def cut(options):
+    """What a scalpel cuts is gone in the page."""
+    with Nodes(options, "plate_cut.toml") as nodes:
+        browser = open_browser()
+        try:
+            page = Page(browser, nodes.address)
+            before = page.get("palpate.topology.bodies[0].length")
+            page.wait("palpate.built === palpate.topology && palpate.topology.number > 0", 15)
+            page.wait(f"palpate.bodies[0].refinement.coarseTriangles.length !== {before}", 5)
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
+def hostile(options):
+    """What pages should not send is dropped and counted, and the haptic loop keeps its rate."""
+    with tempfile.TemporaryDirectory() as folder:
+        summary = pathlib.Path(folder) / "summary.json"
+        with Nodes(options, "liver.toml", 0, ["--seconds", "5", "--summary", str(summary)]) as nodes:
+            good = Watcher(nodes.port)
+            good.start()
+            while nodes.process.poll() is None:
+                attack(nodes.port)
+        said = json.loads(summary.read_text())
+    web, haptic = said["web_node"], said["haptic_node"]
+    print(f"{web['thrown_out']} pages thrown out, {web['refused_requests']} requests refused, haptic loop at "
+          f"{haptic['rate_hz']:.1f} Hz, {good.frames} frames to the one that behaves")
+    expect(web["thrown_out"] > 10 and web["refused_requests"] > 10, web)
+    expect(haptic["rate_hz"] > 970, haptic["rate_hz"])
+    expect(good.frames > 100, good.frames)
+
+
+def attack(port):
+    """Garbage, a megabyte, a flood, text, and another origin."""
+    flood = b"\2\0\0\0\0\0\0\0"
+    for messages, kind in (([os.urandom(32)], 2), ([bytes(1 << 20)], 2), (1000 * [flood], 2), ([b"{}"], 1)):
+        try:
+            page = Connection(port)
+            for message in messages:
+                page.send(message, kind)
+        except OSError:
+            pass
+    try:
+        Connection(port, "http://elsewhere.example")
+    except (OSError, IndexError):
+        pass
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("case", choices=["press", "share", "cut", "hostile"])
+    for name in ("bin", "source", "domain", "cache"):
+        parser.add_argument(f"--{name}", required=True)
+    options = parser.parse_args()
+    if options.case != "hostile":
+        need_browser()
+    {"press": press, "share": share, "cut": cut, "hostile": hostile}[options.case](options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,184 @@
+#include "web_node/server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <list>
+#include <thread>
+
+#include "tests/web/client.hpp"
+
+namespace palpate::web {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kInFlight = 3;
+
+template <class F>
+bool within(std::chrono::milliseconds limit, F&& holds) {
+  for (const auto end = Clock::now() + limit; Clock::now() < end; std::this_thread::sleep_for(1ms))
+    if (holds()) return true;
+  return holds();
+}
+
+std::string numbered(std::uint32_t number, std::size_t bytes = 4096) {
+  std::string text(bytes, '\0');
+  std::memcpy(text.data(), &number, 4);
+  return text;
+}
+std::uint32_t number_of(const std::string& text) {
+  std::uint32_t number;
+  std::memcpy(&number, text.data(), 4);
+  return number;
+}
+
+class WebServer : public ::testing::Test {
+ protected:
+  void show(std::uint32_t number) { server_.publish(frame, {false, numbered(number)}); }
+  std::string origin() const { return fmt::format("http://127.0.0.1:{}", server_.port()); }
+
+  std::atomic<int> said_{0}, gone_{0};
+  Server server_{{},
+                 {.said = [this](std::uint32_t, const Said&) { ++said_; }, .gone = [this](std::uint32_t) { ++gone_; }}};
+};
+
+TEST_F(WebServer, ServesItsFilesAndNothingElse) {
+  Client client(server_.port());
+  EXPECT_EQ(client.get("/", client.host()), 200u);
+  EXPECT_NE(client.body.find("main.js"), std::string::npos);
+  EXPECT_EQ(client.get("/main.js", client.host()), 200u);
+  EXPECT_EQ(client.get("/shaders.json", client.host()), 200u);
+  EXPECT_NE(client.body.find("scale_colour"), std::string::npos);
+  EXPECT_EQ(client.get("/../etc/passwd", client.host()), 404u);
+  EXPECT_EQ(Client(server_.port()).get("/", "evil.example"), 403u);
+  EXPECT_EQ(Client(server_.port()).get("/live", client.host()), 400u);
+  EXPECT_EQ(server_.seen().refused, 3u);
+}
+
+TEST_F(WebServer, NoFileOfThePageNamesAnotherHost) {
+  Client client(server_.port());
+  for (const char* path : {"/", "/main.js", "/style.css", "/link.js", "/picture.js", "/panel.js", "/hand.js"}) {
+    ASSERT_EQ(client.get(path, client.host()), 200u) << path;
+    EXPECT_EQ(client.body.find("://"), std::string::npos) << path;
+  }
+}
+
+TEST_F(WebServer, APageFromElsewhereIsRefusedAndCounted) {
+  EXPECT_FALSE(Client(server_.port()).upgrade("http://evil.example"));
+  EXPECT_FALSE(Client(server_.port()).upgrade(""));
+  EXPECT_EQ(server_.seen().refused, 2u);
+  EXPECT_TRUE(Client(server_.port()).enter());
+}
+
+TEST(WebServerWithSecret, LetsInWhoKnowsIt) {
+  Server server({.secret = "0123456789abcdef"}, {[](auto, const auto&) {}, [](auto) {}});
+  Client client(server.port());
+  EXPECT_EQ(client.get("/0123456789abcdef/", client.host()), 200u);
+  EXPECT_EQ(Client(server.port()).get("/", client.host()), 403u);
+  EXPECT_EQ(Client(server.port()).get("/0123456789abcdee/", client.host()), 403u);
+  const std::string origin = "http://" + client.host();
+  EXPECT_FALSE(Client(server.port()).upgrade(origin));
+  EXPECT_TRUE(Client(server.port()).upgrade(origin, "/0123456789abcdef/live"));
+}
+
+TEST_F(WebServer, APageThatTakesNothingGetsNoQueueButTheNewestOnceItDoes) {
+  server_.publish(scenery, {false, "scenery"});
+  show(1);
+  Client slow(server_.port());
+  ASSERT_TRUE(slow.enter());
+  EXPECT_TRUE(slow.read()->starts_with("{\"you\":"));
+  EXPECT_EQ(slow.read(), "scenery");
+  ASSERT_TRUE(within(1s, [&] { return server_.seen().viewers == 1; }));
+  EXPECT_EQ(number_of(*slow.read()), 1u);
+  for (std::uint32_t i = 2; i <= kInFlight; ++i) {
+    show(i);
+    EXPECT_EQ(number_of(*slow.read()), i);
+  }
+  for (std::uint32_t i = kInFlight + 1; i <= 1000; ++i) show(i);
+  ASSERT_TRUE(within(1s, [&] { return server_.seen().skipped == 999 - kInFlight; }));
+  slow.taken(1);
+  EXPECT_EQ(number_of(*slow.read()), 1000u) << "all between are left out";
+}
+
+TEST_F(WebServer, SixteenWatchAndASlowOneSlowsNobody) {
+  std::list<Client> clients;
+  for (int i = 0; i < 16; ++i) ASSERT_TRUE(clients.emplace_back(server_.port()).enter());
+  ASSERT_TRUE(within(1s, [&] { return server_.seen().viewers == 16; }));
+  EXPECT_FALSE(Client(server_.port()).enter()) << "one too many";
+  for (Client& client : clients) client.read();  // its number
+  Client& stalled = clients.front();
+  std::uint32_t count = 0;
+  for (std::uint32_t number = 1; number <= 60; ++number) {
+    const auto begin = Clock::now();
+    show(number);
+    ++count;
+    for (auto client = std::next(clients.begin()); client != clients.end(); ++client) {
+      EXPECT_EQ(number_of(*client->read()), number);
+      client->taken(count);
+    }
+    EXPECT_LT(Clock::now() - begin, 500ms);
+  }
+  EXPECT_EQ(number_of(*stalled.read()), 1u);
+}
+
+TEST_F(WebServer, WhatIsNoMessageThrowsThePageOut) {
+  for (const std::string& bad :
+       {std::string(5, 'x'), std::string(8, '\0'), std::string(33, '\1'), std::string(1 << 20, '\1'), std::string()}) {
+    Client client(server_.port());
+    ASSERT_TRUE(client.enter());
+    client.read();
+    client.write(bad);
+    EXPECT_FALSE(client.read()) << bad.size() << " bytes";
+  }
+  EXPECT_TRUE(within(1s, [&] { return server_.seen().malformed == 5 && server_.seen().viewers == 0; }));
+  EXPECT_EQ(said_, 0);
+}
+
+TEST_F(WebServer, AFloodThrowsThePageOutAndOthersGoOn) {
+  Client good(server_.port()), bad(server_.port());
+  ASSERT_TRUE(good.enter() && bad.enter());
+  good.read();
+  std::string take(8, '\0');
+  take[0] = 2;
+  for (int i = 0; i < 2000 && bad.write(take); ++i) {
+  }
+  EXPECT_TRUE(within(2s, [&] { return server_.seen().malformed == 1; }));
+  EXPECT_TRUE(within(2s, [&] { return gone_ == 1; }));
+  EXPECT_LE(said_, 500);
+  show(7);
+  EXPECT_EQ(number_of(*good.read()), 7u);
+}
+
+TEST_F(WebServer, BytesThatAreNoRequestAreDropped) {
+  for (int i = 0; i < 20; ++i) {
+    boost::asio::io_context context;
+    tcp::socket socket(context);
+    socket.connect(
+        tcp::endpoint(boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server_.port())));
+    boost::system::error_code ignored;
+    boost::asio::write(socket, boost::asio::buffer(std::string(20'000, static_cast<char>(17 * i))), ignored);
+  }
+  EXPECT_EQ(Client(server_.port()).get("/", Client(server_.port()).host()), 200u);
+}
+
+TEST(WebServerPort, ThatIsTakenIsSaid) {
+  Server first({}, {});
+  try {
+    Server second({.port = first.port()}, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot listen at 127.0.0.1 port"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(is_loopback("nowhere"), std::runtime_error);
+  EXPECT_TRUE(is_loopback("::1"));
+  EXPECT_FALSE(is_loopback("0.0.0.0"));
+  EXPECT_EQ(host_in_link("127.0.0.1"), "127.0.0.1");
+  EXPECT_EQ(host_in_link("::1"), "[::1]");
+  EXPECT_NE(host_in_link("0.0.0.0"), "0.0.0.0");
+}
+
+}  // namespace
+}  // namespace palpate::web

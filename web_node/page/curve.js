@@ -1,0 +1,60 @@
+// Force over time: the last seconds of every tool.
+const seconds = 10;
+export const inks = ['#ffb454', '#6fc3ff', '#9be564', '#ff7ab8', '#c9a6ff', '#5fe0c9', '#ffd866', '#ff8a65'];
+
+export class Curve {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.points = [];  // {t, forces} in order of t [s]
+  }
+
+  add(t, forces) {
+    const last = this.points.at(-1);
+    if (last && t < last.t - 1) this.points = [];
+    if (last && t <= last.t) return;
+    this.points.push({ t, forces });
+    let old = 0;
+    while (this.points[old].t < t - seconds) ++old;
+    this.points.splice(0, old);
+  }
+
+  draw() {
+    const { canvas, points } = this, ratio = Math.min(devicePixelRatio, 2);
+    const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    const to = canvas.getContext('2d'), end = points.at(-1)?.t ?? 0;
+    to.clearRect(0, 0, width, height);
+    const top = roundUp(Math.max(0.05, ...points.map((p) => Math.max(...p.forces, 0))));
+    const x = (t) => width * (1 - (end - t) / seconds), y = (f) => height * (0.96 - 0.86 * f / top);
+    this.grid(to, width, y, top, ratio);
+    to.lineWidth = 1.6 * ratio;
+    (points[0]?.forces ?? []).forEach((_, tool) => {
+      to.strokeStyle = inks[tool % inks.length];
+      to.beginPath();
+      for (const p of points) to.lineTo(x(p.t), y(p.forces[tool]));
+      to.stroke();
+    });
+  }
+
+  grid(to, width, y, top, ratio) {
+    to.font = `${10 * ratio}px system-ui, sans-serif`;
+    to.fillStyle = '#a29d95';
+    to.strokeStyle = '#35312c';
+    to.lineWidth = ratio;
+    for (const f of [0, 0.5 * top, top]) {
+      to.beginPath();
+      to.moveTo(0, y(f));
+      to.lineTo(width, y(f));
+      to.stroke();
+      to.fillText(`${+f.toFixed(2)} N`, 4 * ratio, y(f) - 3 * ratio);
+    }
+    to.textAlign = 'right';
+    to.fillText(`last ${seconds} s`, width - 4 * ratio, y(top) - 3 * ratio);
+    to.textAlign = 'left';
+  }
+}
+
+export function roundUp(value) {
+  const decade = 10 ** Math.floor(Math.log10(value));
+  return [1, 2, 3, 4, 5, 6, 8].map((f) => f * decade).find((v) => v >= value * (1 - 1e-9)) ?? 10 * decade;
+}

@@ -1,0 +1,154 @@
+// A hand on a tool: what mouse, touch, keys and gamepad want becomes poses for web_node.
+import * as wire from './wire.js';
+import { rayThrough } from './camera.js';
+import { fromLine, pick, snapshot } from './pick.js';
+import { origin } from './scene_block.js';
+import { add, dot, scale, sub, unit } from './vec.js';
+
+const hover = 0.012, nearLine = 0.004, open = 0.6;  // [m] above the surface; from the line; [rad]
+const settle = 1000;  // [ms]
+
+const standing = (state) => ({ tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 });
+
+export class Hand {
+  constructor(link) {
+    this.link = link;
+    this.tool = 0;
+    this.number = 0;
+    this.depth = 0.01;
+    this.pending = [];
+    this.delays = [];
+    this.rest();
+  }
+
+  rest() {
+    this.drag = undefined;
+    this.pose = undefined;  // {tip, roll, grip, pedal} that is told
+  }
+
+  holds(frame, me) {
+    return frame?.tools[this.tool]?.holder === me;
+  }
+
+  // Where the tool is now becomes what is wanted.
+  take(frame) {
+    const state = frame.tools[this.tool];
+    if (!state?.offered || !state.seen) return false;
+    this.link.send(wire.take(this.tool));
+    this.changed = performance.now();
+    this.pose ??= standing(state);
+    return true;
+  }
+
+  release() {
+    if (this.pose) this.link.send(wire.release(this.tool));
+    this.changed = performance.now();
+    this.rest();
+  }
+
+  // What was handed over is held where it is; what another holds is not told of. Frames come late after a change.
+  agree(frame, me) {
+    if (performance.now() - (this.changed ?? 0) < settle) return;
+    const mine = this.holds(frame, me);
+    if (mine) this.pose ??= standing(frame.tools[this.tool]);
+    else if (!this.drag) this.rest();
+  }
+
+  beginPress(frame, bodies, axes, at) {
+    const surfaces = snapshot(bodies), hit = pick(surfaces, rayThrough(axes, ...at));
+    if (!hit || !this.take(frame)) return false;
+    this.drag = { kind: 'press', surfaces, hit, down: false };
+    return true;
+  }
+
+  beginMove(frame, axes, at) {
+    if (!this.take(frame)) return false;
+    this.drag = { kind: 'move', at, tip: this.pose.tip, along: 0 };
+    return true;
+  }
+
+  // `event`: when it happened, so that the picture that shows it can be told.
+  dragTo(axes, at, event) {
+    const { drag } = this;
+    if (drag?.kind === 'press') drag.hit = pick(drag.surfaces, rayThrough(axes, ...at)) ?? drag.hit;
+    if (drag?.kind === 'move') this.moveTo(axes, at);
+    this.tell();
+    if (event !== undefined) this.pending.push({ number: this.number, event });
+  }
+
+  // On the plane through the tip that faces the camera.
+  moveTo(axes, at) {
+    const { drag } = this, far = dot(sub(drag.tip, axes.eye), axes.forward);
+    const right = scale((at[0] - drag.at[0]) * axes.halfWidth * far, axes.right);
+    const up = scale((at[1] - drag.at[1]) * axes.halfHeight * far, axes.up);
+    this.pose.tip = add(add(add(drag.tip, right), up), scale(drag.along, axes.forward));
+    drag.last = at;
+  }
+
+  // [m] away from the camera; of a press, into the surface.
+  deeper(by, axes) {
+    const { drag } = this;
+    if (drag?.kind === 'press') this.depth = Math.max(0, this.depth + by);
+    else if (drag?.kind === 'move') {
+      drag.along += by;
+      this.moveTo(axes, drag.last ?? drag.at);
+    } else if (this.pose) this.shift(scale(by, axes.forward));
+  }
+
+  shift(by) {
+    if (this.pose) this.pose.tip = add(this.pose.tip, by);
+  }
+
+  roll(by) {
+    if (this.pose) this.pose.roll = Math.min(Math.max(this.pose.roll + by, -3), 3);
+  }
+
+  jaws(closed) {
+    if (this.pose) this.pose.grip = closed ? 0 : open;
+  }
+
+  pedal(down) {
+    if (this.pose) this.pose.pedal = down ? 1 : 0;
+  }
+
+  endDrag() {
+    const { drag } = this;
+    if (drag?.kind === 'press') this.pose.tip = this.above(drag.hit, hover);
+    this.drag = undefined;
+  }
+
+  // Tip's place so that what meets tissue first is `height` [m] above a point of the surface.
+  above({ point, normal }, height) {
+    const { shape } = this, end = shape.jaw_length > 0 ? shape.jaw_radius : shape.tip_radius;
+    const at = add(point, scale(end + height, normal));
+    return sub(at, scale(shape.jaw_length, unit(sub(at, shape.pivot))));
+  }
+
+  // Sixty times a second: a press goes above its place first, and then down.
+  follow(frame) {
+    const { drag, pose } = this;
+    if (!pose || !frame) return;
+    if (drag?.kind === 'press') {
+      const ready = this.above(drag.hit, hover);
+      const off = fromLine(origin(frame.tools[this.tool].parts[0]), ready, drag.hit.normal);
+      if (off < nearLine) drag.down = true;
+      pose.tip = drag.down ? this.above(drag.hit, -this.depth) : ready;
+    }
+    this.tell();
+  }
+
+  tell() {
+    if (!this.pose) return;
+    this.link.send(wire.sample(this.tool, ++this.number, this.pose));
+  }
+
+  // The picture that has just been drawn shows this frame.
+  drawn(frame, me) {
+    const shown = this.holds(frame, me) ? frame.tools[this.tool].sample : 0;
+    const now = performance.now();
+    while (this.pending.length && this.pending[0].number <= shown)
+      this.delays.push(now - this.pending.shift().event);
+    if (this.pending.length > 200) this.pending.shift();
+    if (this.delays.length > 4000) this.delays.splice(0, 2000);
+  }
+}

@@ -1,0 +1,80 @@
+// Mouse, touch and keys over the picture.
+export class Input {
+  constructor(canvas, app) {
+    this.canvas = canvas;
+    this.app = app;
+    this.touches = new Map();
+    canvas.addEventListener('pointerdown', (event) => this.down(event));
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    for (const type of ['pointerup', 'pointercancel', 'lostpointercapture'])
+      canvas.addEventListener(type, (event) => this.up(event));
+    canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+    addEventListener('keydown', (event) => this.key(event, true));
+    addEventListener('keyup', (event) => this.key(event, false));
+  }
+
+  // From -1 to 1, y upwards.
+  place(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return [2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height];
+  }
+
+  down(event) {
+    this.canvas.focus({ preventScroll: true });
+    this.canvas.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    this.touches.set(event.pointerId, [event.clientX, event.clientY]);
+    if (this.touches.size === 2) {
+      this.app.endDrag();
+      this.kind = 'two';
+      return;
+    }
+    if (this.touches.size > 2) return;
+    if (event.button === 0) this.kind = this.app.beginDrag(this.place(event)) ? 'tool' : 'orbit';
+    else this.kind = event.button === 1 || event.shiftKey ? 'pan' : 'orbit';
+  }
+
+  move(event) {
+    const before = this.touches.get(event.pointerId);
+    if (!before) return;
+    const now = [event.clientX, event.clientY], height = this.canvas.clientHeight;
+    const by = [(now[0] - before[0]) / height, (now[1] - before[1]) / height];
+    if (this.kind === 'two') this.pinch(event.pointerId, now, by);
+    this.touches.set(event.pointerId, now);
+    if (this.kind === 'tool') this.app.dragTo(this.place(event), event.timeStamp);
+    if (this.kind === 'orbit') this.app.camera.orbit(3.5 * by[0], 3.5 * by[1]);
+    if (this.kind === 'pan') this.app.camera.pan(by[0], -by[1]);
+  }
+
+  // Two fingers: apart zooms, together pans and turns.
+  pinch(id, now, by) {
+    const other = [...this.touches].find(([key]) => key !== id)?.[1];
+    if (!other) return;
+    const before = this.touches.get(id), span = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
+    this.app.camera.zoom(Math.max(span(before), 1) / Math.max(span(now), 1));
+    this.app.camera.orbit(1.7 * by[0], 1.7 * by[1]);
+  }
+
+  up(event) {
+    if (!this.touches.delete(event.pointerId)) return;
+    if (this.kind === 'tool') this.app.endDrag();
+    if (this.touches.size === 0) this.kind = undefined;
+  }
+
+  wheel(event) {
+    event.preventDefault();
+    const notches = -event.deltaY / (event.deltaMode === 1 ? 3 : 100);
+    if (this.kind !== 'tool') this.app.camera.zoom(Math.exp(-0.12 * notches));
+    else if (event.shiftKey) this.app.hand.roll(0.1 * (notches || -event.deltaX / 100));
+    else this.app.deeper(0.001 * notches);
+  }
+
+  key(event, down) {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
+    const act = this.app.keys[event.key.toLowerCase()];
+    if (!act || (event.repeat && !act.repeats)) return;
+    event.preventDefault();
+    act(down);
+  }
+}

@@ -1,0 +1,51 @@
+import { taken } from './wire.js';
+
+// The WebSocket: connects, and connects again when the server has gone and come back.
+export class Link {
+  constructor(on) {
+    this.on = on;
+    this.received = 0;
+    this.bytes = 0;
+    this.wait = 250;
+    this.connect();
+  }
+
+  connect() {
+    const address = new URL('live', location.href);
+    address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = new WebSocket(address);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.socket = socket;
+      this.received = this.told = 0;
+      this.wait = 250;
+      this.on.open();
+    };
+    socket.onmessage = (event) => {
+      this.bytes += event.data.byteLength ?? event.data.length;
+      if (typeof event.data === 'string') this.on.text(JSON.parse(event.data));
+      else this.on.binary(event.data);
+    };
+    socket.onclose = () => {
+      this.socket = undefined;
+      this.on.close();
+      setTimeout(() => this.connect(), this.wait);
+      this.wait = Math.min(2 * this.wait, 2000);
+    };
+  }
+
+  get open() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  // So that the server sends no more than is taken.
+  tellTaken() {
+    if (this.told === this.received) return;
+    this.told = this.received;
+    this.send(taken(this.received));
+  }
+
+  send(message) {
+    if (this.open && this.socket.bufferedAmount < 4096) this.socket.send(message);
+  }
+}

@@ -1,0 +1,242 @@
+// The page: what comes over the link is drawn, what the hand does goes back.
+import { Curve, roundUp } from './curve.js';
+import { Hand } from './hand.js';
+import { Input } from './input.js';
+import { Link } from './link.js';
+import { Panel } from './panel.js';
+import { Picture } from './picture.js';
+import { SoftBody } from './soft_body.js';
+import { ViewCamera } from './camera.js';
+import { keyTable, wireButtons } from './controls.js';
+import { readGamepad } from './gamepad.js';
+import { size, sub } from './vec.js';
+import * as wire from './wire.js';
+
+const canvas = document.getElementById('picture');
+
+class App {
+  constructor(sources) {
+    this.picture = new Picture(canvas, sources);
+    this.panel = new Panel();
+    this.camera = new ViewCamera();
+    this.curve = new Curve(document.getElementById('curve'));
+    this.bodies = [];
+    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.1, through: false, arrows: true };
+    this.mode = 'press';
+    this.scale = Math.min(devicePixelRatio, 2);
+    this.pictures = 0;
+    this.link = new Link({
+      open: () => this.panel.link('connected', true),
+      close: () => this.lost(),
+      text: (message) => this.text(message),
+      binary: (buffer) => this.binary(buffer),
+    });
+    this.hand = new Hand(this.link);
+    this.keys = keyTable(this);
+    this.input = new Input(canvas, this);
+    wireButtons(this);
+    this.setMode('press');
+    setInterval(() => this.lead(), 16);  // also while pictures take longer
+    addEventListener('pagehide', () => this.hand.release());
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  lost() {
+    this.hand.rest();
+    this.frame = this.next = this.topology = undefined;
+    this.panel.link('no connection; trying again', false);
+  }
+
+  text(message) {
+    if (message.you !== undefined) this.me = message.you;
+    if (message.status) this.status(message.status);
+  }
+
+  binary(buffer) {
+    const kind = wire.kindOf(buffer);
+    if (kind === wire.SCENERY) this.setScenery(wire.decodeContainer(buffer));
+    if (kind === wire.TOPOLOGY) this.topology = wire.decodeContainer(buffer);
+    if (kind !== wire.FRAME) return;
+    ++this.link.received;
+    this.next = wire.decodeFrame(buffer);
+    this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
+  }
+
+  setScenery(scenery) {
+    this.scenery = scenery;
+    this.bodies = [];
+    this.built = undefined;
+    this.topology = undefined;
+    this.picture.setScenery(scenery);
+    this.panel.setScenery(scenery, this.picture.scale(128));
+    const back = this.camera.scene;
+    if (JSON.stringify(back) !== JSON.stringify(scenery.camera)) this.camera.setScene(scenery.camera);
+    this.look.byScalar = scenery.colour === 'displacement';
+    this.selectTool(0);
+    this.setDepth(Math.min(Math.max(Math.round(30 * size(sub(scenery.camera.eye, scenery.camera.target))), 1), 15));
+    this.showToggles();
+  }
+
+  // What came last becomes what is shown.
+  build() {
+    const { topology, next, scenery } = this;
+    if (!scenery || !topology || !next || next.topology !== topology.number) return;
+    if (this.built !== topology) {
+      topology.bodies.forEach((triangles, b) => this.setTriangles(b, triangles));
+      this.built = topology;
+    }
+    if (this.frame === next) return;
+    this.frame = next;
+    const strongest = Math.max(0, ...next.tools.map((tool) => size(tool.force)));
+    if (strongest > this.look.forceMax) this.look.forceMax = roundUp(strongest);
+    let most = 0;
+    this.bodies.forEach((body, b) => { most = Math.max(most, body.place(next.bodies[b])); });
+    if (most > this.look.legendMax) this.look.legendMax = roundUp(most);
+  }
+
+  setTriangles(b, triangles) {
+    const body = this.bodies[b];
+    const spec = this.scenery.bodies[b], most = this.picture.software ? spec.max_triangles / 4 : spec.max_triangles;
+    if (!body) this.bodies[b] = new SoftBody(spec, triangles, most);
+    else if (!same(body.refinement.coarseTriangles, triangles)) body.setTriangles(triangles);
+  }
+
+  tick(now) {
+    requestAnimationFrame((later) => this.tick(later));
+    if (this.picture.busy()) return;
+    const seconds = Math.min((now - (this.last ?? now)) / 1e3, 0.1);
+    this.last = now;
+    if (!this.paused) this.build();
+    if (!this.frame) return;
+    this.adapt(seconds);
+    const width = Math.round(canvas.clientWidth * this.scale), height = Math.round(canvas.clientHeight * this.scale);
+    this.picture.resize(Math.max(width, 16), Math.max(height, 16));
+    this.picture.draw(this.camera.fitted(width, height), this.bodies, this.frame.tools, this.look);
+    readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
+    this.hand.drawn(this.frame, this.me);
+    ++this.pictures;
+    this.firstDrawn ??= performance.now();
+    this.panel.frame(this.frame, this.me);
+    this.panel.legend(this.look);
+    this.curve.draw();
+    this.askOrGive();
+  }
+
+  lead() {
+    this.link.tellTaken();
+    if (!this.frame || document.hidden) return;
+    this.hand.shape = this.scenery.tools[this.hand.tool];
+    this.hand.agree(this.next, this.me);
+    this.hand.follow(this.next);
+  }
+
+  // Fewer pixels where the machine does not keep up.
+  adapt(seconds) {
+    const full = Math.min(devicePixelRatio, 2);
+    this.slow = (this.slow ?? 0) + (seconds > 0.03 ? 1 : -0.5);
+    if (this.slow > 12 && this.scale > 0.4) this.scale = Math.max(0.4, 0.75 * this.scale);
+    if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
+    if (this.slow > 12 || this.slow < -400) this.slow = 0;
+  }
+
+  askOrGive() {
+    const tool = this.frame.tools[this.hand.tool];
+    const asked = tool && this.hand.holds(this.frame, this.me) && tool.asker;
+    this.panel.ask(asked ? `Page ${tool.asker} asks for the ${this.scenery.tools[this.hand.tool].name}.` : undefined);
+  }
+
+  status(status) {
+    const now = performance.now(), since = (now - (this.statusAt ?? now)) / 1e3;
+    if (since > 0) {
+      const delays = this.hand.delays.slice(-60).sort((a, b) => a - b);
+      this.panel.status(status, {
+        rate: this.pictures / since, bytes: this.link.bytes / since, delay: delays[Math.floor(delays.length / 2)],
+      });
+    }
+    this.statusAt = now;
+    this.pictures = 0;
+    this.link.bytes = 0;
+  }
+
+  beginDrag(at) {
+    if (!this.frame || this.mode === 'look') return false;
+    if (this.mode === 'move') return this.hand.beginMove(this.frame, this.picture.axes, at);
+    return this.hand.beginPress(this.frame, this.bodies, this.picture.axes, at);
+  }
+
+  dragTo(at, event) {
+    if (this.picture.axes) this.hand.dragTo(this.picture.axes, at, event);
+  }
+
+  endDrag() {
+    this.hand.endDrag();
+  }
+
+  deeper(by) {
+    this.hand.deeper(by, this.picture.axes);
+    if (this.hand.drag?.kind === 'press') this.setDepth(1e3 * this.hand.depth);
+  }
+
+  setDepth(mm) {
+    const slider = document.getElementById('depth');
+    slider.value = mm;
+    slider.nextElementSibling.textContent = `${+Number(mm).toFixed(1)} mm`;
+    this.hand.depth = mm / 1e3;
+  }
+
+  setMode(mode) {
+    this.mode = mode;
+    for (const button of document.querySelectorAll('[data-mode]'))
+      button.classList.toggle('on', button.dataset.mode === mode);
+    this.panel.help(mode);
+  }
+
+  selectTool(index) {
+    if (index !== this.hand.tool) this.hand.release();
+    this.hand.tool = index;
+    document.querySelector('#tools select').value = index;
+  }
+
+  toggle(what) {
+    if (what === 'colour') this.look.byScalar = !this.look.byScalar;
+    if (what === 'through') this.look.through = !this.look.through;
+    if (what === 'pause') this.paused = !this.paused;
+    if (what === 'grip') this.closed = !this.closed;
+    if (what === 'grip') this.withTool(() => this.hand.jaws(this.closed));
+    this.showToggles();
+  }
+
+  showToggles() {
+    const on = { colour: this.look.byScalar, through: this.look.through, pause: this.paused, grip: this.closed };
+    for (const [name, value] of Object.entries(on))
+      document.querySelector(`[data-do=${name}]`).classList.toggle('on', Boolean(value));
+  }
+
+  withTool(act) {
+    if (this.frame && (this.hand.pose || this.hand.take(this.frame))) act();
+  }
+
+  save() {
+    const link = document.createElement('a');
+    link.download = `palpate-${new Date().toISOString().replace(/[:.]/g, '-')}.png`;
+    link.href = canvas.toDataURL('image/png');
+    link.click();
+  }
+
+  fullScreen() {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else document.getElementById('stage').requestFullscreen?.();
+  }
+}
+
+function same(a, b) {
+  return a.length === b.length && a.every((value, i) => value === b[i]);
+}
+
+try {
+  const answer = await fetch('shaders.json');
+  globalThis.palpate = new App(await answer.json());
+} catch (error) {
+  document.getElementById('note').textContent = error.message;
+  throw error;
+}

@@ -1,0 +1,114 @@
+// The words beside the picture.
+import { inks } from './curve.js';
+import { size } from './vec.js';
+
+const flagWords = [[4, 'fault: force off'], [64, 'let go: force fades'], [16, 'tissue late: force fades'],
+  [1, 'limited'], [32, 'damped']];
+const byId = (id) => document.getElementById(id);
+
+function row(tag, ...children) {
+  const made = document.createElement(tag);
+  made.append(...children);
+  return made;
+}
+
+export class Panel {
+  setScenery(scenery, pixels) {
+    this.scenery = scenery;
+    byId('title').textContent = scenery.title;
+    document.title = `${scenery.title} - palpate`;
+    byId('forces').replaceChildren(...scenery.tools.map((tool, i) => {
+      const ink = row('i');
+      ink.style.background = inks[i % inks.length];
+      return row('li', ink, tool.name, row('b'), row('small'));
+    }));
+    document.querySelector('#tools select').replaceChildren(...scenery.tools.map((tool, i) => {
+      const option = row('option', tool.name);
+      option.value = i;
+      return option;
+    }));
+    byId('tools').hidden = scenery.tools.length < 2;
+    document.querySelector('[data-do=through]').hidden = !scenery.bodies.some((body) => body.finish === 'duct');
+    document.querySelector('[data-do=grip]').hidden = !scenery.tools.some((tool) => tool.grips);
+    document.querySelector('[data-do=pedal]').hidden = !scenery.tools.some((tool) => tool.cuts);
+    this.drawScale(pixels);
+  }
+
+  drawScale(pixels) {
+    const canvas = document.querySelector('#legend canvas'), to = canvas.getContext('2d');
+    const image = to.createImageData(canvas.width, canvas.height);
+    for (let y = 0; y < canvas.height; ++y)
+      for (let x = 0; x < canvas.width; ++x)
+        image.data.set(pixels.subarray(4 * (canvas.height - 1 - y), 4 * (canvas.height - y)),
+          4 * (y * canvas.width + x));
+    to.putImageData(image, 0, 0);
+  }
+
+  // `look`: the arrows' force, and the tissue's displacement where it is coloured by it, of the last colour.
+  legend({ forceMax, legendMax, byScalar }) {
+    const scale = (max, unit) => [1, 0.75, 0.5, 0.25, 0].map((share) => `${+(share * max).toPrecision(3)} ${unit}`);
+    const newtons = scale(forceMax, 'N'), lengths = byScalar ? scale(1e3 * legendMax, 'mm') : [];
+    const said = [...newtons, ...lengths].join();
+    if (this.said === said) return;
+    this.said = said;
+    byId('newtons').replaceChildren(...newtons.map((text) => row('li', text)));
+    byId('lengths').replaceChildren(...lengths.map((text) => row('li', text)));
+  }
+
+  frame(frame, me) {
+    frame.tools.forEach((tool, i) => {
+      const item = byId('forces').children[i];
+      if (!item) return;
+      item.querySelector('b').textContent = `${size(tool.force).toFixed(2)} N`;
+      const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text);
+      item.classList.toggle('flag', (tool.flags & (4 | 16 | 64)) !== 0);
+      const hand = !tool.holder ? '' : tool.holder === me ? 'in your hand' : `in the hand of page ${tool.holder}`;
+      const asked = tool.asker === me ? ['you have asked for it'] : [];
+      item.querySelector('small').textContent = [hand, ...asked, ...words].filter(Boolean).join(', ');
+    });
+  }
+
+  status(status, page) {
+    const rates = Object.fromEntries(status.nodes.map((node) => [node.role, node.rate_hz]));
+    const lines = [['haptic loop', rates.haptic && `${rates.haptic.toFixed(0)} Hz`],
+      ['tissue', rates.deform && `${rates.deform.toFixed(0)} Hz`],
+      ['frames sent', `${status.rate_hz.toFixed(0)} Hz`], ['pictures', `${page.rate.toFixed(0)} Hz`],
+      ['tool to frame', `${status.latency_ms.p50.toFixed(0)} ms`],
+      ['hand to picture', page.delay === undefined ? undefined : `${page.delay.toFixed(0)} ms`],
+      ['received', `${(page.bytes / 1e6).toFixed(2)} MB/s`], ['watching', status.viewers]];
+    byId('rates').replaceChildren(...lines.filter(([, value]) => value !== undefined)
+      .flatMap(([name, value]) => [row('dt', name), row('dd', String(value))]));
+    const said = [...status.said, ...status.nodes.map((node) => node.text).filter(Boolean)];
+    byId('note').textContent = said.join('; ');
+    this.tasks(status.tasks);
+  }
+
+  tasks(tasks) {
+    byId('tasks').replaceChildren(...tasks.flatMap((task) => [
+      row('h2', `Task: ${task.body}`),
+      row('p', `${(1e3 * task.inserted_m).toFixed(0)} mm inserted, ${(1e3 * task.deepest_m).toFixed(0)} mm at the ` +
+        `deepest in ${task.inserting_s.toFixed(1)} s`),
+      row('p', `${task.wall_contacts} wall contacts, ${task.drops} drops, at most ${task.max_force_n.toFixed(2)} N`)]));
+  }
+
+  link(words, good) {
+    byId('link').textContent = words;
+    byId('link').classList.toggle('bad', !good);
+  }
+
+  ask(name) {
+    byId('ask').classList.toggle('on', name !== undefined);
+    if (name !== undefined) document.querySelector('#ask span').textContent = name;
+  }
+
+  help(mode) {
+    const words = {
+      press: 'Hold the button on the organ to press it, drag to slide, wheel for depth; let go and the tool lifts off.',
+      move: 'Drag moves the tool across the view, wheel for depth, with Shift for roll; it stays where it is left.',
+      look: 'Drag turns the camera.',
+    };
+    byId('help').textContent = `${words[mode]} Right button turns the camera, middle button pans, wheel zooms. ` +
+      'Keys: 1 2 3 mode, Q W roll, G jaws, space pedal, E endoscope, C colour, T through, P pause, S save, ' +
+      'F full screen.';
+  }
+}

@@ -1,0 +1,93 @@
+// The project's shaders in the browser's dialect. They are written for GLSL 4.5; here uniforms have no places of their
+// own, and numbers need a precision.
+const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
+
+export function inThisDialect(text) {
+  return text
+    .replace(/layout\(std140, binding = \d+\)/g, 'layout(std140)')
+    .replace(/layout\((?:location|binding) = \d+\) uniform/g, 'uniform');
+}
+
+const arrowVertex = `layout(location = 0) in vec3 position;
+uniform mat4 placement;
+void main() { gl_Position = scene.view_projection * (placement * vec4(position, 1.0)); }`;
+const arrowFragment = `uniform float share;
+out vec4 pixel;
+void main() { pixel = vec4(scale_colour(share), 1.0); }`;
+const coverVertex = `void main() {
+  gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+}`;
+// What stands still, drawn before: colour and depth.
+const coverFragment = `uniform sampler2D colours, depths;
+out vec4 pixel;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  pixel = texelFetch(colours, at, 0);
+  gl_FragDepth = texelFetch(depths, at, 0).r;
+}`;
+const legendFragment = `uniform float height;
+out vec4 pixel;
+void main() { pixel = vec4(scale_colour(gl_FragCoord.y / height), 1.0); }`;
+
+// Programs by what they draw, made when they are first needed.
+export class Programs {
+  constructor(gl, sources) {
+    this.gl = gl;
+    this.sources = Object.fromEntries(Object.entries(sources).map(([name, text]) => [name, inThisDialect(text)]));
+    this.made = new Map();
+  }
+
+  // Begins what will be needed; the browser compiles several at a time.
+  prepare(name, byScalar = false, tools = 0) {
+    const key = `${name} ${byScalar} ${tools}`;
+    if (!this.made.has(key)) this.made.set(key, this.begin(name, ...this.texts(name, byScalar, tools)));
+    return key;
+  }
+
+  get(name, byScalar = false, tools = 0) {
+    const key = this.prepare(name, byScalar, tools), made = this.made.get(key);
+    if (!made.ready) this.made.set(key, this.finish(made));
+    return this.made.get(key);
+  }
+
+  texts(name, byScalar, tools) {
+    const s = this.sources;
+    const start = head + (byScalar ? '#define BY_SCALAR\n' : '') + `#define TOOLS ${tools}\n` + s.scene;
+    const lit = start + s.noise + s.light;
+    if (name === 'arrow') return [start + arrowVertex, start + s.colours + arrowFragment];
+    if (name === 'cover') return [head + coverVertex, head + 'precision highp sampler2D;\n' + coverFragment];
+    if (name === 'legend') return [head + coverVertex, head + s.colours + legendFragment];
+    if (name === 'cavity') return [start + s.cavity_vert, lit + s.cavity_frag];
+    if (name === 'tissue') return [start + s.noise + s.tissue_vert, lit + s.colours + s.tissue_frag];
+    const rigid = name === 'bone' || name === 'lining' || name === 'metal';
+    return [rigid ? start + s.rigid_vert : start + s.noise + s.wall_vert, lit + s[`${name}_frag`]];
+  }
+
+  begin(name, vertex, fragment) {
+    const { gl } = this, program = gl.createProgram();
+    const shaders = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([type, text]) => {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+      return shader;
+    });
+    gl.linkProgram(program);
+    return { name, program, shaders };
+  }
+
+  finish({ name, program, shaders }) {
+    const { gl } = this;
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+      const said = [gl.getProgramInfoLog(program), ...shaders.map((shader) => gl.getShaderInfoLog(shader))];
+      throw new Error(`${name}: ${said.join(' ')}`);
+    }
+    const block = gl.getUniformBlockIndex(program, 'SceneBlock');
+    if (block !== gl.INVALID_INDEX) gl.uniformBlockBinding(program, block, 0);
+    const at = (uniform) => gl.getUniformLocation(program, uniform);
+    return {
+      ready: true, program, placement: at('placement'), colour: at('colour'), shaft: at('shaft'), share: at('share'),
+      colours: at('colours'), depths: at('depths'), height: at('height'),
+    };
+  }
+}

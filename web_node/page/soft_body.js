@@ -1,0 +1,79 @@
+// A body: coarse positions from the wire become what is drawn.
+import { Refinement, vertexNormals } from './refine.js';
+import { ThickWall } from './wall.js';
+import { unpack } from './wire.js';
+
+export class SoftBody {
+  // `mostTriangles`: after refinement.
+  constructor(spec, triangles, mostTriangles) {
+    this.spec = spec;
+    this.mostTriangles = mostTriangles;
+    this.shape = 0;
+    this.setTriangles(triangles);
+  }
+
+  setTriangles(triangles) {
+    const { spec } = this, coarse = spec.rest.length;
+    this.refinement = new Refinement(triangles, spec.rest, this.mostTriangles);
+    const floats = () => new Float32Array(3 * this.refinement.vertices);
+    this.rest = floats();
+    this.rest.set(spec.rest);
+    this.position = floats();
+    this.position.set(spec.rest);
+    this.normal = floats();
+    this.displacement = new Float32Array(this.refinement.vertices);
+    const restNormal = floats();
+    vertexNormals(spec.rest, triangles, restNormal.subarray(0, coarse));
+    this.refinement.apply(this.rest, restNormal);
+    this.normal.set(restNormal);
+    this.position.set(this.rest);
+    this.texture = this.rest;
+    if (spec.texture) {
+      this.texture = floats();
+      this.texture.set(spec.texture);
+      this.refinement.average(this.texture);
+    }
+    if (spec.finish === 'duct') this.addWall();
+    ++this.shape;
+  }
+
+  addWall() {
+    this.wall = new ThickWall(this.refinement.triangles, this.refinement.vertices, this.spec.thickness);
+    this.wall.place(this.position, this.normal);
+    this.innerTexture = new Float32Array(3 * this.wall.from.length);
+    this.wall.from.forEach((v, i) => this.innerTexture.set(this.texture.subarray(3 * v, 3 * v + 3), 3 * i));
+    this.innerDisplacement = new Float32Array(this.wall.from.length);
+  }
+
+  // Positions of a frame. The largest displacement [m].
+  place(packed) {
+    const coarse = this.spec.rest.length, { position, normal, rest } = this;
+    if (packed.words.length !== coarse) return 0;
+    unpack(packed, position);
+    vertexNormals(position, this.refinement.coarseTriangles, normal.subarray(0, coarse));
+    this.refinement.apply(position, normal);
+    this.wall?.place(position, normal);
+    let most = 0;
+    for (let v = 0; v < this.displacement.length; ++v) {
+      const i = 3 * v;
+      const d = Math.hypot(position[i] - rest[i], position[i + 1] - rest[i + 1], position[i + 2] - rest[i + 2]);
+      this.displacement[v] = d;
+      if (d > most) most = d;
+    }
+    this.wall?.from.forEach((v, i) => { this.innerDisplacement[i] = this.displacement[v]; });
+    return most;
+  }
+
+  // What there is to draw.
+  views(mucosaColour) {
+    const { spec, wall } = this;
+    const own = {
+      finish: spec.finish, colour: spec.colour, shape: this.shape, position: this.position, normal: this.normal,
+      rest: this.texture, scalar: this.displacement, triangles: this.refinement.triangles,
+    };
+    if (!wall) return [own];
+    return [{ ...own, ...wall.outer },
+      { ...own, ...wall.inner, finish: 'mucosa', colour: mucosaColour, rest: this.innerTexture,
+        scalar: this.innerDisplacement, triangles: wall.innerTriangles }];
+  }
+}

@@ -1,0 +1,122 @@
+#include "web_node/scenery.hpp"
+
+#include "common/mesh/normals.hpp"
+#include "common/tool/instrument.hpp"
+#include "common/view/backdrop.hpp"
+#include "common/view/instrument.hpp"
+#include "common/view/looks.hpp"
+#include "web_node/protocol.hpp"
+
+namespace palpate::web {
+namespace {
+
+using nlohmann::json;
+
+std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<Eigen::Vector3f> out;
+  for (const auto& p : points) out.push_back(p.cast<float>());
+  return out;
+}
+
+json of(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+const char* name_of(Finish finish) {
+  switch (finish) {
+    case Finish::tissue:
+      return "tissue";
+    case Finish::duct:
+      return "duct";
+    case Finish::plastic:
+      return "plastic";
+    case Finish::bone:
+      return "bone";
+    case Finish::lining:
+      return "lining";
+    case Finish::mucosa:
+      break;
+  }
+  return "mucosa";
+}
+
+json body_of(const Body& spec, const SurfaceMap& surface, const Render& render, Container& to) {
+  const BodyLook look = look_of(spec, surface, render);
+  json body{{"name", name_of(spec)},       {"finish", name_of(look.finish)},
+            {"colour", look.colour},       {"max_triangles", look.max_triangles},
+            {"thickness", look.thickness}, {"rest", to.add(to_float(surface.position))}};
+  if (!look.texture.empty()) body["texture"] = to.add(look.texture);
+  return body;
+}
+
+json tool_of(const Tool& tool, Container& to) {
+  const InstrumentView view = instrument_of(tool);
+  const InstrumentShape shape = make_instrument(view);
+  const EndAbilities can = abilities_of(tool);
+  const Steel steel = steel_of(view);
+  json parts = json::array();
+  for (const InstrumentPart& part : shape.parts)
+    parts.push_back(
+        {{"position", to.add(part.position)}, {"normal", to.add(part.normal)}, {"triangles", to.add(part.triangles)}});
+  return {{"name", tool.name},
+          {"max_force", tool.max_force},
+          {"tip_radius", view.tip_radius},
+          {"shaft_radius", view.shaft_radius},
+          {"shaft_length", view.shaft_length},
+          {"jaw_length", view.jaw_length},
+          {"jaw_radius", view.jaw_radius},
+          {"polish", steel.polish},
+          {"bare", steel.bare},
+          {"grips", can.turning.has_value() || can.closing.has_value()},
+          {"cuts", can.cautery.has_value()},
+          {"pivot", of(tool.pivot)},
+          {"parts", parts}};
+}
+
+void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour, Container& to,
+                  json& list) {
+  if (mesh.triangles.empty()) return;
+  const std::vector<Eigen::Vector3f> position = to_float(mesh.nodes);
+  std::vector<Eigen::Vector3f> normal(position.size());
+  vertex_normals(position, mesh.triangles, normal);
+  list.push_back({{"finish", name_of(finish)},
+                  {"colour", colour},
+                  {"position", to.add(position)},
+                  {"normal", to.add(normal)},
+                  {"triangles", to.add(mesh.triangles)}});
+}
+
+}  // namespace
+
+std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop) {
+  Container container;
+  const Render render = scene.render.value_or(Render{});
+  const Camera camera = scene.render ? render.camera : fit_camera(surfaces);
+  json bodies = json::array(), tools = json::array(), behind = json::array();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    bodies.push_back(body_of(scene.bodies[b], surfaces[b], render, container));
+  for (const Tool& tool : scene.tools) tools.push_back(tool_of(tool, container));
+  const Backdrop sorted = sort_backdrop(backdrop);
+  add_backdrop(sorted.bones, Finish::bone, kBoneColour, container, behind);
+  add_backdrop(sorted.lining, Finish::lining, kLiningColour, container, behind);
+  return container.finish(Kind::scenery, {{"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
+                                          {"camera",
+                                           {{"eye", of(camera.eye)},
+                                            {"target", of(camera.target)},
+                                            {"up", of(camera.up)},
+                                            {"field_of_view", camera.field_of_view}}},
+                                          {"colour", render.colour},
+                                          {"mucosa_colour", kMucosaColour},
+                                          {"bodies", bodies},
+                                          {"tools", tools},
+                                          {"backdrop", behind}});
+}
+
+std::string topology_message(std::uint32_t number, std::span<const std::vector<std::array<int, 3>>> triangles) {
+  Container container;
+  json bodies = json::array();
+  for (const auto& of_body : triangles) bodies.push_back(container.add(of_body));
+  return container.finish(Kind::topology, {{"number", number}, {"bodies", bodies}});
+}
+
+}  // namespace palpate::web

@@ -1,0 +1,121 @@
+#include "web_node/server.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/ip/host_name.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <map>
+#include <stdexcept>
+#include <thread>
+
+#include "web_node/door.hpp"
+#include "web_node/request.hpp"
+#include "web_node/session.hpp"
+
+namespace palpate::web {
+
+namespace asio = boost::asio;
+
+struct Server::Impl : SessionHost, RequestHost {
+  Impl(const ServerSettings& settings, Listeners heard)
+      : listeners(std::move(heard)),
+        guard(settings.secret, is_loopback(settings.address)),
+        most(settings.max_viewers),
+        acceptor(context,
+                 tcp::endpoint(asio::ip::make_address(settings.address), static_cast<unsigned short>(settings.port))) {}
+
+  void accept() {
+    acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (!error) {
+        beast::error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        std::make_shared<Request>(std::move(socket), *this)->read();
+      }
+      accept();
+    });
+  }
+
+  const Door& door() const override { return guard; }
+  Counts& counts() override { return counted; }
+  bool room() const override { return static_cast<int>(sessions.size()) < most; }
+  void upgrade(tcp::socket&& socket, const beast::http::request<beast::http::empty_body>& request) override {
+    std::make_shared<Session>(std::move(socket), *this, ++last_number)->run(request);
+  }
+
+  void opened(const std::shared_ptr<Session>& session) override {
+    if (!room()) {
+      ++counted.refused;
+      return session->close();
+    }
+    sessions[session->number()] = session;
+    counted.viewers = static_cast<int>(sessions.size());
+    session->offer(hello, std::make_shared<Message>(Message{true, fmt::format(R"({{"you":{}}})", session->number())}));
+    for (std::size_t slot = scenery; slot < kSlots; ++slot)
+      if (newest[slot]) session->offer(static_cast<Slot>(slot), newest[slot]);
+  }
+  void closed(Session& session) override {
+    if (sessions.erase(session.number()) == 0) return;
+    counted.viewers = static_cast<int>(sessions.size());
+    listeners.gone(session.number());
+  }
+  void said(Session& session, const Said& what) override { listeners.said(session.number(), what); }
+
+  Listeners listeners;
+  Door guard;
+  int most;
+  Counts counted;
+  asio::io_context context{1};
+  tcp::acceptor acceptor;
+  std::uint32_t last_number = 0;
+  std::map<std::uint32_t, std::shared_ptr<Session>> sessions;
+  std::array<std::shared_ptr<const Message>, kSlots> newest;
+  std::jthread thread;
+};
+
+Server::Server(const ServerSettings& settings, Listeners listeners) {
+  try {
+    impl_ = std::make_unique<Impl>(settings, std::move(listeners));
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen at {} port {}: {}", settings.address, settings.port, error.code().message()));
+  }
+  impl_->accept();
+  impl_->thread = std::jthread([this] { impl_->context.run(); });
+}
+
+Server::~Server() {
+  impl_->context.stop();
+}
+
+int Server::port() const {
+  return impl_->acceptor.local_endpoint().port();
+}
+
+void Server::publish(Slot slot, Message message) {
+  auto shared = std::make_shared<const Message>(std::move(message));
+  asio::post(impl_->context, [this, slot, shared = std::move(shared)] {
+    impl_->newest[slot] = shared;
+    for (const auto& [number, session] : std::map(impl_->sessions)) session->offer(slot, shared);
+  });
+}
+
+Server::Seen Server::seen() const {
+  const Counts& c = impl_->counted;
+  return {c.viewers, c.refused, c.malformed, c.skipped};
+}
+
+std::string host_in_link(const std::string& address) {
+  const auto parsed = asio::ip::make_address(address);
+  if (parsed.is_unspecified()) return asio::ip::host_name();
+  return parsed.is_v6() ? fmt::format("[{}]", address) : address;
+}
+
+bool is_loopback(const std::string& address) {
+  boost::system::error_code error;
+  const auto parsed = asio::ip::make_address(address, error);
+  if (error) throw std::runtime_error(fmt::format("'{}' is no address, such as 127.0.0.1", address));
+  return parsed.is_loopback();
+}
+
+}  // namespace palpate::web

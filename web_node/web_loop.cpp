@@ -1,0 +1,196 @@
+#include "web_node/web_loop.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/periodic.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "common/view/looks.hpp"
+
+namespace palpate::web {
+namespace {
+
+using nlohmann::json;
+
+bool tells_task(const Body& body) {
+  return std::visit([](const auto& spec) { return has_task(spec); }, body);
+}
+
+json of(const TaskRecord& task, const Scene& scene) {
+  return {{"body", name_of(scene.bodies[task.body])},
+          {"inserted_m", task.inserted},
+          {"deepest_m", task.deepest},
+          {"inserting_s", task.inserting_s},
+          {"max_force_n", task.max_force},
+          {"wall_contacts", task.wall_contacts},
+          {"grasps", task.grasps},
+          {"drops", task.drops}};
+}
+
+}  // namespace
+
+WebLoop::WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>> triangles,
+                 std::vector<std::vector<Eigen::Vector3f>> rest, SurfaceSource& source, Bus& bus, Presence& presence,
+                 const Hands& hands, Server& server)
+    : scene_(scene),
+      source_(source),
+      presence_(presence),
+      hands_(hands),
+      server_(server),
+      clock_(bus, presence.node()),
+      link_(bus),
+      tools_(bus.reader(topics::tool_state)),
+      forces_(bus.reader(topics::force_state)),
+      triangles_(std::move(triangles)),
+      rest_(std::move(rest)),
+      frame_tools_(scene.tools.size()) {
+  presence_.set_clock(&clock_);
+  if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
+  for (const Tool& tool : scene.tools) {
+    const InstrumentView view = instrument_of(tool);
+    instruments_.push_back({make_trocar(tool.pivot, tool.axis, tool.up), view, make_instrument(view)});
+  }
+  server_.publish(topology, {false, topology_message(topology_number_, triangles_)});
+}
+
+void WebLoop::take() {
+  source_.update();
+  if (topology_) follow_cuts();
+  while (const auto tool = tools_->take()) take_tool(*tool);
+  while (const auto force = forces_->take()) {
+    const bool good = force->tool < instruments_.size() && presence_.accepts(force->run);
+    if (good) instruments_[force->tool].force = *force;
+    report_.samples_refused += !good;
+  }
+  while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
+    const bool good =
+        task->body < scene_.bodies.size() && tells_task(scene_.bodies[task->body]) && presence_.accepts(task->run);
+    if (good) latest_task_[task->body] = *task;
+    report_.samples_refused += !good;
+  }
+}
+
+void WebLoop::take_tool(const ToolState& state) {
+  if (state.tool >= instruments_.size() || !presence_.accepts(state.run)) {
+    ++report_.samples_refused;
+    return;
+  }
+  Instrument& tool = instruments_[state.tool];
+  place(tool.view, tool.trocar, state);
+  tool.state = state;
+  tool.seen = true;
+}
+
+void WebLoop::follow_cuts() {
+  const std::vector<int> changed = topology_->take();
+  for (const int body : changed) triangles_[body] = topology_->triangles(body);
+  if (changed.empty()) return;
+  server_.publish(topology, {false, topology_message(++topology_number_, triangles_)});
+}
+
+FrameTool WebLoop::tool_in_frame(int index) const {
+  const Instrument& tool = instruments_[index];
+  const Hands::View hand = hands_.view(index, tool.state.device_seq);
+  FrameTool out;
+  for (int part = 0; part < 3; ++part) out.parts[part] = part_pose(tool.view, tool.shape, part).cast<float>();
+  for (int axis = 0; axis < 3; ++axis) out.force[axis] = static_cast<float>(tool.force.force[axis]);
+  out.grip_torque = static_cast<float>(tool.force.grip);
+  out.flags = tool.force.flags | (tool.seen ? kSeen : 0) | (hand.offered ? kOffered : 0);
+  out.sample = hand.sample;
+  out.holder = hand.holder;
+  out.asker = hand.asker;
+  out.roll = static_cast<float>(tool.state.roll);
+  out.grip = static_cast<float>(tool.state.grip);
+  out.pedal = static_cast<float>(tool.state.pedal);
+  return out;
+}
+
+void WebLoop::send_frame() {
+  std::int64_t sense = 0;
+  for (std::size_t t = 0; t < instruments_.size(); ++t) {
+    frame_tools_[t] = tool_in_frame(static_cast<int>(t));
+    sense = std::max(sense, instruments_[t].state.sense_ns);
+  }
+  const std::int64_t now = now_ns();
+  const std::int64_t own = sense != 0 ? clock_.to_own(sense) : now;
+  if (sense != last_sense_ns_) {
+    report_.latency.record(now - own);
+    recent_latency_.record(now - own);
+    last_sense_ns_ = sense;
+  }
+  frame_.topology = topology_number_;
+  ++frame_.number;
+  frame_.sense_s = 1e-9 * static_cast<double>(own - begin_ns_);
+  frame_.latency_ms = 1e-6f * static_cast<float>(now - own);
+  frame_.tools = frame_tools_;
+  frame_.bodies.clear();
+  for (std::size_t b = 0; b < rest_.size(); ++b) {
+    const auto position = source_.shape(static_cast<int>(b)).position;
+    frame_.bodies.push_back(position.empty() ? std::span<const Eigen::Vector3f>(rest_[b]) : position);
+  }
+  server_.publish(frame, {false, encode(frame_)});
+  ++report_.frames;
+}
+
+void WebLoop::keep_house(std::int64_t now) {
+  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  if (now - last_status_ns_ < kNsPerS / 2) return;
+  rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
+  const Percentiles latency = percentiles_us(recent_latency_);
+  presence_.announce(rate_hz_, report_.frames, report_.missed, latency.p50, latency.p99, link_.silence("haptic", now));
+  send_status(now);
+  recent_latency_.clear();
+  last_status_ns_ = now;
+  last_frames_ = report_.frames;
+}
+
+void WebLoop::send_status(std::int64_t now) {
+  json nodes = json::array(), said = json::array(), tasks = json::array();
+  for (const auto& [name, peer] : presence_.peers())
+    if (peer.accepted && now - peer.heard_ns < 10 * kNsPerS)
+      nodes.push_back({{"role", peer.status.role}, {"rate_hz", peer.status.rate_hz}, {"text", peer.status.text}});
+  if (!presence_.matched("haptic")) said.push_back("waiting for a haptic node");
+  for (const char* role : {"haptic", "deform"})
+    if (const std::string silence = link_.silence(role, now); !silence.empty()) said.push_back(silence);
+  for (const auto& [body, task] : latest_task_) tasks.push_back(of(task, scene_));
+  const Percentiles latency = percentiles_us(recent_latency_);
+  const Server::Seen seen = server_.seen();
+  const json status{{"nodes", nodes},
+                    {"said", said},
+                    {"tasks", tasks},
+                    {"rate_hz", rate_hz_},
+                    {"latency_ms", {{"p50", 1e-3 * latency.p50}, {"p99", 1e-3 * latency.p99}}},
+                    {"viewers", seen.viewers},
+                    {"refused", seen.refused},
+                    {"malformed", seen.malformed},
+                    {"skipped", seen.skipped}};
+  server_.publish(web::status, {true, json{{"status", status}}.dump()});
+}
+
+const WebReport& WebLoop::run(double seconds) {
+  PeriodicTimer timer(scene_.rates.visual_hz, 0);
+  begin_ns_ = last_status_ns_ = now_ns();
+  std::int64_t next_house = begin_ns_;
+  presence_.announce(0, 0, 0, 0, 0);
+  while (!shutdown_requested()) {
+    const std::int64_t now = now_ns();
+    if (seconds > 0 && 1e-9 * static_cast<double>(now - begin_ns_) >= seconds) break;
+    clock_.follow();
+    if (now >= next_house) {
+      keep_house(now);
+      next_house = now + 50'000'000;
+    }
+    take();
+    send_frame();
+    timer.wait();
+    report_.missed = timer.statistics().skipped;
+  }
+  report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin_ns_);
+  report_.samples_refused += source_.refused();
+  return report_;
+}
+
+}  // namespace palpate::web
