@@ -79,8 +79,10 @@ void DynamicLoop::begin_tissue(std::int64_t now) {
 void DynamicLoop::settle(std::int64_t now) {
   const auto until = now + static_cast<std::int64_t>(kSettlingShare * 1e9 * world_.dt());
   bool over = false;
-  do over = world_.settle();
-  while (!over && now_ns() < until);
+  do {
+    over = world_.settle();
+    for (int i = 0; i < world_.organs(); ++i) count(world_.organ(i).changes());
+  } while (!over && now_ns() < until);
   if (!over) return;
   phase_ = Phase::moving;
   tell_begin();
@@ -129,12 +131,17 @@ void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vecto
 
 void DynamicLoop::publish_changes() {
   for (int i = 0; i < world_.organs(); ++i) {
-    for (const DynamicOrgan::Change& change : world_.organ(i).changes()) {
+    for (const DynamicOrgan::Change& change : world_.organ(i).changes())
       publish_change(i, change.cause, change.removed);
-      report_.cut += change.cause == RemovalCause::cut ? change.removed.size() : 0;
-      report_.torn += change.cause == RemovalCause::torn ? change.removed.size() : 0;
-      report_.fallen += change.cause == RemovalCause::fell_away ? change.removed.size() : 0;
-    }
+    count(world_.organ(i).changes());
+  }
+}
+
+void DynamicLoop::count(std::span<const DynamicOrgan::Change> changes) {
+  for (const DynamicOrgan::Change& change : changes) {
+    report_.cut += change.cause == RemovalCause::cut ? change.removed.size() : 0;
+    report_.torn += change.cause == RemovalCause::torn ? change.removed.size() : 0;
+    report_.fallen += change.cause == RemovalCause::fell_away ? change.removed.size() : 0;
   }
 }
 

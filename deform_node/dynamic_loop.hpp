@@ -57,6 +57,7 @@ class DynamicLoop {
   void tick();
   void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed);
   void publish_changes();
+  void count(std::span<const DynamicOrgan::Change> changes);
   void publish_models();
   void publish_frames();
   void keep_house(std::int64_t now);

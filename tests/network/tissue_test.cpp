@@ -99,7 +99,7 @@ TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
   observer_->listen(1500ms);
   const double force = observer_->force.force[2], depth = deepest(rest);
   ASSERT_GT(force, 0.1);
-  ASSERT_GT(depth, 0.005);
+  ASSERT_GT(depth, 0.001);
 
   kill(haptic.pid(), SIGSTOP);
   observer_->listen(2s);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "tools/stability/case.hpp"
 
@@ -83,14 +82,8 @@ TEST(StabilityCases, MovingTissue) {
                                           {"step spring_mass semi_implicit|step / bound [1]|1.5", "refused"}});
 }
 
-/// A press by its number, however its words go on. Those that fail are what docs/stability.md says is not right.
 TEST(StabilityCases, MovingContact) {
-  const std::set<std::string> not_right{"0.005", "2:", "3:", "5:", "12:", "19:", "22:", "25:", "27:", "28:"};
-  for (const Point& p : moving_points({.quick = true})) {
-    const Row row = run_guarded(p);
-    const bool fails = not_right.contains(p.value.substr(0, p.value.find(' ')));
-    EXPECT_EQ(row.outcome, fails ? "failed" : "stable") << p.parameter << ", " << p.value << ": " << row.note;
-  }
+  check(moving_points({.quick = true}), {});
 }
 TEST(StabilityCases, Cuts) {
   check(cut_points({.quick = true}), {});

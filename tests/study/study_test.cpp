@@ -99,7 +99,9 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
     EXPECT_LT(free.spread, 1) << rule;
   }
   EXPECT_LT(touch("as it is", 0).jump, 0.01);
-  EXPECT_NEAR(touch("as it is", 0.3).mean_force_N, std::hypot(1, 0.3) * touch("as it is", 0).mean_force_N, 1e-3);
+  const double dragged = std::hypot(1, 0.3) * touch("as it is", 0).mean_force_N;
+  EXPECT_NEAR(touch("as it is", 0.3).mean_force_N, dragged, 0.03 * dragged)
+      << "but for what shear does along the normal";
   EXPECT_EQ(touch("as it is", 0.3).turn, 0);
   for (const Note& note : result.notes) EXPECT_EQ(note.text.find("slide"), std::string::npos) << note.text;
   double least = 1e300, most = 0;

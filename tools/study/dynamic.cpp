@@ -177,8 +177,11 @@ class Dynamic : public Method {
   const PressAnswers& same_mesh() {
     if (!same_mesh_.empty()) return same_mesh_;
     Scene scene = solid_->scene();
-    scene.contact.rule = "barycentric";  // as tissue in motion is touched
-    const auto still = as_kind<QuasiStaticSpec>(solid_->solid());
+    Body moving = scene.bodies[body()];
+    model_.become(moving);
+    if (std::holds_alternative<HybridSpec>(moving)) scene.contact.rule = "barycentric";  // as hybrids are touched
+    auto still = as_kind<QuasiStaticSpec>(solid_->solid());
+    still.offline = Offline{.element = "p1"};
     scene.bodies[body()] = still;
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
