@@ -53,7 +53,7 @@ void Patch::lift() {
 void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   fill_near_field(ground.near_field);
   fill_normal();
-  lift_nodes();
+  lift_nodes(ground);
   for (int p = 0; p < grid_.size(); ++p) {
     const Foot& f = feet_[p];
     wanted_[p] = f.gap;
@@ -72,8 +72,9 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
 }
 
 // What the last step's shear does along the normal.
-void Patch::lift_nodes() {
+void Patch::lift_nodes(const Ground& ground) {
   lifted_.assign(nodes_.size(), 0.0);
+  if (ground.friction == 0) return;
   for (const PatchForce& f : forces()) {
     const auto found = std::ranges::find(nodes_, f.node);
     if (found == nodes_.end()) continue;
@@ -112,7 +113,7 @@ double Patch::depth(const Step& step) const {
 }
 
 void Patch::step(const Ground& ground, const Step& step) {
-  lift_nodes();
+  lift_nodes(ground);
   for (int p = 0; p < grid_.size(); ++p) {
     const bool over = std::isfinite(feet_[p].gap);
     if (!over) active_[p] = 0;

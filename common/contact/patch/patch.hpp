@@ -120,7 +120,7 @@ class Patch {
   void add_inertia(std::span<const Eigen::Matrix3d> give);
   void settle_pressures();
   bool solve_active();
-  void lift_nodes();
+  void lift_nodes(const Ground& ground);
   void sum_pressures();
   void shear(const Ground& ground, const Drag& drag);
   void add_slip(const Eigen::Vector3d& bent_before);
