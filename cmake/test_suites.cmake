@@ -4,6 +4,9 @@
 # time, beside one of the others on two cores. Those ALONE measure lateness, and nothing runs beside them.
 function(palpate_test_suites target)
   cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;PROPERTIES")
+  if(suites_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "palpate_test_suites(${target}): ${suites_UNPARSED_ARGUMENTS}")
+  endif()
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   set(include_list ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM

@@ -18,7 +18,10 @@ class Connection:
                             "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
                             f"Sec-WebSocket-Key: {key}\r\n\r\n".encode())
         self.file = self.socket.makefile("rb")
-        self.status = int(self.file.readline().split()[1])
+        answer = self.file.readline().split()
+        if not answer:
+            raise ConnectionError("closed before it answered")
+        self.status = int(answer[1])
         while self.file.readline() not in (b"\r\n", b""):
             pass
 
