@@ -1,20 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "tests/idl/text_of.hpp"
 
 /// What the generator writes for the toy, word for word. After a change on purpose, the text below
 /// "toy_golden.txt should be" is the new file.
 namespace palpate {
 namespace {
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using testing::text_of;
 
 TEST(ToyIdl, ComesOutWordForWord) {
   std::string written;
