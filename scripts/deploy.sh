@@ -100,7 +100,14 @@ key_files() {
   done < <(named_in_scene keys)
 }
 
-# Links to all that is sent, in a folder: bin/, archives/ and scene/, where files lie to each other as they do here.
+# What a render_node reads a backdrop with.
+mesh_reader() {
+  [[ " ${nodes[*]} " == *" render_node "* ]] && [ -n "$(named_in_scene backdrop)" ] || return 0
+  mkdir -p "$1/lib/palpate"
+  ln -s "$(realpath "$bin/../lib/palpate/libpalpate_gmsh.so")" "$1/lib/palpate/"
+}
+
+# Links to all that is sent, in a folder: bin/, lib/, archives/ and scene/, where files lie to each other as they do here.
 gather() {
   local all=$1 folder base file name archive
   folder=$(dirname "$(realpath -s "$scene")")
@@ -123,6 +130,7 @@ gather() {
   done
   scene_there=scene/${files[0]#"${base%/}/"}
   for name in "${nodes[@]}"; do ln -s "$(realpath "$bin/$name")" "$all/bin/$name"; done
+  mesh_reader "$all"
   "$bin/palpate" precompute "$scene" >"$work/archives"
   sed -n "s/^body '[^']*': \(up to date\|computed and written in [0-9.]* s\): //p" "$work/archives" |
     while read -r archive; do ln -sfn "$(realpath "$archive")" "$all/archives/"; done

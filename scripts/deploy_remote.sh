@@ -34,7 +34,7 @@ remove() {
 damaged() { (cd "$1" && sha256sum --check --quiet --strict sha256 2>/dev/null) || true; }
 
 check_runs() {
-  lacking=$(ldd "$1/bin/$2" 2>&1 | sed -n 's/^[[:space:]]*\([^ ]*\).*not found.*/\1/p' | sort -u | tr '\n' ' ')
+  lacking=$(ldd "$1/bin/$2" "$1"/lib/palpate/*.so 2>&1 | sed -n 's/^[[:space:]]*\([^ ]*\).*not found.*/\1/p' | sort -u | tr '\n' ' ')
   [ -z "$lacking" ] || fail "$2 needs what is not installed: ${lacking% }; docs/deploy.md names the packages"
   "$1/bin/$2" --version >/dev/null 2>&1 || fail "$2 is not a program for this machine"
 }

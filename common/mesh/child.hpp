@@ -31,6 +31,18 @@ T take(const std::string& bytes, std::size_t& at) {
   return value;
 }
 
+inline void put_text(std::string& bytes, const std::string& text) {
+  put(bytes, text.size());
+  bytes += text;
+}
+
+inline std::string take_text(const std::string& bytes, std::size_t& at) {
+  const auto size = take<std::size_t>(bytes, at);
+  if (bytes.size() - at < size) throw std::runtime_error("the reader's answer is cut short");
+  at += size;
+  return bytes.substr(at - size, size);
+}
+
 template <class T>
 void put_all(std::string& bytes, const std::vector<T>& values) {
   put<std::size_t>(bytes, values.size());

@@ -1,12 +1,14 @@
 #include "common/mesh/gmsh_library.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
-#include <gmsh.h>
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "common/mesh/child.hpp"
+#include "common/mesh/gmsh_calls.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
@@ -14,60 +16,15 @@ namespace {
 
 constexpr int kTriangle = 2, kTetrahedron = 4, kPoint = 15;
 
-// Child processes only: this state is never undone, the process ends.
-void start_library() {
-  gmsh::initialize(0, nullptr, false);
-  gmsh::option::setNumber("General.Terminal", 0);
-  gmsh::option::setNumber("General.NumThreads", 1);
-}
-
-std::vector<std::size_t> element_nodes(int type) {
-  std::vector<std::size_t> elements, nodes;
-  gmsh::model::mesh::getElementsByType(type, elements, nodes);
-  return nodes;
-}
-
-void put_text(std::string& bytes, const std::string& text) {
-  put(bytes, text.size());
-  bytes += text;
-}
-
-std::string take_text(const std::string& bytes, std::size_t& at) {
-  const auto size = take<std::size_t>(bytes, at);
-  at += size;
-  return bytes.substr(at - size, size);
-}
-
-std::string read_in_child(const std::filesystem::path& file) {
-  start_library();
-  try {
-    gmsh::merge(file.string());
-  } catch (const std::string& reason) {
-    throw std::runtime_error("the gmsh library refuses it: " + reason);
-  }
-  std::string answer;
-  std::vector<std::size_t> numbers;
-  std::vector<double> coordinates, unused;
-  gmsh::model::mesh::getNodes(numbers, coordinates, unused, -1, -1, false, false);
-  put_all(answer, numbers);
-  put_all(answer, coordinates);
-  put_all(answer, element_nodes(kTetrahedron));
-  put_all(answer, element_nodes(kTriangle));
-
-  gmsh::vectorpair groups;
-  gmsh::model::getPhysicalGroups(groups);
-  put(answer, groups.size());
-  for (const auto& [dimension, number] : groups) {
-    std::string name;
-    gmsh::model::getPhysicalName(dimension, number, name);
-    std::vector<int> entities;
-    gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
-    put(answer, dimension);
-    put(answer, number);
-    put_text(answer, name);
-    put_all(answer, entities);
-  }
-  return answer;
+/// gmsh's calls, loaded with all that it links where the first one is made.
+const LibraryCalls& calls() {
+  static const LibraryCalls* const loaded = [] {
+    void* const module = dlopen("libpalpate_gmsh.so", RTLD_LAZY | RTLD_LOCAL);
+    void* const entry = module ? dlsym(module, "palpate_gmsh_calls") : nullptr;
+    if (!entry) throw std::runtime_error(fmt::format("the gmsh library cannot be loaded: {}", dlerror()));
+    return reinterpret_cast<decltype(&palpate_gmsh_calls)>(entry)();
+  }();
+  return *loaded;
 }
 
 template <std::size_t N>
@@ -98,25 +55,25 @@ std::vector<std::size_t> one_to(std::size_t count) {
 /// Entities by dimension and by the set of groups (numbers) that their elements belong to.
 class EntityTable {
  public:
-  int entity(int dimension, const std::vector<int>& groups) {
-    const auto [place, is_new] = entities_.emplace(std::pair(dimension, groups), 0);
+  explicit EntityTable(LibraryModel& model) : model_(model) {}
+
+  LibraryEntity& entity(int dimension, int type, const std::vector<int>& groups) {
+    const auto [place, is_new] = places_.emplace(std::pair(dimension, groups), model_.entities.size());
     if (is_new) {
-      place->second = ++count_[dimension];
-      gmsh::model::addDiscreteEntity(dimension, place->second);
-      for (int group : groups) members_[{dimension, group}].push_back(place->second);
+      model_.entities.push_back({dimension, ++count_[dimension], type, {}});
+      for (int group : groups) members_[{dimension, group}].push_back(count_[dimension]);
     }
-    return place->second;
+    return model_.entities[place->second];
   }
 
   void name_groups(const std::vector<std::string>& names) const {
-    for (const auto& [group, entities] : members_) {
-      gmsh::model::addPhysicalGroup(group.first, entities, group.second);
-      gmsh::model::setPhysicalName(group.first, group.second, names[group.second - 1]);
-    }
+    for (const auto& [group, entities] : members_)
+      model_.groups.push_back({group.first, group.second, entities, names[group.second - 1]});
   }
 
  private:
-  std::map<std::pair<int, std::vector<int>>, int> entities_;
+  LibraryModel& model_;
+  std::map<std::pair<int, std::vector<int>>, std::size_t> places_;
   std::map<int, int> count_;
   std::map<std::pair<int, int>, std::vector<int>> members_;
 };
@@ -151,16 +108,14 @@ void place_node_group(int number, const std::vector<int>& nodes, const Surface& 
 template <class Nodes>
 void add_elements(EntityTable& table, int dimension, int type, const std::vector<Nodes>& items,
                   const Memberships& groups, bool also_without_group) {
-  std::map<int, std::vector<std::size_t>> nodes_of_entity;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (groups[i].empty() && !also_without_group) continue;
-    auto& nodes = nodes_of_entity[table.entity(dimension, groups[i])];
+    auto& nodes = table.entity(dimension, type, groups[i]).nodes;
     for (int n : items[i]) nodes.push_back(static_cast<std::size_t>(n) + 1);
   }
-  for (const auto& [entity, nodes] : nodes_of_entity) gmsh::model::mesh::addElementsByType(entity, type, {}, nodes);
 }
 
-void build_model(const TetMesh& mesh, bool group_all) {
+LibraryModel model_of(const TetMesh& mesh, bool group_all) {
   const Surface surface = extract_surface(mesh);
   Memberships tetrahedra(mesh.tetrahedra.size()), triangles(surface.triangles.size()), points(mesh.nodes.size());
   std::vector<std::string> names;
@@ -175,21 +130,25 @@ void build_model(const TetMesh& mesh, bool group_all) {
     if (group_all && groups.empty()) groups.push_back(static_cast<int>(names.size()));
   }
 
-  EntityTable table;
-  const int first = table.entity(3, tetrahedra[0]);
-  gmsh::model::mesh::addNodes(3, first, one_to(mesh.nodes.size()), as_numbers(mesh.nodes));
+  LibraryModel model{one_to(mesh.nodes.size()), as_numbers(mesh.nodes), {}, {}};
+  EntityTable table(model);
   std::vector<std::array<int, 1>> nodes(mesh.nodes.size());
   for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n][0] = static_cast<int>(n);
   add_elements(table, 3, kTetrahedron, mesh.tetrahedra, tetrahedra, true);
   add_elements(table, 2, kTriangle, surface.triangles, triangles, false);
   add_elements(table, 0, kPoint, nodes, points, false);
   table.name_groups(names);
+  return model;
+}
+
+std::string in_child(const std::function<std::string(const LibraryCalls&)>& work) {
+  return run_in_child([&work, &gmsh = calls()] { return work(gmsh); });
 }
 
 }  // namespace
 
 LibraryMesh read_with_library(const std::filesystem::path& file) {
-  const std::string answer = run_in_child([&] { return read_in_child(file); });
+  const std::string answer = in_child([&](const LibraryCalls& gmsh) { return gmsh.read(file.string()); });
   LibraryMesh mesh;
   std::size_t at = 0;
   mesh.node_numbers = take_all<std::size_t>(answer, at);
@@ -207,49 +166,19 @@ LibraryMesh read_with_library(const std::filesystem::path& file) {
 }
 
 void write_with_library(const TetMesh& mesh, const std::filesystem::path& file, double version, bool binary) {
-  run_in_child([&] {
-    start_library();
-    gmsh::model::add("palpate");
-    // Before version 4, elements carry their groups' numbers only where nothing but groups is saved.
-    const bool by_group = version < 4 && file.extension() == ".msh";
-    build_model(mesh, by_group);
-    gmsh::option::setNumber("Mesh.SaveAll", by_group ? 0 : 1);
-    gmsh::option::setNumber("Mesh.MshFileVersion", version);
-    gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
-    gmsh::write(file.string());
-    return std::string();
+  // Before version 4, elements carry their groups' numbers only where nothing but groups is saved.
+  const bool by_group = version < 4 && file.extension() == ".msh";
+  in_child([&](const LibraryCalls& gmsh) {
+    return gmsh.write(model_of(mesh, by_group), file.string(), {version, binary, by_group});
   });
 }
 
 TetMesh fill_with_library(const TriangleMesh& surface, double size) {
-  const std::string answer = run_in_child([&] {
-    start_library();
-    gmsh::model::add("palpate");
-    gmsh::model::addDiscreteEntity(2, 1);
-    gmsh::model::mesh::addNodes(2, 1, one_to(surface.nodes.size()), as_numbers(surface.nodes));
-    std::vector<std::size_t> corners;
-    for (const auto& t : surface.triangles) {
-      for (int n : t) corners.push_back(static_cast<std::size_t>(n) + 1);
-    }
-    gmsh::model::mesh::addElementsByType(1, kTriangle, {}, corners);
-    gmsh::model::geo::addSurfaceLoop({1}, 1);
-    gmsh::model::geo::addVolume({1}, 1);
-    gmsh::model::geo::synchronize();
-    // Delaunay: unlike HXT it gives the same mesh in every process.
-    gmsh::option::setNumber("Mesh.Algorithm3D", 1);
-    gmsh::option::setNumber("Mesh.OptimizeThreshold", 0.5);
-    gmsh::option::setNumber("Mesh.MeshSizeMax", size);
-    gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
-    gmsh::model::mesh::generate(3);
-    std::vector<std::size_t> numbers;
-    std::vector<double> coordinates, unused;
-    gmsh::model::mesh::getNodes(numbers, coordinates, unused, -1, -1, false, false);
-    std::string bytes;
-    put_all(bytes, numbers);
-    put_all(bytes, coordinates);
-    put_all(bytes, element_nodes(kTetrahedron));
-    return bytes;
-  });
+  LibraryModel model{one_to(surface.nodes.size()), as_numbers(surface.nodes), {{2, 1, kTriangle, {}}}, {}};
+  for (const auto& t : surface.triangles) {
+    for (int n : t) model.entities[0].nodes.push_back(static_cast<std::size_t>(n) + 1);
+  }
+  const std::string answer = in_child([&](const LibraryCalls& gmsh) { return gmsh.fill(model, size); });
   std::size_t at = 0;
   const auto numbers = take_all<std::size_t>(answer, at);
   const auto points = as_points(take_all<double>(answer, at));

@@ -60,12 +60,12 @@ struct Ways {
 Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, int parts,
                double until = 1) {
   const Ways<double> ways(p0, p1, a, b);
-  const Ways<long double> exact(p0, p1, a, b);
   bool start = ways.outside(0);
   for (int part = 0; part < parts && part <= until * parts; ++part) {
     const double end = (part + 1.0) / parts;
     const bool before = std::exchange(start, ways.outside(end));
     if (before == start) continue;
+    const Ways<long double> exact(p0, p1, a, b);
     long double low = static_cast<double>(part) / parts, high = end;
     for (int i = 0; i < 64; ++i) {
       const long double middle = (low + high) / 2;

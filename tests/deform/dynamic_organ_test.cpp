@@ -191,7 +191,7 @@ TEST(DynamicOrgan, AStateOfAnotherSceneIsRefused) {
   Bench bench(block_scene());
   std::vector<std::uint8_t> state = bench.world().save();
   for (const std::size_t size : {std::size_t{0}, std::size_t{7}, state.size() / 2, state.size() - 1}) {
-    Bench other(block_scene());
+    Bench other(bench);
     EXPECT_THROW(other.world().restore(std::span(state).first(size)), std::runtime_error) << size;
   }
 }

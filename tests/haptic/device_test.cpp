@@ -8,22 +8,17 @@
 #include "common/bus/memory_bus.hpp"
 #include "haptic_node/bus_devices.hpp"
 #include "idl/topics.hpp"
+#include "tests/haptic/device_scene.hpp"
 
 namespace palpate {
 namespace {
+
+using testing::scene_with;
 
 class DeviceTest : public ::testing::Test {
  protected:
   DeviceTest() : file_(std::filesystem::temp_directory_path() / ("palpate-device-" + std::to_string(getpid()))) {}
   ~DeviceTest() override { std::filesystem::remove(file_); }
-  Scene scene_with(const DeviceSpec& device) {
-    Scene scene;
-    Tool tool;
-    tool.name = "probe";
-    tool.device = device;
-    scene.tools.push_back(tool);
-    return scene;
-  }
   std::filesystem::path file_;
 };
 

@@ -5,20 +5,14 @@
 #include "common/devices/device.hpp"
 #include "common/devices/held_device.hpp"
 #include "tests/haptic/block_scene.hpp"
+#include "tests/haptic/device_scene.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kDt = 1e-3;
 
-Scene scene_with(const DeviceSpec& device) {
-  Scene scene;
-  Tool tool;
-  tool.name = "probe";
-  tool.device = device;
-  scene.tools.push_back(tool);
-  return scene;
-}
+using testing::scene_with;
 
 /// A driver that presses at 1 kHz or as a page does, and stops and goes on.
 struct Driver {
@@ -74,7 +68,7 @@ TEST(Lease, AHeldToolNeitherJumpsWhenItIsTakenNorWhenItsHandComesBack) {
     EXPECT_LE(std::abs(sample.dofs.depth - last), 0.25e-3 + 1e-9) << i;
     last = sample.dofs.depth;
     was_silent |= sample.dofs.silent;
-    if (i < 50) EXPECT_FALSE(sample.dofs.silent) << "nobody has taken it yet";
+    EXPECT_FALSE(i < 50 && sample.dofs.silent) << "nobody has taken it yet";
   }
   EXPECT_TRUE(was_silent);
   EXPECT_NEAR(last, start - 0.05, 1e-6);

@@ -37,7 +37,7 @@ std::vector<Include> all_includes() {
 
 TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
   const std::map<std::string, std::set<std::string>> homes{
-      {R"((.*/)?gmshc?\.h(_cwrap)?)", {"common/mesh", "tools/generate"}},
+      {R"((.*/)?gmshc?\.h(_cwrap)?)", {"common/mesh"}},
       {R"((.*/)?cholmod.*\.h)", {"common/fem"}},
       {R"((.*/)?(cblas|lapacke?|openblas.*)\.h)", {"common/fem"}},
       {R"(CLI/.*)", {"common/cli"}},
@@ -81,6 +81,16 @@ TEST(ToolsHomes, TheHapticNodeLinksNoPictureMeshFilmOrSolverLibrary) {
   EXPECT_NE(haptic.find("libddsc"), std::string::npos);
   EXPECT_TRUE(std::regex_search(libraries_of("render_node"), heavy));
   EXPECT_TRUE(std::regex_search(libraries_of("palpate"), heavy));
+}
+
+TEST(ToolsHomes, GmshIsLoadedOnlyWhereAMeshIsRead) {
+  const auto loads_gmsh = [](const std::string& arguments) {
+    const auto result = run_program("LD_DEBUG=files " + program("palpate") + " " + arguments);
+    EXPECT_EQ(result.status, 0) << arguments;
+    return result.err.find("libgmsh") != std::string::npos;
+  };
+  EXPECT_FALSE(loads_gmsh("--help"));
+  EXPECT_TRUE(loads_gmsh("check " PALPATE_SOURCE "/scenes/plate.toml"));
 }
 
 }  // namespace

@@ -20,9 +20,10 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
     const Triangle c = corners(static_cast<int>(t));
     const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
     facet_normal_.push_back(doubled_area.normalized());
+    area_.push_back(0.5 * doubled_area.norm());
     for (int v = 0; v < 3; ++v) {
       const Vector3d a = (c[(v + 1) % 3] - c[v]).normalized(), b = (c[(v + 2) % 3] - c[v]).normalized();
-      weight_[map.triangles[t][v]] += doubled_area.norm() / 6;
+      weight_[map.triangles[t][v]] += area_.back() / 3;
       node_normal_[map.triangles[t][v]] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * facet_normal_.back();
     }
   }

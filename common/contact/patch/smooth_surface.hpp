@@ -23,6 +23,7 @@ class SmoothSurface {
   const Eigen::Vector3d& facet_normal(int t) const { return facet_normal_[t]; }  ///< outward, unit
   Eigen::Vector3d normal(int t, const Eigen::Vector3d& weights) const;           ///< outward, unit, continuous
   const Eigen::Vector3d& node_normal(int n) const { return node_normal_[n]; }    ///< outward, unit
+  double area(int t) const { return area_[t]; }                                  ///< [m^2]
   double weight(int n) const { return weight_[n]; }                              ///< [m^2] integral of its hat
 
   /// Triangles that come within `radius` of a point; ascending, a few others among them. Valid until the next call.
@@ -33,7 +34,7 @@ class SmoothSurface {
  private:
   const SurfaceMap& map_;
   std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
-  std::vector<double> weight_;
+  std::vector<double> area_, weight_;
   std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;
   mutable std::vector<int> found_;
