@@ -158,13 +158,18 @@ TEST_F(Deploy, FilesBesideTheSceneKeepTheirPlaces) {
   fs::create_directory(block_.folder() / "deeper");
   block_.replace("\"block.msh", "\"../block.msh");
   block_.replace("\"motion.csv", "\"../motion.csv");
+  block_.replace("[render]\n", "[render]\nbackdrop = \"../ribs.stl\"\n");
+  fs::copy_file(fs::path(PALPATE_SOURCE) / "scenes/meshes/ribs.stl", block_.folder() / "ribs.stl");
   fs::rename(block_.scene(), block_.folder() / "deeper/scene.toml");
   const std::string deeper = (block_.folder() / "deeper/scene.toml").string() + " --no-start";
   EXPECT_EQ(deploy(deeper), 0);
-  for (const char* file : {"block.msh", "motion.csv", "deeper/scene.toml"})
+  EXPECT_FALSE(fs::exists(far_->home() / "palpate/lib")) << "no node there reads a mesh";
+  EXPECT_EQ(deploy(deeper + " --node deform_node --node render_node"), 0);
+  for (const char* file : {"block.msh", "motion.csv", "ribs.stl", "deeper/scene.toml"})
     EXPECT_TRUE(fs::exists(far_->home() / "palpate/scene" / file)) << file;
   EXPECT_FALSE(somebody_runs(far_->home() / "palpate"));
-  EXPECT_EQ(run_in(hosts_->b(), far_->home() / "palpate/start deform_node --seconds 0.1", said_), 0);
+  for (const char* node : {"deform_node", "render_node"})
+    EXPECT_EQ(run_in(hosts_->b(), far_->home() / fmt::format("palpate/start {} --seconds 0.1", node), said_), 0);
 }
 
 TEST_F(Deploy, DamageIsNoticed) {

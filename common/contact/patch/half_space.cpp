@@ -54,37 +54,62 @@ Vector3d place(const Triangle& t, const Vector3d& weights) {
   return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
 }
 
+// K = isotropic I + a matrix that is its own transpose, of which the upper part is kept.
+struct Symmetric {
+  std::array<double, 7> at{};  // isotropic; xx, yy, zz, xy, xz, yz
+
+  void add(double weight, const Symmetric& k) {
+    for (int i = 0; i < 7; ++i) at[i] += weight * k.at[i];
+  }
+  Matrix3d matrix() const {
+    Matrix3d m;
+    m << at[0] + at[1], at[4], at[5], at[4], at[0] + at[2], at[6], at[5], at[6], at[0] + at[3];
+    return m;
+  }
+};
+using OfCorners = std::array<Symmetric, 3>;
+
+Symmetric kernel(const HalfSpace& half_space, const Vector3d& d, const Vector3d& normal) {
+  const double over_r = 1 / d.norm();
+  const double isotropic = half_space.scale() * (1 - half_space.poisson) * over_r;
+  const double stretch = half_space.scale() * half_space.poisson * over_r * over_r * over_r;
+  const Vector3d a = d - d.dot(normal) * normal, b = stretch * a;
+  return {{isotropic, a.x() * b.x(), a.y() * b.y(), a.z() * b.z(), a.x() * b.y(), a.x() * b.z(), a.y() * b.z()}};
+}
+
 // The integral over t of L_b(y) K(x - y), for x on or near its plane: t is the signed sum of three triangles with a
 // corner below x, and in each, y = foot + s (edge point - foot), dy = 2 area s ds du takes the 1/r away.
-std::array<Matrix3d, 3> near_integral(const HalfSpace& half_space, const Vector3d& x, const Triangle& t,
-                                      const Vector3d& normal) {
-  std::array<Matrix3d, 3> sum{Matrix3d::Zero(), Matrix3d::Zero(), Matrix3d::Zero()};
+OfCorners near_integral(const HalfSpace& half_space, const Vector3d& x, const Triangle& t, const Vector3d& normal) {
+  OfCorners sum;
   const Vector3d up = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
   const Vector3d foot = x - up.dot(x - t[0]) * up;
   const Vector3d of_foot = plane_coordinates(t, foot);
   for (int e = 0; e < 3; ++e) {
-    const Vector3d &a = t[e], &b = t[(e + 1) % 3];
+    const int next = (e + 1) % 3;
+    const Vector3d &a = t[e], &b = t[next];
     const double twice = up.dot((a - foot).cross(b - foot));
     if (std::abs(twice) < 1e-12 * (b - a).squaredNorm()) continue;
     for (const auto& [u, weight_u] : kAcross) {
-      const Vector3d edge = a + u * (b - a), of_edge = plane_coordinates(t, edge);
+      const Vector3d edge = a + u * (b - a);
+      Vector3d of_edge = Vector3d::Zero();
+      of_edge[e] = 1 - u;
+      of_edge[next] = u;
       for (const double s : kAlong) {
         const Vector3d y = foot + s * (edge - foot), weights = of_foot + s * (of_edge - of_foot);
-        const Matrix3d k = 0.5 * weight_u * s * twice * half_space.at(x - y, normal);
-        for (int c = 0; c < 3; ++c) sum[c] += weights[c] * k;
+        const Symmetric k = kernel(half_space, x - y, normal);
+        for (int c = 0; c < 3; ++c) sum[c].add(0.5 * weight_u * s * twice * weights[c], k);
       }
     }
   }
   return sum;
 }
 
-std::array<Matrix3d, 3> far_integral(const HalfSpace& half_space, const Vector3d& x, const Triangle& t,
-                                     const Vector3d& normal) {
-  std::array<Matrix3d, 3> sum{Matrix3d::Zero(), Matrix3d::Zero(), Matrix3d::Zero()};
+OfCorners far_integral(const HalfSpace& half_space, const Vector3d& x, const Triangle& t, const Vector3d& normal) {
+  OfCorners sum;
   const double whole = area(t);
   for (const auto& [at, weight] : points_of_triangle()) {
-    const Matrix3d k = weight * whole * half_space.at(x - place(t, at), normal);
-    for (int c = 0; c < 3; ++c) sum[c] += at[c] * k;
+    const Symmetric k = kernel(half_space, x - place(t, at), normal);
+    for (int c = 0; c < 3; ++c) sum[c].add(weight * whole * at[c], k);
   }
   return sum;
 }
@@ -105,16 +130,17 @@ double leg(double x, double y) {
 
 }  // namespace
 
+double HalfSpace::scale() const {
+  return (1 + poisson) / (std::numbers::pi * young);
+}
+
 Matrix3d HalfSpace::at(const Vector3d& d, const Vector3d& normal) const {
-  const double r = d.norm();
-  const Vector3d along = d - d.dot(normal) * normal;
-  const double common = (1 + poisson) / (std::numbers::pi * young * r);
-  return common * ((1 - poisson) * Matrix3d::Identity() + poisson / (r * r) * along * along.transpose());
+  return kernel(*this, d, normal).matrix();
 }
 
 double HalfSpace::pressed(double x, double y, double a) const {
   const double whole = over_corners(x, y, a, [](double p, double q) { return leg(p, q) + leg(q, p); });
-  return (1 - poisson * poisson) / (std::numbers::pi * young) * whole;
+  return scale() * (1 - poisson) * whole;
 }
 
 Eigen::Matrix2d HalfSpace::sheared(double x, double y, double a) const {
@@ -124,21 +150,23 @@ Eigen::Matrix2d HalfSpace::sheared(double x, double y, double a) const {
   Eigen::Matrix2d k;
   k << along, mixed, mixed, across;
   k = poisson * k + (1 - poisson) * (along + across) * Eigen::Matrix2d::Identity();
-  return (1 + poisson) / (std::numbers::pi * young) * k;
+  return scale() * k;
 }
 
 Moments kernel_moments(const HalfSpace& half_space, const Triangle& s, const Triangle& t, const Vector3d& normal) {
   const double whole = area(s);
   const Vector3d apart = (s[0] + s[1] + s[2] - t[0] - t[1] - t[2]) / 3;
   const bool far = apart.squaredNorm() > kFarAway * kFarAway * (whole + area(t));
-  Moments moments;
-  for (auto& row : moments) row.fill(Matrix3d::Zero());
+  std::array<OfCorners, 3> sum;
   for (const auto& [at, weight] : points_of_triangle()) {
     const Vector3d x = place(s, at);
-    const auto inner = far ? far_integral(half_space, x, t, normal) : near_integral(half_space, x, t, normal);
+    const OfCorners inner = far ? far_integral(half_space, x, t, normal) : near_integral(half_space, x, t, normal);
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) moments[a][b] += weight * whole * at[a] * inner[b];
+      for (int b = 0; b < 3; ++b) sum[a][b].add(weight * whole * at[a], inner[b]);
   }
+  Moments moments;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) moments[a][b] = sum[a][b].matrix();
   return moments;
 }
 

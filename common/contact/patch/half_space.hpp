@@ -13,6 +13,8 @@ struct HalfSpace {
   double young = 1;    ///< [Pa]
   double poisson = 0;  ///< [1]
 
+  double scale() const;  ///< [1/Pa] (1 + nu) / (pi E), which all of this is in proportion to
+
   /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
   Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
 

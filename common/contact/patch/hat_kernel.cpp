@@ -10,11 +10,20 @@ using Eigen::Vector3d;
 
 constexpr double kIntegrated = 1.5;  // of two nodes' longest edges, up to which their kernel is an integral
 
-/// Coefficients of node `corner`'s dual function among the barycentric coordinates: 4 L_corner - 1.
-Vector3d dual(int corner) {
-  Vector3d c = Vector3d::Constant(-1);
-  c[corner] = 3;
-  return c;
+using Moments = std::array<std::array<Matrix3d, 3>, 3>;
+
+/// Of the barycentric coordinates' moments those of the nodes' dual functions, 4 L_corner - 1 each, L summing up to 1.
+Moments of_duals(const Moments& m) {
+  std::array<Matrix3d, 3> row, column;
+  for (int p = 0; p < 3; ++p) {
+    row[p] = m[p][0] + m[p][1] + m[p][2];
+    column[p] = m[0][p] + m[1][p] + m[2][p];
+  }
+  const Matrix3d all = row[0] + row[1] + row[2];
+  Moments duals;
+  for (int p = 0; p < 3; ++p)
+    for (int q = 0; q < 3; ++q) duals[p][q] = 16 * m[p][q] - 4 * (row[p] + column[q]) + all;
+  return duals;
 }
 
 std::vector<double> reach_of(const std::vector<bool>& nodes, const SurfaceMap& map) {
@@ -58,17 +67,14 @@ void HatKernel::integrate() {
       return std::ranges::any_of(of_t, [&](int j) { return near_.find(std::max(i, j), std::min(i, j)); });
     };
     if (n_s.dot(n_t) <= 0 || std::ranges::none_of(of_s, wanted)) return;
-    const auto moments =
-        kernel_moments(half_space_, surface_.corners(s), surface_.corners(t), (n_s + n_t).normalized());
+    const Moments moments =
+        of_duals(kernel_moments(half_space_, surface_.corners(s), surface_.corners(t), (n_s + n_t).normalized()));
     for (int p = 0; p < 3; ++p)
       for (int q = 0; q < 3; ++q) {
         const int i = of_s[p], j = of_t[q];
         Matrix3d* block = near_.find(std::max(i, j), std::min(i, j));
         if (!block || (s == t && i < j)) continue;
-        Matrix3d sum = Matrix3d::Zero();
-        for (int x = 0; x < 3; ++x)
-          for (int y = 0; y < 3; ++y) sum += dual(p)[x] * dual(q)[y] * moments[x][y];
-        sum /= surface_.weight(i) * surface_.weight(j);
+        Matrix3d sum = moments[p][q] / (surface_.weight(i) * surface_.weight(j));
         if (i == j && s != t) sum += sum.transpose().eval();  // (t, s), the kernel being even
         *block += i >= j ? sum : Matrix3d(sum.transpose());
       }
