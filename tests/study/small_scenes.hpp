@@ -11,6 +11,7 @@
 #include "common/scene/scene.hpp"
 #include "tools/study/one_mesh.hpp"
 #include "tools/study/result.hpp"
+#include "tools/study/study.hpp"
 
 /// Scenes of small bodies, and what their studies gave.
 namespace palpate::study::testing {
@@ -62,6 +63,20 @@ inline Scene block_scene(const std::filesystem::path& folder, const std::string&
 
 inline OneMesh on_one(const Scene& scene) {
   return *on_one_mesh(scene.bodies[0]);
+}
+
+/// References that the tests of a process keep for one another: a body is solved once.
+inline const std::filesystem::path& kept_references() {
+  static const struct Kept {
+    ~Kept() { std::filesystem::remove_all(at); }
+    std::filesystem::path at =
+        std::filesystem::path(::testing::TempDir()) / ("study_references_" + std::to_string(getpid()));
+  } kept;
+  return kept.at;
+}
+
+inline StudyOptions quick() {
+  return {.quick = true, .references = kept_references()};
 }
 
 inline const Row* find(const Result& result, const std::string& method, const std::string& knob,

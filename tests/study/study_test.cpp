@@ -49,7 +49,7 @@ TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
 TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
-  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  const Result result = run_study(scene, folder.at / "out", quick());
   const std::string csv = text_of(folder.at / "out/study.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "scene,method,knob,value,step_us_median,step_us_p99,offline_s,memory_bytes,err_u_rel,err_f_rel,"
@@ -134,7 +134,7 @@ TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
   Scene scene = block_scene(folder.at);
   as<SolidSpec>(scene.bodies[0])->material.poisson = 0.499;
   scene.contact.rule = "barycentric";
-  const auto solid = std::make_shared<SolidCase>(scene, 0, on_one(scene), true);
+  const auto solid = std::make_shared<SolidCase>(scene, 0, on_one(scene), true, ReferenceCache(kept_references()));
   const auto method = make_quasi_static(solid);
   const auto from = [&](const Offline& offline) {
     const auto apply = [&](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->offline = offline; };
@@ -156,8 +156,8 @@ TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
 TEST(Study, TensorsFromQuadraticAndLockingFreeElementsArePressed) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
-  const ReferenceCache cache(folder.at / "references");
-  const auto method = make_quasi_static(std::make_shared<SolidCase>(scene, 0, on_one(scene), true, cache));
+  const auto method =
+      make_quasi_static(std::make_shared<SolidCase>(scene, 0, on_one(scene), true, ReferenceCache(kept_references())));
   for (const Offline& offline : {Offline{.element = "p2"}, Offline{.refine = 1, .formulation = "locking_free"}}) {
     const auto apply = [&](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->offline = offline; };
     const Result result = method->evaluate({"quasi_static", "offline", offline.element, apply, true});
@@ -191,7 +191,7 @@ TEST(Study, ReferencesAreRefinedFromAMeshOfAnySize) {
   const Folder folder;
   Scene scene = block_scene(folder.at);
   write_tet_mesh(make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.03}, {24, 24, 12}), folder.at / "block.msh");
-  const SolidCase solid(scene, 0, on_one(scene), true);
+  const SolidCase solid(scene, 0, on_one(scene), true, ReferenceCache(kept_references()));
   ASSERT_GT(solid.mesh().nodes.size(), 8000u);
   int strides = 0;
   const auto place = std::span(solid.presses().patches).first(1);
@@ -220,7 +220,7 @@ TEST(ReferenceCache, ComputesOnceAndAgainWhereTheFileIsDamaged) {
 TEST(Study, TheErrorOfBeingLinearGrowsWithDepth) {
   const Folder folder;
   const Scene scene = block_scene(folder.at);
-  SolidCase solid(scene, 0, on_one(scene), true);
+  SolidCase solid(scene, 0, on_one(scene), true, ReferenceCache(kept_references()));
   const auto& both = solid.nonlinearity(0);
   ASSERT_TRUE(both.gave_up.empty()) << both.gave_up;
   ASSERT_EQ(both.linear.size(), both.neo_hookean.size());
@@ -298,7 +298,9 @@ modes = 20
 )",
                                   "[[tool]]\nname = \"probe\"\npivot = [0, 0.2, 0]\naxis = [0, -1, 0]\nup = "
                                   "[0, 0, 1]\nradius = 0.003\ntrajectory = \"still.csv\"\n");
-  const StudyOptions options{.quick = true, .budget = 1.0, .budget_text = "1 s"};
+  StudyOptions options = quick();
+  options.budget = 1;
+  options.budget_text = "1 s";
   const Result result = run_study(scene, folder.at / "out", options);
   const auto row = [&](const std::string& knob, const std::string& modes, const std::string& reference) {
     const Row* found = find(result, "modal_shell", knob, modes, reference);
@@ -343,7 +345,7 @@ TEST(Study, ACathetersErrorFallsWithItsParticles) {
                                   "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
                                   "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 40\n",
                                   kProbe);
-  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  const Result result = run_study(scene, folder.at / "out", quick());
   const Row *coarse = find(result, "catheter", "particles", "10", "finest_chain"),
             *own = find(result, "catheter", "scene", "", "finest_chain"),
             *fine = find(result, "catheter", "particles", "80", "finest_chain");
@@ -358,7 +360,7 @@ TEST(Study, ACathetersErrorFallsWithItsParticles) {
 TEST(Study, MovingTissueComesNearerToItsOwnSmallStepsWithSmallerStepsAndAfterACutToAFreshSolve) {
   const Folder folder;
   const Scene scene = block_scene(folder.at, "model = \"tensor_mass\"\n");
-  const Result result = run_study(scene, folder.at / "out", {.quick = true});
+  const Result result = run_study(scene, folder.at / "out", quick());
   std::vector<Row> steps;
   for (const Row& r : result.rows)
     if (r.method == "tensor_mass" && r.knob == "step" && r.reference == "small_step") steps.push_back(r);
