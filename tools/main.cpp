@@ -1,9 +1,11 @@
 #include <cstdio>
 #include <exception>
 
+#include "common/fem/processor_blas.hpp"
 #include "tools/commands.hpp"
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   palpate::cli::CommandLine app{"palpate: a distributed haptic simulator of soft tissue"};
   app.show_version(PALPATE_VERSION);
   app.require_command();

@@ -83,6 +83,17 @@ TEST(ToolsHomes, TheHapticNodeLinksNoPictureMeshFilmOrSolverLibrary) {
   EXPECT_TRUE(std::regex_search(libraries_of("palpate"), heavy));
 }
 
+TEST(ToolsHomes, OpenBlasIsTheProcessorsOwnUnlessTheEnvironmentSaysOtherwise) {
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) GTEST_SKIP() << "this processor has no AVX2";
+  const auto core = [](const std::string& environment) {
+    const auto said = run_program("env " + environment + " OPENBLAS_VERBOSE=2 " + program("palpate") + " --version").err;
+    const std::size_t last = said.rfind("Core: ");
+    return last == std::string::npos ? std::string() : said.substr(last + 6, said.find('\n', last) - last - 6);
+  };
+  EXPECT_NE(core("-u OPENBLAS_CORETYPE"), "Prescott");
+  EXPECT_EQ(core("OPENBLAS_CORETYPE=Prescott"), "Prescott");
+}
+
 TEST(ToolsHomes, GmshIsLoadedOnlyWhereAMeshIsRead) {
   const auto loads_gmsh = [](const std::string& arguments) {
     const auto result = run_program("LD_DEBUG=files " + program("palpate") + " " + arguments);
