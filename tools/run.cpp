@@ -160,7 +160,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
   const bool drawn = (scene.render && !watched) || !o.film.empty() || !o.still.empty();
   const bool moves = has_moving_tissue(scene);  // moving tissue needs the node that owns it
   const bool three = o.processes == 3 || moves || watched;
-  if (moves || watched || (drawn && three)) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  if (three) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (drawn) {
     std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
     if (!three) render.push_back("--deform");
@@ -300,7 +300,8 @@ void add_run_command(cli::Command& app) {
   run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command
       .add_option("--processes", o->processes,
-                  "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has")
+                  "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has, also "
+                  "where nothing is drawn here")
       .one_of({2, 3});
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.does([o] { run(*o); });

@@ -178,6 +178,21 @@ INSTANTIATE_TEST_SUITE_P(Processes, ToolsSession, ::testing::Values(2, 3));
 
 constexpr const char* kLongRest = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n60,0,0,0.17,0,0\n";
 
+TEST(SessionTest, ThreeProcessesTellSurfacesAlsoWhereNothingIsDrawn) {
+  const LoopbackScene scene("undrawn", kLinear);
+  const std::string text = text_of(scene.scene());
+  scene.write("scene.toml", text.substr(0, text.find("[render]")));
+  const fs::path file = scene.folder() / "summary.json";
+  const auto run =
+      run_program(fmt::format("{} run {} --processes 3 --seconds 0.5 --domain {} --summary {}", program("palpate"),
+                              scene.scene(), testing::own_domain(), file.string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json summary = json::parse(text_of(file));
+  ASSERT_TRUE(summary.contains("deform_node")) << summary.dump();
+  EXPECT_GT(summary["deform_node"]["frames"].get<int>(), 10);
+  EXPECT_FALSE(summary.contains("render_node"));
+}
+
 TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
   const LoopbackScene scene("domains", kLinear);
   scene.write("motion.csv", kLongRest);
