@@ -28,19 +28,22 @@ class Presence {
   /// run, or refused because its scene, archive or messages differ.
   std::vector<std::string> watch();
 
-  /// True if the haptic loop with this run is known and has the same scene and archives.
+  /// True if this is the run of the haptic node whose word counts.
   bool accepts(std::uint64_t run) const;
   /// True if a node of this role is known that has the same scene and archives.
-  bool matched(const std::string& role) const { return last_met(role) != nullptr; }
+  bool matched(const std::string& role) const { return holder(role) != nullptr; }
 
   struct Peer {
     NodeStatus status;          ///< as it announced itself last
     std::int64_t met_ns = 0;    ///< when it was first heard of, or began another run; own clock
     std::int64_t heard_ns = 0;  ///< when it was heard of last
     bool accepted = false;      ///< it has the same scene and archives
+    bool ended = false;         ///< its writer is gone, and nothing has come since
+    int told = 0;               ///< sentences about it
   };
-  /// The accepted node of this role that was met last; nullptr if there is none.
-  const Peer* last_met(const std::string& role) const;
+  /// The accepted node whose word counts for this role: of those that live the one met first, since another that
+  /// says it is one has come into a running system; else the one met last. nullptr if there is none.
+  const Peer* holder(const std::string& role) const;
   /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
   /// if there is none.
   const NodeStatus* owner() const;
@@ -52,6 +55,7 @@ class Presence {
  private:
   bool same_scene(const NodeStatus& peer) const;
   std::string meet(const NodeStatus& status) const;
+  void hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said);
 
   Bus* bus_;
   std::unique_ptr<Writer<NodeStatus>> writer_;
