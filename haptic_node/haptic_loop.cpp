@@ -188,8 +188,7 @@ void HapticLoop::say_interventions() {
               .refused_samples = refused_samples(),
               .followed = shown_followed_.load(std::memory_order_relaxed),
               .refused_models = local_feed_.refused(),
-              .implausible_models = local_feed_.implausible(),
-              .refused_messages = bus_.refused()});
+              .implausible_models = local_feed_.implausible()});
   for (const std::string& said : told_.news()) spdlog::warn("{}", said);
 }
 

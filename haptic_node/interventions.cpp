@@ -24,9 +24,7 @@ void Interventions::look(const Seen& seen) {
       Kind{(seen.flags & implausible_force) != 0,
            "the force of moving tissue is limited: a local contact model asks for more than the tissue can give"},
       Kind{(seen.flags & stale_model) != 0, "the force of moving tissue fades: its local contact models come too late"},
-      Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"},
-      Kind{seen.refused_messages > last_.refused_messages,
-           "messages are refused: what they say cannot be, or there are too many of them"}};
+      Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"}};
   last_ = seen;
   news_.clear();
   status_.clear();

@@ -16,7 +16,6 @@ class Interventions {
     std::uint64_t followed = 0;            ///< steps at a bounded speed, in all
     std::uint64_t refused_models = 0;      ///< of steps to come, in all
     std::uint64_t implausible_models = 0;  ///< that cannot be of the tissue, in all
-    std::uint64_t refused_messages = 0;    ///< by the bus, in all
   };
   void look(const Seen& seen);
 

@@ -17,6 +17,7 @@ constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
 constexpr std::string_view kRecorder = "recorder";
 constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;  // each node says once a second how it is
 constexpr std::size_t kMostPeers = 256;
+constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
 constexpr int kMostTold = 8;  // sentences about one of them
 
 void make_printable(NodeStatus& status) {
@@ -53,7 +54,8 @@ void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t misse
   status_.missed = missed;
   status_.latency_p50_us = p50_us;
   status_.latency_p99_us = p99_us;
-  status_.text = text;
+  status_.text = text.empty() && bus_->refused() > told_refused_ ? kRefused : text;
+  told_refused_ = bus_->refused();
   if (clock_ && clock_->known()) {
     const ClockOffset::Estimate clock = clock_->estimate();
     status_.clock_of = clock_->of();
@@ -84,6 +86,8 @@ std::string Presence::meet(const NodeStatus& peer) const {
 
 std::vector<std::string> Presence::watch() {
   std::vector<std::string> said = bus_->misfits();
+  if (!said_refused_ && bus_->refused() > 0) said.emplace_back(kRefused);
+  said_refused_ = bus_->refused() > 0;
   const std::int64_t now = now_ns();
   while (auto status = reader_->take()) {
     make_printable(*status);

@@ -20,7 +20,8 @@ class Presence {
   /// Whose estimate goes out with what is announced; nullptr, as at first: none.
   void set_clock(const ClockFollower* clock) { clock_ = clock; }
 
-  /// Publishes what has been measured; call about once a second and when `text` changes.
+  /// Publishes what has been measured; call about once a second and when `text` changes. Where that is empty, it says
+  /// so if messages have been refused since the last time.
   void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us,
                 const std::string& text = "");
 
@@ -63,6 +64,8 @@ class Presence {
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
   std::map<std::string, Peer> peers_;
+  std::uint64_t told_refused_ = 0;  ///< messages that were when it was announced last
+  bool said_refused_ = false;
 };
 
 }  // namespace palpate
