@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kAway = 0.5;  // of a body's diagonal: how far its tissue may be from where it rests
 
-double size(const std::array<double, 9>& stiffness) {
-  return Eigen::Map<const Eigen::Matrix3d>(stiffness.data()).norm();
-}
-
 Eigen::Map<const Eigen::Vector3d> vector(const std::array<double, 3>& a) {
   return Eigen::Map<const Eigen::Vector3d>(a.data());
 }
@@ -83,7 +79,6 @@ double TissueLimits::stiffness_of(const LocalContactModel& model) const {
     }
     if (n.node >= body->stiffness.size() || !body->near.contains(vector(n.position))) return -1;
     const double own = body->stiffness[n.node] > 0 ? body->stiffness[n.node] : body->most;
-    if (size(n.stiffness) > kStiffer * own) return -1;
     most = std::max(most, own);
   }
   for (const LocalContact& c : model.contacts) {
@@ -93,7 +88,7 @@ double TissueLimits::stiffness_of(const LocalContactModel& model) const {
       unlimited();
       continue;
     }
-    if (!body->near.contains(vector(c.position)) || size(c.stiffness) > kStiffer * body->most) return -1;
+    if (!body->near.contains(vector(c.position))) return -1;
     if (model.nodes.empty()) most = std::max(most, body->most);
   }
   return most;

@@ -13,9 +13,6 @@ namespace palpate {
 /// is at its stiffest while all others stand still, as its elements say; what is cut only makes it softer.
 class TissueLimits {
  public:
-  /// Of that stiffness, what a model may tell: contacts are of several nodes, and other models than elements differ.
-  static constexpr double kStiffer = 4;
-
   /// `moving`: one entry per body of the scene; `gravity` [m/s^2] likewise. An archive without tetrahedra, as of a body
   /// of which nothing is known here, limits nothing.
   TissueLimits(const std::vector<Archive>& archives, std::span<const std::uint8_t> moving,
@@ -28,8 +25,8 @@ class TissueLimits {
   double reach_at_start(const Eigen::Vector3d& at, double radius) const;
 
   /// The stiffness [N/m] against a tool that the tissue near it has at most; negative if the model cannot be of this
-  /// scene: it names a body that does not move, a node that a body lacks, a stiffness that the tissue has not, or
-  /// tissue far from where the body is.
+  /// scene: it names a body that does not move, a node that a body lacks, or tissue far from where the body is. What
+  /// stiffness it tells itself does not count: of a node that is held or cut off it may be any.
   double stiffness_of(const LocalContactModel& model) const;
 
  private:
