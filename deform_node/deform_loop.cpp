@@ -73,7 +73,7 @@ const DeformReport& DeformLoop::run(double seconds) {
     if (news) report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
     if (frame) next_frame = now + frame_ns_;
   }
-  report_.refused = feed_.refused();
+  report_.refused = feed_.refused() + bus_.refused();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
   return report_;
 }

@@ -17,7 +17,8 @@ constexpr int kLoopPriority = 50;       // below the haptic loop, above the pict
 
 DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus,
                          Presence& presence, const Scene& scene, std::uint64_t run, std::string code_path)
-    : world_(world),
+    : bus_(bus),
+      world_(world),
       deformer_(deformer),
       presence_(presence),
       clock_(bus, presence.node()),
@@ -228,6 +229,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
       next_house = now + 50'000'000;
     }
   }
+  report_.refused += feed_.refused() + bus_.refused();
   report_.period = timer.statistics();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - first_tick);
   return report_;

@@ -62,6 +62,7 @@ class DynamicLoop {
   void publish_frames();
   void keep_house(std::int64_t now);
 
+  Bus& bus_;
   DynamicWorld& world_;
   Deformer& deformer_;
   Presence& presence_;

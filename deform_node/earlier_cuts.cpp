@@ -18,7 +18,7 @@ bool EarlierCuts::told_by_all(const Presence& presence) const {
 
 bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
   if (!asked_ns_) asked_ns_ = now_ns;
-  while (auto held = reader_->take()) {
+  while (auto held = reader_ ? reader_->take() : std::nullopt) {
     const int body = static_cast<int>(held->body);
     told_.insert({held->node, body});
     another_ |= held->run != 0;
@@ -26,7 +26,9 @@ bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
     if (held->removed.size() > most.removed.size()) most = std::move(*held);
   }
   in_time_ = now_ns - *asked_ns_ < kPatienceNs;
-  return !in_time_ || told_by_all(presence);
+  if (in_time_ && !told_by_all(presence)) return false;
+  reader_.reset();  // nobody takes from it any more: what came would fill it
+  return true;
 }
 
 const HeldTopology* EarlierCuts::of(int body) const {

@@ -23,6 +23,7 @@ constexpr int kLoopPriority = 80, kPublisherPriority = 40;
 HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence,
                        std::uint64_t run, std::string code_path)
     : haptic_(haptic),
+      bus_(bus),
       devices_(devices),
       presence_(presence),
       publisher_(bus, haptic, run),
@@ -79,6 +80,8 @@ const LoopReport& HapticLoop::run(double seconds) {
   report_.refused_samples = refused_samples();
   report_.followed_samples = shown_followed_.load(std::memory_order_relaxed);
   report_.refused_models = local_feed_.refused();
+  report_.implausible_models = local_feed_.implausible();
+  report_.refused_messages = bus_.refused();
   over_.store(true);
   wake_.release();
   return report_;
@@ -119,6 +122,7 @@ void HapticLoop::tick(double time) {
   report_.damped += (flags & passivity_limited) != 0;
   report_.min_energy = std::min(report_.min_energy, haptic_.energy());
   report_.stale += (flags & stale_model) != 0;
+  report_.implausible += (flags & implausible_force) != 0;
   shown_flags_.fetch_or(flags, std::memory_order_relaxed);
   std::uint64_t refused = 0, followed = 0;
   for (const MotionGuard& guard : guards_) refused += guard.refused(), followed += guard.followed();
@@ -183,7 +187,8 @@ void HapticLoop::say_interventions() {
   told_.look({.flags = shown_flags_.exchange(0, std::memory_order_relaxed),
               .refused_samples = refused_samples(),
               .followed = shown_followed_.load(std::memory_order_relaxed),
-              .refused_models = local_feed_.refused()});
+              .refused_models = local_feed_.refused(),
+              .implausible_models = local_feed_.implausible()});
   for (const std::string& said : told_.news()) spdlog::warn("{}", said);
 }
 
@@ -193,7 +198,7 @@ std::uint64_t HapticLoop::refused_samples() const {
 
 void HapticLoop::check_peers() {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
-  if (const Presence::Peer* deform = presence_.last_met("deform")) local_feed_.follow(deform->status.run);
+  if (const Presence::Peer* deform = presence_.holder("deform")) local_feed_.follow(deform->status.run);
 }
 
 }  // namespace palpate

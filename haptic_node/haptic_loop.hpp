@@ -33,9 +33,12 @@ struct LoopReport {
   double max_force = 0;                                                           ///< [N]
   std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
   double min_energy = 0;                                                          ///< [J] of all tools together
-  std::uint64_t refused_samples = 0;   ///< of devices: no possible pose, or a jump that the next did not confirm
-  std::uint64_t followed_samples = 0;  ///< steps in which a tool followed its device at a bounded speed
-  std::uint64_t refused_models = 0;    ///< local contact models of steps to come
+  std::uint64_t refused_samples = 0;     ///< of devices: no possible pose, or a jump that the next did not confirm
+  std::uint64_t followed_samples = 0;    ///< steps in which a tool followed its device at a bounded speed
+  std::uint64_t refused_models = 0;      ///< local contact models of steps to come
+  std::uint64_t implausible_models = 0;  ///< local contact models that cannot be of this tissue
+  std::uint64_t implausible = 0;         ///< steps in which one asked for more force than the tissue can give
+  std::uint64_t refused_messages = 0;    ///< by the bus
 };
 
 /// Runs a HapticStep at its fixed rate on the calling thread, with a publisher thread that writes to the bus and
@@ -65,6 +68,7 @@ class HapticLoop {
   bool all_finished(double seconds) const;
 
   HapticStep& haptic_;
+  Bus& bus_;
   std::vector<std::unique_ptr<Device>>& devices_;
   Presence& presence_;
   Publisher publisher_;

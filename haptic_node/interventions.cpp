@@ -19,6 +19,10 @@ void Interventions::look(const Seen& seen) {
       Kind{seen.followed > last_.followed, "a tool follows its device at a bounded speed: the device has jumped"},
       Kind{seen.refused_models > last_.refused_models,
            "local contact models are refused: they name a haptic step that is still to come"},
+      Kind{seen.implausible_models > last_.implausible_models,
+           "local contact models are refused: they cannot be of this tissue"},
+      Kind{(seen.flags & implausible_force) != 0,
+           "the force of moving tissue is limited: a local contact model asks for more than the tissue can give"},
       Kind{(seen.flags & stale_model) != 0, "the force of moving tissue fades: its local contact models come too late"},
       Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"}};
   last_ = seen;

@@ -11,10 +11,11 @@ class Interventions {
  public:
   /// Since the last look, or in all.
   struct Seen {
-    std::uint32_t flags = 0;            ///< ForceFlag bits of all steps since the last look
-    std::uint64_t refused_samples = 0;  ///< of devices, in all
-    std::uint64_t followed = 0;         ///< steps at a bounded speed, in all
-    std::uint64_t refused_models = 0;   ///< in all
+    std::uint32_t flags = 0;               ///< ForceFlag bits of all steps since the last look
+    std::uint64_t refused_samples = 0;     ///< of devices, in all
+    std::uint64_t followed = 0;            ///< steps at a bounded speed, in all
+    std::uint64_t refused_models = 0;      ///< of steps to come, in all
+    std::uint64_t implausible_models = 0;  ///< that cannot be of the tissue, in all
   };
   void look(const Seen& seen);
 

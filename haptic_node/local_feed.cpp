@@ -6,9 +6,8 @@ struct LocalFeed::OfTool {
   Latest<LocalModel> newest;
 };
 
-LocalFeed::LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run) : run_(run) {
+LocalFeed::LocalFeed(Bus& bus, const HapticStep& haptic, std::uint64_t run) : run_(run), limits_(haptic.limits()) {
   if (!haptic.has_moving_tissue()) return;
-  dynamic_.assign(haptic.dynamic().begin(), haptic.dynamic().end());
   for (int t = 0; t < haptic.tools(); ++t) of_tool_.push_back(std::make_unique<OfTool>());
   copy_ = std::make_unique<LocalModel>();
   reader_ = bus.reader(topics::local_contact_model);
@@ -20,7 +19,10 @@ void LocalFeed::take() {
   while (const auto message = reader_->take()) {
     const bool ours = message->tool_run == run_ && message->run == owner_.load(std::memory_order_relaxed);
     if (!ours || message->tool >= of_tool_.size()) continue;
-    if (copy_model(*message, dynamic_, *copy_)) of_tool_[message->tool]->newest.put(*copy_);
+    if (copy_model(*message, limits_, *copy_))
+      of_tool_[message->tool]->newest.put(*copy_);
+    else
+      implausible_.fetch_add(1, std::memory_order_relaxed);
   }
 }
 

@@ -28,16 +28,18 @@ class LocalFeed {
   /// done yet is refused: it would never be too old.
   void give(HapticStep& haptic);
   std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+  /// Models that cannot be of this tissue, in all.
+  std::uint64_t implausible() const { return implausible_.load(std::memory_order_relaxed); }
 
  private:
   struct OfTool;
   std::unique_ptr<Reader<LocalContactModel>> reader_;
   std::uint64_t run_;
   std::atomic<std::uint64_t> owner_ = 0;
-  std::vector<std::uint8_t> dynamic_;
+  const TissueLimits& limits_;
   std::vector<std::unique_ptr<OfTool>> of_tool_;
   std::unique_ptr<LocalModel> copy_;
-  std::atomic<std::uint64_t> refused_ = 0;
+  std::atomic<std::uint64_t> refused_ = 0, implausible_ = 0;
 };
 
 }  // namespace palpate

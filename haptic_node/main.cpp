@@ -42,8 +42,9 @@ std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& 
   const auto limit = std::chrono::steady_clock::now() + 1s;
   while (kept.empty() && std::chrono::steady_clock::now() < limit) {
     for (const std::string& said : presence.watch()) spdlog::info("{}", said);
-    while (auto contacts = reader->take()) {
-      if (!presence.matched("deform") && !presence.matched("render")) continue;
+    // What comes before its sender is known waits in the reader.
+    const bool known = presence.matched("deform") || presence.matched("render");
+    while (auto contacts = known ? reader->take() : std::nullopt) {
       if (fit(haptic, *contacts))
         kept.push_back(std::move(*contacts));
       else
@@ -120,6 +121,9 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"refused_samples", r.refused_samples},
           {"followed_steps", r.followed_samples},
           {"refused_models", r.refused_models},
+          {"implausible_models", r.implausible_models},
+          {"implausible_force_steps", r.implausible},
+          {"refused_messages", r.refused_messages},
           {"passivity_limited_steps", r.damped},
           {"energy_min_j", r.min_energy}};
 }

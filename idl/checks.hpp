@@ -12,6 +12,7 @@ namespace palpate::checks {
 
 inline constexpr std::int64_t kMaxTimeNs = 2'000'000'000'000'000'000;  ///< two may be added and a third taken off
 inline constexpr std::size_t kMaxText = 1048576;                       ///< [bytes]
+inline constexpr double kMaxNumber = 1e12;  ///< in SI units: the product of two is a number in single precision too
 
 template <class Sequence, class Condition>
 bool each(const Sequence& sequence, Condition&& condition) {
@@ -19,10 +20,10 @@ bool each(const Sequence& sequence, Condition&& condition) {
 }
 
 bool finite(std::floating_point auto value) {
-  return std::isfinite(value);
+  return std::abs(value) <= kMaxNumber;  // not so of what is no number
 }
 bool finite(const std::ranges::range auto& values) {
-  return each(values, [](auto value) { return std::isfinite(value); });
+  return each(values, [](auto value) { return finite(value); });
 }
 
 inline bool time(std::int64_t value) {

@@ -43,6 +43,7 @@ RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, B
     : scene_(scene),
       stage_(std::move(stage)),
       source_(source),
+      bus_(bus),
       presence_(presence),
       renderer_(renderer),
       clock_(bus, presence.node()),
@@ -113,7 +114,7 @@ void RenderLoop::write_overlay() {
 /// By this process, or by the deform node.
 std::string RenderLoop::range_warning() const {
   if (source_.range()) return source_.range()->warning();
-  const Presence::Peer* deform = presence_.last_met("deform");
+  const Presence::Peer* deform = presence_.holder("deform");
   return deform ? deform->status.text : std::string();
 }
 
@@ -184,7 +185,7 @@ const RenderReport& RenderLoop::run(double seconds) {
     report_.missed = timer.statistics().skipped;
   }
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
-  report_.refused += source_.refused();
+  report_.refused += source_.refused() + bus_.refused();
   return report_;
 }
 

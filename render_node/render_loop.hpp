@@ -58,6 +58,7 @@ class RenderLoop {
   Stage stage_;
   std::optional<Stage> best_;
   SurfaceSource& source_;
+  Bus& bus_;
   Presence& presence_;
   Renderer& renderer_;
   ClockFollower clock_;

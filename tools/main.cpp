@@ -29,5 +29,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "palpate: %s\n", error.what());
     return 1;
   }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    std::fprintf(stderr, "palpate: not all that was to be printed could be written\n");
+    return 1;
+  }
   return 0;
 }

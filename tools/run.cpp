@@ -182,11 +182,15 @@ std::string interventions_in(const nlohmann::json& summary) {
   const nlohmann::json haptic = summary.value("haptic_node", nlohmann::json());
   if (!haptic.is_object()) return {};
   std::string said;
-  for (const auto& [key, what] : {std::pair{"fault_steps", "steps without force after a fault"},
-                                  {"refused_samples", "samples of a device refused"},
-                                  {"followed_steps", "steps in which a tool followed its device at a bounded speed"},
-                                  {"refused_models", "local contact models refused"},
-                                  {"stale_model_steps", "steps in which the force of moving tissue faded"}})
+  for (const auto& [key, what] :
+       {std::pair{"fault_steps", "steps without force after a fault"},
+        {"refused_samples", "samples of a device refused"},
+        {"followed_steps", "steps in which a tool followed its device at a bounded speed"},
+        {"refused_models", "local contact models refused"},
+        {"implausible_models", "local contact models that cannot be of this tissue"},
+        {"implausible_force_steps", "steps in which one asked for more force than the tissue can give"},
+        {"refused_messages", "messages refused"},
+        {"stale_model_steps", "steps in which the force of moving tissue faded"}})
     if (const auto count = haptic.value(key, std::uint64_t{0}); count > 0)
       said += fmt::format("{}{} {}", said.empty() ? "the hand was guarded: " : ", ", count, what);
   return said;

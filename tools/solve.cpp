@@ -123,6 +123,13 @@ void summarise(const SolutionTable& table, const SolveArguments& arguments) {
              table.node.size(), table.displacement[furthest].norm(), table.node[furthest], max_force);
 }
 
+void require_numbers(const SolutionTable& table) {
+  for (std::size_t i = 0; i < table.node.size(); ++i)
+    if (!table.displacement[i].allFinite() || !table.force[i].allFinite())
+      throw std::runtime_error(
+          fmt::format("there is no solution in numbers: at node {} it is not finite", table.node[i]));
+}
+
 void check_model(const Body& body) {
   if (!std::visit([](const auto& spec) { return has_static_states(spec); }, body))
     throw std::runtime_error(
@@ -139,6 +146,7 @@ void solve(const SolveArguments& arguments) {
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
   correct(scene, body, solved);
   const SolutionTable& table = solved.table;
+  require_numbers(table);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
   if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
   summarise(table, arguments);

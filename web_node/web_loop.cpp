@@ -36,6 +36,7 @@ WebLoop::WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>
                  const Hands& hands, Server& server)
     : scene_(scene),
       source_(source),
+      bus_(bus),
       presence_(presence),
       hands_(hands),
       server_(server),
@@ -189,7 +190,7 @@ const WebReport& WebLoop::run(double seconds) {
     report_.missed = timer.statistics().skipped;
   }
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin_ns_);
-  report_.samples_refused += source_.refused();
+  report_.samples_refused += source_.refused() + bus_.refused();
   return report_;
 }
 

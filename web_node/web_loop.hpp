@@ -57,6 +57,7 @@ class WebLoop {
 
   const Scene& scene_;
   SurfaceSource& source_;
+  Bus& bus_;
   Presence& presence_;
   const Hands& hands_;
   Server& server_;

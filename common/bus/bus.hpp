@@ -32,10 +32,14 @@ class Reader {
  public:
   virtual ~Reader() = default;
   virtual std::optional<Message> take() = 0;  ///< the next valid sample, empty if there is none
-  virtual int writers() const = 0;            ///< live writers at this moment; death shows within about 0.2 s
+  /// The key alone of a stream whose writers have all died, fallen silent or ended, as take() came upon it; empty if
+  /// there is none. Of streams in the memory of this process: never.
+  virtual std::optional<Message> take_ended() { return std::nullopt; }
+  virtual int writers() const = 0;  ///< live writers at this moment; death shows within about 0.2 s
   /// Writers that have not ended; one that was killed or is cut off counts for two minutes.
   virtual int known_writers() const = 0;
-  virtual std::uint64_t invalid() const = 0;  ///< samples dropped because they were invalid
+  /// Samples dropped: invalid, under more names than a writer may use, or more than the reader has room for.
+  virtual std::uint64_t invalid() const = 0;
 };
 
 /// What a reader keeps between two calls of take().
@@ -62,6 +66,9 @@ class Bus {
   /// A sentence about each program of another version that has come since the last call: its messages do not get
   /// through.
   virtual std::vector<std::string> misfits() = 0;
+
+  /// Samples that all readers of this bus, past ones too, have dropped. On any thread.
+  virtual std::uint64_t refused() const = 0;
 
   /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be
   /// something.

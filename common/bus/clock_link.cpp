@@ -23,7 +23,9 @@ ClockServer::ClockServer(Bus& bus, std::string node, ClockReading clock)
 }
 
 void ClockServer::answer() {
-  while (auto probe = probes_->take()) {
+  for (int answered = 0; answered < kAtOnce; ++answered) {
+    auto probe = probes_->take();
+    if (!probe) return;
     answer_.receive_ns = clock_();
     answer_.node = std::move(probe->node);
     answer_.seq = probe->seq;

@@ -15,7 +15,8 @@ using ClockReading = std::function<std::int64_t()>;  ///< [ns]
 class ClockServer {
  public:
   ClockServer(Bus& bus, std::string node, ClockReading clock = now_ns);
-  void answer();  ///< whatever has come; call often
+  static constexpr int kAtOnce = 8;
+  void answer();  ///< what has come, a few at once, since the caller has more to do; call often
 
  private:
   std::unique_ptr<Reader<ClockProbe>> probes_;

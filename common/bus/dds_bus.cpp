@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -10,6 +11,7 @@
 
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/dds_entity.hpp"
+#include "common/bus/dds_gate.hpp"
 #include "common/bus/stamp.hpp"
 #include "common/bus/version_watch.hpp"
 #include "idl/limits.hpp"
@@ -149,28 +151,31 @@ class DdsWriter final : public Writer<M> {
   std::uint64_t refused_ = 0;
 };
 
-/// A reader of the middleware, with its topic and what wakes the bus for it.
+/// A reader of the middleware, with its topic and what wakes the bus for it. `gate`: sees each sample before it is
+/// kept.
 class DdsInlet {
  public:
   DdsInlet(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t& type, const std::string& name,
-           const Qos& qos, Keep keep)
-      : topic_(dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr),
-               fmt::format("creating topic {}", name)),
+           const Qos& qos, Keep keep, const dds_topic_filter& gate)
+      : topic_(gated_topic(participant, type, name, gate), fmt::format("creating topic {}", name)),
         reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), nullptr),
                 fmt::format("creating the reader of {}", name)),
         condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
     dds_waitset_attach(waitset, condition_, 0);
   }
 
-  /// Hands waiting samples to `accept` until it returns true. False if it never did.
-  bool take(const std::function<bool(const void*)>& accept) {
+  /// Hands the next sample that waits to `receive`, and to `end` the keys of streams without writers that it comes
+  /// upon. False if there is none.
+  bool take(const std::function<void(const void*)>& receive, const std::function<void(const void*)>& end) {
     for (;;) {
       void* sample = nullptr;
       dds_sample_info_t info;
       if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return false;
-      const bool accepted = info.valid_data && accept(sample);
+      const bool is_message = info.valid_data;
+      if (is_message) receive(sample);
+      if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) end(sample);
       dds_return_loan(reader_, &sample, 1);
-      if (accepted) return true;
+      if (is_message) return true;
     }
   }
 
@@ -187,6 +192,14 @@ class DdsInlet {
   }
 
  private:
+  // A topic of the reader's own, so that no other reader or writer goes through its gate.
+  static dds_entity_t gated_topic(dds_entity_t participant, const dds_topic_descriptor_t& type, const std::string& name,
+                                  const dds_topic_filter& gate) {
+    const dds_entity_t topic = dds_create_topic(participant, &type, name.c_str(), nullptr, nullptr);
+    if (topic >= 0) dds_set_topic_filter_extended(topic, &gate);
+    return topic;
+  }
+
   Entity topic_, reader_, condition_;
 };
 
@@ -199,28 +212,47 @@ std::string stream_name(const Topic<M>& topic, Keep keep) {
 template <class M>
 class DdsReader final : public Reader<M> {
  public:
-  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep)
-      : inlet_(participant, waitset, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep) {}
+  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep,
+            std::atomic<std::uint64_t>& refused)
+      : gate_(refused, keep == Keep::all),
+        inlet_(participant, waitset, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
+               {.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG,
+                .f = {.sample_sampleinfo_arg = &dds::Gate<M>::filter},
+                .arg = &gate_}) {}
 
   std::optional<M> take() override {
     std::optional<M> message;
-    const bool taken = inlet_.take([&](const void* sample) {
-      fields(dds::CopyOut{}, message.emplace(), *static_cast<const typename dds::Generated<M>::Type*>(sample));
-      const bool good = valid(*message);
-      invalid_ += !good;
-      return good;
-    });
-    if (!taken) message.reset();
+    inlet_.take(
+        [&](const void* sample) {
+          message = copy(sample);
+          gate_.taken(*message);
+        },
+        [&](const void* sample) {
+          if constexpr (std::same_as<M, NodeStatus>) ended_.push_back(copy(sample));
+        });
     return message;
+  }
+  std::optional<M> take_ended() override {
+    if (ended_.empty()) return std::nullopt;
+    M ended = std::move(ended_.back());
+    ended_.pop_back();
+    return ended;
   }
 
   int writers() const override { return inlet_.writers(); }
   int known_writers() const override { return inlet_.known_writers(); }
-  std::uint64_t invalid() const override { return invalid_; }
+  std::uint64_t invalid() const override { return gate_.refused(); }
 
  private:
+  static M copy(const void* sample) {
+    M message;
+    fields(dds::CopyOut{}, message, *static_cast<const typename dds::Generated<M>::Type*>(sample));
+    return message;
+  }
+
+  dds::Gate<M> gate_;  // before the inlet, whose samples pass it
   DdsInlet inlet_;
-  std::uint64_t invalid_ = 0;
+  std::vector<M> ended_;  ///< of nodes alone, for which somebody asks
 };
 
 class DdsBus final : public Bus {
@@ -233,12 +265,12 @@ class DdsBus final : public Bus {
         waitset_(dds_create_waitset(participant_), "creating a wait set"),
         versions_(participant_) {}
 
-#define PALPATE_DDS_PORTS(M)                                                     \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {            \
-    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);       \
-  }                                                                              \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override { \
-    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep);  \
+#define PALPATE_DDS_PORTS(M)                                                              \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                     \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                \
+  }                                                                                       \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {          \
+    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep, refused_); \
   }
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
@@ -250,6 +282,10 @@ class DdsBus final : public Bus {
     return versions_.look();
   }
 
+  std::uint64_t refused() const override {
+    return refused_.load(std::memory_order_relaxed);
+  }
+
   bool wait(std::chrono::nanoseconds timeout) override {
     return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;
   }
@@ -258,6 +294,7 @@ class DdsBus final : public Bus {
   int lease_ms_;
   std::string place_;
   std::shared_ptr<Domain> domain_;
+  std::atomic<std::uint64_t> refused_ = 0;
   Entity participant_, waitset_;
   VersionWatch versions_;
 };

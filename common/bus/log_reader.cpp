@@ -25,11 +25,19 @@ std::uint32_t big_endian(const std::uint8_t* p) {
   return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
 }
 
+// What is no regular file is not even opened: a pipe would wait for its other end.
+std::FILE* open_log(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    throw std::runtime_error(file.string() + ": is not a file");
+  std::FILE* opened = std::fopen(file.c_str(), "rb");
+  if (!opened) throw std::runtime_error(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
+  return opened;
+}
+
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "rb")) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
-  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file");
+LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(open_log(file)) {
   size_ = std::filesystem::file_size(file);
 
   LogEvent first;

@@ -212,6 +212,10 @@ class MemoryBus final : public Bus {
     return {};
   }
 
+  std::uint64_t refused() const override {
+    return 0;
+  }
+
   bool wait(std::chrono::nanoseconds timeout) override {
     std::unique_lock lock(network_->mutex);
     return bell_->rung.wait_for(lock, timeout, [&] { return bell_->waiting > 0; });

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/bus/printable.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -15,6 +16,15 @@ namespace {
 constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
 constexpr std::string_view kRecorder = "recorder";
 constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;  // each node says once a second how it is
+constexpr std::size_t kMostPeers = 256;
+constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
+constexpr int kMostTold = 8;  // sentences about one of them
+
+void make_printable(NodeStatus& status) {
+  for (std::string* text : {&status.node, &status.role, &status.scene_hash, &status.archive_hash, &status.version,
+                            &status.clock_of, &status.text})
+    *text = printable(std::move(*text));
+}
 
 std::string node_name(const std::string& role) {
   char host[256] = "localhost";
@@ -44,7 +54,8 @@ void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t misse
   status_.missed = missed;
   status_.latency_p50_us = p50_us;
   status_.latency_p99_us = p99_us;
-  status_.text = text;
+  status_.text = text.empty() && bus_->refused() > told_refused_ ? kRefused : text;
+  told_refused_ = bus_->refused();
   if (clock_ && clock_->known()) {
     const ClockOffset::Estimate clock = clock_->estimate();
     status_.clock_of = clock_->of();
@@ -75,29 +86,39 @@ std::string Presence::meet(const NodeStatus& peer) const {
 
 std::vector<std::string> Presence::watch() {
   std::vector<std::string> said = bus_->misfits();
+  if (!said_refused_ && bus_->refused() > 0) said.emplace_back(kRefused);
+  said_refused_ = bus_->refused() > 0;
   const std::int64_t now = now_ns();
   while (auto status = reader_->take()) {
-    if (status->node == status_.node) continue;
-    Peer& peer = peers_[status->node];
-    const NodeStatus& before = peer.status;
-    const bool news = before.node.empty() || before.run != status->run || before.scene_hash != status->scene_hash ||
-                      before.archive_hash != status->archive_hash;
-    peer.status = std::move(*status);
-    peer.heard_ns = now;
-    if (!news) continue;
-    peer.met_ns = now;
-    peer.accepted = same_scene(peer.status);
-    said.push_back(meet(peer.status));
+    make_printable(*status);
+    if (status->node != status_.node) hear(*status, now, said);
+  }
+  while (auto ended = reader_->take_ended()) {
+    const auto peer = peers_.find(printable(ended->node));
+    if (peer != peers_.end()) peer->second.ended = true;
   }
   std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.heard_ns > kForgottenAfterNs; });
   return said;
 }
 
+void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said) {
+  if (peers_.size() >= kMostPeers && !peers_.contains(status.node)) return;
+  Peer& peer = peers_[status.node];
+  const NodeStatus& before = peer.status;
+  const bool news = before.node.empty() || before.run != status.run || before.scene_hash != status.scene_hash ||
+                    before.archive_hash != status.archive_hash;
+  peer.status = status;
+  peer.ended = false;
+  peer.heard_ns = now;
+  if (!news) return;
+  peer.met_ns = now;
+  peer.accepted = same_scene(status);
+  if (++peer.told <= kMostTold) said.push_back(meet(status));
+}
+
 bool Presence::accepts(std::uint64_t run) const {
-  return std::ranges::any_of(peers_, [&](const auto& entry) {
-    const Peer& peer = entry.second;
-    return peer.accepted && peer.status.role == "haptic" && peer.status.run == run;
-  });
+  const Peer* haptic = holder("haptic");
+  return haptic && haptic->status.run == run;
 }
 
 // Of two that begin at once one gives way: the same one for both.
@@ -119,11 +140,16 @@ void Presence::claim(const std::string& what) const {
                     other->node, what, bus_->place()));
 }
 
-const Presence::Peer* Presence::last_met(const std::string& role) const {
-  const Peer* last = nullptr;
-  for (const auto& [name, peer] : peers_)
-    if (peer.accepted && peer.status.role == role && (!last || peer.met_ns >= last->met_ns)) last = &peer;
-  return last;
+const Presence::Peer* Presence::holder(const std::string& role) const {
+  const std::int64_t now = now_ns();
+  const Peer *first = nullptr, *last = nullptr;
+  for (const auto& [name, peer] : peers_) {
+    if (!peer.accepted || peer.status.role != role) continue;
+    if (!last || peer.met_ns >= last->met_ns) last = &peer;
+    const bool alive = !peer.ended && now - peer.heard_ns < kAliveNs;
+    if (alive && (!first || peer.met_ns < first->met_ns)) first = &peer;
+  }
+  return first ? first : last;
 }
 
 }  // namespace palpate

@@ -20,7 +20,8 @@ class Presence {
   /// Whose estimate goes out with what is announced; nullptr, as at first: none.
   void set_clock(const ClockFollower* clock) { clock_ = clock; }
 
-  /// Publishes what has been measured; call about once a second and when `text` changes.
+  /// Publishes what has been measured; call about once a second and when `text` changes. Where that is empty, it says
+  /// so if messages have been refused since the last time.
   void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us,
                 const std::string& text = "");
 
@@ -28,19 +29,22 @@ class Presence {
   /// run, or refused because its scene, archive or messages differ.
   std::vector<std::string> watch();
 
-  /// True if the haptic loop with this run is known and has the same scene and archives.
+  /// True if this is the run of the haptic node whose word counts.
   bool accepts(std::uint64_t run) const;
   /// True if a node of this role is known that has the same scene and archives.
-  bool matched(const std::string& role) const { return last_met(role) != nullptr; }
+  bool matched(const std::string& role) const { return holder(role) != nullptr; }
 
   struct Peer {
     NodeStatus status;          ///< as it announced itself last
     std::int64_t met_ns = 0;    ///< when it was first heard of, or began another run; own clock
     std::int64_t heard_ns = 0;  ///< when it was heard of last
     bool accepted = false;      ///< it has the same scene and archives
+    bool ended = false;         ///< its writer is gone, and nothing has come since
+    int told = 0;               ///< sentences about it
   };
-  /// The accepted node of this role that was met last; nullptr if there is none.
-  const Peer* last_met(const std::string& role) const;
+  /// The accepted node whose word counts for this role: of those that live the one met first, since another that
+  /// says it is one has come into a running system; else the one met last. nullptr if there is none.
+  const Peer* holder(const std::string& role) const;
   /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
   /// if there is none.
   const NodeStatus* owner() const;
@@ -52,6 +56,7 @@ class Presence {
  private:
   bool same_scene(const NodeStatus& peer) const;
   std::string meet(const NodeStatus& status) const;
+  void hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said);
 
   Bus* bus_;
   std::unique_ptr<Writer<NodeStatus>> writer_;
@@ -59,6 +64,8 @@ class Presence {
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
   std::map<std::string, Peer> peers_;
+  std::uint64_t told_refused_ = 0;  ///< messages that were when it was announced last
+  bool said_refused_ = false;
 };
 
 }  // namespace palpate

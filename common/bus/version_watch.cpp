@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include "common/bus/log_format.hpp"
+#include "common/bus/printable.hpp"
 
 namespace palpate {
 namespace {
@@ -26,11 +27,9 @@ std::vector<std::string> split(const std::string& words) {
   return parts;
 }
 
-/// What stands in a sentence for the operator came from outside.
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (c < 0x20 || c > 0x7e) c = '?';
-  return text.substr(0, 80);
+/// A part of a sentence that came from outside.
+std::string part_of_sentence(const std::string& text) {
+  return printable(text.substr(0, 80));
 }
 
 }  // namespace
@@ -47,7 +46,8 @@ std::string version_fault(const std::string& words) {
   return fmt::format(
       "cannot talk with process {}: its palpate {} has other messages (version {}) than this {} (version {}); install "
       "the same on both",
-      printable(parts[3]), printable(parts[1]), printable(parts[2]), PALPATE_VERSION, messages_hash());
+      part_of_sentence(parts[3]), part_of_sentence(parts[1]), part_of_sentence(parts[2]), PALPATE_VERSION,
+      messages_hash());
 }
 
 VersionWatch::VersionWatch(dds_entity_t participant)

@@ -7,6 +7,8 @@
 namespace palpate {
 namespace {
 
+constexpr std::uint64_t kLateSteps = 2000;
+
 std::span<const Eigen::Vector3f> as_vectors(const std::vector<float>& xyz) {
   return {reinterpret_cast<const Eigen::Vector3f*>(xyz.data()), xyz.size() / 3};
 }
@@ -26,7 +28,7 @@ class ReceivedSurfaces : public SurfaceSource {
         ++refused_;
         continue;
       }
-      if (sample->run != 0 && (sample->run != moment_.run || sample->step > moment_.step)) {
+      if (sample->run != 0 && is_newer(*sample)) {
         moment_ = {sample->run, sample->step, sample->sense_ns};
         news = true;
       }
@@ -42,6 +44,10 @@ class ReceivedSurfaces : public SurfaceSource {
   std::uint64_t refused() const override { return refused_; }
 
  private:
+  // A step far behind the one shown is not late: that one's number was not true.
+  bool is_newer(const SurfaceState& s) const {
+    return s.run != moment_.run || s.step > moment_.step || moment_.step - s.step > kLateSteps;
+  }
   bool fits(const SurfaceState& s) const {
     return s.body < nodes_.size() && s.position.size() == 3 * nodes_[s.body] && s.normal.size() == s.position.size() &&
            (s.run == 0 || presence_.accepts(s.run));

@@ -8,6 +8,8 @@ namespace palpate {
 namespace {
 
 constexpr std::int64_t kIntervalNs = 50'000'000;
+constexpr std::int64_t kPatienceNs = 1'000'000'000;
+constexpr std::int64_t kAtOnceNs = 2'000'000;  // for what has come, since the caller has more to do
 
 }  // namespace
 
@@ -29,8 +31,9 @@ TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::ve
 // The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it
 // would come again and again.
 bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
-  const bool fits = std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
   if (change.seq == 1) body.removed.clear();
+  const bool fits = body.removed.size() + change.removed.size() <= body.tetrahedra &&
+                    std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
   if (fits) body.removed.insert(body.removed.end(), change.removed.begin(), change.removed.end());
   body.run = change.run;
   body.seq = change.seq;
@@ -39,7 +42,10 @@ bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
 }
 
 void TopologyMemory::take_changes(std::vector<int>& changed) {
-  while (const auto change = reader_->take()) {
+  const std::int64_t begin = now_ns();
+  while (now_ns() - begin < kAtOnceNs) {
+    const auto change = reader_->take();
+    if (!change) return;
     const auto found = bodies_.find(static_cast<int>(change->body));
     if (change->run != run_) continue;
     if (found == bodies_.end()) {
@@ -50,7 +56,7 @@ void TopologyMemory::take_changes(std::vector<int>& changed) {
     const std::uint64_t next = change->run == body.run ? body.seq + 1 : 1;
     if (change->seq < next) continue;
     if (change->seq > next) {
-      reader_ = bus_.reader(topics::topology_change, Keep::all);
+      lacks_ = true;
       continue;
     }
     if (apply(*change, body))
@@ -58,6 +64,14 @@ void TopologyMemory::take_changes(std::vector<int>& changed) {
     else
       ++refused_;
   }
+}
+
+// All changes come again, from every writer: not at any rate, whatever numbers come.
+void TopologyMemory::ask_anew(std::int64_t now) {
+  if (!lacks_ || now - asked_ns_ < kPatienceNs) return;
+  lacks_ = false;
+  asked_ns_ = now;
+  reader_ = bus_.reader(topics::topology_change, Keep::all);
 }
 
 void TopologyMemory::tell(std::int64_t now) {
@@ -74,12 +88,13 @@ void TopologyMemory::tell(std::int64_t now) {
 
 std::vector<int> TopologyMemory::take() {
   std::vector<int> changed;
-  const Presence::Peer* owner = presence_.last_met("deform");
+  const Presence::Peer* owner = presence_.holder("deform");
   if (owner && owner->status.run != 0 && owner->status.run != run_) {
     run_ = owner->status.run;
     reader_ = bus_.reader(topics::topology_change, Keep::all);  // what came before it was known comes again
   }
   take_changes(changed);
+  ask_anew(now_ns());
   tell(now_ns());
   std::ranges::sort(changed);
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());

@@ -37,6 +37,7 @@ class TopologyMemory {
   };
   void take_changes(std::vector<int>& changed);
   bool apply(const TopologyChange& change, Followed& body);
+  void ask_anew(std::int64_t now);
   void tell(std::int64_t now);
 
   Bus& bus_;
@@ -45,6 +46,8 @@ class TopologyMemory {
   std::unique_ptr<Writer<HeldTopology>> writer_;
   std::map<int, Followed> bodies_;
   std::uint64_t run_ = 0, refused_ = 0;
+  bool lacks_ = false;         ///< a change is missing
+  std::int64_t asked_ns_ = 0;  ///< when all were last asked for
 };
 
 }  // namespace palpate

@@ -18,7 +18,30 @@ const KeyList& scene_keys() {
   return keys;
 }
 
+namespace {
+
+// The parser, and what it made, go into themselves for each part of a dotted key.
+void refuse_deep_keys(std::string_view text, const std::filesystem::path& file) {
+  constexpr int kMostDots = 64;
+  int line = 1, dots = 0;
+  char quote = 0;
+  for (const char c : text) {
+    line += c == '\n';
+    if (c == '\n' || c == quote)
+      quote = 0;
+    else if (quote == 0 && (c == '"' || c == '\''))
+      quote = c;
+    if (quote != 0) continue;
+    if (c == '.' && ++dots > kMostDots)
+      throw std::runtime_error(fmt::format("{}:{}:1: a key of more than {} parts", file.string(), line, kMostDots + 1));
+    if (std::string_view("\n=,{}[]").find(c) != std::string_view::npos) dots = 0;
+  }
+}
+
+}  // namespace
+
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  refuse_deep_keys(text, file);
   toml::table table;
   try {
     table = toml::parse(text, file.string());
@@ -35,8 +58,9 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
 
 Scene load_scene(const std::filesystem::path& file) {
   std::error_code error;
-  std::ifstream stream(file, std::ios::binary);
-  if (!std::filesystem::is_regular_file(file, error) || !stream)
+  std::ifstream stream;
+  if (std::filesystem::is_regular_file(file, error)) stream.open(file, std::ios::binary);  // a pipe would wait
+  if (!stream.is_open())
     throw std::runtime_error(fmt::format("{}:1:1: the scene is not a file that can be read", file.string()));
   std::ostringstream text;
   text << stream.rdbuf();

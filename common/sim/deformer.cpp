@@ -5,6 +5,16 @@
 
 namespace palpate {
 
+namespace {
+
+// By how much a message may come late behind one of another topic. What is further back is not late: the newer one told
+// a time that was not true, or a log is played again.
+constexpr std::int64_t kLateNs = 2'000'000'000;
+constexpr std::uint64_t kLateSteps = 2000;
+constexpr std::size_t kPastRuns = 16;
+
+}  // namespace
+
 Deformer::Deformer(const Scene& scene, const std::vector<Archive>& archives)
     : tools_(std::max<std::size_t>(scene.tools.size(), 1)) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
@@ -30,8 +40,10 @@ bool Deformer::hears(const BodyMessage& message) const {
 // refused, unless it is newer than all else (a log that is played again).
 bool Deformer::follow(std::uint64_t run, std::int64_t sense_ns) {
   if (run == run_) return true;
-  if (std::ranges::find(past_runs_, run) != past_runs_.end() && sense_ns <= sense_ns_) return false;
+  const bool late = sense_ns <= sense_ns_ && sense_ns_ - sense_ns < kLateNs;
+  if (late && std::ranges::find(past_runs_, run) != past_runs_.end()) return false;
   if (run_ != 0) past_runs_.push_back(run_);
+  if (past_runs_.size() > kPastRuns) past_runs_.erase(past_runs_.begin());
   run_ = run;
   step_ = 0;
   contacts_.clear();
@@ -43,7 +55,7 @@ bool Deformer::follow(std::uint64_t run, std::int64_t sense_ns) {
 }
 
 void Deformer::show(std::uint64_t step, std::int64_t sense_ns) {
-  if (step < step_) return;
+  if (step < step_ && step_ - step < kLateSteps) return;
   step_ = step;
   sense_ns_ = sense_ns;
 }

@@ -24,6 +24,13 @@ double min_slew(const Scene& scene) {
   return least;
 }
 
+// [m/s^2] on tissue that moves.
+template <class Spec>
+Eigen::Vector3d gravity_on(const Spec& spec) {
+  if constexpr (std::derived_from<Spec, MovingSpec>) return spec.dynamic.gravity;
+  return Eigen::Vector3d::Zero();
+}
+
 using Rigs = std::vector<std::unique_ptr<ToolRig>>;
 
 Rigs make_rigs(const Scene& scene, double dt) {
@@ -47,15 +54,19 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
       rigs_(make_rigs(scene, dt_)),
       passivity_(scene.passivity, ports_of(rigs_), sum_of_force_limits(scene), min_slew(scene), dt_) {
   const StepSettings settings{scene.contact, scene.tools, dt_};
+  std::vector<std::uint8_t> moving;
+  std::vector<Eigen::Vector3d> gravity;
   for (int b = 0; b < bodies_; ++b) {
     names_.push_back(name_of(scene.bodies[b]));
     const auto make = [&](const auto& spec) { return make_haptic_part(spec, archives[b], settings); };
     auto part = std::visit(make, scene.bodies[b]);
-    dynamic_.push_back(part == nullptr);
+    moving.push_back(part == nullptr);
+    gravity.push_back(std::visit([](const auto& spec) { return gravity_on(spec); }, scene.bodies[b]));
     if (part) add(b, std::move(part));
   }
-  if (std::ranges::count(dynamic_, 1) > 0) {
-    auto local = std::make_unique<LocalPart>(settings);
+  limits_ = std::make_unique<TissueLimits>(archives, moving, gravity);
+  if (limits_->any()) {
+    auto local = std::make_unique<LocalPart>(settings, *limits_);
     local_ = local.get();
     parts_.push_back(std::move(local));
   }
@@ -197,7 +208,7 @@ double HapticStep::largest_force() const {
 bool HapticStep::consume(const LocalContactModel& message) {
   if (!local_ || message.tool >= rigs_.size()) return false;
   LocalModel model;
-  if (!copy_model(message, dynamic_, model)) return false;
+  if (!copy_model(message, *limits_, model)) return false;
   consume(static_cast<int>(message.tool), model);
   return true;
 }

@@ -19,7 +19,7 @@ namespace palpate {
 /// bits for the same inputs on the same code path.
 class HapticStep {
  public:
-  /// One archive per body, read with ArchivePart::touchable; those of moving tissue are not looked at.
+  /// One archive per body, read with ArchivePart::touchable; of those of moving tissue the header.
   HapticStep(const Scene& scene, const std::vector<Archive>& archives);
   ~HapticStep();
 
@@ -37,9 +37,9 @@ class HapticStep {
 
   void step(std::span<const ToolDofs> dofs);
 
-  /// Moving tissue: which bodies are dynamic, one entry per body, and what a tool feels of them.
+  /// Moving tissue: what it can do, and what a tool feels of it.
   bool has_moving_tissue() const { return local_ != nullptr; }
-  std::span<const std::uint8_t> dynamic() const { return dynamic_; }
+  const TissueLimits& limits() const { return *limits_; }
   const LocalBody& local(int tool) const { return local_->of(tool); }
   /// The next steps use this model of the tissue near `tool`.
   void consume(int tool, const LocalModel& model) { local_->of(tool).consume(model); }
@@ -95,8 +95,8 @@ class HapticStep {
 
   double dt_;
   int bodies_;
-  std::vector<std::string> names_;  ///< of the bodies
-  std::vector<std::uint8_t> dynamic_;
+  std::vector<std::string> names_;              ///< of the bodies
+  std::unique_ptr<TissueLimits> limits_;        ///< what moving tissue can do
   std::vector<std::unique_ptr<ToolRig>> rigs_;  ///< whose ports passivity_ watches
   std::vector<std::unique_ptr<BodyPart>> parts_;
   std::vector<Entry> entries_;  ///< which body each of parts_ is of, moving tissue's left out

@@ -2,6 +2,7 @@
 #include <lcm/eventlog.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -271,6 +272,13 @@ TEST_F(Log, HasItsNameOnlyOnceItsHeaderIsInIt) {
   EXPECT_THROW(LogWriter(file_, header()), std::runtime_error);
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_TRUE(fs::is_empty(folder_)) << "a header that does not fit leaves no file";
+}
+
+TEST_F(Log, APipeIsNoLogAndIsNotWaitedFor) {
+  const std::filesystem::path pipe = file_.string() + ".pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(LogReader{pipe}, std::runtime_error);
+  std::filesystem::remove(pipe);
 }
 
 TEST_F(Log, AFullDiskIsCountedAndSaid) {

@@ -54,6 +54,38 @@ TEST_F(PresenceTest, AnOwnerThatRunsKeepsItAndTheNextIsTold) {
   EXPECT_NO_THROW(render.claim("the picture")) << "there may be any number of them";
 }
 
+TEST_F(PresenceTest, TheOneMetFirstKeepsTheWordWhileItIsHeard) {
+  Presence render(*here_, "render", 0, "scene", "archive");
+  say("haptic", 9, 500);
+  render.watch();
+  say("haptic", 4, 900);
+  render.watch();
+  EXPECT_TRUE(render.accepts(9));
+  EXPECT_FALSE(render.accepts(4));
+  EXPECT_EQ(render.holder("haptic")->status.run, 9u);
+}
+
+TEST_F(PresenceTest, NamesWithoutEndAreNotRemembered) {
+  Presence render(*here_, "render", 0, "scene", "archive");
+  std::size_t said = 0;
+  for (std::uint64_t run = 1; run < 1000; ++run) {
+    say("web", run, 0);
+    said += render.watch().size();
+  }
+  EXPECT_LE(render.peers().size(), 256u);
+  EXPECT_LE(said, 256u);
+}
+
+TEST_F(PresenceTest, WhatANodeSaysOfItselfIsPrintable) {
+  Presence render(*here_, "render", 0, "scene", "archive");
+  NodeStatus status{.node = "web \x1b[2J", .role = "web", .run = 1, .seq = 1, .scene_hash = "scene"};
+  status.archive_hash = "archive";
+  status.text = "\xff\n";
+  ASSERT_TRUE(others_->write(status));
+  EXPECT_EQ(render.watch(), std::vector<std::string>{"met web ?[2J"});
+  EXPECT_EQ(render.holder("web")->status.text, "??");
+}
+
 TEST_F(PresenceTest, OfTwoThatBeginAtOnceOneGivesWay) {
   Presence lower(*here_, "deform", 4, "scene", "archive"), higher(*here_, "deform", 12, "scene", "archive");
   say("deform", 9, 0);

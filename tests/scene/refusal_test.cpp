@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -298,6 +299,23 @@ TEST(SceneRefusal, AnEmptySceneHasNoBody) {
   const SceneFolder folder;
   EXPECT_EQ(refusal("", folder / "s.toml"), (folder / "s.toml").string() + ":1:1: the scene has no [[body]]");
   EXPECT_EQ(refusal("body = []", folder / "s.toml"), (folder / "s.toml").string() + ":1:1: the scene has no [[body]]");
+}
+
+TEST(SceneRefusal, AKeyOfVeryManyPartsIsRefusedBeforeItIsParsed) {
+  const SceneFolder folder;
+  std::string deep = "a";
+  for (int part = 0; part < 200'000; ++part) deep += ".a";
+  const std::string said = (folder / "s.toml").string() + ":2:1: a key of more than 65 parts";
+  EXPECT_EQ(refusal("\n" + deep + " = 1", folder / "s.toml"), said);
+  EXPECT_EQ(refusal("\n[" + deep + "]", folder / "s.toml"), said);
+  EXPECT_EQ(refusal("title = \"" + deep + "\"", folder / "s.toml"),
+            (folder / "s.toml").string() + ":1:1: the scene has no [[body]]");
+}
+
+TEST(SceneRefusal, APipeIsNoScene) {
+  const SceneFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe.toml").c_str(), 0600), 0);
+  EXPECT_THROW(load_scene(folder / "pipe.toml"), std::runtime_error) << "and it is not waited for";
 }
 
 TEST(SceneRefusal, AMissingSceneFileIsNamed) {

@@ -46,6 +46,10 @@ TEST_F(ToolsOutputFile, ALinkIsNotFollowedNorReplaced) {
   refused_at_once(run("--still", file("dangling.png")), {"dangling.png is a link"});
 }
 
+TEST_F(ToolsOutputFile, AFullDeviceForWhatIsPrintedIsNoticed) {
+  EXPECT_EQ(testing::run_command("( " + program("palpate") + " check " + scene_.scene() + " > /dev/full )"), 1);
+}
+
 TEST_F(ToolsOutputFile, AFolderIsNoFile) {
   refused_at_once(run("--record", scene_.folder()), {"is a folder"});
 }

@@ -122,6 +122,14 @@ TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
   }
 }
 
+TEST_F(ToolsSolve, WhatIsNoNumberIsNoSolution) {
+  const int node = nearest_node(plate_mesh(), {0.015, 0.01, 0.008});
+  for (const char* method : {"direct", "tensors"})
+    testing::expect_refusal(fmt::format("{} solve {} --method {} --hold {}:1e308,1e308,1e308", program("palpate"),
+                                        plate().string(), method, node),
+                            {"it is not finite"});
+}
+
 // The measured curves of the specimen hold: at a press of 1 mm the force is not the linear one, what is held stays, and
 // the rest moves by another share across the press; by both methods alike.
 TEST_F(ToolsSolve, TheQuasiNonLinearCorrectionOfTheSceneIsApplied) {

@@ -57,10 +57,10 @@ void LocalBody::consume(const LocalModel& model) {
   model_pose_ = tip_pose(trocar_, model.pose());
 }
 
-ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
+ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most) {
   const LocalModel& m = state_.model;
   ToolLoad load;
-  stale_ = false;
+  stale_ = limited_ = false;
   const double age = step > m.tool_step ? static_cast<double>(step - m.tool_step) * dt_ : 0.0;
   const bool fresh = m.seq != 0 && age <= kOldest;
   const double change = dt_ / kFadeSeconds;
@@ -75,8 +75,10 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
     const Segment axis = tool.axis(p);
     if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
   }
+  keep_within(most, load);
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
   const bool coming = state_.from_share > 0;
+  if (!felt && age <= kSilent) reach_.set_free(tool);
   if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
   stale_ = weight() < 1 - kRounding && felt;
   keep_from_rising(load);
@@ -84,6 +86,17 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step) {
   load.torque *= state_.weight;
   come_from_before(load);
   return load;
+}
+
+// A model may tell anything.
+void LocalBody::keep_within(double most, ToolLoad& load) {
+  const double size = std::max(load.force.norm(), load.torque.norm() / SafetyChain::kMaxLever);
+  if (!(size > most)) return;
+  limited_ = true;
+  const double share = std::max(most, 0.0) / size;
+  load.force *= share;
+  load.torque *= share;
+  grasp_force_ *= share;
 }
 
 // Nobody knows how the tissue answers to a tool that goes on while no model comes.
@@ -206,6 +219,7 @@ void LocalBody::state(State& s) {
   s.value(memory);
   s.all(position_);
   s.value(grasp_force_);
+  reach_.state(s);
   if (!s.restoring()) return;
   const LocalModel& m = memory.model;
   const auto within = [](int count, int most) { return count >= 0 && count <= most; };

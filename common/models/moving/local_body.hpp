@@ -1,9 +1,11 @@
 #pragma once
 #include <array>
+#include <limits>
 
 #include "common/contact/jaw_obstacles.hpp"
 #include "common/describe/state.hpp"
 #include "common/models/moving/local_model.hpp"
+#include "common/models/moving/tool_reach.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/kinematics.hpp"
 
@@ -29,8 +31,14 @@ class LocalBody {
   void consume(const LocalModel& model);
   const LocalModel& model() const { return state_.model; }
 
-  /// Force and torque on the tool in haptic step `step`. Its parts are those of `tool`, a probe's tip first.
-  ToolLoad load(const MovingTool& tool, std::uint64_t step);
+  /// Force and torque on the tool in haptic step `step`. Its parts are those of `tool`, a probe's tip first. `most`
+  /// [N]: no more of it is rendered.
+  ToolLoad load(const MovingTool& tool, std::uint64_t step, double most = std::numeric_limits<double>::infinity());
+  /// True if the last load asked for more.
+  bool limited() const { return limited_; }
+  /// How far this tool can have pressed or drawn tissue.
+  ToolReach& reach() { return reach_; }
+  const ToolReach& reach() const { return reach_; }
   /// What lies between a forceps' jaws, as the surface was in the last load().
   BetweenJaws between(const OpenJaws& jaws);
   /// [N] by which the jaws held tissue in the last load().
@@ -62,6 +70,7 @@ class LocalBody {
 
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
+  void keep_within(double most, ToolLoad& load);
   void keep_from_rising(ToolLoad& load);
   void come_from_before(ToolLoad& load);
   double weight() const { return state_.weight + state_.from_share * state_.from_weight; }  ///< of all that is rendered
@@ -75,7 +84,8 @@ class LocalBody {
   std::uint64_t rises_, silent_;  ///< steps in kRises and kSilent
   Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
-  bool stale_ = false;
+  bool stale_ = false, limited_ = false;
+  ToolReach reach_;
   Eigen::Vector3d grasp_force_ = Eigen::Vector3d::Zero();  ///< [N] on the tissue
   JawObstacles obstacles_;
   std::array<Held, LocalModel::kMaxContacts> held_{};

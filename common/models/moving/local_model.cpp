@@ -1,13 +1,12 @@
 #include "common/models/moving/local_model.hpp"
 
-#include <algorithm>
-
 namespace palpate {
 
-bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dynamic, LocalModel& to) {
-  const auto known = [&](const auto& part) { return part.body < dynamic.size() && dynamic[part.body]; };
-  if (!valid(from) || !std::ranges::all_of(from.contacts, known) || !std::ranges::all_of(from.nodes, known))
-    return false;
+bool copy_model(const LocalContactModel& from, const TissueLimits& limits, LocalModel& to) {
+  if (!valid(from)) return false;
+  const double stiffness = limits.stiffness_of(from);
+  if (stiffness < 0) return false;
+  to.stiffness = stiffness;
   to.run = from.run;
   to.seq = from.seq;
   to.tool_step = from.tool_step;

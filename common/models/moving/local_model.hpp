@@ -2,9 +2,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <type_traits>
 
+#include "common/models/moving/tissue_limits.hpp"
 #include "common/tool/kinematics.hpp"
 #include "idl/limits.hpp"
 
@@ -32,6 +32,7 @@ struct LocalModel {
   std::uint64_t run = 0, seq = 0;  ///< of the message; seq 0: none has come yet
   std::uint64_t tool_step = 0;     ///< haptic step whose pose is in it
   Dofs dofs{};                     ///< that pose
+  double stiffness = 0;            ///< [N/m] that the tissue in it has at most, by TissueLimits
   std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;
   std::array<Contact, kMaxContacts> contact{};
   std::array<Node, kMaxNodes> node{};
@@ -43,8 +44,8 @@ struct LocalModel {
 };
 static_assert(std::is_trivially_copyable_v<LocalModel>);
 
-/// Copies a message that passed valid(). False, and `to` is as it was, if it names a body that is not dynamic
-/// (`dynamic`: one entry per body of the scene). Allocates nothing.
-bool copy_model(const LocalContactModel& from, std::span<const std::uint8_t> dynamic, LocalModel& to);
+/// Copies a message that passed valid(). False, and `to` is as it was, if it cannot be of this tissue. Allocates
+/// nothing.
+bool copy_model(const LocalContactModel& from, const TissueLimits& limits, LocalModel& to);
 
 }  // namespace palpate

@@ -8,10 +8,14 @@
 namespace palpate {
 
 /// Moving tissue in the haptic step: what each tool feels of it, by the newest local contact model that the deformation
-/// node sent for that tool.
+/// node sent for that tool, within what the motion of the tools explains: a tool gets no more force than if all tools
+/// together had pressed the stiffest tissue near it as far as they have moved, and all that moves lay on it.
 class LocalPart : public BodyPart {
  public:
-  explicit LocalPart(const StepSettings& settings);
+  static constexpr double kSlack = 2e-4;  ///< [m] that tissue may have moved by itself
+
+  /// `limits` outlives this object.
+  LocalPart(const StepSettings& settings, const TissueLimits& limits);
 
   const LocalBody& of(int tool) const { return of_tool_[tool]; }
   LocalBody& of(int tool) { return of_tool_[tool]; }
@@ -23,7 +27,11 @@ class LocalPart : public BodyPart {
   void state(State& s, std::span<const MovingTool> tools) override;
 
  private:
+  double moved(const ToolsInStep& in);
+
+  const TissueLimits& limits_;
   std::vector<LocalBody> of_tool_;
+  std::vector<double> pressing_;  ///< [N/m] of a half-space against a punch of the tool's radius R: 2 E* R
 };
 
 }  // namespace palpate

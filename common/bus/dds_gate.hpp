@@ -1,0 +1,84 @@
+#pragma once
+#include <dds/dds.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/bus/dds_convert.hpp"
+#include "common/bus/key.hpp"
+#include "common/bus/key_budget.hpp"
+#include "idl/limits.hpp"
+
+namespace palpate::dds {
+
+/// [bytes] of a message's sequences and strings.
+struct CountBytes {
+  std::size_t bytes = 0;
+  template <class T>
+  void operator()(const char*, const T& field) {
+    if constexpr (requires { field.size(); }) bytes += field.size() * sizeof(*field.data());
+  }
+};
+
+/// What stands between the middleware and a reader's memory. Every sample from outside passes here, on the
+/// middleware's threads, before anything of it is kept: only a valid one, under a name within its writer's budget, and
+/// within the reader's own. One that is refused costs no other sample its place.
+template <class M>
+class Gate {
+ public:
+  static constexpr std::size_t kSamples = 16000;               ///< that wait in a reader that keeps all
+  static constexpr std::size_t kBytes = std::size_t{1} << 30;  ///< in these
+
+  /// `total`: counts what is refused by all gates of a bus. `keeps_all`: what is admitted waits until it is taken.
+  Gate(std::atomic<std::uint64_t>& total, bool keeps_all) : total_(total), keeps_all_(keeps_all) {}
+
+  /// For dds_set_topic_filter_extended(). The middleware calls it for one sample of a reader at a time.
+  static bool filter(const void* sample, const dds_sample_info_t* info, void* self) {
+    return static_cast<Gate*>(self)->admits(*static_cast<const typename Generated<M>::Type*>(sample),
+                                            info->publication_handle);
+  }
+  /// An admitted sample has been taken.
+  void taken(const M& message) {
+    if (!keeps_all_) return;
+    samples_.fetch_sub(1, std::memory_order_relaxed);
+    bytes_.fetch_sub(size(message), std::memory_order_relaxed);
+  }
+  std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+
+ private:
+  bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
+    fields(CopyOut{}, message_, sample);
+    if (valid(message_) && in_budget(writer) && has_room()) return true;
+    refused_.fetch_add(1, std::memory_order_relaxed);
+    total_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  bool in_budget(dds_instance_handle_t writer) {
+    if constexpr (requires { message_.node; }) return budget_.admits(writer, key_of(message_));
+    return true;  // numbers have their limits in the IDL
+  }
+  bool has_room() {
+    if (!keeps_all_) return true;
+    const std::size_t size = this->size(message_);
+    if (samples_.load(std::memory_order_relaxed) >= kSamples || bytes_.load(std::memory_order_relaxed) + size > kBytes)
+      return false;
+    samples_.fetch_add(1, std::memory_order_relaxed);
+    bytes_.fetch_add(size, std::memory_order_relaxed);
+    return true;
+  }
+  static std::size_t size(const M& message) {
+    CountBytes count;
+    fields(count, message);
+    return count.bytes;
+  }
+
+  std::atomic<std::uint64_t>& total_;
+  const bool keeps_all_;
+  M message_;  ///< kept between samples for its memory
+  KeyBudget budget_;
+  std::atomic<std::size_t> samples_ = 0, bytes_ = 0;
+  std::atomic<std::uint64_t> refused_ = 0;
+};
+
+}  // namespace palpate::dds

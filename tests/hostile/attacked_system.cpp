@@ -1,0 +1,120 @@
+#include "tests/hostile/attacked_system.hpp"
+
+#include <fstream>
+
+#include "common/realtime/clock.hpp"
+
+namespace palpate::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kHover = 0.186;  // [m] of depth: the tip's ball ends 6 mm above the tissue
+constexpr double kElsewhere = 0.1;
+
+double resident_mb(pid_t pid) {
+  std::ifstream in(fmt::format("/proc/{}/statm", pid));
+  double total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+}  // namespace
+
+HostileScene::HostileScene() : LoopbackScene("hostile", "[body.dynamic]\ndamping = 20\n") {
+  replace("quasi_static", "tensor_mass");
+  replace("width = 320\nheight = 240", "width = 64\nheight = 64");
+  replace("[[tool]]", R"([rates]
+visual_hz = 30
+
+[[body]]
+name = "still"
+mesh = "block.msh"
+model = "quasi_static"
+young = 5000
+poisson = 0.4
+[body.offline]
+element = "p1"
+[[body.fixed]]
+box = [[-1.0, -1.0, -0.0501], [1.0, 1.0, -0.0499]]
+
+[web]
+port = 0
+
+[[tool]]
+name = "elsewhere"
+pivot = [0.5, 0.0, 0.4]
+radius = 0.008
+device = "bus"
+
+[[tool]])");
+  write("motion.csv", fmt::format("time,yaw,pitch,depth,roll,grip\n0,0,0,{0},0,0\n3600,0,0,{0},0,0\n", kHover));
+}
+
+AttackedSystem::AttackedSystem(int domain)
+    : attacker_(domain),
+      hand_(domain, 1),
+      status_(attacker_.bus().reader(topics::node_status)),
+      picture_(attacker_.bus().reader(topics::picture_state)) {
+  std::string said;
+  if (run_command(program("palpate") + " precompute " + scene_.scene(), &said) != 0) throw std::runtime_error(said);
+  driver_ = std::thread([this] { drive(); });
+  for (const char* name : {"deform", "render", "web", "haptic"})
+    nodes_.emplace(name, ChildProcess(name, {program(std::string(name) + "_node"), scene_.scene(), "--domain",
+                                             std::to_string(domain), "--supervised"}));
+  const bool there = watch(30s, [&] { return hand_.newest().step > 800 && statuses_.size() == 4 && pictures_ > 20; });
+  if (!there) throw std::runtime_error("the attacked system does not come up");
+}
+
+AttackedSystem::~AttackedSystem() {
+  over_ = true;
+  driver_.join();
+}
+
+// A driver as it should be: a hand that rests.
+void AttackedSystem::drive() {
+  const auto device = attacker_.bus().writer(topics::device_state);
+  for (DeviceState state{.tool = 0, .seq = 1, .depth = kElsewhere}; !over_; ++state.seq) {
+    state.sense_ns = now_ns();
+    device->write(state);
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+void AttackedSystem::look() {
+  hand_.look();
+  while (const auto status = status_->take())
+    for (const auto& [name, process] : nodes_)
+      if (status->node.starts_with(fmt::format("{} {}@", name, process.pid()))) statuses_[name] = *status;
+  while (const auto picture = picture_->take()) newest_picture_ = *picture, ++pictures_;
+}
+
+bool AttackedSystem::all_run() {
+  return std::ranges::all_of(nodes_, [](auto& node) { return node.second.running(); });
+}
+
+std::map<std::string, double> AttackedSystem::memory_mb() const {
+  std::map<std::string, double> memory;
+  for (const auto& [name, process] : nodes_) memory[name] = resident_mb(process.pid());
+  return memory;
+}
+
+bool AttackedSystem::pictures_go_on(std::chrono::milliseconds limit) {
+  const std::uint64_t step = hand_.newest().step, run = hand_.newest().run;
+  return watch(limit, [&] {
+    return newest_picture_.run == run && newest_picture_.step > step && newest_picture_.step <= hand_.newest().step;
+  });
+}
+
+std::map<std::string, nlohmann::json> AttackedSystem::end() {
+  std::map<std::string, nlohmann::json> said;
+  for (auto& [name, process] : nodes_) process.interrupt();
+  for (auto& [name, process] : nodes_) {
+    if (!process.wait(10s) || process.status() != 0) continue;
+    for (const std::string& line : process.take_lines())
+      if (line.starts_with("{")) said[name] = nlohmann::json::parse(line);
+  }
+  return said;
+}
+
+}  // namespace palpate::testing

@@ -1,0 +1,77 @@
+#pragma once
+#include <atomic>
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/bus/domain.hpp"
+#include "tests/hostile/attacker.hpp"
+#include "tests/hostile/hand_watch.hpp"
+#include "tests/loopback/loopback_scene.hpp"
+#include "tools/child_process.hpp"
+
+namespace palpate::testing {
+
+/// Two blocks side by side, one of moving tissue and one quasi-static. A scripted tool hovers a few millimetres above
+/// the moving one, near enough for the deform node to tell of it; a driver elsewhere holds another far away.
+class HostileScene : public LoopbackScene {
+ public:
+  HostileScene();
+};
+
+/// All nodes of that scene as processes, with the driver of the second tool in this one.
+class AttackedSystem {
+ public:
+  explicit AttackedSystem(int domain);
+  ~AttackedSystem();
+
+  Attacker& attacker() { return attacker_; }
+  HandWatch& hand() { return hand_; }  ///< of the hovering tool
+  const std::map<std::string, ChildProcess>& nodes() const { return nodes_; }
+  bool all_run();
+  std::map<std::string, double> memory_mb() const;  ///< resident, by node
+  /// The newest status of the node of a role, as it told itself.
+  std::map<std::string, NodeStatus>& statuses() { return statuses_; }
+
+  /// Looks at everything until `done`; false when the time is over.
+  template <class Done>
+  bool watch(std::chrono::milliseconds limit, Done&& done) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < end) {
+      attacker_.bus().wait(std::chrono::milliseconds(5));
+      look();
+      if (done()) return true;
+    }
+    return false;
+  }
+  void watch(std::chrono::milliseconds limit) {
+    watch(limit, [] { return false; });
+  }
+  void pause(const std::string& node) { kill(nodes_.at(node).pid(), SIGSTOP); }
+  void go_on(const std::string& node) { kill(nodes_.at(node).pid(), SIGCONT); }
+  /// Pictures of newer steps of the real haptic run come, and newer surfaces.
+  bool pictures_go_on(std::chrono::milliseconds limit);
+  /// Ends the nodes and returns what each says at its end.
+  std::map<std::string, nlohmann::json> end();
+
+  std::uint64_t run_of(const std::string& role) { return statuses_[role].run; }
+
+ private:
+  void look();
+  void drive();
+
+  HostileScene scene_;
+  Attacker attacker_;
+  HandWatch hand_;
+  std::unique_ptr<Reader<NodeStatus>> status_;
+  std::unique_ptr<Reader<PictureState>> picture_;
+  std::map<std::string, NodeStatus> statuses_;  ///< by role, of the processes started here
+  PictureState newest_picture_;
+  std::uint64_t pictures_ = 0;
+  std::atomic<bool> over_ = false;
+  std::thread driver_;
+  std::map<std::string, ChildProcess> nodes_;
+};
+
+}  // namespace palpate::testing

@@ -1,0 +1,289 @@
+// A participant of the test's own attacks running nodes in the names of the real ones.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/settings.hpp"
+#include "tests/hostile/attacked_system.hpp"
+#include "tests/hostile/learned.hpp"
+#include "tests/hostile/mutations.hpp"
+
+namespace palpate::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kMaxForce = 10, kMaxRise = 0.25;  // [N], [N] a step: the scene's defaults
+constexpr double kFlatMb = 64;                     // by which a node may grow in all, its warm-up included
+constexpr double kFlood = 10;                      // [MB] by which it may in a flood of names
+// The loop runs at 1000 Hz. A machine whose host has other things to do lets it miss some tens of milliseconds at once,
+// attacked or not: much in one attack of a second or two, little in all of them together.
+constexpr double kMinHz = 950, kMinHzOfAll = 990;
+
+bool long_form() {
+  return std::getenv("PALPATE_LONG_TESTS") != nullptr;
+}
+
+/// One system for all attacks, since each starts from what the ones before have left.
+class Hostile : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    system_ = std::make_unique<AttackedSystem>(own_domain());
+    memory_ = system_->memory_mb();
+    system_->watch(1s);  // what they take when they begin
+  }
+  static void TearDownTestSuite() { system_.reset(); }
+
+  void SetUp() override {
+    hand().begin_anew();
+    before_ = system_->memory_mb();
+  }
+  void TearDown() override {
+    if (ended_) return;
+    system_->watch(20ms);
+    EXPECT_TRUE(system_->all_run());
+    EXPECT_TRUE(hand().finite());
+    EXPECT_LE(hand().max_force(), kMaxForce * (1 + 1e-9));
+    EXPECT_LE(hand().max_rise(), kMaxRise + 1e-9);
+    EXPECT_GE(hand().rate_hz(), kMinHz);
+    const double in_all = grown_since(memory_);
+    EXPECT_LT(in_all, kFlatMb);
+    fmt::print("hand: {:.3f} N at most, {:.3f} N a step, {:.0f} Hz; memory: {:.1f} MB more\n", hand().max_force(),
+               hand().max_rise(), hand().rate_hz(), in_all);
+  }
+
+  using Memory = std::map<std::string, double>;
+  /// [MB] by which the node that grew most has grown.
+  static double grown_since(const Memory& before) {
+    double grown = 0;
+    for (const auto& [name, mb] : system_->memory_mb()) grown = std::max(grown, mb - before.at(name));
+    return grown;
+  }
+  double grown() const { return grown_since(before_); }  ///< in this attack
+
+  static AttackedSystem& system() { return *system_; }
+  static HandWatch& hand() { return system_->hand(); }
+  template <class M>
+  static std::unique_ptr<HostileWriter<M>> writer(const Topic<M>& topic) {
+    std::unique_ptr<HostileWriter<M>> made(new HostileWriter<M>(system_->attacker().writer(topic)));
+    system_->watch(150ms);  // the nodes find it
+    return made;
+  }
+  static std::uint64_t haptic_run() { return hand().newest().run; }
+  static std::uint64_t deform_run() { return system_->run_of("deform"); }
+
+  bool ended_ = false;
+
+  static bool says(const std::string& node, const std::string& words) {
+    return system_->statuses()[node].text.find(words) != std::string::npos;
+  }
+
+ private:
+  static std::unique_ptr<AttackedSystem> system_;
+  static Memory memory_;
+  Memory before_;
+};
+std::unique_ptr<AttackedSystem> Hostile::system_;
+Hostile::Memory Hostile::memory_;
+
+/// A press of 10 N on the hovering tool, as the deform node would tell of it.
+LocalContactModel press(std::uint64_t tool_run, std::uint64_t deform_run, std::uint64_t step, std::uint64_t seq) {
+  LocalContactModel m{.tool = 1, .run = deform_run, .seq = seq, .tool_run = tool_run, .tool_step = step};
+  m.depth = 0.186;
+  m.contacts.push_back({0, 0, {0, 0, 0.006}, {0, 0, -1}, {0, 0, -10}, {}});
+  return m;
+}
+
+TEST_F(Hostile, ATissueThatPressesAToolInFreeAirIsNotFelt) {
+  const auto models = writer(topics::local_contact_model);
+  system().pause("deform");  // whose own models would come between
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    models->write(press(haptic_run(), deform_run(), hand().newest().step - 2, 1'000'000 + k));
+    system().watch(1ms);
+  }
+  system().go_on("deform");
+  EXPECT_LT(hand().max_force(), 1) << "more than the tissue could give";
+  EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "local contact model"); })) << "it says so";
+}
+
+TEST_F(Hostile, EveryFieldAtItsExtremes) {
+  Learned learned(system().attacker().bus(), topics::all);
+  system().watch(400ms);
+  learned.take();
+  int kinds = 0, sent = 0;
+  const auto play = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
+    const auto& topic = std::get<i>(topics::all);
+    const auto attack = system().attacker().writer(topic);
+    system().watch(50ms);
+    auto base = learned.template of<i>((topic.writers & roles::deform) ? deform_run() : haptic_run());
+    if constexpr (requires { base.tool_run; }) base.contacts = press(haptic_run(), deform_run(), 0, 1).contacts;
+    Mutations(base, [&](const std::string&, const auto& message) {
+      ++kinds;
+      sent += attack.write(message);
+      if (kinds % 4 == 0) system().watch(1ms);
+    });
+  };
+  const int rounds = long_form() ? 200 : 1;
+  for (int round = 0; round < rounds; ++round) [&]<std::size_t... i>(std::index_sequence<i...>) {
+      (play(std::integral_constant<std::size_t, i>{}), ...);
+    }
+  (std::make_index_sequence<std::tuple_size_v<decltype(topics::all)>>{});
+  fmt::print("{} kinds, {} of them sent\n", kinds, sent);
+  EXPECT_GE(sent, 200);
+  EXPECT_TRUE(
+      system().watch(3s, [] { return says("render", "messages are refused") || says("web", "messages are refused"); }));
+  EXPECT_TRUE(system().pictures_go_on(5s));
+}
+
+TEST_F(Hostile, AContactOfAToolThatIsNotThereDoesNotStopTheSurfaces) {
+  const auto contacts = writer(topics::contact_state);
+  for (std::uint32_t tool = 2; tool < 100; ++tool)
+    contacts->write({.tool = tool, .run = haptic_run(), .seq = 1, .step = hand().newest().step, .sense_ns = now_ns()});
+  EXPECT_TRUE(system().pictures_go_on(3s));
+}
+
+TEST_F(Hostile, ATimeToComeAndAStepToComeDoNotShutTheRealNodeOut) {
+  const auto contacts = writer(topics::contact_state);
+  const auto surfaces = writer(topics::surface_state);
+  constexpr std::int64_t future = 2'000'000'000'000'000'000;
+  contacts->write({.tool = 1, .run = haptic_run(), .seq = 1, .step = ~0ull, .sense_ns = future});
+  SurfaceState surface{.body = 0, .run = haptic_run(), .seq = 1, .step = ~0ull, .sense_ns = future};
+  surface.position.resize(3 * 405);
+  surface.normal.resize(3 * 405);
+  surfaces->write(surface);
+  system().watch(100ms);
+  EXPECT_TRUE(system().pictures_go_on(3s));
+}
+
+TEST_F(Hostile, ToolsWithoutNumberCostNoMemory) {
+  const auto tools = writer(topics::tool_state);
+  const auto contacts = writer(topics::contact_state);
+  const std::uint32_t many = long_form() ? 2'000'000 : 30'000;
+  for (std::uint32_t tool = 100; tool < many; ++tool) {
+    tools->write({.tool = tool, .run = haptic_run(), .seq = 1});
+    contacts->write({.tool = tool, .run = haptic_run(), .seq = 1});
+    if (tool % 300 == 0) system().watch(1ms);
+  }
+  EXPECT_TRUE(system().pictures_go_on(5s));
+  EXPECT_LT(grown(), kFlood);
+}
+
+TEST_F(Hostile, QuestionsForTheTimeUnderEverNewNamesKeepTheHapticNodeFromNothing) {
+  const auto probes = writer(topics::clock_probe);
+  const int many = long_form() ? 2'000'000 : 40'000;
+  for (int k = 0; k < many; ++k) {
+    probes->write({.node = fmt::format("render {}@there", k), .seq = 1, .publish_ns = now_ns()});
+    if (k % 2000 == 0) system().watch(1ms);
+  }
+  system().watch(100ms);
+  EXPECT_LT(grown(), kFlood);
+}
+
+TEST_F(Hostile, WhatOthersSayToHaveBeenCutDoesNotFillTheDeformNode) {
+  const auto held = writer(topics::held_topology);
+  for (std::uint64_t seq = 1; seq <= 20'000; ++seq) {
+    held->write({.node = "render 1@nowhere", .body = 0, .run = deform_run(), .seq = seq, .removed = {1, 2, 3}});
+    if (seq % 200 == 0) system().watch(1ms);
+  }
+  EXPECT_TRUE(system().pictures_go_on(5s)) << "the deform node hears nothing any more";
+}
+
+TEST_F(Hostile, ASecondHapticAndASecondDeformNodeAreNotFollowed) {
+  const auto status = writer(topics::node_status);
+  const auto contacts = writer(topics::contact_state);
+  const auto models = writer(topics::local_contact_model);
+  NodeStatus haptic = system().statuses()["haptic"], deform = system().statuses()["deform"];
+  haptic.node = "haptic 1@nowhere", haptic.run = 3;
+  deform.node = "deform 1@nowhere", deform.run = 5;
+  for (std::uint64_t k = 0; k < 300; ++k) {
+    if (k % 50 == 0) haptic.seq = deform.seq = k + 1, status->write(haptic), status->write(deform);
+    contacts->write({.tool = 1, .run = 3, .seq = k + 1, .step = k, .sense_ns = now_ns()});
+    models->write(press(haptic_run(), 5, hand().newest().step - 2, k + 1));
+    system().watch(1ms);
+  }
+  EXPECT_LT(hand().max_force(), 0.1);
+  EXPECT_TRUE(system().pictures_go_on(1s));
+}
+
+TEST_F(Hostile, ANodeWithoutASceneIsNoneOfThisScene) {
+  const auto status = writer(topics::node_status);
+  const auto models = writer(topics::local_contact_model);
+  NodeStatus deform = system().statuses()["deform"];
+  deform.node = "deform 0@nowhere", deform.run = 7;
+  deform.scene_hash.clear(), deform.archive_hash.clear();
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    deform.seq = k + 1;
+    status->write(deform);
+    models->write(press(haptic_run(), 7, hand().newest().step - 2, k + 1));
+    system().watch(1ms);
+  }
+  EXPECT_LT(hand().max_force(), 0.1);
+}
+
+TEST_F(Hostile, WhatANodeSaysOfItselfIsNoMoreThanText) {
+  const auto status = writer(topics::node_status);
+  NodeStatus odd = system().statuses()["render"];
+  odd.node = "render \x1b[2J\xff\xfe", odd.text = "\xc3\x28 \x1b]0;\x07";
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    odd.seq = k + 1;
+    status->write(odd);
+    system().watch(50ms);
+  }
+  EXPECT_TRUE(system().all_run());
+}
+
+TEST_F(Hostile, CutsWithoutEndCostNoMemory) {
+  const auto changes = writer(topics::topology_change);
+  TopologyChange change{.body = 0, .run = deform_run(), .cause = fell_away};
+  change.removed.assign(60'000, 1);
+  for (change.seq = 2; change.seq < 150; ++change.seq) {
+    changes->write(change);
+    system().watch(1ms);
+  }
+  for (change.seq = 1'000'000'000; change.seq < 1'000'000'300; ++change.seq) changes->write(change);
+  EXPECT_TRUE(system().pictures_go_on(3s));
+}
+
+TEST_F(Hostile, WhatWasRecordedAndIsPlayedAgainIsNotFelt) {
+  const auto tools = writer(topics::tool_state);
+  const auto contacts = writer(topics::contact_state);
+  const auto models = writer(topics::local_contact_model);
+  Learned learned(system().attacker().bus(),
+                  std::tuple{topics::tool_state, topics::contact_state, topics::local_contact_model});
+  std::vector<ToolState> old_tools;
+  std::vector<ContactState> old_contacts;
+  std::vector<LocalContactModel> old_models;
+  for (int k = 0; k < 100; ++k) {
+    system().watch(2ms);
+    learned.take();
+    old_tools.push_back(learned.of<0>(haptic_run()));
+    old_contacts.push_back(learned.of<1>(haptic_run()));
+    old_models.push_back(learned.of<2>(deform_run()));
+  }
+  system().watch(200ms);
+  for (std::size_t k = 0; k < old_tools.size(); ++k) {
+    tools->write(old_tools[k]);
+    contacts->write(old_contacts[k]);
+    models->write(old_models[k]);
+    if (k % 4 == 0) system().watch(1ms);
+  }
+  EXPECT_LT(hand().max_force(), 0.1);
+  EXPECT_TRUE(system().pictures_go_on(2s));
+}
+
+TEST_F(Hostile, NodesEndAsTheyShouldAndSayWhatTheyRefused) {
+  std::map<std::string, nlohmann::json> said = system().end();
+  ended_ = true;
+  for (const char* name : {"deform", "render", "web", "haptic"}) ASSERT_TRUE(said.contains(name)) << name;
+  EXPECT_GT(said["haptic"].value("refused_messages", 0), 0);
+  EXPECT_GT(said["haptic"].value("implausible_models", 0) + said["haptic"].value("implausible_force_steps", 0), 0);
+  EXPECT_GE(said["haptic"].value("rate_hz", 0.0), kMinHzOfAll);
+  EXPECT_EQ(said["haptic"].value("dropped", -1), 0) << "steps that the log would lack";
+  EXPECT_GT(said["deform"].value("refused", 0), 0);
+  EXPECT_GT(said["render"].value("refused", 0), 0);
+  EXPECT_GT(said["web"].value("refused_messages", 0), 0);
+}
+
+}  // namespace
+}  // namespace palpate::testing
