@@ -24,13 +24,17 @@ struct TouchContact {
   bool face = false;     ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
   bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
+  bool leaving = false;  ///< its triangle has been cut away: it stays on the nodes, and gives way until it is open
+  double receded = 0, receding = 0;  ///< [m], [m/s] by which one that leaves lets its nodes into the tool
   Anchor anchor;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();     ///< unit or zero: direction of friction on the tissue
   Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] on the tissue, world; conjugate to the anchor's motion
   /// [m/N] by which it gives way beyond what the nodes of its anchor do; of a patch.
   Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< [N s] on the tissue, of a tick that has many steps
+  // Of a tick that has many steps:
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< [N s] on the tissue
+  Eigen::Vector3d pressed = Eigen::Vector3d::Zero();  ///< [N s] the part of it along each step's normal
   // Set before each solve:
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m] world: where a sticking anchor is held
   double plane = 0;                                  ///< [m] least value of normal . position of the anchor

@@ -161,6 +161,16 @@ Vector3d CutSurface::outer_side(const std::array<int, 3>& n) const {
   return (position_[n[1]] - position_[n[0]]).cross(position_[n[2]] - position_[n[0]]).normalized();
 }
 
+int CutSurface::facet_of(const std::array<int, 3>& nodes) const {
+  int found = -1;
+  for_each_facet_of(nodes[0], [&](int facet) {
+    const auto& t = triangle(facet);
+    const auto first = std::ranges::find(t, nodes[0]) - t.begin();
+    if (t[(first + 1) % 3] == nodes[1] && t[(first + 2) % 3] == nodes[2]) found = facet;
+  });
+  return found;
+}
+
 Vector3d CutSurface::vertex_normal(int node) const {
   Vector3d sum = Vector3d::Zero();
   for_each_facet_of(node, [&](int facet) { sum += triangle_normal(facet); });

@@ -42,6 +42,8 @@ class CutSurface : public ContactSurface {
   Eigen::Vector3d outer_side(int node) const override { return vertex_normal(node); }
   Eigen::Vector3d outer_side(const std::array<int, 3>& nodes) const override;
   bool on_surface(int node) const { return facets_of_node_[node] > 0; }
+  /// The visible facet that these nodes go round outward; -1: there is none.
+  int facet_of(const std::array<int, 3>& nodes) const;
   /// Calls visit(facet) for the visible facets of a node, ascending.
   template <class Visit>
   void for_each_facet_of(int node, Visit&& visit) const;

@@ -103,6 +103,13 @@ class ToolContacts {
     }
   };
 
+  /// A place along a part, and on which side of it.
+  struct Place {
+    double along;          ///< [m]
+    Eigen::Vector3d into;  ///< into the tissue there
+    double within;         ///< [m] along, nearer than which two contacts would depend on one another
+  };
+
   void collide_part(const MovingTool& moving, int tool, int part, std::span<const int> near);
   bool add_crossings(const MovingTool& moving, int tool, int part);
   bool add_crossing(const MovingTool& moving, int tool, int part);
@@ -113,7 +120,7 @@ class ToolContacts {
   void keep_faces(const MovingTool& moving, int tool, int part, std::span<const int> near);
   void find_faces(const MovingTool& moving, int tool, int part, std::span<const int> near);
   const TouchContact* held_near(const MovingTool& moving, int tool, int part, double place, double within) const;
-  bool place_taken(const MovingTool& moving, int tool, int part, double place, double within) const;
+  bool place_taken(const MovingTool& moving, int tool, int part, const Place& place) const;
   bool triangle_taken(int tool, const std::array<int, 3>& nodes, int besides) const;
   void follow(int contact, const Eigen::Vector3d& centre, std::span<const int> near);
   void follow(int contact, const MovingTool& moving, std::span<const int> near);

@@ -147,7 +147,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
   bool vertices_carry = false;
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (!c.is_by(tool, part) || c.grasped) continue;
+    if (!c.is_by(tool, part) || c.grasped || c.leaving) continue;
     if (c.face) face = i;
     vertices_carry |= !c.face && c.touch != Touch::open;
   }

@@ -104,18 +104,24 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
     const Crossing& crossing = crossings_[i];
     const double place = length * i / last;
     if (crossing.triangle < 0 || triangle_taken(tool, surface_.triangle(crossing.triangle), -1)) continue;
-    if (place_taken(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]))) continue;
+    const Eigen::Vector3d into = -surface_.triangle_normal(crossing.triangle);
+    const double within = std::max(radius(moving, part), mean_edge_[crossing.triangle]);
+    if (place_taken(moving, tool, part, {place, into, within})) continue;
     crossed |= add_at(crossing, moving, tool, part, place);
   }
   return crossed;
 }
 
-// Whether a contact of the part holds a place along its axis already: within a distance [m] there is a point on a face
-// or a vertex that carries force.
-bool ToolContacts::place_taken(const MovingTool& moving, int tool, int part, double place, double within) const {
+// Whether a contact of the part holds a place along its axis already: there is a point on a face, or a vertex that
+// carries force, on the same side of the part. In a narrow cut tissue lies on both; a wall that is thrust through
+// itself does too, but is met on its outer side alone.
+bool ToolContacts::place_taken(const MovingTool& moving, int tool, int part, const Place& place) const {
+  const bool wall = options_.offset > 0;
   return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
-    if (!c.is_by(tool, part) || c.grasped || (!c.face && c.touch == Touch::open)) return false;
-    return std::abs(std::clamp(c.tool_point().offset.z(), 0.0, moving.parts[part].length) - place) < within;
+    if (!c.is_by(tool, part) || c.grasped || c.leaving || (!c.face && c.touch == Touch::open)) return false;
+    const double along = std::clamp(c.tool_point().offset.z(), 0.0, moving.parts[part].length);
+    const bool same_side = wall || c.normal.dot(place.into) > 0;
+    return std::abs(along - place.along) < place.within && same_side;
   });
 }
 
@@ -130,12 +136,13 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
     const Triangle corners = surface_.corners(candidate.triangle);
     const bool touches = candidate.squared_distance < size * size;  // what is only near stays open, wherever it is
     const double share = touches ? level_share(axis, corners, candidate.share, margin(size)) : candidate.share;
-    if (place_taken(moving, tool, part, share * length, std::max(size, kApartShare * mean_edge_[candidate.triangle])))
-      continue;
+    const Eigen::Vector3d into = -outward(surface_.triangle(candidate.triangle));
+    const double within = std::max(size, kApartShare * mean_edge_[candidate.triangle]);
+    if (place_taken(moving, tool, part, {share * length, into, within})) continue;
     TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
     c.anchor = {surface_.triangle(candidate.triangle), closest_point(axis.at(share), corners).weights};
     c.tool_point().offset = {0, 0, share * length};
-    c.normal = -outward(surface_.triangle(candidate.triangle));
+    c.normal = into;
     law_.add(c);
   }
 }
@@ -154,7 +161,7 @@ void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std:
   int at = 0;
   for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
     const TouchContact& c = law_.contacts()[at];
-    const bool own = c.is_by(tool, part) && c.face && !c.grasped;
+    const bool own = c.is_by(tool, part) && c.face && !c.grasped && !c.leaving;
     const double place = std::clamp(c.tool_point().offset.z(), 0.0, length);
     if (own && vertex_carries(place)) {
       law_.remove(at);

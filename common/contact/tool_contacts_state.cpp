@@ -11,8 +11,8 @@ namespace {
 // A contact as plain bytes for the state that replay starts from.
 struct StoredContact {
   int tool, part, nodes[3];
-  unsigned char face, grasped, touch;
-  double weights[3], offset[3], normal[3], slip[3], force[3], point_force[9];
+  unsigned char face, grasped, touch, leaving;
+  double receded, receding, weights[3], offset[3], normal[3], slip[3], force[3], point_force[9];
   int points;
 };
 
@@ -31,6 +31,9 @@ StoredContact stored(const TouchContact& c, std::span<const double> forces) {
   s.face = c.face;
   s.grasped = c.grasped;
   s.touch = static_cast<unsigned char>(c.touch);
+  s.leaving = c.leaving;
+  s.receded = c.receded;
+  s.receding = c.receding;
   put(s.weights, c.anchor.weights);
   put(s.offset, c.tool_point().offset);
   put(s.normal, c.normal);
@@ -45,7 +48,10 @@ TouchContact contact_of(const StoredContact& s) {
   TouchContact c{.by = ToolPoint{.tool = s.tool, .part = s.part, .offset = get(s.offset)},
                  .face = s.face != 0,
                  .grasped = s.grasped != 0,
-                 .touch = static_cast<Touch>(s.touch)};
+                 .touch = static_cast<Touch>(s.touch),
+                 .leaving = s.leaving != 0,
+                 .receded = s.receded,
+                 .receding = s.receding};
   c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
   c.normal = get(s.normal);
   c.slip = get(s.slip);

@@ -130,14 +130,13 @@ double level_share(const Segment& segment, const Triangle& triangle, double near
 Touching touching(const Segment& axis, double radius, const Vector3d& point, const Vector3d& side, double thrust) {
   const double share = nearest_share(axis, point);
   const Vector3d centre = axis.at(share), d = point - centre;
-  const bool ahead = d.dot(side) > 0;
-  if (axis.start == axis.end) return ahead ? Touching{centre, d.normalized()} : led_out(centre, radius, point, side);
-  const bool within = share > 0 && share < 1 && d.squaredNorm() < radius * radius;
+  const bool ahead = d.dot(side) > 0, within = d.squaredNorm() < radius * radius;
   if (ahead && !within) return {centre, d.normalized()};
+  if (axis.start == axis.end) return led_out(centre, radius, point, side);
   const Exit exit = leave(axis, radius, point, side);
   const bool near = (exit.touching.centre - centre).squaredNorm() <= thrust * thrust;
   if (near && (exit.by_end || !ahead)) return exit.touching;
-  return ahead ? Touching{centre, d.normalized()} : led_out_across(axis, radius, point, side);
+  return led_out_across(axis, radius, point, side);
 }
 
 }  // namespace palpate

@@ -52,10 +52,10 @@ struct Touching {
   Eigen::Vector3d centre, normal;
 };
 
-/// `side`: unit, into the tissue. A point ahead of the axis is met on the shortest way. One that has come to lie behind
-/// it, or within a part that has been thrust over it end first, is led out along `side`: so contact keeps to the side
-/// where it began, however deep the tool has come. On the way out it goes at most `thrust` [m] along the axis; where
-/// `side` leads farther, it is led out across the axis.
+/// `side`: unit, into the tissue. A point outside the part and ahead of its axis is met on the shortest way. One within
+/// it or behind it is led out along `side`: so contact keeps to the side where it began, however deep the tool has
+/// come, and the normal does not turn about where a point lies near the axis. On the way out it goes at most `thrust`
+/// [m] along the axis; where `side` leads farther, it is led out across the axis.
 Touching touching(const Segment& axis, double radius, const Eigen::Vector3d& point, const Eigen::Vector3d& side,
                   double thrust);
 

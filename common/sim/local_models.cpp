@@ -126,7 +126,8 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
   condense(own, world_.organ(i));
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const TouchContact& c = contacts[k];
-    if (!c.is_by(tool) || c.touch == Touch::open || model.contacts.size() == kMaxContacts) continue;
+    const bool pressed = c.touch != Touch::open || !c.force.isZero(0);
+    if (!c.is_by(tool) || !pressed || model.contacts.size() == kMaxContacts) continue;
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;

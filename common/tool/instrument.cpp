@@ -2,16 +2,13 @@
 
 namespace palpate {
 
-std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length) {
-  std::vector<ToolPart> samples{{.radius = tip_radius}};
-  const double step = 1.5 * shaft_radius;
-  for (int i = 0; i < kMaxShaftSamples; ++i) {
-    const double behind = tip_radius + i * step;
-    if (behind > shaft_length) break;
-    ToolPart& sphere = samples.emplace_back(ToolPart{.radius = shaft_radius});
-    sphere.pose.translation().z() = -behind;
-  }
-  return samples;
+std::vector<ToolPart> probe_parts(double tip_radius, double shaft_radius, double shaft_length) {
+  std::vector<ToolPart> parts{{.radius = tip_radius}};
+  if (shaft_length <= tip_radius) return parts;
+  ToolPart& shaft = parts.emplace_back(ToolPart{.length = shaft_length - tip_radius, .radius = shaft_radius});
+  shaft.pose.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  shaft.pose.translation().z() = -tip_radius;
+  return parts;
 }
 
 EndAbilities abilities_of(const Tool& tool) {

@@ -8,10 +8,9 @@
 
 namespace palpate {
 
-/// Spheres of a probe: the tip first, then the shaft at 1.5 radii from centre to centre, at most max_shaft_samples of
-/// them.
-inline constexpr int kMaxShaftSamples = 47;
-std::vector<ToolPart> sample_tool(double tip_radius, double shaft_radius, double shaft_length);
+/// The parts of a probe: its tip, a sphere, and its shaft, a segment from behind the tip to `shaft_length` [m] back
+/// from the tip's centre.
+std::vector<ToolPart> probe_parts(double tip_radius, double shaft_radius, double shaft_length);
 
 EndAbilities abilities_of(const Tool& tool);
 

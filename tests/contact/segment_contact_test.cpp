@@ -56,6 +56,38 @@ TEST(SegmentContact, ThePressedSurfaceLiesOutsideADenseRowOfSpheresAndTheirForce
   EXPECT_GT(touch.force(0).z(), 0.01);
 }
 
+/// Two plates of large triangles that face each other, [m] apart.
+Archive gap_between_plates(double width) {
+  const Archive plate = flat_patch(7, 0.01, 1e-2);
+  Archive both = plate;
+  const int n = plate.surface.touchable;
+  for (const Vector3d& x : plate.surface.position) both.surface.position.push_back(x + Vector3d(0, 0, width));
+  for (int i = 0; i < n; ++i) both.surface.node_number.push_back(n + i);
+  both.surface.fixed.resize(2 * n, {false, false, false});
+  for (const auto& [a, b, c] : plate.surface.triangles) both.surface.triangles.push_back({n + a, n + c, n + b});
+  both.surface.touchable = 2 * n;
+  for (const Dof& d : plate.touchable_dofs) both.touchable_dofs.push_back({n + d.node, d.axis});
+  for (int i = 0; i < 3 * n; ++i) {
+    both.touchable_compliance.insert(both.touchable_compliance.end(), 3 * n, 0.0);
+    const auto row = plate.touchable_compliance.begin() + i * (i + 1) / 2;
+    both.touchable_compliance.insert(both.touchable_compliance.end(), row, row + i + 1);
+  }
+  return both;
+}
+
+TEST(SegmentContact, BetweenTwoFacesOfACutBothPress) {
+  const double radius = 0.001, width = 0.0018;
+  PatchTouch touch(gap_between_plates(width), 0, 1);
+  HandledTool tool = HandledTool::segment(0.002, radius);  // no room for two contacts side by side
+  tool.place_at({0.001, 0.003, 0.5 * width}, Vector3d::UnitX());
+  settle(touch, tool);
+  double below = 0, above = 0;
+  for (const TouchContact& c : touch.law().contacts())
+    (c.normal.z() < 0 ? below : above) += std::abs(c.force.dot(c.normal));
+  EXPECT_GT(below, 0.005);
+  EXPECT_NEAR(above, below, 0.2 * below);
+}
+
 TEST(SegmentContact, OnAPlateOfLargeTrianglesSeveralPlacesCarryAndTheTorqueIsTheirMomentAboutTheJoint) {
   const double radius = 0.001, length = 0.03;
   PatchTouch touch(flat_patch(9, 0.01, 1e-2), 0, 1);

@@ -130,6 +130,27 @@ TEST(Touching, APointFarFromTheEndsIsLedOutAcrossTheAxis) {
   EXPECT_GT(found.normal.dot(side), 0);
 }
 
+TEST(Touching, APointNearTheAxisIsMetOnItsSideWhereverAboutTheAxisItLies) {
+  Random random(8);
+  const Vector3d side = -Vector3d::UnitZ();
+  for (const Segment& axis : {Segment{{0, 0, 0}, {10, 0, 0}}, Segment{{5, 0, 0}, {5, 0, 0}}})
+    for (int round = 0; round < 1000; ++round) {
+      const Vector3d point = Vector3d(5, 0, 0) + 0.05 * random.point();
+      ASSERT_GT(touching(axis, 1, point, side, 2).normal.dot(side), 0.99) << "round " << round;
+    }
+}
+
+TEST(Touching, TheNormalTurnsEvenlyAsAPointComesToLieBehind) {
+  const Segment axis{{0, 0, 0}, {10, 0, 0}};
+  const Vector3d side = -Vector3d::UnitZ();
+  Vector3d last = touching(axis, 1, {5, 0.6, -0.6}, side, 2).normal;
+  for (double z = -0.6; z < 0.3; z += 1e-3) {
+    const Vector3d normal = touching(axis, 1, {5, 0.6, z}, side, 2).normal;
+    ASSERT_LT((normal - last).norm(), 0.01) << z;
+    last = normal;
+  }
+}
+
 TEST(Touching, ASegmentOfNoLengthIsASphere) {
   Random random(7);
   for (int round = 0; round < 1000; ++round) {
@@ -137,7 +158,7 @@ TEST(Touching, ASegmentOfNoLengthIsASphere) {
     const Vector3d d = point - centre;
     const Touching found = touching({centre, centre}, 0.8, point, side, 0);
     ASSERT_EQ(found.centre, centre);
-    if (d.dot(side) > 0) {
+    if (d.dot(side) > 0 && d.norm() >= 0.8) {
       ASSERT_LT((found.normal - d.normalized()).norm(), 1e-15);
     } else {
       const Vector3d lateral = d - d.dot(side) * side;

@@ -93,6 +93,63 @@ TEST(DynamicOrgan, CauteryCutsWhileThePedalIsDownAndNotOtherwise) {
   EXPECT_EQ(bench.organ().topology().alive_count() + static_cast<int>(cut), bench.organ().topology().size());
 }
 
+/// A scalpel whose ball is smaller than the tissue's triangles, and glows a little beyond it.
+Scene fine_scalpel() {
+  Scene scene = block_scene();
+  ProbeSpec& probe = std::get<ProbeSpec>(scene.tools[0].end);
+  probe.radius = 0.002;
+  probe.cautery = Cautery{0.0022};
+  scene.tools[0].shaft_radius = 0.001;
+  scene.contact.rule = "barycentric";
+  return scene;
+}
+
+TEST(DynamicOrgan, WhatIsCutAwayUnderATipLetsGoBySmallSteps) {
+  Bench bench(fine_scalpel(), middle_block_mesh(6));
+  for (int i = 0; i < 400; ++i) bench.tick(from_above(i, 300, kTop + 0.003, kTop - 0.002), 0.001);
+  const double pressed = bench.force().norm();
+  ASSERT_GT(pressed, 0.01);
+  double last = pressed, largest = 0;
+  for (int i = 0; i < 15; ++i) {  // until the tissue that is left strikes the tip
+    bench.tick(kTop - 0.002, 0.001, i == 0);
+    const double now = bench.force().norm();
+    largest = std::max(largest, std::abs(now - last));
+    last = now;
+  }
+  EXPECT_FALSE(bench.organ().removed().empty());
+  EXPECT_LT(last, 0.5 * pressed);
+  EXPECT_LT(largest, 0.25 * pressed);
+}
+
+TEST(DynamicOrgan, NothingIsPressedThatHasBeenCutAway) {
+  Bench bench(fine_scalpel(), middle_block_mesh(6));
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 200, kTop + 0.003, kTop - 0.002), 0.001);
+  const auto pressed_in_vain = [&] {
+    const CutMesh& topology = bench.organ().topology();
+    return std::ranges::count_if(bench.organ().contacts(), [&](const TouchContact& c) {
+      const auto is_it = [&](int facet) { return topology.facet(facet) == c.anchor.nodes; };
+      return c.face && !c.force.isZero(0) && std::ranges::none_of(topology.visible(), is_it);
+    });
+  };
+  ASSERT_FALSE(bench.force().isZero(0));
+  ASSERT_EQ(pressed_in_vain(), 0);
+  for (int i = 0; i < 400; ++i) bench.tick(kTop - 0.002 - 1e-5 * i, 0.001, i < 300);
+  EXPECT_GT(bench.organ().removed().size(), 3u);
+  EXPECT_EQ(pressed_in_vain(), 0);
+}
+
+TEST(DynamicOrgan, WhatLetsGoWithinATickIsToldWithTheForceThatItHad) {
+  Scene scene = fine_scalpel();
+  moving_block_of(scene).material.young = 1e6;  // many steps a tick
+  Bench bench(scene, middle_block_mesh(6));
+  int told = 0;
+  for (int i = 0; i < 400; ++i) {
+    bench.tick(kTop + 0.0015 + 0.0015 * std::cos(0.1 * i), 0.001);  // taps
+    for (const TouchContact& c : bench.organ().contacts()) told += c.touch == Touch::open && c.force.dot(c.normal) > 0;
+  }
+  EXPECT_GT(told, 0);
+}
+
 TEST(DynamicOrgan, ACutThroughEverythingLeavesARunningSystem) {
   Scene scene = block_scene();
   std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.2};

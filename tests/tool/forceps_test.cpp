@@ -53,15 +53,17 @@ TEST(Forceps, BetweenTheJawsIsTheirWedge) {
   EXPECT_FALSE(between_jaws(kForceps, 0.6, {0, 0, -0.001}));    // behind the joint
 }
 
-TEST(Instruments, AProbeIsSpheresAndAForcepsSegments) {
+TEST(Instruments, AProbeIsABallOnASegmentAndAForcepsSegments) {
   Tool tool;
-  const auto spheres = tool_parts(tool);
-  ASSERT_GT(spheres.size(), 10u);
-  EXPECT_EQ(spheres[0].radius, std::get<ProbeSpec>(tool.end).radius);
-  EXPECT_EQ(spheres[0].axis(Eigen::Isometry3d::Identity()).start, Vector3d::Zero());
-  EXPECT_EQ(spheres[2].axis(Eigen::Isometry3d::Identity()).start,
-            Vector3d(0, 0, -(std::get<ProbeSpec>(tool.end).radius + 1.5 * tool.shaft_radius)));
-  for (const ToolPart& s : spheres) EXPECT_EQ(s.length, 0);
+  const auto probe = tool_parts(tool);
+  const double tip = std::get<ProbeSpec>(tool.end).radius;
+  ASSERT_EQ(probe.size(), 2u);
+  EXPECT_EQ(probe[0].radius, tip);
+  EXPECT_EQ(probe[0].length, 0);
+  EXPECT_EQ(probe[0].axis(Eigen::Isometry3d::Identity()).start, Vector3d::Zero());
+  EXPECT_EQ(probe[1].radius, tool.shaft_radius);
+  EXPECT_EQ(probe[1].axis(Eigen::Isometry3d::Identity()).start, Vector3d(0, 0, -tip));
+  EXPECT_NEAR((probe[1].axis(Eigen::Isometry3d::Identity()).end - Vector3d(0, 0, -tool.shaft_length)).norm(), 0, 1e-12);
   tool.end = ForcepsSpec{{.length = 0.02, .radius = 0.0015}};
   const auto parts = tool_parts(tool, 0.4);
   ASSERT_EQ(parts.size(), 3u);

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kBoundShare = 0.9;         // of the largest stable step that is used where the scene names none
 constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
+constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 double bucket_size(const ContactSpec& contact, const ElasticMesh& mesh) {
@@ -42,6 +43,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
       contacts_(archive, mesh_, topology_, surface_, *model_, settings),
+      fading_ticks_(std::max(1, static_cast<int>(std::lround(kFading / settings.dt)))),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
       in_step_(settings.tools.size()) {
@@ -101,6 +103,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
   take_tools(tools);
   work_jaws(tools);
+  fade();
   contacts_.find(in_tick_, dt / steps_in(dt, true));
   if (still_) still_->find(in_tick_);
   const bool touched = contacts_.touched();
@@ -220,10 +223,34 @@ void DynamicOrgan::remove(int tetrahedron) {
 void DynamicOrgan::note_change(RemovalCause cause, std::size_t first) {
   if (first == removed_.size()) return;
   changes_.push_back({cause, {removed_.begin() + static_cast<std::ptrdiff_t>(first), removed_.end()}});
-  model_->remove(changes_.back().removed);
+  if (cause == RemovalCause::cut)
+    cut_from_model(changes_.back().removed);
+  else
+    model_->remove(changes_.back().removed);
   if (tearing_) tearing_->remove(changes_.back().removed);
-  contacts_.follow_cut(topology_);
+  contacts_.follow_cut(topology_, in_tick_);
   follow_change();
+}
+
+// What the tetrahedra did to the nodes that stay fades; gone at once, it would be a blow to what presses them.
+void DynamicOrgan::cut_from_model(std::span<const int> gone) {
+  std::vector<int> nodes;
+  for (const int t : gone) nodes.insert(nodes.end(), mesh_.tetrahedra[t].begin(), mesh_.tetrahedra[t].end());
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  const auto joined = [&](int n) { return still_ && std::ranges::count(still_->part().connection(), n) > 0; };
+  std::erase_if(nodes, [&](int n) { return !topology_.has_node(n) || joined(n); });
+  const std::size_t first = fading_.size();
+  for (const int n : nodes) fading_.push_back({n, fading_ticks_, model_->elastic_force(n)});
+  model_->remove(gone);
+  for (std::size_t i = first; i < fading_.size(); ++i) fading_[i].force -= model_->elastic_force(fading_[i].node);
+}
+
+void DynamicOrgan::fade() {
+  for (const Fading& f : fading_) model_->set_load(f.node, Eigen::Vector3d::Zero());
+  std::erase_if(fading_, [](Fading& f) { return --f.ticks_left <= 0; });
+  for (const Fading& f : fading_)
+    model_->set_load(f.node, model_->load(f.node) + static_cast<double>(f.ticks_left) / fading_ticks_ * f.force);
 }
 
 // Which parts float now.
@@ -282,6 +309,7 @@ DynamicOrgan::Memory DynamicOrgan::memory() const {
   std::vector<char> holding;
   for (const Hand& hand : hands_) holding.push_back(hand.holding);
   return {removed_,
+          fading_,
           motion(),
           holding,
           {surface_.previous().begin(), surface_.previous().end()},
@@ -291,6 +319,7 @@ DynamicOrgan::Memory DynamicOrgan::memory() const {
 void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   Memory m = s.restoring() ? Memory{} : memory();
   s.list(m.removed);
+  s.list(m.fading);
   s.list(m.motion);
   s.list(m.holding);
   s.list(m.previous);
@@ -304,13 +333,18 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 bool DynamicOrgan::fits(const Memory& m) const {
   const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == hands_.size() &&
                      m.previous.size() == position_.size() && m.present.size() == position_.size();
-  return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+  const auto known = [&](const Fading& f) {
+    return f.node >= 0 && f.node < mesh_.nodes() && f.ticks_left > 0 && f.ticks_left <= fading_ticks_;
+  };
+  return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); }) &&
+         std::ranges::all_of(m.fading, known);
 }
 
 void DynamicOrgan::recall(const Memory& m) {
   if (!fits(m) || !removed_.empty())
     throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
   removed_ = m.removed;
+  fading_ = m.fading;
   topology_.erase(removed_);
   surface_.follow();
   model_->remove(removed_);
@@ -320,7 +354,7 @@ void DynamicOrgan::recall(const Memory& m) {
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;
-  contacts_.follow_cut(topology_);
+  contacts_.follow_cut(topology_, in_tick_);
   follow_change();
 }
 

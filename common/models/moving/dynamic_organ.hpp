@@ -95,9 +95,15 @@ class DynamicOrgan {
     std::optional<Cautery> cautery;
     bool holding = false;
   };
+  /// What tetrahedra that have been cut away did to a node that stays.
+  struct Fading {
+    int node, ticks_left;
+    Eigen::Vector3d force;  ///< [N] when they went
+  };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
     std::vector<int> removed;
+    std::vector<Fading> fading;
     std::vector<std::uint8_t> motion;
     std::vector<char> holding;
     std::vector<Eigen::Vector3d> previous, present;
@@ -115,6 +121,8 @@ class DynamicOrgan {
   void tear();
   void drop_fallen();
   void remove(int tetrahedron);
+  void cut_from_model(std::span<const int> gone);
+  void fade();
   void note_change(RemovalCause cause, std::size_t first);
   void follow_change();
 
@@ -129,8 +137,10 @@ class DynamicOrgan {
   TissueTouch contacts_;
   std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
-  double diagonal_;                             ///< [m] of the body at rest
-  Eigen::Vector3d middle_;                      ///< [m] of the body at rest
+  double diagonal_;         ///< [m] of the body at rest
+  Eigen::Vector3d middle_;  ///< [m] of the body at rest
+  int fading_ticks_;
+  std::vector<Fading> fading_;
   std::vector<Eigen::Vector3d> position_;       ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;   ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<int> removed_, part_of_, loose_;  ///< loose_: one tetrahedron of each part that floats

@@ -91,10 +91,14 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   const auto compliance = Compliance<double>::of_moving_part(archive);
   near_field_ = std::make_unique<NearField>(surface_, compliance, material, largest, kResolved);
   near_field_->leave_out(compliance);
-  follow_cut(topology);
+  follow_cut(topology, {});
 }
 
-void TissuePatches::follow_cut(const CutMesh& topology) {
+void TissuePatches::follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave) {
+  for (const Tip& tip : tips_) {
+    if (tip.contact.touch == Touch::open || cut_surface_.facet_of(tip.contact.anchor.nodes) >= 0) continue;
+    leave(tip.contact);
+  }
   for (std::size_t t = 0; t < facet_of_triangle_.size(); ++t) {
     const int facet = facet_of_triangle_[t];
     if (facet < 0 || !topology.is_visible(facet)) surface_.leave_out(static_cast<int>(t));

@@ -49,7 +49,8 @@ class TissuePatches {
 
   void forget_factor();
   void drop_tool(int tool);
-  void follow_cut(const CutMesh& topology);
+  /// After a cut. `leave`: what becomes of the contact of a patch whose triangle has gone.
+  void follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave);
   void state(State& s);
 
  private:

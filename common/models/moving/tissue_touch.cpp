@@ -5,6 +5,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kGivingWay = 10;  // [m/s^2] at which what has been cut away gives way, faster and faster
+
 ToolContacts::Options tips_beside(const TissuePatches* patches) {
   ToolContacts::Options options;
   if (patches) options.tips = [patches](int facet) { return !patches->covers(facet); };
@@ -59,16 +61,44 @@ bool TissueTouch::grasping(int tool) const {
   return std::ranges::any_of(law_.contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
 }
 
-void TissueTouch::follow_cut(const CutMesh& topology) {
+// What pressed a triangle that has been cut away goes on pressing the nodes that are left of it, and gives way from
+// then on: gone at once, its force would be a blow.
+void TissueTouch::leave(TouchContact c, std::span<const MovingTool> tools, const CutMesh& topology) {
+  if (c.touch == Touch::open || law_.full()) return;
+  const Anchor pressed = c.anchor;
+  for (int v = 0; v < 3; ++v) c.anchor.weights[v] *= topology.has_node(pressed.nodes[v]);
+  if (c.anchor.weights.isZero(0))
+    for (int v = 0; v < 3; ++v) c.anchor.weights[v] = topology.has_node(pressed.nodes[v]);
+  if (c.anchor.weights.isZero(0)) return;
+  c.anchor.weights /= c.anchor.weights.sum();
+  ToolPoint& by = c.tool_point();
+  const MovingTool& tool = tools[by.tool];
+  const Eigen::Vector3d on_tool = nearest_point(tool.axis(by.part), c.at) + tool.radius(by.part) * c.normal;
+  by.offset = tool.to_part(by.part, on_tool);
+  if (c.touch == Touch::sticking) c.slip.setZero();
+  c.touch = Touch::sliding;
+  c.leaving = true;
+  c.give.setZero();  // of a patch
+  c.receded = c.normal.dot(on_tool - anchor_position(c.anchor, surface_.positions()));
+  law_.add(c);
+}
+
+void TissueTouch::follow_cut(const CutMesh& topology, std::span<const MovingTool> tools) {
+  const auto node_gone = [&](const TouchContact& c) {
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0 && !topology.has_node(c.anchor.nodes[v])) return true;
+    return false;
+  };
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
-    const Anchor& a = law_.contacts()[i].anchor;
-    bool gone = false;
-    for (int v = 0; v < 3; ++v) gone |= a.weights[v] != 0 && !topology.has_node(a.nodes[v]);
-    if (gone) law_.remove(i);
+    const TouchContact c = law_.contacts()[i];
+    const bool on_triangle = c.face && !c.grasped;
+    if (!node_gone(c) && (!on_triangle || c.leaving || surface_.facet_of(c.anchor.nodes) >= 0)) continue;
+    law_.remove(i);
+    if (on_triangle) leave(c, tools, topology);
   }
-  if (patches_) patches_->follow_cut(topology);
+  std::erase_if(all_, node_gone);
+  if (patches_) patches_->follow_cut(topology, [&](const TouchContact& c) { leave(c, tools, topology); });
   follow_response(dt_);
-  gather();
 }
 
 void TissueTouch::follow_response(double dt) {
@@ -93,6 +123,8 @@ void TissueTouch::solve(std::span<const MovingTool> tools) {
 // within one step, that would be a blow.
 void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
+  c.plane -= c.receded;
+  c.target -= c.receded * c.normal;
   const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
   const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion;
   const double depth = c.plane - c.normal.dot(carried), led = TissuePatches::kWayOut * dt_;
@@ -112,21 +144,34 @@ void TissueTouch::put_right(double dt) {
 
 void TissueTouch::step(std::span<const MovingTool> tools, double dt) {
   model_.step_semi_implicit(dt);
+  for (TouchContact& c : law_.contacts()) {
+    if (!c.leaving) continue;
+    c.receding += kGivingWay * dt;
+    c.receded += c.receding * dt;
+  }
   solve(tools);
   put_right(dt);
-  for (TouchContact& c : law_.contacts()) c.impulse += dt * c.force;
+  for (TouchContact& c : law_.contacts()) {
+    c.impulse += dt * c.force;
+    c.pressed += dt * c.force.dot(c.normal) * c.normal;
+  }
   contacts_.slide(tools);
   if (patches_) patches_->step(tools, dt);
 }
 
 void TissueTouch::end_tick(std::span<const MovingTool> tools, double dt) {
+  all_.clear();
   for (TouchContact& c : law_.contacts()) {
     c.force = c.impulse / dt;
+    TouchContact& told = all_.emplace_back(c);
+    if (!c.grasped && !c.pressed.isZero(0)) told.normal = c.pressed.normalized();
     c.impulse.setZero();
+    c.pressed.setZero();
   }
   contacts_.settle(tools);
-  if (patches_) patches_->end_tick(tools, dt);
-  gather();
+  if (!patches_) return;
+  patches_->end_tick(tools, dt);
+  patches_->add_contacts(all_);
 }
 
 void TissueTouch::forget_factor() {

@@ -27,7 +27,7 @@ class TissueTouch {
   TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
               DynamicModel& model, const StepSettings& settings);
 
-  /// Of the last tick.
+  /// Of the last tick: all that pressed in it, those that have let go as well, with the tick's mean normal.
   std::span<const TouchContact> contacts() const { return all_; }
   /// Whether tools touch the tissue, or nearly do, so that its steps are to be step()'s.
   bool touched() const { return !law_.contacts().empty() || (patches_ && patches_->laid()); }
@@ -44,13 +44,14 @@ class TissueTouch {
   /// After the last step of a tick of `dt` [s]: the contacts' forces become the tick's own, their impulses over its
   /// length; a single step's force of an impact grows as the step gets shorter. Contacts that have gone are dropped.
   void end_tick(std::span<const MovingTool> tools, double dt);
-  /// After a cut: contacts on what is gone are dropped; the masses of what is left have changed.
-  void follow_cut(const CutMesh& topology);
+  /// After a cut: contacts on what is gone leave; the masses of what is left have changed. `tools`: of the last tick.
+  void follow_cut(const CutMesh& topology, std::span<const MovingTool> tools);
 
   void forget_factor();
   void state(State& s, std::span<const MovingTool> tools);
 
  private:
+  void leave(TouchContact contact, std::span<const MovingTool> tools, const CutMesh& topology);
   void follow_response(double dt);
   void gather();
   void solve(std::span<const MovingTool> tools);

@@ -15,7 +15,7 @@ EndAbilities abilities(const ProbeSpec& probe) {
 }
 
 std::vector<ToolPart> end_parts(const ProbeSpec& probe, const Tool& tool, double) {
-  return sample_tool(probe.radius, tool.shaft_radius, tool.shaft_length);
+  return probe_parts(probe.radius, tool.shaft_radius, tool.shaft_length);
 }
 
 std::string sentence(const ProbeSpec& probe, const Tool& tool) {

@@ -6,7 +6,7 @@ namespace palpate {
 /// Spheres along tip and shaft.
 struct ProbeSpec {
   static constexpr std::string_view kKind = "probe";
-  static constexpr std::string_view kMeaning = "spheres along tip and shaft";
+  static constexpr std::string_view kMeaning = "a ball at the tip of a shaft";
   double radius = 0.004;  ///< [m] of the spherical tip
   std::optional<Cautery> cautery;
   std::optional<ClosingJaws> jaws;
