@@ -303,9 +303,10 @@ void add_run_command(cli::Command& app) {
       "one if another run on this host has it");
   run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command
-      .add_option("--processes", o->processes,
-                  "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has, also "
-                  "where nothing is drawn here")
+      .add_option(
+          "--processes", o->processes,
+          "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has, also "
+          "where nothing is drawn here")
       .one_of({2, 3});
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.does([o] { run(*o); });

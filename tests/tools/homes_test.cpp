@@ -86,7 +86,8 @@ TEST(ToolsHomes, TheHapticNodeLinksNoPictureMeshFilmOrSolverLibrary) {
 TEST(ToolsHomes, OpenBlasIsTheProcessorsOwnUnlessTheEnvironmentSaysOtherwise) {
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) GTEST_SKIP() << "this processor has no AVX2";
   const auto core = [](const std::string& environment) {
-    const auto said = run_program("env " + environment + " OPENBLAS_VERBOSE=2 " + program("palpate") + " --version").err;
+    const auto said =
+        run_program("env " + environment + " OPENBLAS_VERBOSE=2 " + program("palpate") + " --version").err;
     const std::size_t last = said.rfind("Core: ");
     return last == std::string::npos ? std::string() : said.substr(last + 6, said.find('\n', last) - last - 6);
   };

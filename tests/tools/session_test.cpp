@@ -183,9 +183,8 @@ TEST(SessionTest, ThreeProcessesTellSurfacesAlsoWhereNothingIsDrawn) {
   const std::string text = text_of(scene.scene());
   scene.write("scene.toml", text.substr(0, text.find("[render]")));
   const fs::path file = scene.folder() / "summary.json";
-  const auto run =
-      run_program(fmt::format("{} run {} --processes 3 --seconds 0.5 --domain {} --summary {}", program("palpate"),
-                              scene.scene(), testing::own_domain(), file.string()));
+  const auto run = run_program(fmt::format("{} run {} --processes 3 --seconds 0.5 --domain {} --summary {}",
+                                           program("palpate"), scene.scene(), testing::own_domain(), file.string()));
   ASSERT_EQ(run.status, 0) << run.err;
   const json summary = json::parse(text_of(file));
   ASSERT_TRUE(summary.contains("deform_node")) << summary.dump();

@@ -27,14 +27,8 @@ Moments of_duals(const Moments& m) {
 }
 
 std::vector<double> reach_of(const std::vector<bool>& nodes, const SurfaceMap& map) {
-  std::vector<double> reach(map.size(), NearPairs::kNone);
-  for (const auto& t : map.triangles)
-    for (int v = 0; v < 3; ++v) {
-      const int a = t[v], b = t[(v + 1) % 3];
-      const double edge = (map.position[a] - map.position[b]).norm();
-      for (const int n : {a, b})
-        if (nodes[n]) reach[n] = std::max(reach[n], kIntegrated * edge);
-    }
+  std::vector<double> reach = longest_edges(map);
+  for (int n = 0; n < map.size(); ++n) reach[n] = nodes[n] ? kIntegrated * reach[n] : NearPairs::kNone;
   return reach;
 }
 

@@ -21,14 +21,8 @@ std::vector<bool> pressed_nodes(const SurfaceMap& map) {
 /// Half the width of a patch, and the longest edge at the node: all pairs whose hats can reach into one patch.
 std::vector<double> reach_of_patches(const SurfaceMap& map, double radius) {
   const std::vector<bool> pressed = pressed_nodes(map);
-  std::vector<double> reach(map.size(), NearPairs::kNone);
-  for (const auto& t : map.triangles)
-    for (int v = 0; v < 3; ++v) {
-      const int a = t[v], b = t[(v + 1) % 3];
-      const double edge = (map.position[a] - map.position[b]).norm();
-      for (const int n : {a, b})
-        if (pressed[n]) reach[n] = std::max(reach[n], radius + edge);
-    }
+  std::vector<double> reach = longest_edges(map);
+  for (int n = 0; n < map.size(); ++n) reach[n] = pressed[n] ? radius + reach[n] : NearPairs::kNone;
   return reach;
 }
 
@@ -117,7 +111,7 @@ NearField::NearField(const SmoothSurface& surface, const Compliance<double>& com
   }
 }
 
-void NearField::leave_out(const Compliance<double>& compliance) {
+void NearField::subtract(const Compliance<double>& compliance) {
   for (int i = 0; i < compliance.row_nodes(); ++i) {
     const std::span<const int> near = pairs_.lower(i);
     for (std::size_t n = 0; n < near.size(); ++n)

@@ -22,7 +22,7 @@ class NearField {
   NearField(const SmoothSurface& surface, const Compliance<double>& compliance, const HalfSpace& half_space,
             double radius, double resolved);
   /// K - C instead: for tissue whose nodes give way by themselves, by inertia now and by C once they are at rest.
-  void leave_out(const Compliance<double>& compliance);
+  void subtract(const Compliance<double>& compliance);
 
   /// [m/N] symmetric under (i, j) and transposition; zero of nodes that are not near each other.
   Eigen::Matrix3d between(int i, int j) const;

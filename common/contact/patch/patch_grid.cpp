@@ -1,5 +1,6 @@
 #include "common/contact/patch/patch_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -27,6 +28,11 @@ PatchGrid::PatchGrid(double radius, const HalfSpace& half_space) : radius_(radiu
       pressed_.push_back(per_force * half_space.pressed(d.x(), d.y(), edge_));
       sheared_.push_back(per_force * half_space.sheared(d.x(), d.y(), edge_));
     }
+}
+
+const PatchGrid& PatchGrids::of(double radius) {
+  const auto known = std::ranges::find(grids_, radius, [](const auto& g) { return g->radius(); });
+  return known != grids_.end() ? **known : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, half_space_));
 }
 
 }  // namespace palpate

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "common/contact/patch/half_space.hpp"
@@ -25,6 +26,18 @@ class PatchGrid {
   std::vector<Eigen::Vector2d> middle_;
   std::vector<double> rise_, pressed_;
   std::vector<Eigen::Matrix2d> sheared_;
+};
+
+/// One grid for each radius, on one material.
+class PatchGrids {
+ public:
+  explicit PatchGrids(const HalfSpace& half_space) : half_space_(half_space) {}
+  /// Stays where it is while this object lives.
+  const PatchGrid& of(double radius);
+
+ private:
+  HalfSpace half_space_;
+  std::vector<std::unique_ptr<PatchGrid>> grids_;
 };
 
 }  // namespace palpate

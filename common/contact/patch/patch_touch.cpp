@@ -23,14 +23,12 @@ Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3
 
 PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
                        const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep)
-    : compliance_(compliance), friction_(settings.contact.friction), surface_(map) {
+    : compliance_(compliance), friction_(settings.contact.friction), surface_(map), grids_(half_space) {
   double largest = 0;
   for (std::size_t t = 0; t < settings.tools.size(); ++t) {
     const std::optional<double> ball = abilities_of(settings.tools[t]).ball;
     if (!ball) continue;
-    auto grid = std::ranges::find(grids_, *ball, [](const auto& g) { return g->radius(); });
-    if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(*ball, half_space));
-    tips_.push_back({static_cast<int>(t), Patch(**grid, creep)});
+    tips_.push_back({static_cast<int>(t), Patch(grids_.of(*ball), creep)});
     largest = std::max(largest, *ball);
   }
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);

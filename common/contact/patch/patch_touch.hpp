@@ -55,7 +55,7 @@ class PatchTouch {
   double friction_;
   SmoothSurface surface_;
   std::unique_ptr<NearField> near_field_;
-  std::vector<std::unique_ptr<PatchGrid>> grids_;
+  PatchGrids grids_;
   std::vector<Tip> tips_;
   std::vector<Eigen::Vector3d> moved_;
 };

@@ -9,6 +9,18 @@ namespace palpate {
 
 using Eigen::Vector3d;
 
+std::vector<double> longest_edges(const SurfaceMap& map) {
+  std::vector<double> longest(map.size(), 0.0);
+  for (const auto& t : map.triangles)
+    for (int v = 0; v < 3; ++v) {
+      const int a = t[v], b = t[(v + 1) % 3];
+      const double edge = (map.position[a] - map.position[b]).norm();
+      longest[a] = std::max(longest[a], edge);
+      longest[b] = std::max(longest[b], edge);
+    }
+  return longest;
+}
+
 SmoothSurface::SmoothSurface(const SurfaceMap& map)
     : map_(map),
       node_normal_(map.size(), Vector3d::Zero()),

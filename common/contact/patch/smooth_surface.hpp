@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+/// [m] Per node, the longest of its triangles' edges there.
+std::vector<double> longest_edges(const SurfaceMap& map);
+
 /// A body's surface at rest, with a normal that turns evenly from corner to corner.
 class SmoothSurface {
  public:

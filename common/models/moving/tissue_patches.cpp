@@ -40,11 +40,8 @@ Eigen::Isometry3d followed(const Eigen::Isometry3d& before, const Eigen::Isometr
   return motion;
 }
 
-double longest_edge(const SurfaceMap& map) {
-  double longest = 0;
-  for (const auto& t : map.triangles)
-    for (int v = 0; v < 3; ++v) longest = std::max(longest, (map.position[t[v]] - map.position[t[(v + 1) % 3]]).norm());
-  return longest;
+HalfSpace material_of(const Archive& archive) {
+  return {archive.young[0], archive.poisson[0]};
 }
 
 }  // namespace
@@ -59,9 +56,10 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
       friction_(settings.contact.friction),
       map_(archive.surface),
       surface_(map_),
-      longest_edge_(longest_edge(map_)),
+      longest_edge_(std::ranges::max(longest_edges(map_))),
       triangle_of_facet_(4 * topology.size(), -1),
-      facet_of_triangle_(map_.triangles.size(), -1) {
+      facet_of_triangle_(map_.triangles.size(), -1),
+      grids_(material_of(archive)) {
   std::map<std::array<int, 3>, int> facets;
   for (const int facet : topology.visible()) facets[ascending(topology.facet(facet))] = facet;
   for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t) {
@@ -70,14 +68,11 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     facet_of_triangle_[t] = found->second;
     triangle_of_facet_[found->second] = t;
   }
-  const HalfSpace material{archive.young[0], archive.poisson[0]};
   double largest = 0;
   for (std::size_t t = 0; t < settings.tools.size(); ++t) {
     const std::optional<double> ball = abilities_of(settings.tools[t]).ball;
     if (!ball) continue;
-    auto grid = std::ranges::find(grids_, *ball, [](const auto& g) { return g->radius(); });
-    if (grid == grids_.end()) grid = grids_.insert(grid, std::make_unique<PatchGrid>(*ball, material));
-    tips_.push_back({.tool = static_cast<int>(t), .patch = Patch(**grid), .radius = *ball});
+    tips_.push_back({.tool = static_cast<int>(t), .patch = Patch(grids_.of(*ball)), .radius = *ball});
     largest = std::max(largest, *ball);
   }
   for (Tip& tip : tips_) {
@@ -89,8 +84,8 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   went_.reserve(Patch::kMaxNodes);
   if (tips_.empty()) return;
   const auto compliance = Compliance<double>::of_moving_part(archive);
-  near_field_ = std::make_unique<NearField>(surface_, compliance, material, largest, kResolved);
-  near_field_->leave_out(compliance);
+  near_field_ = std::make_unique<NearField>(surface_, compliance, material_of(archive), largest, kResolved);
+  near_field_->subtract(compliance);
   follow_cut(topology, {});
 }
 

@@ -86,7 +86,7 @@ class TissuePatches {
   std::vector<int> triangle_of_facet_;  ///< of map_, per facet of the CutMesh; -1: none
   std::vector<int> facet_of_triangle_;
   std::unique_ptr<NearField> near_field_;
-  std::vector<std::unique_ptr<PatchGrid>> grids_;
+  PatchGrids grids_;
   std::vector<Tip> tips_;
   std::vector<Eigen::Vector3d> moved_, went_;
 };
