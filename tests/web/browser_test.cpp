@@ -28,7 +28,7 @@ TEST(WebBrowser, AHandPressesTheOrganAndLetsGo) {
   run("press");
 }
 
-TEST(WebBrowser, TwoPagesShareAToolAndAServerThatReturnsIsFoundAgain) {
+TEST(WebBrowserShared, TwoPagesShareAToolAndAServerThatReturnsIsFoundAgain) {
   run("share");
 }
 
