@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <stdexcept>
 
@@ -16,10 +17,19 @@ namespace {
 
 constexpr int kTriangle = 2, kTetrahedron = 4, kPoint = 15;
 
+/// Where the program lies, as all its parts do; else wherever the loader finds it.
+std::string module_file() {
+  const std::string name = "libpalpate_gmsh.so";
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto file = program.parent_path().parent_path() / "lib/palpate" / name;
+  return std::filesystem::exists(file, error) ? file.string() : name;
+}
+
 /// gmsh's calls, loaded with all that it links where the first one is made.
 const LibraryCalls& calls() {
   static const LibraryCalls* const loaded = [] {
-    void* const module = dlopen("libpalpate_gmsh.so", RTLD_LAZY | RTLD_LOCAL);
+    void* const module = dlopen(module_file().c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* const entry = module ? dlsym(module, "palpate_gmsh_calls") : nullptr;
     if (!entry) throw std::runtime_error(fmt::format("the gmsh library cannot be loaded: {}", dlerror()));
     return reinterpret_cast<decltype(&palpate_gmsh_calls)>(entry)();
