@@ -5,6 +5,8 @@ import argparse
 import json
 import os
 import pathlib
+import re
+import subprocess
 import tempfile
 import time
 
@@ -84,15 +86,21 @@ def share(options):
             second.quit()
 
 
+def triangles_at_rest(options, scene):
+    said = subprocess.run([f"{options.bin}/palpate", "check", f"{options.source}/scenes/{scene}"], check=True,
+                          capture_output=True, text=True).stdout
+    return int(re.search(r"surface: .* (\d+) triangles", said)[1])
+
+
 def cut(options):
-    """What a scalpel cuts is gone in the page."""
+    """What a scalpel cuts is gone in the page, however late that is opened."""
+    whole = triangles_at_rest(options, "plate_cut.toml")
     with Nodes(options, "plate_cut.toml") as nodes:
         browser = open_browser()
         try:
             page = Page(browser, nodes.address)
-            before = page.get("palpate.topology.bodies[0].length")
-            page.wait("palpate.built === palpate.topology && palpate.topology.number > 0", 15)
-            page.wait(f"palpate.bodies[0].refinement.coarseTriangles.length !== {before}", 5)
+            page.wait("palpate.built && palpate.built.number > 0", 15)
+            page.wait(f"palpate.bodies[0].refinement.coarseTriangles.length !== {3 * whole}", 5)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
