@@ -1,7 +1,7 @@
 # palpate_test_suites(TARGET [ON_TIME ALL | SUITE...] [ALONE ALL | SUITE...] [PROPERTIES NAME VALUE ...]): one test of
 # ctest for every GoogleTest suite of a program, so that the cases of a suite share a process and what it has set up.
 # Suites are listed after each build of the program. Those ON_TIME judge when something comes: of these one runs at a
-# time, beside one of the others on two cores. Those ALONE measure lateness, and nothing runs beside them.
+# time, and the others, which run beside it, yield to it. Those ALONE measure lateness, and nothing runs beside them.
 function(palpate_test_suites target)
   cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;PROPERTIES")
   if(suites_UNPARSED_ARGUMENTS)

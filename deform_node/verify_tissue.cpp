@@ -100,11 +100,10 @@ class TissueVerifier {
 
 }  // namespace
 
-TissueReport verify_tissue(const std::filesystem::path& file) {
+TissueReport verify_tissue(const std::filesystem::path& file, const Scene& scene) {
   LogReader log(file);
   const Recorded recorded = read_all(log);
   if (recorded.runs.empty()) return {};
-  const Scene scene = parse_scene(log.header().scene, file);
   std::vector<Archive> archives;
   for (const Body& body : scene.bodies) archives.push_back(find_archive(scene, body, ArchivePart::surface));
   TissueReport report;

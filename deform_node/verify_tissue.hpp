@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/scene/scene.hpp"
+
 namespace palpate {
 
 struct TissueReport {
@@ -15,6 +17,6 @@ struct TissueReport {
 /// Computes the recorded ticks of a log's moving tissue again, from its keyframes and the tool states that each tick
 /// consumed, and requires the recorded hash of the state after each. Nothing to do for a log without moving tissue.
 /// Throws std::runtime_error if the log cannot be read or an archive is not found.
-TissueReport verify_tissue(const std::filesystem::path& log);
+TissueReport verify_tissue(const std::filesystem::path& log, const Scene& scene);
 
 }  // namespace palpate

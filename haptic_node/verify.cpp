@@ -216,12 +216,18 @@ Archive archive_for_step(const Scene& scene, const Body& body) {
 
 VerifyReport verify_log(const std::filesystem::path& file) {
   LogReader log(file);
-  const Recorded recorded = read_log(log);
-  const auto& runs = recorded.runs;
+  for (LogEvent event; log.header().scene.empty() && log.next(event);) {
+  }
   if (log.header().scene.empty())
     throw std::runtime_error(
         fmt::format("{}: the log holds no scene, so its steps cannot be computed again", file.string()));
-  const Scene scene = parse_scene(log.header().scene, file);
+  return verify_log(file, parse_scene(log.header().scene, file));
+}
+
+VerifyReport verify_log(const std::filesystem::path& file, const Scene& scene) {
+  LogReader log(file);
+  const Recorded recorded = read_log(log);
+  const auto& runs = recorded.runs;
   VerifyReport report;
   report.damage = log.damage_text();
   for (const LogDamage& d : log.damage())

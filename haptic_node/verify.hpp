@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/scene/scene.hpp"
+
 namespace palpate {
 
 /// What a log proves about its haptic steps.
@@ -23,5 +25,7 @@ struct VerifyReport {
 /// path that made the log, and compares the forces and the records of tasks bit for bit. Throws std::runtime_error in
 /// one sentence if the log cannot be verified at all: no scene, no keyframe, a code path or archive that is not here.
 VerifyReport verify_log(const std::filesystem::path& file);
+/// The same with the log's scene, whose files may be elsewhere than the log says.
+VerifyReport verify_log(const std::filesystem::path& file, const Scene& scene);
 
 }  // namespace palpate

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
 # undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
-# an error while docs/stability.md names failed ones). All of them where none is named.
+# an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
+# out/mcap_reader), python (the module and its examples; installs pybind11-dev and python3-dev). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long address thread tidy stability
+[ $# -gt 0 ] || set -- long address thread tidy stability mcap python
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -14,12 +15,23 @@ for stage in "$@"; do
     stability)
       ./scripts/build.sh release
       ./build/release/bin/palpate stability -o out/stability ;;
+    mcap)
+      ./scripts/build.sh release palpate test_mcap
+      npm install --silent --no-save --prefix out/mcap_reader @mcap/core @foxglove/omgidl-parser @foxglove/omgidl-serialization
+      PALPATE_MCAP_READER=$PWD/out/mcap_reader build/release/bin/test_mcap ;;
+    python)
+      ./scripts/install.sh python3-dev pybind11-dev
+      ./scripts/build.sh python palpate palpate_python
+      for example in python/examples/*.py; do
+        echo "$example"
+        PYTHONPATH=build/python/python MPLBACKEND=Agg python3 "$example" scenes
+      done ;;
     address|thread)
       ./scripts/build.sh "$stage"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
       OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
     tidy) ./scripts/tidy.sh ;;
-    -h|--help) sed -n '2,4p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,5p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done

@@ -2,7 +2,8 @@
 # Sets up, builds and runs all tests. Fails if one fails. Further arguments go to ctest (e.g. -R pattern).
 set -euo pipefail
 cd "$(dirname "$0")/.."
+./scripts/install.sh libcgal-dev libinsighttoolkit5-dev  # for `palpate mesh` and `palpate organ` and their tests
 ./scripts/build.sh release
 ./scripts/format.sh --check
-# One more than there are cores: tests that start nodes mostly wait.
-ctest --preset release --timeout 300 --parallel $(($(nproc) + 1)) "$@"
+# Two more than there are cores: tests that start nodes mostly wait.
+ctest --preset release --timeout 300 --parallel $(($(nproc) + 2)) "$@"

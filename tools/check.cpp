@@ -147,8 +147,8 @@ void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
 void print_warnings(const Scene& scene, std::span<const CheckReport> bodies) {
   std::vector<std::string> warnings;
   for (const CheckReport& body : bodies) warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
-  const std::vector<std::string> of_tools = tool_warnings(scene);
-  warnings.insert(warnings.end(), of_tools.begin(), of_tools.end());
+  for (const std::vector<std::string>& of_tools : {tool_warnings(scene), reach_warnings(scene, bodies)})
+    warnings.insert(warnings.end(), of_tools.begin(), of_tools.end());
   for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);
 }
 

@@ -20,7 +20,29 @@ void check_start(const Tool& tool, const std::filesystem::path& file, const Tool
                                            tool.name, name_of(body)));
 }
 
+bool reaches(const Tool& tool, const Trajectory& script, std::span<const CheckReport> bodies) {
+  constexpr int kTimes = 200;
+  const Trocar trocar = make_trocar(tool.pivot, tool.axis, tool.up);
+  for (int i = 0; i <= kTimes; ++i) {
+    const ToolDofs dofs = script.at(script.duration() * i / kTimes);
+    const Eigen::Isometry3d pose = tip_pose(trocar, dofs);
+    for (const ToolPart& part : tool_parts(tool, dofs.grip))
+      for (const CheckReport& body : bodies)
+        if (body.meets(part.axis(pose), part.radius)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+std::vector<std::string> reach_warnings(const Scene& scene, std::span<const CheckReport> bodies) {
+  std::vector<std::string> warnings;
+  for (const Tool& tool : scene.tools)
+    if (const std::optional<Trajectory> script = script_of(tool.device); script && !reaches(tool, *script, bodies))
+      warnings.push_back(
+          fmt::format("tool '{}' comes to no body on its way: its trajectory ends before, or goes past", tool.name));
+  return warnings;
+}
 
 void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies) {
   fmt::print("{}", std::visit([&](const auto& end) { return sentence(end, tool); }, tool.end));

@@ -14,10 +14,17 @@ void add_study_command(cli::Command& app);
 void add_run_command(cli::Command& app);
 void add_record_command(cli::Command& app);
 void add_info_command(cli::Command& app);
+void add_drive_command(cli::Command& app);
 void add_export_command(cli::Command& app);
 void add_latency_command(cli::Command& app);
 void add_replay_command(cli::Command& app);
 void add_top_command(cli::Command& app);
 void add_keys_command(cli::Command& app);
+void add_scene_command(cli::Command& app);
+void add_organ_commands(cli::Command& app);  ///< those of `palpate_organ`, for the help
+
+/// Becomes `palpate_organ` where the command line names one of its commands. Throws std::runtime_error where it is not
+/// installed.
+void start_organ_program(char** argv);
 
 }  // namespace palpate

@@ -8,13 +8,14 @@
 #include "common/bus/print.hpp"
 #include "idl/topics.hpp"
 #include "tools/commands.hpp"
+#include "tools/mcap/export_mcap.hpp"
 
 namespace palpate {
 namespace {
 
 struct ExportOptions {
   std::string log, topic, file;
-  bool csv = false, json = false;
+  bool csv = false, json = false, mcap = false;
 };
 
 /// A file, or the standard output.
@@ -56,7 +57,16 @@ std::uint64_t export_topic(const ExportOptions& o, const Topic<M>& topic, LogRea
   return count;
 }
 
+void write_mcap(const ExportOptions& o, const std::string& topic) {
+  if (o.file.empty()) throw std::runtime_error("export: --mcap needs a file: give -o FILE.mcap");
+  const std::uint64_t count = export_mcap(o.log, topic, o.file);
+  if (count == 0) throw std::runtime_error(fmt::format("{}: holds no such sample", o.log));
+  fmt::print("{}: {} messages\n", o.file, count);
+}
+
 void run(const ExportOptions& o) {
+  if (o.mcap && o.topic.empty()) return write_mcap(o, "");
+  if (o.topic.empty()) throw std::runtime_error("export: CSV and JSON lines are of one topic: give --topic");
   const std::string name = o.topic.find('/') == std::string::npos ? "palpate/" + o.topic : o.topic;
   LogReader reader(o.log);
   bool known = false;
@@ -65,6 +75,7 @@ void run(const ExportOptions& o) {
     names += fmt::format(" {}", std::string(topic.name).substr(8));
     if (known || name != topic.name) return;
     known = true;
+    if (o.mcap) return write_mcap(o, name);
     Output out(o.file);
     const std::uint64_t count = export_topic(o, topic, reader, out);
     out.finish();
@@ -78,12 +89,18 @@ void run(const ExportOptions& o) {
 
 void add_export_command(cli::Command& app) {
   auto o = std::make_shared<ExportOptions>();
-  cli::Command command = app.add_command("export", "Write one topic of a log as CSV or JSON lines");
+  cli::Command command = app.add_command("export", "Write one topic of a log as CSV or JSON lines, or a log as MCAP");
   command.add_option("log", o->log, "LCM event log").required();
-  command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it").required();
+  command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it; MCAP without one has all");
   command.add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
   command.add_flag("--jsonl", o->json, "One JSON object a line").excludes({"--csv"});
+  command.add_flag("--mcap", o->mcap, "MCAP for Foxglove and other readers: messages as CDR, types as IDL; with -o")
+      .excludes({"--csv", "--jsonl"});
   command.add_option("-o,--output", o->file, "File (default: standard output)").output_file();
+  command.footer(
+      "Examples:\n"
+      "  palpate export session.lcmlog --topic force_state --csv -o force.csv\n"
+      "  palpate export session.lcmlog --mcap -o session.mcap");
   command.does([o] { run(*o); });
 }
 

@@ -66,6 +66,12 @@ class Parser {
   std::string place_, form_;
 };
 
+void require_node(const std::string& option, const std::string& text, int node, int mesh_nodes) {
+  if (node < 0 || node >= mesh_nodes)
+    throw std::runtime_error(fmt::format("{} \"{}\": node {} is not in the mesh, which has {} nodes (0 to {})", option,
+                                         text, node, mesh_nodes, mesh_nodes - 1));
+}
+
 bool empty(const Components& components) {
   return !components[0] && !components[1] && !components[2];
 }
@@ -100,15 +106,27 @@ std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int m
   for (const auto& text : texts)
     for (const auto& one : parse_hold(text)) {
       const auto& [node, axis, weight] = one.terms[0];
-      if (node < 0 || node >= mesh_nodes)
-        throw std::runtime_error(fmt::format("--hold \"{}\": node {} is not in the mesh, which has {} nodes (0 to {})",
-                                             text, node, mesh_nodes, mesh_nodes - 1));
+      require_node("--hold", text, node, mesh_nodes);
       if (!seen.insert({node, axis}).second)
         throw std::runtime_error(
             fmt::format("--hold \"{}\": axis {} of node {} is held twice", text, "xyz"[axis], node));
       all.push_back(one);
     }
   return all;
+}
+
+std::vector<NodalLoad> parse_forces(const std::vector<std::string>& texts, int mesh_nodes) {
+  std::vector<NodalLoad> loads;
+  for (const auto& text : texts) {
+    const Parser parser("--force", text, "NODE:fx,fy,fz");
+    const auto [left, right] = parser.halves(text);
+    const int node = parser.number<int>(left, "a node number");
+    require_node("--force", text, node, mesh_nodes);
+    const auto force = parser.components(right);
+    if (!force[0] || !force[1] || !force[2]) parser.fail("the force needs all of x, y, z");
+    loads.push_back({node, {*force[0], *force[1], *force[2]}});
+  }
+  return loads;
 }
 
 std::vector<Constraint> touch_constraints(const TouchArgument& touch, const std::vector<Eigen::Vector3d>& position,

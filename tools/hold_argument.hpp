@@ -25,6 +25,9 @@ TouchArgument parse_touch(const std::string& text);
 /// mesh.
 std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes);
 
+/// Parses `--force "NODE:fx,fy,fz"`. Throws std::runtime_error as parse_holds does; a node may have several.
+std::vector<NodalLoad> parse_forces(const std::vector<std::string>& texts, int mesh_nodes);
+
 /// The bilateral barycentric rule: the surface point nearest to the touch moves by its displacement.
 /// Triangles index `position`; `node_number` gives mesh node numbers.
 std::vector<Constraint> touch_constraints(const TouchArgument& touch, const std::vector<Eigen::Vector3d>& position,

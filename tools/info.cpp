@@ -47,6 +47,8 @@ Json json_of(const LogSummary& s, const std::string& file) {
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
     json["damage"].push_back({{"offset", d.offset}, {"bytes", d.bytes}, {"tail", d.tail}});
+  json["files"] = Json::array();
+  for (const LogFile& f : s.files) json["files"].push_back({{"path", f.path}, {"hash", f.hash}, {"bytes", f.size}});
   json["hops_us"] = {{"tool_to_force", json_of(s.hops.force())},
                      {"tool_to_surface", json_of(s.hops.surface())},
                      {"tool_to_picture", json_of(s.hops.picture())},
@@ -107,6 +109,9 @@ void print_text(const LogSummary& s, const std::string& file) {
     fmt::print("the header is damaged: scene, version and start are unknown\n");
   fmt::print("scene     {}\n", s.title.empty() ? "none in the log" : s.title);
   fmt::print("code path {}\n", s.code_path.empty() ? "unknown" : s.code_path);
+  for (const LogFile& f : s.files)
+    fmt::print("file      {} ({:.2f} MB, {})\n", std::filesystem::path(f.path).filename().string(),
+               1e-6 * static_cast<double>(f.size), f.hash);
   if (!s.footer) fmt::print("the recorder did not end in order\n");
   if (s.footer && s.footer->lost > 0)
     fmt::print("the recorder lost {} messages: {}\n", s.footer->lost, s.footer->error);

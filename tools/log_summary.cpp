@@ -111,6 +111,7 @@ LogSummary summarise_log(const std::filesystem::path& file) {
   summary.title = title_of(summary.header.scene);
   if (!summary.header.code_path.empty()) summary.code_path = summary.header.code_path;
   if (last > first) summary.seconds = 1e-9 * static_cast<double>(last - first);
+  summary.files = reader.files();
   summary.damage = reader.damage();
   summary.damage_text = reader.damage_text();
   summary.footer = reader.footer();

@@ -35,6 +35,7 @@ struct LogSummary {
   std::map<std::string, TopicSummary> topics;  ///< those with samples
   HopTimes hops;
   std::vector<TaskRecord> tasks;  ///< the last one of each catheter and run, in order of appearance
+  std::vector<LogFile> files;     ///< that go along, without contents
   std::vector<LogDamage> damage;
   std::string damage_text;
   std::optional<LogFooter> footer;  ///< absent if the recorder was killed or the end is lost

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   palpate::add_check_command(app);
   palpate::add_precompute_command(app);
   palpate::add_run_command(app);
+  palpate::add_drive_command(app);
   palpate::add_record_command(app);
   palpate::add_info_command(app);
   palpate::add_export_command(app);
@@ -23,7 +24,10 @@ int main(int argc, char** argv) {
   palpate::add_study_command(app);
   palpate::add_top_command(app);
   palpate::add_keys_command(app);
+  palpate::add_organ_commands(app);
+  palpate::add_scene_command(app);
   try {
+    palpate::start_organ_program(argv);
     if (const auto status = app.read(argc, argv)) return *status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "palpate: %s\n", error.what());

@@ -8,6 +8,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "tools/commands.hpp"
+#include "tools/logs/log_files.hpp"
 #include "tools/network_options.hpp"
 
 namespace palpate {
@@ -74,7 +75,9 @@ void record(RecordOptions& o) {
   if (o.file.empty()) o.file = default_file();
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
-  Recorder recorder(*bus, {.file = o.file, .version = PALPATE_VERSION});
+  Recorder recorder(*bus, {.file = o.file, .version = PALPATE_VERSION, .files = [](const std::string& scene) {
+                             return files_for_log(scene);
+                           }});
   fmt::print("{}\n", o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
   std::fflush(stdout);
 

@@ -5,10 +5,13 @@
 
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "common/scene/find_archive.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
 #include "tools/commands.hpp"
 #include "tools/log_player.hpp"
+#include "tools/logs/log_files.hpp"
 #include "tools/network_options.hpp"
 
 namespace palpate {
@@ -17,14 +20,20 @@ namespace {
 struct ReplayOptions {
   BusSettings network;
   PlaySettings play;
-  std::string file;
+  std::string file, data;
   bool verify = false, json = false;
 };
 
 constexpr int kPlayerPriority = 30;  // below a node's loop and its publisher
 
-void verify(const std::string& file) {
-  const VerifyReport report = verify_log(file);
+void verify(const std::string& file, const std::string& data) {
+  const LoggedScene logged(file, data);
+  for (const Body& body : logged.scene().bodies) {
+    if (!archive_path(body).empty() && !std::filesystem::exists(archive_path(body)))
+      fmt::print(stderr, "body '{}': its archive is computed first\n", name_of(body));
+    ensure_archive(logged.scene(), body);
+  }
+  const VerifyReport report = verify_log(file, logged.scene());
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
   if (!report.mismatch.empty())
@@ -36,7 +45,7 @@ void verify(const std::string& file) {
   fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces,
              report.steps, report.code_path);
   if (report.tasks > 0) fmt::print("{}: verified: {} records of the task are equal bit for bit\n", file, report.tasks);
-  const TissueReport tissue = verify_tissue(file);  // on the code path that verify_log() took up
+  const TissueReport tissue = verify_tissue(file, logged.scene());  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
   if (!tissue.mismatch.empty())
     throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
@@ -93,11 +102,17 @@ void add_replay_command(cli::Command& app) {
   command.add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
   add_network_options(command, o->network, "player");
   command.add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
+  const cli::Option verifies =
+      command
+          .add_flag(
+              "--verify", o->verify,
+              "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
+          .excludes({"--speed", "--topic", "--json"});
   command
-      .add_flag("--verify", o->verify,
-                "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
-      .excludes({"--speed", "--topic", "--json"});
-  command.does([o] { o->verify ? verify(o->file) : play(*o); });
+      .add_option("--data", o->data,
+                  "Folder for the files that the log brings along, and with those that are too large for it")
+      .needs(verifies);
+  command.does([o] { o->verify ? verify(o->file, o->data) : play(*o); });
 }
 
 }  // namespace palpate

@@ -21,7 +21,7 @@ namespace {
 
 struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
-  std::vector<std::string> holds, touches;
+  std::vector<std::string> holds, touches, forces;
 };
 
 /// A static state, and what was held for it.
@@ -54,7 +54,7 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  const auto solution = problem.solve(constraints);
+  const auto solution = problem.solve(constraints, parse_forces(arguments.forces, static_cast<int>(mesh.nodes.size())));
   table.displacement = solution.displacement;
   table.force = solution.force;
   return {table, constraints};
@@ -87,7 +87,8 @@ Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArgumen
   const auto& surface = archive.surface;
   const auto held =
       constraints_of(arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
-  return {sorted_table(surface, solve_tensors(archive, held)), held};
+  const auto loads = parse_forces(arguments.forces, archive.mesh_nodes);
+  return {sorted_table(surface, solve_tensors(archive, held, loads)), held};
 }
 
 /// Places of the held nodes in the table, ascending.
@@ -102,9 +103,13 @@ std::vector<int> held_places(const Solved& solved) {
 }
 
 /// [body.nonlinear], where the body has one.
-void correct(const Scene& scene, const Body& body, Solved& solved) {
+void correct(const Scene& scene, const Body& body, bool given_forces, Solved& solved) {
   const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
   if (!correction) return;
+  if (given_forces)
+    throw std::runtime_error(fmt::format(
+        "--force: body '{}' has [body.nonlinear], whose law is of tissue held at displacements: give --hold or --touch",
+        name_of(body)));
   ensure_archive(scene, body);  // it holds the press of the specimen
   const Archive archive = find_archive(scene, body, ArchivePart::header);
   const double scale =
@@ -137,14 +142,14 @@ void check_model(const Body& body) {
 }
 
 void solve(const SolveArguments& arguments) {
-  if (arguments.holds.empty() && arguments.touches.empty())
-    throw std::runtime_error("nothing is held: give --hold or --touch");
+  if (arguments.holds.empty() && arguments.touches.empty() && arguments.forces.empty())
+    throw std::runtime_error("nothing is held or loaded: give --hold, --touch or --force");
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
   check_model(body);
   Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
-  correct(scene, body, solved);
+  correct(scene, body, !arguments.forces.empty(), solved);
   const SolutionTable& table = solved.table;
   require_numbers(table);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
@@ -167,6 +172,11 @@ void add_solve_command(cli::Command& app) {
   command
       .add_option("--touch", arguments->touches,
                   "\"x,y,z:dx,dy,dz\": move the surface point nearest to x,y,z by dx,dy,dz (barycentric rule)")
+      .one_value_each_time();
+  command
+      .add_option(
+          "--force", arguments->forces,
+          "\"NODE:fx,fy,fz\": load a node by a force in newtons; several add up, and go with --hold and --touch")
       .one_value_each_time();
   command.add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
       .one_of({"tensors", "direct"})

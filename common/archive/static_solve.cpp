@@ -130,15 +130,23 @@ MatrixXd block(const Archive& archive, const std::vector<int>& rows, const std::
 
 }  // namespace
 
-SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constraint>& constraints) {
+SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constraint>& constraints,
+                              const std::vector<NodalLoad>& loads) {
   check_complete(archive);
   const RowFinder find(archive);
   const auto count = static_cast<Index>(constraints.size());
+  std::vector<Entry> forces;
+  for (const auto& [node, force] : loads)
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int row = find(node, axis); row >= 0) forces.push_back({row, force[axis]});
   std::vector<std::vector<Entry>> rows;
   VectorXd value(count);
   for (Index c = 0; c < count; ++c) {
     rows.push_back(row_of(constraints[c], find));
     value[c] = constraints[c].value;
+    for (const auto& left : rows.back())
+      for (const auto& right : forces)
+        value[c] -= left.value * touchable_entry(archive, left.row, right.row) * right.value;
   }
   MatrixXd compliance = MatrixXd::Zero(count, count);  // J C J^T
   for (Index a = 0; a < count; ++a)
@@ -149,10 +157,9 @@ SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constrai
       compliance(b, a) = compliance(a, b);
     }
   const Eigen::LLT<MatrixXd> factor(compliance);
-  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-12))
+  if (count > 0 && (factor.info() != Eigen::Success || !(factor.rcond() > 1e-12)))
     throw std::runtime_error("the held points repeat or contradict one another");
   const VectorXd multiplier = factor.solve(value);
-  std::vector<Entry> forces;
   for (Index c = 0; c < count; ++c)
     for (const auto& [row, weight] : rows[c]) forces.push_back({row, weight * multiplier[c]});
   return respond(archive, forces);

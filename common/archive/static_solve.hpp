@@ -14,11 +14,12 @@ struct SurfaceSolution {
                                               ///< fixed axes are not in an archive and stay zero
 };
 
-/// Exact response to bilateral conditions J u = d through the compliance, in double precision:
-///   lambda = (J C J^T)^-1 d,  f = J^T lambda,  u = C f  (`f = C_cc^-1 u*` where single axes are held).
-/// Conditions name mesh nodes. Throws std::runtime_error if a node is not a touchable surface node, a held
-/// axis is fixed, or conditions repeat or contradict one another.
-SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constraint>& constraints);
+/// Exact response to bilateral conditions J u = d and loads g through the compliance, in double precision:
+///   lambda = (J C J^T)^-1 (d - J C g),  f = J^T lambda + g,  u = C f  (`f = C_cc^-1 u*` where single axes are held).
+/// Both name mesh nodes. Throws std::runtime_error if a node is not a touchable surface node, a held axis is fixed, or
+/// conditions repeat or contradict one another.
+SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constraint>& constraints,
+                              const std::vector<NodalLoad>& loads = {});
 
 /// How TVCG99 combines the tensors of several held nodes.
 enum class Superposition {

@@ -32,6 +32,14 @@ void fields(Visitor& visit, Header& h) {
   visit("start_wall_ns", h.start_wall_ns);
   visit("start_monotonic_ns", h.start_monotonic_ns);
 }
+template <class Visitor, class File>
+requires std::same_as<std::remove_const_t<File>, LogFile>
+void fields(Visitor& visit, File& f) {
+  visit("path", f.path);
+  visit("hash", f.hash);
+  visit("size", f.size);
+  visit("content", f.content);
+}
 template <class Visitor, class Footer>
 requires std::same_as<std::remove_const_t<Footer>, LogFooter>
 void fields(Visitor& visit, Footer& f) {
@@ -43,6 +51,8 @@ void fields(Visitor& visit, Footer& f) {
 
 template void encode(const LogHeader&, Bytes&);
 template bool decode(std::span<const std::uint8_t>, LogHeader&);
+template void encode(const LogFile&, Bytes&);
+template bool decode(std::span<const std::uint8_t>, LogFile&);
 template void encode(const LogFooter&, Bytes&);
 template bool decode(std::span<const std::uint8_t>, LogFooter&);
 

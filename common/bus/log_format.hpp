@@ -23,6 +23,14 @@ struct LogHeader {
   friend bool operator==(const LogHeader&, const LogHeader&) = default;
 };
 
+/// A file that the scene names, behind the event of the scene.
+struct LogFile {
+  std::string path;        ///< as the resolved scene has it
+  std::string hash;        ///< XXH3, 128 bits, as 32 hexadecimal digits
+  std::uint64_t size = 0;  ///< [bytes]
+  Bytes content;           ///< empty if it is too large for a log
+};
+
 /// Last event of a log whose recorder ended in order.
 struct LogFooter {
   std::int64_t stop_monotonic_ns = 0;
@@ -32,6 +40,7 @@ struct LogFooter {
 };
 
 inline constexpr const char* kHeaderChannel = "palpate/log_header";
+inline constexpr const char* kFileChannel = "palpate/log_file";
 inline constexpr const char* kFooterChannel = "palpate/log_footer";
 
 /// The encoding of every message, one line each, then "topic NAME MESSAGE" lines.

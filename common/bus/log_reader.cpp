@@ -115,12 +115,28 @@ bool LogReader::next_raw(LogEvent& event) {
 
 bool LogReader::next(LogEvent& event) {
   while (next_raw(event)) {
-    if (event.channel == kHeaderChannel) continue;
+    if (event.channel == kFileChannel) note_file(event);
+    if (event.channel == kHeaderChannel || event.channel == kFileChannel) continue;
     if (header_.scene.empty()) complete_header(event);
     if (event.channel != kFooterChannel) return true;
     LogFooter footer;
     if (decode(event.payload, footer)) footer_ = footer;
   }
+  return false;
+}
+
+void LogReader::note_file(const LogEvent& event) {
+  LogFile file;
+  if (!decode(event.payload, file)) return;
+  file.content.clear();
+  file.content.shrink_to_fit();
+  files_.push_back(std::move(file));
+}
+
+bool LogReader::next_file(LogFile& file) {
+  LogEvent event;
+  while (next_raw(event))
+    if (event.channel == kFileChannel && decode(event.payload, file)) return true;
   return false;
 }
 

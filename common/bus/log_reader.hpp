@@ -44,9 +44,12 @@ class LogReader {
   const LogHeader& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// The next sample; false at the end. Header and footer are not samples.
+  /// The next sample; false at the end. Header, files and footer are not samples.
   bool next(LogEvent& event);
+  /// The next file that goes along; samples before it are passed over. False at the end.
+  bool next_file(LogFile& file);
 
+  const std::vector<LogFile>& files() const { return files_; }        ///< passed so far by next(), without contents
   const std::vector<LogDamage>& damage() const { return damage_; }    ///< found so far
   const std::optional<LogFooter>& footer() const { return footer_; }  ///< once read
   std::uint64_t size() const { return size_; }                        ///< [bytes] when opened
@@ -56,6 +59,7 @@ class LogReader {
 
  private:
   bool next_raw(LogEvent& event);
+  void note_file(const LogEvent& event);
   void complete_header(const LogEvent& event);
   bool parse(std::uint64_t at, LogEvent& event, std::uint64_t& end);
   std::uint64_t find_sync(std::uint64_t from);
@@ -72,6 +76,7 @@ class LogReader {
   LogHeader header_;
   bool has_header_ = false;
   std::optional<LogFooter> footer_;
+  std::vector<LogFile> files_;
   std::vector<LogDamage> damage_;
 };
 

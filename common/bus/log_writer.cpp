@@ -41,8 +41,8 @@ struct Event {
 
 class LogWriter::Impl {
  public:
-  Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header)
-      : queue_limit_(queue_bytes), wall_offset_(wall_ns() - now_ns()) {
+  Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header, WhenFull when_full)
+      : queue_limit_(queue_bytes), when_full_(when_full), wall_offset_(wall_ns() - now_ns()) {
     const bool named_later = header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file));
     const std::filesystem::path part = named_later ? file.string() + ".part" : file.string();
     log_ = lcm_eventlog_create(part.c_str(), "w");
@@ -56,8 +56,9 @@ class LogWriter::Impl {
   ~Impl() { close(); }
 
   void push(Event event) {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     const std::size_t size = event.data.size() + event.channel.size();
+    if (when_full_ == WhenFull::wait) room_.wait(lock, [&] { return queued_bytes_ + size <= queue_limit_; });
     if (queued_bytes_ + size > queue_limit_) {
       lose(1, "the disk is too slow");
       return;
@@ -117,6 +118,7 @@ class LogWriter::Impl {
         queued_bytes_ = 0;
         more = !stop_;
       }
+      room_.notify_one();
       for (const Event& event : batch) append(event);
       flush();
     }
@@ -202,10 +204,11 @@ class LogWriter::Impl {
 
   lcm_eventlog_t* log_ = nullptr;
   std::size_t queue_limit_;
+  WhenFull when_full_;
   std::int64_t wall_offset_;
 
   mutable std::mutex mutex_;  // guards the following, up to status_
-  std::condition_variable work_;
+  std::condition_variable work_, room_;
   std::deque<Event> queue_;
   std::size_t queued_bytes_ = 0;
   bool stop_ = false, footer_ = false;
@@ -220,9 +223,9 @@ class LogWriter::Impl {
 };
 
 LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
-    : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr)) {}
-LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header)
-    : impl_(std::make_unique<Impl>(file, kQueueLimit, &header)) {}
+    : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr, WhenFull::lose)) {}
+LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full)
+    : impl_(std::make_unique<Impl>(file, kQueueLimit, &header, when_full)) {}
 LogWriter::~LogWriter() = default;
 
 void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {

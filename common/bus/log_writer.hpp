@@ -15,8 +15,11 @@ struct LogStatus {
   std::string error;          ///< last reason for a loss: "no space left", …; empty if none
 };
 
-/// Writes an LCM event log from a thread of its own: write() never waits for the disk. When the disk is full
-/// or slow, events are counted as lost and writing is tried again each second; what was written stays
+/// What a log writer does with an event while too many wait for the disk.
+enum class WhenFull { lose, wait };
+
+/// Writes an LCM event log from a thread of its own: write() never waits for the disk, unless it is told to. When the
+/// disk is full or slow, events are counted as lost and writing is tried again each second; what was written stays
 /// readable.
 class LogWriter {
  public:
@@ -25,7 +28,7 @@ class LogWriter {
   /// Creates the file. Throws std::runtime_error if that fails.
   explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = kQueueLimit);
   /// The same with the header in it before the file has its name: at no moment is there a file that cannot be read.
-  LogWriter(const std::filesystem::path& file, const LogHeader& header);
+  LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full = WhenFull::lose);
   ~LogWriter();  ///< finish() without a footer if it was not called
 
   /// Appends an event; receive_ns is CLOCK_MONOTONIC. Call from one thread.

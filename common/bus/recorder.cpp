@@ -52,6 +52,7 @@ class Recorder::Impl {
  public:
   Impl(Bus& bus, const RecorderSettings& settings)
       : bus_(bus),
+        files_(settings.files),
         log_(settings.file, make_header(settings)),
         tracks_(make_tracks(bus, topics::all)),
         status_writer_(bus.writer(topics::node_status)) {
@@ -103,7 +104,14 @@ class Recorder::Impl {
       ++track.samples;
       if constexpr (std::same_as<M, SceneText>) status_.scene_hash = message->scene_hash;
       log_.write(track.topic.name, receive_ns, *message);
+      if constexpr (std::same_as<M, SceneText>) write_files(message->text, receive_ns);
     }
+  }
+
+  void write_files(const std::string& scene, std::int64_t receive_ns) {
+    if (!files_ || scene == scene_with_files_) return;
+    scene_with_files_ = scene;
+    for (const LogFile& file : files_(scene)) log_.write(kFileChannel, receive_ns, file);
   }
 
   void publish_status(std::int64_t now) {
@@ -118,6 +126,8 @@ class Recorder::Impl {
   }
 
   Bus& bus_;
+  std::function<std::vector<LogFile>(const std::string&)> files_;
+  std::string scene_with_files_;  ///< whose files are in the log
   LogWriter log_;
   Tracks tracks_;
   std::unique_ptr<Writer<NodeStatus>> status_writer_;

@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -14,6 +15,8 @@ namespace palpate {
 struct RecorderSettings {
   std::filesystem::path file;
   std::string version;  ///< software version, for the header
+  /// Gives what goes along with a scene; not asked again for the same text. None: nothing does.
+  std::function<std::vector<LogFile>(const std::string& scene)> files = nullptr;
 };
 
 struct RecordedTopic {

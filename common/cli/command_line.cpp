@@ -1,7 +1,11 @@
 #include "common/cli/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 namespace palpate::cli {
@@ -48,7 +52,12 @@ Option& Option::required() {
 }
 
 Option& Option::positive() {
-  option_->check(CLI::PositiveNumber);
+  const auto refuse = [](const std::string& text) {
+    double number = 0;
+    const bool good = CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number);
+    return good ? std::string() : fmt::format("give a number above 0, not {}", text);
+  };
+  option_->check(refuse, "POSITIVE");
   return *this;
 }
 
@@ -128,6 +137,10 @@ Command Command::add_command(const std::string& name, const std::string& meaning
   return Command(app_->add_subcommand(name, meaning));
 }
 
+void Command::footer(const std::string& text) {
+  app_->footer(text);
+}
+
 void Command::does(const std::function<void()>& work) {
   app_->callback([app = app_, work] {
     keep_inputs(*app);
@@ -147,11 +160,28 @@ void CommandLine::show_version(const std::string& version) {
 
 void CommandLine::require_command() {
   app_->require_subcommand(1);
+  has_commands_ = true;
 }
 
 std::optional<int> CommandLine::read(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (has_commands_ && (words.empty() || words[0] == "help")) {  // "help NAME" is "NAME --help"
+    words.erase(words.begin(), words.begin() + std::min<std::size_t>(words.size(), 1));
+    words.push_back("--help");
+  }
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  const auto is_command = [&](const std::string& word) {
+    return word.starts_with('-') || std::ranges::any_of(app_->get_subcommands({}),
+                                                        [&](CLI::App* command) { return command->get_name() == word; });
+  };
+  if (has_commands_ && !is_command(words[0])) {
+    fmt::print(stderr, "there is no command '{}'; `{} help` names all\n", words[0], name);
+    return 1;
+  }
+  app_->name(name);
+  std::ranges::reverse(words);  // as the package takes them
   try {
-    app_->parse(argc, argv);
+    app_->parse(std::move(words));
     keep_inputs(*app_);
   } catch (const CLI::ParseError& error) {
     return app_->exit(error);

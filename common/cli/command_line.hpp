@@ -51,6 +51,7 @@ class Command {
   Option add_option(const std::string& name, T& value, const std::string& meaning);
   Option add_flag(const std::string& name, bool& value, const std::string& meaning = "");
   Command add_command(const std::string& name, const std::string& meaning);
+  void footer(const std::string& text);  ///< the end of its help: examples
   /// What it does; run while the command line is read.
   void does(const std::function<void()>& work);
 
@@ -65,13 +66,15 @@ class CommandLine : public Command {
   ~CommandLine();
 
   void show_version(const std::string& version);  ///< with --version
-  void require_command();                         ///< one of those added must be given
+  /// One of those added is asked for; without one, or after "help", the help is printed.
+  void require_command();
   /// The status with which the program shall end now: after --help, or a mistake, which is said on standard error.
   /// What a command throws passes through.
   std::optional<int> read(int argc, char** argv);
 
  private:
   std::unique_ptr<CLI::App> own_;
+  bool has_commands_ = false;
 };
 
 }  // namespace palpate::cli

@@ -93,7 +93,7 @@ void HybridPart::fill_stiffness(const HybridTensors& hybrid) {
   const int stride = padded(size_);
   if (single_) stiffness_f_.assign(static_cast<std::size_t>(stride) * size_, 0);
   if (!single_) stiffness_d_.assign(static_cast<std::size_t>(stride) * size_, 0);
-  const auto entry = [&](const Dof& dof) { return static_cast<std::size_t>(3 * place_[dof.node] + dof.axis); };
+  const auto entry = [&](const Dof& dof) { return static_cast<std::size_t>(3) * place_[dof.node] + dof.axis; };
   for (std::size_t i = 0; i < hybrid.dofs.size(); ++i) {
     reaction_[entry(hybrid.dofs[i])] = hybrid.reaction[i];
     for (std::size_t j = 0; j <= i; ++j) {

@@ -37,6 +37,12 @@ int remaining_rigid_motions(const TetMesh& mesh, const DofMap& dofs) {
   return motions.free();
 }
 
+Eigen::VectorXd gather(const DofMap& dofs, const std::vector<Eigen::Vector3d>& field) {
+  Eigen::VectorXd values(dofs.size());
+  for (int i = 0; i < dofs.size(); ++i) values[i] = field[dofs.dof(i) / 3][dofs.dof(i) % 3];
+  return values;
+}
+
 DofMap apply_boundary_conditions(const TetMesh& mesh, const std::vector<BoundaryCondition>& regions,
                                  const std::string& where) {
   if (regions.empty()) throw std::runtime_error(where + ": unfixed body: it has no [[body.fixed]] section");

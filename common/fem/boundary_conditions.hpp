@@ -33,6 +33,9 @@ class DofMap {
   std::vector<int> index_, dof_;
 };
 
+/// The free dofs of a field over nodes.
+Eigen::VectorXd gather(const DofMap& dofs, const std::vector<Eigen::Vector3d>& field);
+
 /// Applies the boundary conditions of a body. `where` starts the error sentences. Throws std::runtime_error if a region
 /// selects nothing, or if a rigid-body motion remains: the six rigid motions restricted to the fixed dofs
 /// must be linearly independent.

@@ -1,5 +1,6 @@
 #pragma once
 #include <cholmod.h>
+#include <omp.h>
 
 #include <span>
 #include <stdexcept>
@@ -8,12 +9,14 @@
 
 namespace palpate {
 
-/// A started CHOLMOD workspace with 64-bit indices. Private to common/fem.
+/// A started CHOLMOD workspace with 64-bit indices, used by the thread that makes it. Private to common/fem.
 class CholmodContext {
  public:
   CholmodContext() {
     cholmod_l_start(&common_);
     common_.print = 0;
+    // CHOLMOD copies small blocks in four threads, however many cores there are: they wait longer than they copy.
+    omp_set_max_active_levels(0);
   }
   ~CholmodContext() { cholmod_l_finish(&common_); }
   CholmodContext(const CholmodContext&) = delete;

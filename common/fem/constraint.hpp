@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 namespace palpate {
@@ -13,6 +14,12 @@ struct Constraint {
   };
   std::vector<Term> terms;
   double value;
+};
+
+/// A dead load on the tissue at a mesh node.
+struct NodalLoad {
+  int node;
+  Eigen::Vector3d force;  ///< [N]
 };
 
 /// One axis of one node held at a displacement [m].

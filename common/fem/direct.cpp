@@ -42,12 +42,6 @@ Reduced eliminate_holds(const StaticProblem& problem, const std::vector<Constrai
   return reduced;
 }
 
-VectorXd gather(const DofMap& dofs, const std::vector<Vector3d>& field) {
-  VectorXd values(dofs.size());
-  for (int i = 0; i < dofs.size(); ++i) values[i] = field[dofs.dof(i) / 3][dofs.dof(i) % 3];
-  return values;
-}
-
 void scatter_add(const DofMap& dofs, const VectorXd& values, std::vector<Vector3d>& field) {
   for (int i = 0; i < dofs.size(); ++i) field[dofs.dof(i) / 3][dofs.dof(i) % 3] += values[i];
 }
@@ -80,7 +74,8 @@ StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh) {
   return {std::move(mesh), std::move(materials), std::move(dofs)};
 }
 
-StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints) {
+StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints,
+                            const std::vector<NodalLoad>& loads) {
   auto reduced = eliminate_holds(problem, constraints);
   StaticSolution solution{std::move(reduced.displacement), {}};
   if (reduced.dofs.size() > 0) {
@@ -89,8 +84,9 @@ StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Cons
     factor.factorise(stiffness);
     // One more pass than needed: the second corrects the first by its own residual.
     for (int pass = 0; pass < 2; ++pass) {
-      const auto force = internal_force(problem.mesh, problem.materials, solution.displacement);
-      scatter_add(reduced.dofs, factor.solve(-gather(reduced.dofs, force)), solution.displacement);
+      auto lacking = internal_force(problem.mesh, problem.materials, solution.displacement);
+      for (const NodalLoad& load : loads) lacking[load.node] -= load.force;
+      scatter_add(reduced.dofs, factor.solve(-gather(reduced.dofs, lacking)), solution.displacement);
     }
     if (!reduced.conditions.empty()) impose_conditions(reduced, factor, solution.displacement);
   }

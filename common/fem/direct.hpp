@@ -27,8 +27,9 @@ struct StaticSolution {
 /// Solves the full system afresh, independently of any precomputed compliance. Axes held alone are eliminated
 /// before the factorisation, as fixed ones are; conditions over several dofs follow by their multipliers, (J
 /// K^-1 J^T) lambda = d - J u. Throws std::runtime_error if conditions repeat or contradict one another or
-/// touch no free dof.
-StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints);
+/// touch no free dof. `loads` act besides; those on held or fixed dofs go straight into what holds them.
+StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints,
+                            const std::vector<NodalLoad>& loads = {});
 
 /// The response to dead loads [N] per mesh node (those on fixed dofs go straight into the support).
 StaticSolution solve_loads(const StaticProblem& problem, const std::vector<Eigen::Vector3d>& load);

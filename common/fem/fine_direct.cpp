@@ -70,22 +70,26 @@ void add_reactions(const FineProblem& problem, const std::vector<Vector3d>& fine
 
 }  // namespace
 
-StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints) {
+StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints,
+                            const std::vector<NodalLoad>& given) {
   const auto count = static_cast<Index>(constraints.size());
   const MatrixXd loads = condition_loads(problem, constraints);
+  std::vector<Vector3d> load(problem.run_time_dofs.nodes(), Vector3d::Zero());
+  for (const NodalLoad& one : given) load[one.node] += one.force;
   const FineFactor factor(problem, 4 * sizeof(double) * static_cast<std::size_t>(loads.size()));
   const MatrixXd response = factor.solve_corrected(loads);
+  VectorXd moved = VectorXd::Zero(problem.dofs.size());  // by the given loads alone
+  if (!given.empty()) moved = factor.solve_corrected(gather(problem.dofs, spread_loads(problem, load)));
   const MatrixXd compliance = loads.transpose() * response;
   const Eigen::LLT<MatrixXd> schur(compliance);
-  if (schur.info() != Eigen::Success || !(schur.rcond() > 1e-12))
+  if (count > 0 && (schur.info() != Eigen::Success || !(schur.rcond() > 1e-12)))
     throw std::runtime_error("the held points repeat or contradict one another");
   VectorXd value(count);
   for (Index c = 0; c < count; ++c) value[c] = constraints[c].value;
-  const VectorXd multiplier = schur.solve(value);
+  const VectorXd multiplier = schur.solve(value - loads.transpose() * moved);
 
-  const auto fine = fine_field(problem, response * multiplier);
-  StaticSolution solution{mean_displacement(problem, fine),
-                          std::vector<Vector3d>(problem.run_time_dofs.nodes(), Vector3d::Zero())};
+  const auto fine = fine_field(problem, moved + response * multiplier);
+  StaticSolution solution{mean_displacement(problem, fine), load};
   for (Index c = 0; c < count; ++c)
     for (const auto& [node, axis, weight] : constraints[c].terms)
       if (problem.run_time_dofs.is_free(node, axis)) solution.force[node][axis] += weight * multiplier[c];
@@ -101,8 +105,7 @@ std::vector<Vector3d> spread_loads(const FineProblem& problem, const std::vector
 }
 
 std::vector<Vector3d> solve_fine_loads(const FineProblem& problem, const std::vector<Vector3d>& fine_load) {
-  VectorXd right(problem.dofs.size());
-  for (int i = 0; i < right.size(); ++i) right[i] = fine_load[problem.dofs.dof(i) / 3][problem.dofs.dof(i) % 3];
+  const VectorXd right = gather(problem.dofs, fine_load);
   const FineFactor factor(problem, 8 * sizeof(double) * static_cast<std::size_t>(right.size()));
   return fine_field(problem, factor.solve_corrected(right));
 }

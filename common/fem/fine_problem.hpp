@@ -52,8 +52,9 @@ SurfaceCompliance surface_compliance(const FineProblem& problem, const std::vect
                                      const std::vector<int>& other, const Progress& progress = {});
 
 /// solve_direct() of the run-time nodes. Fixed axes of the result do not move; reactions are gathered on the
-/// run-time nodes that their fine nodes interpolate.
-StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints);
+/// run-time nodes that their fine nodes interpolate. `loads` are on run-time nodes.
+StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints,
+                            const std::vector<NodalLoad>& loads = {});
 
 /// Forces [N] on run-time nodes as forces on fine nodes, W f.
 std::vector<Eigen::Vector3d> spread_loads(const FineProblem& problem, const std::vector<Eigen::Vector3d>& load);

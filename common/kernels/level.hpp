@@ -32,6 +32,7 @@
   void springs_d(const SpringQuad<double>* quads, int count, const double* u, double* force);                        \
   void corotated_f(const TetQuad<float>* quads, int count, const float* u, float* force);                            \
   void corotated_d(const TetQuad<double>* quads, int count, const double* u, double* force);                         \
+  void kernel_moments(const double* s, const double* t, const double* normal, double poisson, double* out);          \
   }
 
 PALPATE_DECLARE_KERNELS(base)

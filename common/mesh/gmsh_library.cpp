@@ -17,13 +17,21 @@ namespace {
 
 constexpr int kTriangle = 2, kTetrahedron = 4, kPoint = 15;
 
-/// Where the program lies, as all its parts do; else wherever the loader finds it.
+/// Where the program lies, as all its parts do, or above a library that this code is in; else wherever the loader
+/// finds it.
 std::string module_file() {
   const std::string name = "libpalpate_gmsh.so";
   std::error_code error;
+  const auto below = [&](const std::filesystem::path& folder) { return folder / "lib/palpate" / name; };
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto file = program.parent_path().parent_path() / "lib/palpate" / name;
-  return std::filesystem::exists(file, error) ? file.string() : name;
+  const auto file = below(program.parent_path().parent_path());
+  if (std::filesystem::exists(file, error)) return file;
+  Dl_info here{};
+  if (!dladdr(reinterpret_cast<const void*>(&module_file), &here)) return name;
+  for (auto folder = std::filesystem::absolute(here.dli_fname).parent_path(); folder != folder.root_path();
+       folder = folder.parent_path())
+    if (std::filesystem::exists(below(folder), error)) return below(folder);
+  return name;
 }
 
 /// gmsh's calls, loaded with all that it links where the first one is made.

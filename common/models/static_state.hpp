@@ -11,7 +11,7 @@ namespace palpate {
 /// The full system of a body.
 struct DirectProblem {
   TetMesh mesh;
-  std::function<StaticSolution(const std::vector<Constraint>&)> solve;
+  std::function<StaticSolution(const std::vector<Constraint>&, const std::vector<NodalLoad>&)> solve;
 };
 
 /// A static state as lists with one entry a node.

@@ -1,7 +1,8 @@
+#include "common/scene/nearest.hpp"
+
 #include <algorithm>
 #include <numeric>
-
-#include "common/scene/scene_reader.hpp"
+#include <vector>
 
 namespace palpate {
 namespace {

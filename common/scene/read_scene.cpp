@@ -3,7 +3,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/scene/change_table.hpp"
+#include "common/scene/moved_files.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "common/scene/scene_reader.hpp"
 
 namespace palpate {
@@ -38,9 +41,8 @@ void refuse_deep_keys(std::string_view text, const std::filesystem::path& file) 
   }
 }
 
-}  // namespace
-
-Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+Scene read(std::string_view text, const std::filesystem::path& file, std::span<const SceneChange> changes,
+           const MovedFiles& moved) {
   refuse_deep_keys(text, file);
   toml::table table;
   try {
@@ -49,14 +51,29 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
     const auto where = error.source().begin;
     throw std::runtime_error(fmt::format("{}:{}:{}: {}", file.string(), where.line, where.column, error.description()));
   }
+  for (const SceneChange& change : changes) change_table(table, change);
   Scene scene;
-  SceneReader reader(table, scene_keys(), file);
+  SceneReader reader(table, scene_keys(), file, moved);
   describe(reader, scene);
   scene.file = std::filesystem::absolute(file).lexically_normal();
   return scene;
 }
 
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  return read(text, file, {}, {});
+}
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& file, const MovedFiles& moved) {
+  return read(text, file, {}, moved);
+}
+
 Scene load_scene(const std::filesystem::path& file) {
+  return load_scene(file, {});
+}
+
+Scene load_scene(const std::filesystem::path& file, std::span<const SceneChange> changes) {
   std::error_code error;
   std::ifstream stream;
   if (std::filesystem::is_regular_file(file, error)) stream.open(file, std::ios::binary);  // a pipe would wait
@@ -64,7 +81,7 @@ Scene load_scene(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("{}:1:1: the scene is not a file that can be read", file.string()));
   std::ostringstream text;
   text << stream.rdbuf();
-  return parse_scene(text.str(), file);
+  return read(text.str(), file, changes, {});
 }
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/geometry/direction.hpp"
+#include "common/scene/nearest.hpp"
 
 namespace palpate {
 namespace {
@@ -41,12 +42,15 @@ std::string_view kind(const toml::node& node) {
 
 }  // namespace
 
-SceneReader::SceneReader(const toml::table& table, const KeyList& known, std::filesystem::path file)
-    : known_(known), file_(std::move(file)), levels_{{&table, {}}} {
+SceneReader::SceneReader(const toml::table& table, const KeyList& known, std::filesystem::path file,
+                         const MovedFiles& moved)
+    : known_(known), file_(std::move(file)), moved_(moved), levels_{{&table, {}}} {
   refuse_unknown();
 }
 
 void SceneReader::fail(const toml::source_region& where, std::string_view sentence) const {
+  if (where.path && *where.path != file_.string())  // not of the file, but given beside it
+    throw std::runtime_error(fmt::format("{}: {}", *where.path, sentence));
   throw std::runtime_error(fmt::format("{}:{}:{}: {}", file_.string(), std::max(1u, where.begin.line),
                                        std::max(1u, where.begin.column), sentence));
 }
@@ -277,6 +281,7 @@ void SceneReader::path(const Key& key, std::filesystem::path& value) {
   if (!node) return;
   value = (file_.parent_path() / plain_text(*node, key.name)).lexically_normal();
   value = std::filesystem::absolute(value).lexically_normal();
+  if (const auto elsewhere = moved_.find(value); elsewhere != moved_.end()) value = elsewhere->second;
 }
 
 void SceneReader::file(const Key& key, std::filesystem::path& value) {

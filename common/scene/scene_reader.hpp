@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/describe/key_list.hpp"
+#include "common/scene/moved_files.hpp"
 
 namespace palpate {
 
@@ -17,7 +18,8 @@ namespace palpate {
 class SceneReader : public Description {
  public:
   /// `known`: all keys of the spec. `file` is the scene's, for messages and relative paths.
-  SceneReader(const toml::table& table, const KeyList& known, std::filesystem::path file);
+  /// `moved`: where files lie that the text says are elsewhere.
+  SceneReader(const toml::table& table, const KeyList& known, std::filesystem::path file, const MovedFiles& moved = {});
 
   void number(const Key& key, double& value, const Range& range) override;
   void numbers(const Key& key, std::vector<double>& value, const Range& range) override;
@@ -83,11 +85,9 @@ class SceneReader : public Description {
 
   const KeyList& known_;
   std::filesystem::path file_;
+  MovedFiles moved_;
   std::vector<Level> levels_;
   std::vector<Choice> choices_;
 };
-
-/// The candidate that a misspelt word is likely to mean; empty if none is near.
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace palpate

@@ -9,8 +9,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::uint64_t kRun = 1;  // a simulator is one start of a haptic loop and of the tissue
-
 const Scene& checked(const Scene& scene) {
   if (scene.tools.size() > StepRecord::kMaxTools)
     throw std::runtime_error(
@@ -29,7 +27,7 @@ void show(const StepRecord& record, std::vector<ContactState>& contacts, Deforme
 }
 
 void stamp(StepRecord& record) {
-  for (BodyNews& news : record.news) std::visit([](auto& m) { m.run = kRun; }, news.message);
+  for (BodyNews& news : record.news) std::visit([](auto& m) { m.run = Simulator::kRun; }, news.message);
 }
 
 }  // namespace
@@ -41,7 +39,8 @@ Simulator::Simulator(const Scene& scene, const std::vector<Archive>& archives)
       local_models_(world_, archives, LocalStiffness::Worker::caller),
       deformer_(scene_, archives),
       dofs_(scene_.tools.size()),
-      contacts_(scene_.tools.size(), ContactState{.run = kRun}) {
+      contacts_(scene_.tools.size(), ContactState{.run = kRun}),
+      models_(scene_.tools.size()) {
   prepare_record(haptic_, record_);
   stamp(record_);
 }
@@ -73,10 +72,11 @@ void Simulator::move_tissue() {
   world_.tick();
   local_models_.refresh();
   for (int t = 0; t < tools(); ++t) {
-    local_models_.describe(t, model_);
-    model_.run = kRun;
-    model_.seq = steps_ + 1;
-    haptic_.consume(model_);
+    LocalContactModel& model = models_[t];
+    local_models_.describe(t, model);
+    model.run = kRun;
+    model.seq = steps_ + 1;
+    haptic_.consume(model);
   }
 }
 

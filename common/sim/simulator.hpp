@@ -47,6 +47,8 @@ struct SurfaceView {
 /// code path.
 class Simulator {
  public:
+  static constexpr std::uint64_t kRun = 1;  ///< in its messages: it is one start of a haptic loop and of the tissue
+
   /// One archive per body, read with ArchivePart::surface. Throws std::runtime_error if the scene cannot be run.
   Simulator(const Scene& scene, const std::vector<Archive>& archives);
   Simulator(const Simulator&) = delete;
@@ -67,6 +69,10 @@ class Simulator {
   ToolView tool(int t) const;
   double energy() const { return haptic_.energy(); }  ///< [J] that all tools have put into what they touch
   const ContactState& contacts(int tool) const { return contacts_[tool]; }
+  /// As the haptic loop would hand it to its publisher; times count from the first step.
+  const StepRecord& record() const { return record_; }
+  /// What the next step will feel of moving tissue near a tool; empty without any.
+  const LocalContactModel& local_model(int tool) const { return models_[tool]; }
   std::vector<TaskRecord> tasks() const { return task_records(haptic_); }
   std::vector<ChangeView> changes() const;
   /// Rebuilt when it is asked for, and valid until the next call or step. Walls and catheters are shown
@@ -106,8 +112,8 @@ class Simulator {
   std::uint64_t steps_ = 0;
   std::vector<ToolDofs> dofs_;
   StepRecord record_{};
-  std::vector<ContactState> contacts_;  ///< per tool
-  LocalContactModel model_;
+  std::vector<ContactState> contacts_;              ///< per tool
+  std::vector<LocalContactModel> models_;           ///< per tool
   std::vector<Eigen::Vector3f> position_, normal_;  ///< of the moving body that surface() was last asked for
 };
 

@@ -55,6 +55,19 @@ TEST(Install, AMovedPrefixRunsItsScenes) {
     EXPECT_TRUE(files.contains(name)) << name;
 }
 
+TEST(Install, TheOrganProgramIsAComponentOfItsOwn) {
+  if (!fs::exists(fs::path(PALPATE_BIN) / "palpate_organ")) GTEST_SKIP() << "built without CGAL";
+  const std::set<std::string> files{"bin/palpate_organ", "lib/palpate/libpalpate_gmsh.so"};
+  EXPECT_EQ(MovedPrefix("--component organ").files(), files);
+}
+
+TEST(Install, WithoutTheOrganProgramItsCommandsSayWhatIsMissing) {
+  const MovedPrefix prefix("--component tools");
+  std::string said;
+  EXPECT_EQ(run_command((prefix / "bin/palpate").string() + " mesh a.stl -o a.msh", &said), 1);
+  EXPECT_NE(said.find("libcgal-dev"), std::string::npos) << said;
+}
+
 TEST(Install, AComponentIsOneNode) {
   for (const std::string name : {"haptic", "deform", "render", "web"}) {
     std::set<std::string> files{"bin/" + name + "_node"};

@@ -85,6 +85,8 @@ class TouchedBlock {
     std::vector<int> of_node(mesh_.nodes(), -1);
     for (const auto& nodes : triangles_) {
       const Triangle corners{position(nodes[0]), position(nodes[1]), position(nodes[2])};
+      const double longest = std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm());
+      if ((position(held_) - corners[0]).norm() > longest + 0.02) continue;  // at once, without its nearest point
       if (closest_point(position(held_), corners).squared_distance > 0.02 * 0.02) continue;
       std::uint32_t at[3];
       for (int v = 0; v < 3; ++v) {

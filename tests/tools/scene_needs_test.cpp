@@ -123,20 +123,29 @@ struct Needs {
   }
 };
 
+/// An example scene, its pictures small: what is drawn is judged elsewhere.
+Scene example(const std::string& name) {
+  Scene scene = load_scene(fs::path(PALPATE_SOURCE) / "scenes" / (name + ".toml"));
+  if (scene.render) scene.render->width = 160, scene.render->height = 120;
+  return scene;
+}
+
 class SceneNeeds : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
-  const fs::path file = fs::path(PALPATE_SOURCE) / "scenes" / (GetParam() + ".toml");
-  const Needs needs(load_scene(file));
+  const Scene scene = example(GetParam());
+  const Needs needs(scene);
   const testing::OwnFolder folder("needs");
+  const std::string file = folder / "scene.toml";
+  std::ofstream(file) << to_toml(scene);
   const int domain = testing::own_domain();
-  const auto made = testing::run_program(program("palpate") + " precompute " + file.string());
+  const auto made = testing::run_program(program("palpate") + " precompute " + file);
   ASSERT_EQ(made.status, 0) << made.err;
 
   std::vector<std::string> command{
       program("palpate"),     "run", file, "--seconds", "10", "--domain", std::to_string(domain), "--summary",
       folder / "summary.json"};
-  const fs::path keys = load_scene(file).network.security ? folder / "keys" : "";
+  const fs::path keys = scene.network.security ? folder / "keys" : "";
   if (!keys.empty()) {
     ASSERT_EQ(testing::run_program(program("palpate") + " keys " + keys.string()).status, 0);
     command.insert(command.end(), {"--keys", keys});

@@ -49,18 +49,21 @@ class ToolsSolve : public ::testing::Test {
  protected:
   void SetUp() override { setenv("PALPATE_CACHE", (folder_ / "cache").c_str(), 1); }
 
-  Table solve(const fs::path& scene, const std::string& method, const std::vector<std::string>& holds) {
+  Table solve(const fs::path& scene, const std::string& method, const std::vector<std::string>& holds,
+              const std::vector<std::string>& forces = {}) {
     const fs::path csv = folder_ / (method + ".csv");
     std::string command =
         fmt::format("{} solve {} --method {} --csv {}", program("palpate"), scene.string(), method, csv.string());
     for (const std::string& hold : holds) command += " --hold " + hold;
+    for (const std::string& force : forces) command += " --force " + force;
     const auto result = run_program(command);
     EXPECT_EQ(result.status, 0) << result.err;
     return read_table(csv);
   }
 
-  void expect_agreement(const fs::path& scene, const std::vector<std::string>& holds) {
-    const Table direct = solve(scene, "direct", holds), tensors = solve(scene, "tensors", holds);
+  void expect_agreement(const fs::path& scene, const std::vector<std::string>& holds,
+                        const std::vector<std::string>& forces = {}) {
+    const Table direct = solve(scene, "direct", holds, forces), tensors = solve(scene, "tensors", holds, forces);
     ASSERT_GT(tensors.size(), 50u);
     ASSERT_GT(direct.size(), tensors.size());
     double max_u = 0, max_f = 0, error_u = 0, error_f = 0;
@@ -120,6 +123,30 @@ TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
     EXPECT_GT(std::abs(row.displacement.y()), 1e-7) << method;
     EXPECT_GT(std::abs(solve(plate(), method, all).at(node).force.y()), 1e-4 * row.force.norm()) << method;
   }
+}
+
+// A load alone, several on a node, and a load beside a hold: by both methods alike, and what holds one node at where a
+// load moved it to exerts nothing.
+TEST_F(ToolsSolve, LoadsMoveWhatIsFreeByBothMethodsAlike) {
+  const TetMesh mesh = plate_mesh();
+  const int loaded = nearest_node(mesh, {0.015, 0.01, 0.008}), held = nearest_node(mesh, {-0.02, 0, 0.008});
+  const std::string load = fmt::format("{}:0.01,0,-0.12", loaded), half = fmt::format("{}:0.005,0,-0.06", loaded);
+  expect_agreement(plate(), {}, {load});
+  expect_agreement(plate(), {fmt::format("{}:0,0,0.0005", held)}, {half, half});
+  const Table alone = solve(plate(), "direct", {}, {load});
+  EXPECT_LT((alone.at(loaded).force - Vector3d(0.01, 0, -0.12)).norm(), 1e-9);
+  EXPECT_LT(alone.at(loaded).displacement.z(), 0);
+  const Vector3d there = alone.at(held).displacement;
+  const Table with = solve(plate(), "tensors",
+                           {fmt::format("{}:{:.17g},{:.17g},{:.17g}", held, there.x(), there.y(), there.z())}, {load});
+  EXPECT_LT(with.at(held).force.norm(), 1e-8);
+  testing::expect_refusal(fmt::format("{} solve {} --force 100000:0,0,1", program("palpate"), plate().string()),
+                          {"--force", "100000", "not in the mesh"});
+  testing::expect_refusal(fmt::format("{} solve {} --force {}:0,,1", program("palpate"), plate().string(), loaded),
+                          {"--force", "all of x, y, z"});
+  testing::expect_refusal(
+      fmt::format("{} solve {} --force 1:0,0,1", program("palpate"), linear_elements("brain_cylinder").string()),
+      {"--force", "[body.nonlinear]"});
 }
 
 TEST_F(ToolsSolve, WhatIsNoNumberIsNoSolution) {

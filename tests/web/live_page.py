@@ -83,7 +83,8 @@ class Page:
             browser.switch_to.new_window("window")
         self.handle = browser.current_window_handle
         browser.get(address)
-        self.wait("globalThis.palpate?.frame", 20)
+        # There is a picture to press on.
+        self.wait("globalThis.palpate?.frame && palpate.picture.axes && palpate.bodies.length", 20)
 
     def front(self):
         self.browser.switch_to.window(self.handle)

@@ -116,7 +116,7 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
   Eigen::Vector3d low = surface.position[0], high = low;
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double across = (high - low).norm();
-  if (across > 3 || across < 1e-3)
+  if (across > kLargestBody || across < kSmallestBody)
     warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body, across));
   return warnings;
 }

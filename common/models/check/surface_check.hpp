@@ -28,6 +28,9 @@ void add_near_field(const char* owner, const CheckSettings& settings, const Surf
 std::vector<std::string> size_warnings_by_mesh(const CheckSettings& settings, const std::string& body,
                                                const SurfaceMap& surface);
 
+/// [m] across: what an organ on a table has.
+inline constexpr double kLargestBody = 1, kSmallestBody = 1e-3;
+
 /// A tool smaller than the elements, a scale that is off. `body`: its name.
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
                                        const SurfaceMap& surface);

@@ -133,6 +133,8 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
     say_patches(settings, body.name, report);
     report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   }
+  const std::vector<std::string> of_material = material_warnings(body);
+  report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
   if (body.tearing)
     report.say(fmt::format("  tearing: {} above {}", body.tearing->criterion, body.tearing->threshold));
   else

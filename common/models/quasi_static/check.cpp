@@ -119,6 +119,7 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   chosen.offline = offline_of(body, solid.surface.size());
   std::ranges::copy(locking_warnings(chosen), std::back_inserter(report.warnings));
   warn_of_ball(body, settings, report);
+  std::ranges::copy(material_warnings(body), std::back_inserter(report.warnings));
 }
 
 std::vector<std::string> locking_warnings(const QuasiStaticSpec& body) {

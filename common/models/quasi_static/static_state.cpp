@@ -40,8 +40,8 @@ DirectProblem direct_problem(const QuasiStaticSpec& body) {
   DirectProblem problem = direct_problem(static_cast<const SolidSpec&>(body));
   const Offline offline = *with_offline(body, problem.mesh).offline;
   if (is_finer(offline))
-    problem.solve = [&body, offline, mesh = problem.mesh](const std::vector<Constraint>& constraints) {
-      return solve_direct(make_fine_problem(body, mesh, offline), constraints);
+    problem.solve = [&body, offline, mesh = problem.mesh](const auto& constraints, const auto& loads) {
+      return solve_direct(make_fine_problem(body, mesh, offline), constraints, loads);
     };
   return problem;
 }

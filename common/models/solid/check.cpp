@@ -6,7 +6,9 @@
 
 #include "common/contact/tool_contacts.hpp"
 #include "common/fem/selection.hpp"
+#include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/quality.hpp"
 #include "common/models/solid/precompute.hpp"
 
 namespace palpate {
@@ -26,6 +28,14 @@ void say_material(const SolidSpec& body, CheckReport& report) {
   for (const MaterialRegion& region : body.materials)
     report.say(fmt::format("  in {}: young {} Pa, poisson {}, density {} kg/m3", describe(region.where, "elements"),
                            region.material.young, region.material.poisson, region.material.density));
+}
+
+double mass_of(const SolidSpec& body, const TetMesh& mesh) {
+  const MaterialField materials = material_field(body, mesh);
+  double mass = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    mass += materials.at(static_cast<int>(t)).density * tet_volume(mesh, mesh.tetrahedra[t]);
+  return mass;
 }
 
 double max_poisson(const SolidSpec& body) {
@@ -51,11 +61,27 @@ void check_solid(const SolidSpec& body, std::string_view kind, const CheckedSoli
                          solid.mesh.nodes.size(), solid.mesh.tetrahedra.size(), solid.dofs.size(), kind));
   report.say(fmt::format("  surface: {} nodes, {} triangles, mean edge {:.4g} m; {} nodes touchable", surface.size(),
                          surface.triangles.size(), mean_edge(surface), surface.touchable));
+  const MeshMeasures measures = measures_of(solid.mesh);
+  report.say("  size: " + say_size(measures, mass_of(body, solid.mesh)));
+  report.say("  " + say_angles(measures));
   say_boundary_conditions(body, solid.mesh, report);
   say_material(body, report);
   if (body.materials.empty()) report.left_out.emplace_back("one material, nothing per element");
   report.warnings = size_warnings(settings, body.name, surface);
   report.meets = meets_surface(surface, true);
+}
+
+std::vector<std::string> material_warnings(const SolidSpec& body) {
+  std::vector<std::string> warnings;
+  const auto look = [&](double young) {
+    if (young < kSoftestTissue || young > kStiffestTissue)
+      warnings.push_back(
+          fmt::format("body '{}' has young = {:.3g} Pa, and tissue has {:.3g} to {:.3g} Pa: is it in pascals?",
+                      body.name, young, kSoftestTissue, kStiffestTissue));
+  };
+  look(body.material.young);
+  for (const MaterialRegion& region : body.materials) look(region.material.young);
+  return warnings;
 }
 
 std::vector<std::string> locking_warnings(const SolidSpec& body, const std::string& cure) {

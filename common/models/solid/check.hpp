@@ -24,6 +24,12 @@ CheckedSolid load_solid(const SolidSpec& body);
 void check_solid(const SolidSpec& body, std::string_view kind, const CheckedSolid& solid, const CheckSettings& settings,
                  CheckReport& report);
 
+/// One sentence for each modulus that no tissue has.
+std::vector<std::string> material_warnings(const SolidSpec& body);
+
+/// [Pa] Young's moduli of tissue lie between: the softest fat and brain, and cortical bone.
+inline constexpr double kSoftestTissue = 50, kStiffestTissue = 3e10;
+
 /// One sentence where a body's Poisson's ratio makes its linear elements lock, with the cure.
 std::vector<std::string> locking_warnings(const SolidSpec& body, const std::string& cure);
 

@@ -16,8 +16,8 @@ DirectProblem direct_problem(const NamedSpec& body) {
 DirectProblem direct_problem(const SolidSpec& body) {
   StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
   TetMesh mesh = problem.mesh;
-  return {std::move(mesh), [problem = std::move(problem)](const std::vector<Constraint>& constraints) {
-            return solve_direct(problem, constraints);
+  return {std::move(mesh), [problem = std::move(problem)](const auto& constraints, const auto& loads) {
+            return solve_direct(problem, constraints, loads);
           }};
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "common/scene/scene.hpp"
+
+namespace palpate {
+
+/// Every file that a scene names, each once, in the order of the scene.
+std::vector<std::filesystem::path> files_of(const Scene& scene);
+
+/// Where files lie now, by where the text of a scene says they do.
+using MovedFiles = std::map<std::filesystem::path, std::filesystem::path>;
+
+/// parse_scene() of a text from elsewhere.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file, const MovedFiles& moved);
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "common/mesh/measures.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/surface.hpp"
+#include "tests/organ/surfaces_for_tests.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace palpate::testing;
+
+class MeshCommand : public ::testing::Test {
+ protected:
+  ProgramResult mesh(const std::string& arguments) const {
+    return run_program(program("palpate") + " mesh " + arguments);
+  }
+  const OwnFolder folder_{"organ"};
+};
+
+TEST_F(MeshCommand, ABallInMillimetresBecomesAGoodMeshOfItsVolumeAndTheSameAgain) {
+  const TriangleMesh ball = make_sphere({20, 0, 0}, 50, 40);
+  const auto file = write_file(folder_ / "ball.stl", binary_stl(ball, "solid ball", 0));
+  const std::string command =
+      fmt::format("{} --unit mm --nodes 500 --group attachment=below:z --fine 0.07,0,0,0.01:0.004 -o ", file.string());
+  const auto made = mesh(command + (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("announces 0 triangles"), std::string::npos) << made.out;
+  const TetMesh body = load_tet_mesh(folder_ / "a.msh", 1);
+  const MeshMeasures m = measures_of(body);
+  EXPECT_NEAR(m.volume, 4.0 / 3 * std::numbers::pi * 1.25e-4, 5e-3 * 5.236e-4);
+  EXPECT_GE(m.smallest_angle, 12);
+  EXPECT_NEAR(static_cast<double>(body.nodes.size()), 500, 50);
+  for (const int n : body.groups.at("attachment").nodes) EXPECT_LE(body.nodes[n].z(), -0.05 + 0.0105);
+  const Surface surface = extract_surface(body);
+  EXPECT_EQ(static_cast<int>(surface.nodes.size()) * 2 - 4, static_cast<int>(surface.triangles.size()));  // one sphere
+  int near = 0;
+  for (const int n : surface.nodes) near += (body.nodes[n] - Eigen::Vector3d(0.07, 0, 0)).norm() < 0.01;
+  EXPECT_GT(near, 20) << "not finer where it was told";
+  const auto again = mesh(command + (folder_ / "b.msh").string());
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+}
+
+TEST_F(MeshCommand, MistakesAreToldInASentence) {
+  const auto file = write_file(folder_ / "ball.stl", text_stl(make_sphere({0, 0, 0}, 0.05, 8))).string();
+  const std::string to = " -o " + (folder_ / "a.msh").string();
+  expect_refusal(program("palpate") + " mesh " + file + " --group held=near:z" + to,
+                 {"--group held=near:z", "NAME=PLACE"});
+  expect_refusal(program("palpate") + " mesh " + file + " --fine 1,2,3:0.1" + to,
+                 {"--fine 1,2,3:0.1", "x,y,z,RADIUS:EDGE"});
+  expect_refusal(program("palpate") + " mesh " + (folder_ / "none.stl").string() + to,
+                 {"none.stl: the file does not exist"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.msh"));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh/measures.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/quality.hpp"
+#include "common/mesh/surface.hpp"
+#include "tests/organ/surfaces_for_tests.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace palpate::testing;
+
+constexpr int kX = 60, kY = 44, kZ = 22;
+
+/// Two balls that touch, of labels 7 and 9, with a stray voxel of 7 and a cavity in 9; voxels of 1 x 1 x 2 mm.
+class OrganCommand : public ::testing::Test {
+ protected:
+  static std::string header(const std::string& size = "XDIM=60\nYDIM=44\nZDIM=22\n") {
+    std::string text =
+        "#INRIMAGE-4#{\n" + size + "VDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=decm\nVX=1\nVY=1\nVZ=2\n";
+    text.resize(252, '\n');
+    return text + "##}\n";
+  }
+  static std::string voxels() {
+    std::string all;
+    for (int k = 0; k < kZ; ++k)
+      for (int j = 0; j < kY; ++j)
+        for (int i = 0; i < kX; ++i) {
+          const Eigen::Vector3d x(i, j, 2 * k);
+          const bool first = (x - Eigen::Vector3d(20, 22, 22)).norm() < 15;
+          const bool second = (x - Eigen::Vector3d(42, 22, 22)).norm() < 10;
+          all += first ? 7 : second ? 9 : 0;
+        }
+    all[voxel(3, 3, 3)] = 7;
+    all[voxel(42, 22, 11)] = 0;
+    return all;
+  }
+  static std::size_t voxel(int i, int j, int k) { return (static_cast<std::size_t>(k) * kY + j) * kX + i; }
+  ProgramResult organ(const std::filesystem::path& image, const std::string& arguments) const {
+    return run_program(program("palpate") + " organ " + image.string() + " " + arguments);
+  }
+  const OwnFolder folder_{"organ-image"};
+};
+
+TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSameAgain) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const std::string labels = "--label 7=big --label 9=small --group attachment=below:x --edge 0.006 -o ";
+  const auto made = organ(image, labels + (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("'big': a stray piece of 1 voxels (0.002 ml) at (3, 3, 6) mm: left out"), std::string::npos)
+      << made.out;
+  EXPECT_NE(made.out.find("'small': a cavity of 1 voxels"), std::string::npos) << made.out;
+  const TetMesh mesh = load_tet_mesh(folder_ / "a.msh", 1);
+  EXPECT_GE(measures_of(mesh).smallest_angle, 12);
+  const std::string all = voxels();
+  for (const auto& [name, label] : {std::pair{"big", 7}, {"small", 9}}) {
+    double volume = 0;
+    for (const int t : mesh.groups.at(name).tetrahedra) volume += tet_volume(mesh, mesh.tetrahedra[t]);
+    const double counted = 2e-9 * static_cast<double>(std::count(all.begin(), all.end(), label));
+    EXPECT_NEAR(volume, counted, 0.01 * counted) << name;
+  }
+  // One closed surface without handles, and no voxel's diagonal away from the balls.
+  const Surface surface = extract_surface(mesh);
+  EXPECT_EQ(2 * static_cast<int>(surface.nodes.size()) - 4, static_cast<int>(surface.triangles.size()));
+  for (const int n : surface.nodes) {
+    const double off = std::min(std::abs((mesh.nodes[n] - Eigen::Vector3d(0.02, 0.022, 0.022)).norm() - 0.015),
+                                std::abs((mesh.nodes[n] - Eigen::Vector3d(0.042, 0.022, 0.022)).norm() - 0.01));
+    EXPECT_LT(off, 2.45e-3) << mesh.nodes[n].transpose();
+  }
+  ASSERT_EQ(organ(image, labels + (folder_ / "b.msh").string()).status, 0);
+  EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+}
+
+TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {
+  const auto refused = [&](const std::string& bytes, const std::string& label, const std::string& said) {
+    const auto image = write_file(folder_ / "bad.inr", bytes);
+    const auto result = organ(image, "--label " + label + " -o " + (folder_ / "c.msh").string());
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+  };
+  refused(header() + voxels(), "5", "no voxel has the label 5");
+  refused(header() + voxels(), "liver", "--label liver: NUMBER or NUMBER=NAME");
+  refused(header() + voxels().substr(0, 5000), "7", "bad.inr: it ends before its last voxel");
+  refused(header("XDIM=60000\nYDIM=60000\nZDIM=60000\n"), "7", "a billion in all");
+  refused(header("XDIM=nan\nYDIM=4\nZDIM=4\n"), "7", "its XDIM is");
+  refused("#INRIMAGE-4#{\n", "7", "within its header");
+  refused(std::string(30000, 'a'), "7", "does not begin as an INR image");
+}
+
+}  // namespace
+}  // namespace palpate

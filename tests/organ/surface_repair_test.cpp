@@ -1,0 +1,121 @@
+#include "tools/organ/surface_repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/organ/surfaces_for_tests.hpp"
+#include "tools/organ/surface_shells.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace palpate::testing;
+
+constexpr double kHole = 0.5;
+
+/// A ball broken in one way at a time.
+class SurfaceRepair : public ::testing::Test {
+ protected:
+  /// The one finding, after which the surface is closed and holds `volume` [m^3].
+  static std::string finding(const TriangleMesh& broken, double volume) {
+    const RepairedSurface repaired = repair_surface(broken, kHole);
+    EXPECT_TRUE(rims_of(repaired.mesh).empty());
+    EXPECT_NEAR(enclosed_volume(repaired.mesh), volume, 0.01 * volume);
+    EXPECT_EQ(repaired.findings.size(), 1u) << (repaired.findings.empty() ? "" : repaired.findings.back());
+    return repaired.findings.empty() ? "" : repaired.findings[0];
+  }
+  static void expect_has(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+
+  TriangleMesh ball_ = make_sphere({1, 0, 0}, 1, 12);
+  const double volume_ = enclosed_volume(ball_);
+};
+
+TEST_F(SurfaceRepair, AGoodSurfaceHasNoFindings) {
+  EXPECT_TRUE(repair_surface(ball_, kHole).findings.empty());
+}
+
+TEST_F(SurfaceRepair, CornersApartAreJoined) {
+  TriangleMesh apart;
+  for (const auto& t : ball_.triangles) {
+    for (const int n : t) apart.nodes.push_back(ball_.nodes[n]);
+    const int last = static_cast<int>(apart.nodes.size());
+    apart.triangles.push_back({last - 3, last - 2, last - 1});
+  }
+  const RepairedSurface repaired = repair_surface(apart, kHole);
+  EXPECT_TRUE(repaired.findings.empty());
+  EXPECT_EQ(repaired.mesh.nodes.size(), ball_.nodes.size());
+}
+
+TEST_F(SurfaceRepair, TrianglesThereTwiceOrWithoutAreaAreLeftOut) {
+  TriangleMesh twice = ball_;
+  twice.triangles.push_back(ball_.triangles[5]);
+  expect_has(finding(twice, volume_), "1 triangles that are there twice, the first at (");
+  TriangleMesh flat = ball_;
+  flat.triangles.push_back({3, 3, 4});
+  expect_has(finding(flat, volume_), "1 triangles without area");
+}
+
+TEST_F(SurfaceRepair, TurnedTrianglesAreTurnedBack) {
+  TriangleMesh turned = ball_;
+  for (const int t : {4, 40, 41}) std::swap(turned.triangles[t][0], turned.triangles[t][1]);
+  expect_has(finding(turned, volume_), "3 triangles turned against their neighbours");
+  TriangleMesh inside_out = ball_;
+  for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
+  EXPECT_NEAR(enclosed_volume(repair_surface(inside_out, kHole).mesh), volume_, 1e-9);
+}
+
+TEST_F(SurfaceRepair, AHoleIsClosedUpToItsSize) {
+  TriangleMesh open = ball_;
+  open.triangles.erase(open.triangles.begin() + 25, open.triangles.begin() + 27);
+  expect_has(finding(open, volume_), "mm across with 4 edges at (");
+  TriangleMesh half = ball_;
+  std::erase_if(half.triangles, [&](const auto& t) { return ball_.nodes[t[0]].z() > 0.5; });
+  try {
+    repair_surface(half, kHole);
+    FAIL() << "a hole of a third of the ball was closed";
+  } catch (const std::runtime_error& error) {
+    expect_has(error.what(), "larger than 500 mm");
+    expect_has(error.what(), "--hole");
+  }
+}
+
+TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {
+  TriangleMesh stray = ball_;
+  append(stray, make_sphere({5, 0, 0}, 0.1, 4));
+  expect_has(finding(stray, volume_), "a stray shell of 64 triangles");
+  TriangleMesh cavity = ball_;
+  append(cavity, make_sphere({1, 0, 0}, 0.5, 12));
+  expect_has(finding(cavity, volume_ * 0.875), "taken for a cavity");
+  TriangleMesh sheet = ball_;
+  sheet.nodes.insert(sheet.nodes.end(), {{9, 0, 0}, {9, 1, 0}, {9, 0, 1}});
+  const int n = static_cast<int>(ball_.nodes.size());
+  sheet.triangles.push_back({n, n + 1, n + 2});
+  expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (9000, 0, 0) mm");
+}
+
+TEST_F(SurfaceRepair, ACrossingSurfaceIsToldWithItsPlace) {
+  TriangleMesh two = ball_;
+  append(two, make_sphere({2.2, 0.1, 0.05}, 0.9, 12));
+  const RepairedSurface repaired = repair_surface(two, kHole);
+  EXPECT_TRUE(repaired.crosses_itself);
+  ASSERT_EQ(repaired.findings.size(), 2u);
+  expect_has(repaired.findings[0], "joined to it");
+  expect_has(repaired.findings[1], "pairs of triangles cross one another, the first at (");
+}
+
+TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {
+  TriangleMesh fin = ball_;
+  fin.nodes.emplace_back(3, 0, 0);
+  fin.triangles.push_back({ball_.triangles[50][0], ball_.triangles[50][1], static_cast<int>(ball_.nodes.size())});
+  const RepairedSurface repaired = repair_surface(fin, kHole);
+  EXPECT_TRUE(rims_of(repaired.mesh).empty());
+  EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 0.02 * volume_);
+  ASSERT_FALSE(repaired.findings.empty());
+  expect_has(repaired.findings[0], "1 edges that more than two triangles share, the first at (");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh/generators.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "tests/bus/domain.hpp"
+#include "tests/tools/program_result.hpp"
+#include "tools/tissue_table.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace palpate::testing;
+
+/// A block of 100 x 80 x 60 mm held at its bottom, of which one half is of another tissue.
+class ToolsScene : public ::testing::Test {
+ protected:
+  ToolsScene() {
+    TetMesh mesh = make_block({0, 0, 0}, {0.1, 0.08, 0.06}, {4, 4, 4});
+    mesh.groups = {{"attachment", mesh.groups.at("bottom")}};
+    MeshGroup half;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+      if (mesh.nodes[mesh.tetrahedra[t][0]].x() < 0.04) half.tetrahedra.push_back(static_cast<int>(t));
+    mesh.groups["fat"] = half;
+    write_tet_mesh(mesh, folder_ / "block.msh");
+    const auto made = run_program(program("palpate") + " scene " + (folder_ / "block.msh").string() +
+                                  " --tissue kidney -o " + scene());
+    EXPECT_EQ(made.status, 0) << made.err;
+  }
+  std::string scene() const { return folder_ / "block.toml"; }
+  ProgramResult checked() const { return run_program(program("palpate") + " check " + scene()); }
+  void change(const std::string& name, const std::string& from, const std::string& to) const {
+    const std::string text = replaced(text_of(folder_ / name), from, to);
+    std::ofstream(folder_ / name) << text;
+  }
+  void expect_warning(const std::string& said) const {
+    const auto result = checked();
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find(said), std::string::npos) << result.out;
+  }
+
+  const OwnFolder folder_{"scene-command"};
+};
+
+TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
+  const auto result = checked();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.find("warning:"), std::string::npos) << result.out;
+  for (const char* said : {"size: 100 x 80 x 60 mm, 480 ml", "dihedral angles: smallest", "young 10000 Pa",
+                           "in group 'fat': young 3000 Pa", "group 'attachment', 25 nodes"})
+    EXPECT_NE(result.out.find(said), std::string::npos) << said << "\n" << result.out;
+  const auto run =
+      run_program(fmt::format("{} run {} --seconds 3.5 --domain {}", program("palpate"), scene(), own_domain()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::size_t at = run.out.find("largest force ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_GT(std::stod(run.out.substr(at + 14)), 0.05) << run.out;
+}
+
+TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {
+  change("block.toml", "name = \"kidney\"\n", "name = \"kidney\"\nscale = 20\n");
+  expect_warning("is 2.83 m across: is its scale right?");
+}
+
+TEST_F(ToolsScene, AModulusOfNoTissueIsWarnedOf) {
+  change("block.toml", "young = 10000 ", "young = 6 ");
+  expect_warning("young = 6 Pa, and tissue has");
+}
+
+TEST_F(ToolsScene, AToolThatNeverArrivesIsWarnedOf) {
+  std::ofstream(folder_ / "block_motion.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.05,0,0\n5,0,0,0.06,0,0\n";
+  expect_warning("tool 'instrument' comes to no body on its way");
+}
+
+TEST_F(ToolsScene, WhatIsNotThereIsToldInASentence) {
+  const std::string command =
+      program("palpate") + " scene " + (folder_ / "block.msh").string() + " -o " + (folder_ / "b.toml").string();
+  expect_refusal(command + " --tissue kidney --fixed top", {"block.msh: it has no group 'top'", "attachment"});
+  expect_refusal(command, {"'block' is no tissue that is known", "liver, kidney"});
+}
+
+TEST(Tissues, EachValueLiesWithinItsPublishedRange) {
+  for (const Tissue& tissue : tissues()) {
+    EXPECT_LE(tissue.young_low, tissue.young) << tissue.name;
+    EXPECT_LE(tissue.young, tissue.young_high) << tissue.name;
+    EXPECT_FALSE(tissue.source.empty()) << tissue.name;
+    EXPECT_EQ(find_tissue(tissue.name), &tissue);
+  }
+  EXPECT_EQ(find_tissue("stone"), nullptr);
+}
+
+}  // namespace
+}  // namespace palpate

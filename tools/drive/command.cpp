@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "common/models/content_hash.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "tools/child_process.hpp"
+#include "tools/commands.hpp"
+#include "tools/drive/run.hpp"
+#include "tools/drive/sweep.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace drive;
+
+constexpr const char* kExamples = R"(Examples:
+  palpate drive scenes/liver.toml --expect "tool.force.max<3" --expect finite==1
+  palpate drive scenes/liver.toml --set body.young=8000 --course out/stiff.csv
+  palpate drive scenes/liver.toml --sweep body.young=4000,6000,8000 --sweep contact.friction=0.1,0.5 -o out/table.csv
+  palpate drive scenes/liver.toml --sweep body.young=4000,8000 --tasks | parallel > out/results.jsonl
+  palpate drive --merge out/results.jsonl -o out/table.csv)";
+
+struct DriveOptions {
+  std::string scene, log, course, output;
+  std::vector<std::string> set, sweep, expect, merge;
+  double seconds = 0;
+  int jobs = 0, point = -1;
+  bool csv = false, json = false, tasks = false;
+};
+
+bool terminal() {
+  return isatty(STDERR_FILENO) != 0;
+}
+
+std::vector<SceneChange> changes_of(const std::vector<std::string>& arguments) {
+  std::vector<SceneChange> changes;
+  for (const std::string& argument : arguments) changes.push_back(parse_change(argument));
+  return changes;
+}
+
+std::vector<Expectation> expectations_of(const std::vector<std::string>& arguments) {
+  std::vector<Expectation> all;
+  for (const std::string& argument : arguments) all.push_back(parse_expectation(argument));
+  return all;
+}
+
+void put_out(const DriveOptions& o, const std::string& text) {
+  if (o.output.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return;
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(o.output.c_str(), "w"), std::fclose);
+  if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(file.get()) != 0)
+    throw std::runtime_error(fmt::format("{}: cannot be written", o.output));
+}
+
+void put_out(const DriveOptions& o, const std::vector<PointResult>& results) {
+  std::string lines;
+  for (const PointResult& result : results) lines += json_line(result) + "\n";
+  put_out(o, o.json ? lines : csv_table(results));
+}
+
+RunSettings settings_of(const DriveOptions& o) {
+  RunSettings settings{.log = o.log, .course = o.course, .expected = expectations_of(o.expect), .seconds = o.seconds};
+  if (terminal() && o.point < 0)
+    settings.progress = [](double time, double wall) {
+      fmt::print(stderr, "\r{:8.2f} s, {:.1f} times as fast as real time ", time, time / wall);
+    };
+  return settings;
+}
+
+/// One point, whatever becomes of it.
+PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& changes) {
+  try {
+    return run_scene(load_scene(o.scene, changes), settings_of(o));
+  } catch (const std::runtime_error& error) {
+    if (o.point < 0) throw;
+    return {.outcome = PointResult::kFailed, .reason = error.what()};
+  }
+}
+
+void run_one(const DriveOptions& o) {
+  const std::vector<SceneChange> changes = changes_of(o.set);
+  PointResult result = result_of(o, changes);
+  if (terminal() && o.point < 0) fmt::print(stderr, "\r{:60}\r", "");
+  result.point = std::max(0, o.point);
+  result.changes = changes;
+  if (o.csv || o.json)
+    put_out(o, std::vector{result});
+  else
+    put_out(o, text_of(result));
+  std::fflush(stdout);
+  require_good({result}, 1);
+}
+
+/// The command that computes one point of the sweep.
+std::vector<std::string> command_of(const DriveOptions& o, const std::vector<SceneChange>& changes, std::size_t point) {
+  std::vector<std::string> words{sibling_program("palpate"), "drive", std::filesystem::absolute(o.scene).string()};
+  for (const SceneChange& change : changes) words.insert(words.end(), {"--set", change.argument()});
+  for (const std::string& expected : o.expect) words.insert(words.end(), {"--expect", expected});
+  if (o.seconds > 0) words.insert(words.end(), {"--seconds", fmt::format("{}", o.seconds)});
+  words.insert(words.end(), {"--json", "--point", std::to_string(point)});
+  return words;
+}
+
+/// What is wrong with a point is said before the first one runs; what several need is computed once.
+void prepare(const DriveOptions& o, const std::vector<std::vector<SceneChange>>& points) {
+  expectations_of(o.expect);
+  std::set<std::string> known;
+  for (const auto& changes : points) {
+    const Scene scene = load_scene(o.scene, changes);
+    for (const Body& body : scene.bodies)
+      if (!o.tasks && !shutdown_requested() && known.insert(content_hash(body)).second) ensure_archive(scene, body);
+  }
+}
+
+void print_tasks(const DriveOptions& o, const std::vector<std::vector<std::string>>& commands) {
+  std::string lines;
+  for (const auto& command : commands) lines += shell_line(command) + "\n";
+  put_out(o, lines);
+}
+
+void run_sweep(const DriveOptions& o) {
+  std::vector<Axis> axes;
+  for (const std::string& text : o.sweep) axes.push_back(parse_axis(text));
+  const auto points = grid(changes_of(o.set), axes);
+  prepare(o, points);
+  std::vector<std::vector<std::string>> commands;
+  for (std::size_t i = 0; i < points.size(); ++i) commands.push_back(command_of(o, points[i], i));
+  if (o.tasks) return print_tasks(o, commands);
+  setenv("OMP_NUM_THREADS", "1", 0);  // each run keeps to one core
+  std::size_t done = 0;
+  const int jobs = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<PointResult> results = run_points(commands, jobs, [&](const PointResult& result) {
+    std::string set;
+    for (const SceneChange& change : points[result.point]) set.append(" ").append(change.argument());
+    fmt::print(stderr, "[{}/{}]{}: {} {}\n", ++done, points.size(), set, result.outcome, result.reason);
+  });
+  for (PointResult& result : results) result.changes = points[result.point];
+  put_out(o, results);
+  std::fflush(stdout);
+  require_good(results, points.size());
+}
+
+void merge(const DriveOptions& o) {
+  const std::vector<PointResult> results = read_results({o.merge.begin(), o.merge.end()});
+  put_out(o, results);
+  std::fflush(stdout);
+  require_good(results, 0);
+}
+
+void run(const DriveOptions& o) {
+  if (!o.merge.empty()) return merge(o);
+  if (o.scene.empty()) throw std::runtime_error("drive: give a scene, or results with --merge");
+  catch_shutdown_signals();
+  if (o.sweep.empty() && !o.tasks) return run_one(o);
+  if (!o.log.empty() || !o.course.empty())
+    throw std::runtime_error("--log and --course are of one run: leave --sweep and --tasks out, or give --set");
+  run_sweep(o);
+}
+
+}  // namespace
+
+void add_drive_command(cli::Command& app) {
+  auto o = std::make_shared<DriveOptions>();
+  cli::Command command =
+      app.add_command("drive", "Run a scene in lock step, as fast as it goes, and say what it comes to");
+  command.add_option("SCENE", o->scene, "scene file");
+  command
+      .add_option("--set", o->set,
+                  "KEY=VALUE in place of what the scene file says, such as body.young=8000; may be repeated")
+      .one_value_each_time();
+  command
+      .add_option("--sweep", o->sweep,
+                  "KEY=VALUE,VALUE,...: a run for each value, of several keys for each combination")
+      .one_value_each_time();
+  command
+      .add_option("--seconds", o->seconds,
+                  "Stop after so many seconds of the scene (default: when every motion is over)")
+      .positive();
+  command
+      .add_option("--expect", o->expect,
+                  "\"FIGURE<NUMBER\", or <=, >, >=, ==, !=: the exit status is 1 where it is not so")
+      .one_value_each_time();
+  command.add_flag("--json", o->json, "Print one line of JSON a run");
+  command.add_flag("--csv", o->csv, "Print one row of CSV a run (the default of a sweep)").excludes({"--json"});
+  command.add_option("-o,--output", o->output, "Write what is printed to this file").output_file();
+  command.add_option("--log", o->log, "Write a topic log, as a recorder would").output_file();
+  command.add_option("--course", o->course, "Write each step's tips and forces").output_file(".csv");
+  command.add_option("--jobs", o->jobs, "Runs at the same time (default: one a core)").between(1, 1024);
+  command.add_flag("--tasks", o->tasks, "Print the command of each run, one a line, and run none");
+  command.add_option("--merge", o->merge, "Files with what such commands printed, for one table")
+      .excludes({"--set", "--sweep", "--tasks"});
+  command.add_option("--point", o->point, "").hidden();
+  command.footer(kExamples);
+  command.does([o] { run(*o); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+#include "tools/drive/pieces.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace palpate::drive {
+
+Pieces pieces_of(const DynamicOrgan& organ) {
+  const CutMesh& topology = organ.topology();
+  std::vector<int> part_of;
+  std::vector<int> size(topology.parts(part_of), 0);
+  std::vector<char> hangs(size.size(), 0);
+  for (int t = 0; t < topology.size(); ++t) {
+    if (part_of[t] < 0) continue;
+    ++size[part_of[t]];
+    for (int face = 0; face < 4; ++face)
+      if (topology.is_visible(4 * t + face) && organ.is_joint(4 * t + face)) hangs[part_of[t]] = 1;
+  }
+  std::vector<int> off;
+  for (std::size_t part = 0; part < size.size(); ++part)
+    if (!hangs[part]) off.push_back(size[part]);
+  std::ranges::sort(off, std::greater());
+  if (organ.still_part()) return {1 + static_cast<int>(off.size()), off.empty() ? 0 : off[0]};
+  return {static_cast<int>(off.size()), off.size() < 2 ? 0 : off[1]};
+}
+
+}  // namespace palpate::drive

@@ -1,0 +1,98 @@
+#include "tools/organ/fineness_options.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "common/mesh/measures.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/surface.hpp"
+#include "tools/organ/places.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLargestOrgan = 1, kSmallestOrgan = 5e-3;  // [m]
+constexpr double kSecondsPerSquare = 3e-6;                  // of surface nodes, measured on one core (docs/organ.md)
+
+/// Beside the file, and renamed once it is whole.
+void write_whole(const TetMesh& mesh, const fs::path& file) {
+  const fs::path part = file.parent_path() / (file.stem().string() + ".part" + file.extension().string());
+  write_tet_mesh(mesh, part);
+  fs::rename(part, file);
+}
+
+double mean_edge_of(const TetMesh& mesh, const Surface& surface) {
+  double sum = 0;
+  for (const auto& t : surface.triangles)
+    for (int c = 0; c < 3; ++c) sum += (mesh.nodes[t[c]] - mesh.nodes[t[(c + 1) % 3]]).norm();
+  return sum / (3 * static_cast<double>(surface.triangles.size()));
+}
+
+/// Of a quasi-static body whose every node can be touched: memory from its sizes, time as measured (docs/organ.md).
+void print_cost(std::size_t surface_nodes) {
+  const double dofs = 3 * static_cast<double>(surface_nodes);
+  fmt::print(
+      "  to come, as a quasi_static body: archive of {:.3g} MB, haptic node {:.3g} MB, precomputation about {:.2g} s\n",
+      4e-6 * dofs * dofs, 8e-6 * dofs * dofs, kSecondsPerSquare * dofs * dofs / 9);
+}
+
+void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
+  const Surface surface = extract_surface(mesh);
+  const MeshMeasures m = measures_of(mesh);
+  fmt::print("{}: {} nodes, {} tetrahedra; surface of {} nodes, {} triangles, mean edge {:.3g} mm\n", o.output,
+             mesh.nodes.size(), mesh.tetrahedra.size(), surface.nodes.size(), surface.triangles.size(),
+             1e3 * mean_edge_of(mesh, surface));
+  fmt::print("  {} at {} kg/m3\n  {}\n", say_size(m, o.density * m.volume), o.density, say_angles(m));
+  for (const auto& [name, group] : mesh.groups)
+    fmt::print("  group '{}': {} nodes{}\n", name, group.nodes.size(),
+               group.tetrahedra.empty() ? "" : fmt::format(", {} tetrahedra", group.tetrahedra.size()));
+  if (m.extent.maxCoeff() > kLargestOrgan || m.extent.maxCoeff() < kSmallestOrgan)
+    fmt::print("warning: {:.3g} m across: is --unit right?\n", m.extent.maxCoeff());
+  print_cost(surface.nodes.size());
+}
+
+}  // namespace
+
+void add_mesh_options(cli::Command& command, MeshOptions& o) {
+  command.add_option("-o,--output", o.output, "Mesh to write (.msh), in metres").required().output_file(".msh");
+  command.add_option("--nodes", o.nodes, "About how many nodes, within a tenth; more where --deviation asks for them")
+      .between(50, 200000)
+      .show_default();
+  command.add_option("--edge", o.edge, "Edge length along the surface [m], in place of --nodes")
+      .positive()
+      .excludes({"--nodes"});
+  command.add_option("--inside", o.inside, "Edge length deep inside [m] (default: 2.5 times that on the surface)")
+      .positive();
+  command.add_option("--deviation", o.deviation, "By how much triangles may miss the surface [m]").positive();
+  command.add_option("--fine", o.fine, "Finer there: x,y,z,RADIUS:EDGE or x,y,z,x,y,z:EDGE [m]; may be given again")
+      .one_value_each_time();
+  command
+      .add_option("--group", o.groups,
+                  "Names nodes of the surface: NAME=below:z (the lowest tenth; above, x, y too), NAME=below:z:0.01, "
+                  "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz [m]; may be given again")
+      .one_value_each_time();
+  command.add_option("--density", o.density, "For the mass that is printed [kg/m3]").positive().show_default();
+}
+
+Fineness fineness_of(const MeshOptions& o) {
+  Fineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
+  for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
+  for (const std::string& text : o.groups) check_group(text);
+  return f;
+}
+
+void finish_mesh(TetMesh mesh, const MeshOptions& o) {
+  for (const std::string& text : o.groups) add_group(mesh, text);
+  write_whole(mesh, o.output);
+  print_mesh(mesh, o);
+}
+
+void say_progress(const std::string& line) {
+  fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace palpate

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "common/cli/command_line.hpp"
+#include "tools/organ/organ_mesh.hpp"
+
+namespace palpate {
+
+/// The options that `palpate mesh` and `palpate organ` share.
+struct MeshOptions {
+  std::string output;
+  int nodes = 1500;
+  double edge = 0, inside = 0, deviation = 0, density = 1060;
+  std::vector<std::string> fine, groups;
+};
+
+void add_mesh_options(cli::Command& command, MeshOptions& options);
+
+/// Throws std::runtime_error where a place cannot be read.
+Fineness fineness_of(const MeshOptions& options);
+
+/// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and prints its measures and what
+/// it will take. Throws std::runtime_error.
+void finish_mesh(TetMesh mesh, const MeshOptions& options);
+
+/// Progress, on standard error.
+void say_progress(const std::string& line);
+
+}  // namespace palpate

@@ -1,0 +1,132 @@
+#include "tools/organ/label_volume.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace palpate {
+namespace {
+
+using Header = std::map<std::string, std::string>;
+using GzFile = std::unique_ptr<gzFile_s, int (*)(gzFile)>;
+
+/// The lines KEY=VALUE of the header, which fills whole blocks of 256 bytes and ends in "##}".
+Header read_header(gzFile in) {
+  constexpr std::size_t kBlock = 256, kMostBlocks = 64;
+  std::string text;
+  while (text.find("##}") == std::string::npos) {
+    if (text.size() >= kBlock * kMostBlocks) throw std::runtime_error("its header has no end, ##}");
+    char block[kBlock];
+    if (gzread(in, block, kBlock) != static_cast<int>(kBlock)) throw std::runtime_error("it ends within its header");
+    text.append(block, kBlock);
+    if (!text.starts_with("#INRIMAGE-4#{"))
+      throw std::runtime_error("it does not begin as an INR image, #INRIMAGE-4#{");
+  }
+  Header header;
+  for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
+    const std::string line = text.substr(at, end - at);
+    if (const std::size_t equals = line.find('='); equals != std::string::npos)
+      header[line.substr(0, equals)] = line.substr(equals + 1);
+  }
+  return header;
+}
+
+double number(const Header& header, const std::string& key, double otherwise) {
+  const auto found = header.find(key);
+  if (found == header.end()) return otherwise;
+  double value = 0;
+  const char* const end = found->second.data() + found->second.size();
+  const auto [stop, error] = std::from_chars(found->second.data(), end, value);
+  if (error != std::errc() || !std::isfinite(value))
+    throw std::runtime_error(fmt::format("its {} is '{}', which is no number", key, found->second.substr(0, 20)));
+  return value;
+}
+
+GridShape shape_of(const Header& header) {
+  GridShape shape{{}, Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()};
+  double voxels = 1;
+  for (int a = 0; a < 3; ++a) {
+    const std::string axis(1, "XYZ"[a]);
+    const double count = number(header, axis + "DIM", 0);
+    shape.spacing[a] = 1e-3 * number(header, "V" + axis, 1);
+    voxels *= count;
+    if (!(count >= 1 && count <= 65536 && count == std::floor(count) && voxels <= kMostVoxels))
+      throw std::runtime_error(
+          fmt::format("its {}DIM is {}: 1 to 65536 voxels along an axis are read, a billion in all", axis, count));
+    if (!(shape.spacing[a] > 0)) throw std::runtime_error(fmt::format("its voxel size V{} is not positive", axis));
+    shape.count[a] = static_cast<int>(count);
+  }
+  if (number(header, "VDIM", 1) != 1) throw std::runtime_error("it has several values at a voxel");
+  return shape;
+}
+
+template <class T>
+void take_labels(gzFile in, bool swapped, LabelVolume& volume) {
+  std::vector<T> row(volume.shape.count[0]);
+  const auto bytes = static_cast<unsigned>(row.size() * sizeof(T));
+  while (volume.label.size() < volume.shape.size()) {
+    if (gzread(in, row.data(), bytes) != static_cast<int>(bytes))
+      throw std::runtime_error("it ends before its last voxel");
+    for (T value : row) {
+      if (swapped) {
+        auto* const raw = reinterpret_cast<unsigned char*>(&value);
+        std::reverse(raw, raw + sizeof value);
+      }
+      volume.label.push_back(static_cast<std::int32_t>(value));
+    }
+  }
+}
+
+std::string value_of(const Header& header, const std::string& key) {
+  const auto found = header.find(key);
+  return found == header.end() ? "" : found->second;
+}
+
+}  // namespace
+
+LabelVolume read_inr(const std::filesystem::path& file) {
+  const GzFile in(gzopen(file.c_str(), "rb"), gzclose);
+  if (!in) throw std::runtime_error("it cannot be opened");
+  const Header header = read_header(in.get());
+  LabelVolume volume{shape_of(header), {}};
+  if (!value_of(header, "TYPE").ends_with("fixed"))
+    throw std::runtime_error(
+        fmt::format("its values are '{}': labels are whole numbers", value_of(header, "TYPE").substr(0, 30)));
+  const std::string cpu = value_of(header, "CPU");
+  const bool swapped = cpu == "sun" || cpu == "sgi";
+  const double bits = number(header, "PIXSIZE", std::strtod(value_of(header, "PIXSIZE").c_str(), nullptr));
+  if (bits == 8)
+    take_labels<std::uint8_t>(in.get(), swapped, volume);
+  else if (bits == 16)
+    take_labels<std::uint16_t>(in.get(), swapped, volume);
+  else if (bits == 32)
+    take_labels<std::int32_t>(in.get(), swapped, volume);
+  else
+    throw std::runtime_error(fmt::format("its values have {} bits: 8, 16 and 32 are read", bits));
+  return volume;
+}
+
+LabelVolume read_label_volume(const std::filesystem::path& file) {
+  try {
+    if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
+    const std::string name = file.filename();
+    if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr(file);
+    for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
+      if (name.ends_with(ending)) return read_with_image_library(file);
+    if (std::filesystem::is_directory(file)) return read_with_image_library(file);
+    throw std::runtime_error(
+        "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace palpate

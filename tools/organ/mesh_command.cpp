@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "tools/organ/commands.hpp"
+#include "tools/organ/fineness_options.hpp"
+#include "tools/organ/surface_file.hpp"
+#include "tools/organ/surface_repair.hpp"
+#include "tools/organ/surface_shells.hpp"
+#include "tools/organ/surface_solid.hpp"
+
+namespace palpate {
+namespace {
+
+const std::map<std::string, double> kUnits{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"in", 0.0254}};
+
+struct SurfaceOptions : MeshOptions {
+  std::string surface, unit = "m";
+  double hole = 0;
+};
+
+RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) try {
+  constexpr double kHole = 0.2;  // of the diagonal
+  return repair_surface(read.mesh, o.hole > 0 ? o.hole : kHole * diagonal(read.mesh));
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(fmt::format("{}: {}", o.surface, error.what()));
+}
+
+void make_mesh(const SurfaceOptions& o) {
+  const Fineness fineness = fineness_of(o);
+  const ReadSurface read = read_surface(o.surface, kUnits.at(o.unit));
+  fmt::print("{}: {} triangles\n", o.surface, read.mesh.triangles.size());
+  for (const std::string& finding : read.findings) fmt::print("  found: {}\n", finding);
+  say_progress("checking the surface");
+  const RepairedSurface surface = repaired(read, o);
+  for (const std::string& finding : surface.findings) fmt::print("  found: {}\n", finding);
+  if (read.findings.empty() && surface.findings.empty()) fmt::print("  found: nothing to repair\n");
+  std::fflush(stdout);
+  SurfaceSolid solid = solid_of(surface.mesh);
+  if (surface.crosses_itself) solid.measures.volumes.clear();
+  finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o);
+}
+
+}  // namespace
+
+void add_mesh_command(cli::Command& app) {
+  cli::Command command = app.add_command(
+      "mesh",
+      "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP), repaired where it has to be.\n"
+      "Example: palpate mesh liver.stl --unit mm --nodes 2000 --group attachment=above:z -o liver.msh");
+  auto o = std::make_shared<SurfaceOptions>();
+  command.add_option("SURFACE", o->surface, "surface file").required();
+  std::vector<std::string> units;
+  for (const auto& [name, metres] : kUnits) units.push_back(name);
+  command.add_option("--unit", o->unit, "Unit of the file's coordinates").one_of(units).show_default();
+  command
+      .add_option("--hole", o->hole, "Close holes of up to this size [m] (default: a fifth of the surface's diagonal)")
+      .positive();
+  add_mesh_options(command, *o);
+  command.does([o] { make_mesh(*o); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,13 @@
+#include <stdexcept>
+
+#include "tools/organ/label_volume.hpp"
+
+namespace palpate {
+
+LabelVolume read_with_image_library(const std::filesystem::path&) {
+  throw std::runtime_error(
+      "this palpate_organ was built without ITK and reads INR alone: build it where ITK is, on Debian with "
+      "libinsighttoolkit5-dev");
+}
+
+}  // namespace palpate

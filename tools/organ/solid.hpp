@@ -1,0 +1,16 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+
+namespace palpate {
+
+/// Parts of space, as a mesher asks for them. `part` and `depth` are called some million times.
+struct Solid {
+  std::function<int(const Eigen::Vector3d&)> part;                 ///< 0 outside; else which of the parts, from 1
+  std::function<double(const Eigen::Vector3d&)> depth;             ///< [m] about how far the nearest surface is; >= 0
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> nearest;  ///< of the surface, exact; may be absent
+  Eigen::Vector3d low, high;                                       ///< [m] a box around all parts, not touching them
+  int parts = 1;
+};
+
+}  // namespace palpate

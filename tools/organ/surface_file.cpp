@@ -1,0 +1,86 @@
+#include "tools/organ/surface_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+#include "common/mesh/mesh_file.hpp"
+#include "tools/organ/stl_file.hpp"
+#include "tools/organ/surface_library.hpp"
+#include "tools/organ/vtp_file.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& reason) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), reason));
+}
+
+std::string text_of(const fs::path& file) {
+  if (!fs::exists(file)) refuse(file, "the file does not exist");
+  if (!fs::is_regular_file(file)) refuse(file, "this is not a file");
+  std::ifstream in(file, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (!in) refuse(file, "the file cannot be read");
+  return text;
+}
+
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+/// Fans of triangles.
+ReadSurface triangles_of(const Polygons& read) {
+  ReadSurface surface{{read.points, {}}, {}};
+  std::size_t larger = 0;
+  for (const auto& polygon : read.polygons) {
+    larger += polygon.size() > 3;
+    for (std::size_t c = 2; c < polygon.size(); ++c)
+      surface.mesh.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
+  }
+  if (larger > 0)
+    surface.findings.push_back(fmt::format("{} polygons of more than three sides, cut into triangles", larger));
+  return surface;
+}
+
+ReadSurface read(const fs::path& file) {
+  const std::string ending = ending_of(file);
+  if (ending == ".stl") return read_stl(text_of(file));
+  if (ending == ".vtp") return triangles_of(read_vtp(text_of(file)));
+  if (ending == ".vtk") return {load_triangle_mesh(file, 1), {}};
+  if (ending != ".obj" && ending != ".ply" && ending != ".off")
+    refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");
+  text_of(file);
+  return triangles_of(read_with_surface_library(file));
+}
+
+}  // namespace
+
+ReadSurface read_surface(const fs::path& file, double scale) {
+  ReadSurface surface;
+  try {
+    surface = read(file);
+  } catch (const std::runtime_error& error) {
+    const std::string said = error.what();
+    if (said.starts_with(file.string())) throw;
+    refuse(file, said);
+  }
+  if (surface.mesh.triangles.empty()) refuse(file, "it has no triangles");
+  for (Eigen::Vector3d& x : surface.mesh.nodes) x *= scale;
+  for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
+    for (const int n : surface.mesh.triangles[t])
+      if (!surface.mesh.nodes[n].allFinite())
+        refuse(file, fmt::format("triangle {} has a coordinate that is not a finite number", t));
+  return surface;
+}
+
+}  // namespace palpate

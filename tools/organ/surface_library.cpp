@@ -1,0 +1,185 @@
+#include "tools/organ/surface_library.hpp"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/IO/OBJ.h>
+#include <CGAL/IO/OFF.h>
+#include <CGAL/IO/PLY.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/mesh/child.hpp"
+
+namespace palpate {
+namespace {
+
+namespace processing = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Triangles = std::vector<Kernel::Triangle_3>;
+
+Point point_of(const Eigen::Vector3d& x) {
+  return {x.x(), x.y(), x.z()};
+}
+Eigen::Vector3d vector_of(const Point& p) {
+  return {p.x(), p.y(), p.z()};
+}
+
+std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& places) {
+  std::vector<Point> points;
+  for (const Eigen::Vector3d& x : places) points.push_back(point_of(x));
+  return points;
+}
+
+std::string read(const std::filesystem::path& file) {
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> polygons;
+  const std::string kind = file.extension();
+  const bool good = kind == ".obj"   ? CGAL::IO::read_OBJ(file, points, polygons)
+                    : kind == ".ply" ? CGAL::IO::read_PLY(file, points, polygons)
+                                     : CGAL::IO::read_OFF(file, points, polygons);
+  if (!good) throw std::runtime_error("it cannot be read as " + kind.substr(1) + ": it is damaged or cut short");
+  std::string bytes;
+  std::vector<Eigen::Vector3d> places;
+  for (const Point& p : points) places.push_back(vector_of(p));
+  put(bytes, places.size());
+  for (const Eigen::Vector3d& x : places)
+    for (int i = 0; i < 3; ++i) put(bytes, x[i]);
+  put(bytes, polygons.size());
+  for (const auto& polygon : polygons) put_all(bytes, std::vector<std::uint64_t>(polygon.begin(), polygon.end()));
+  return bytes;
+}
+
+/// +1, -1: the ray from x along `direction` goes through the triangle with or against its normal; 0: it misses; 2: it
+/// meets an edge, or nearly.
+int crossing(const Kernel::Triangle_3& t, const Eigen::Vector3d& x, const Eigen::Vector3d& direction) {
+  constexpr double kNearEdge = 1e-12;
+  const Eigen::Vector3d a = vector_of(t[0]) - x, b = vector_of(t[1]) - x, c = vector_of(t[2]) - x;
+  const double u = direction.dot(b.cross(c)), v = direction.dot(c.cross(a)), w = direction.dot(a.cross(b));
+  const double size = std::abs(u) + std::abs(v) + std::abs(w);
+  if (std::min({std::abs(u), std::abs(v), std::abs(w)}) <= kNearEdge * size) return 2;
+  if ((u > 0) != (v > 0) || (u > 0) != (w > 0)) return 0;
+  const double along = (u * a + v * b + w * c).dot(direction) / (u + v + w);
+  return along <= 0 ? 0 : u > 0 ? 1 : -1;
+}
+
+}  // namespace
+
+Polygons read_with_surface_library(const std::filesystem::path& file) {
+  const std::string answer = run_in_child([&] { return read(file); });
+  Polygons found;
+  std::size_t at = 0;
+  found.points.resize(take<std::size_t>(answer, at));
+  for (Eigen::Vector3d& x : found.points)
+    for (int i = 0; i < 3; ++i) x[i] = take<double>(answer, at);
+  found.polygons.resize(take<std::size_t>(answer, at));
+  for (auto& polygon : found.polygons)
+    for (const std::uint64_t n : take_all<std::uint64_t>(answer, at)) {
+      if (n >= found.points.size()) throw std::runtime_error("a polygon names a point that is not there");
+      polygon.push_back(static_cast<int>(n));
+    }
+  return found;
+}
+
+void orient_triangles(TriangleMesh& mesh) {
+  std::vector<Point> points = points_of(mesh.nodes);
+  std::vector<std::vector<std::size_t>> polygons;
+  for (const auto& t : mesh.triangles) polygons.emplace_back(t.begin(), t.end());
+  processing::orient_polygon_soup(points, polygons);
+  for (std::size_t n = mesh.nodes.size(); n < points.size(); ++n) mesh.nodes.push_back(vector_of(points[n]));
+  for (std::size_t i = 0; i < polygons.size(); ++i)
+    for (int c = 0; c < 3; ++c) mesh.triangles[i][c] = static_cast<int>(polygons[i][c]);
+}
+
+std::vector<std::array<int, 3>> close_loop(const std::vector<Eigen::Vector3d>& loop) {
+  std::vector<CGAL::Triple<int, int, int>> patch;
+  processing::triangulate_hole_polyline(points_of(loop), std::back_inserter(patch));
+  std::vector<std::array<int, 3>> triangles;
+  for (const auto& t : patch) triangles.push_back({t.first, t.second, t.third});
+  return triangles;
+}
+
+std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh) {
+  CGAL::Surface_mesh<Point> surface;
+  std::vector<std::vector<std::size_t>> polygons;
+  for (const auto& t : mesh.triangles) polygons.emplace_back(t.begin(), t.end());
+  processing::polygon_soup_to_polygon_mesh(points_of(mesh.nodes), polygons, surface);
+  std::vector<std::pair<CGAL::SM_Face_index, CGAL::SM_Face_index>> faces;
+  processing::self_intersections(surface, std::back_inserter(faces));
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [a, b] : faces) pairs.emplace_back(std::minmax(static_cast<int>(a), static_cast<int>(b)));
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+
+struct SurfaceTree::Tree {
+  Triangles triangles;
+  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> boxes;
+};
+
+SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>()) {
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Kernel::Triangle_3 t(point_of(mesh.nodes[a]), point_of(mesh.nodes[b]), point_of(mesh.nodes[c]));
+    if (!t.is_degenerate()) tree_->triangles.push_back(t);
+  }
+  tree_->boxes.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
+  tree_->boxes.accelerate_distance_queries();
+}
+
+SurfaceTree::~SurfaceTree() = default;
+SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
+
+double SurfaceTree::distance(const Eigen::Vector3d& x) const {
+  return std::sqrt(tree_->boxes.squared_distance(point_of(x)));
+}
+
+Eigen::Vector3d SurfaceTree::nearest(const Eigen::Vector3d& x) const {
+  return vector_of(tree_->boxes.closest_point(point_of(x)));
+}
+
+std::vector<std::pair<double, int>> SurfaceTree::crossings_along_x(const Eigen::Vector3d& x) const {
+  std::vector<Triangles::const_iterator> met;
+  tree_->boxes.all_intersected_primitives(Kernel::Ray_3(point_of(x), Kernel::Vector_3(1, 0, 0)),
+                                          std::back_inserter(met));
+  std::vector<std::pair<double, int>> places;
+  for (const auto t : met) {
+    const Eigen::Vector3d a = vector_of((*t)[0]), normal = (vector_of((*t)[1]) - a).cross(vector_of((*t)[2]) - a);
+    if (normal.x() != 0) places.emplace_back(normal.dot(a - x) / normal.x(), normal.x() < 0 ? 1 : -1);
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+int SurfaceTree::winding(const Eigen::Vector3d& x) const {
+  constexpr int kDirections = 20;  // more than one only where a ray meets an edge
+  std::vector<Triangles::const_iterator> met;
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector3d direction = Eigen::Vector3d(0.8660 + 0.1 * i, 0.3217 - 0.07 * i, 0.3829 + 0.13 * i);
+    met.clear();
+    tree_->boxes.all_intersected_primitives(
+        Kernel::Ray_3(point_of(x), Kernel::Vector_3(direction.x(), direction.y(), direction.z())),
+        std::back_inserter(met));
+    int sum = 0;
+    bool clear = true;
+    for (const auto t : met) {
+      const int way = crossing(*t, x, direction);
+      clear = clear && way != 2;
+      sum += way;
+    }
+    if (clear) return sum;
+  }
+  return 0;
+}
+
+}  // namespace palpate

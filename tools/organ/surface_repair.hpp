@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "common/mesh/tet_mesh.hpp"
+
+namespace palpate {
+
+/// A closed surface, its normals outward; of a body with cavities, those of a cavity point into it.
+struct RepairedSurface {
+  TriangleMesh mesh;
+  std::vector<std::string> findings;  ///< a sentence for everything that was found, with its place
+  bool crosses_itself = false;
+};
+
+/// Makes a closed surface of triangles as they come: joins corners at one place, takes away triangles that are there
+/// twice or have no area, turns those that are turned against their neighbours, parts what is not manifold, closes
+/// holes up to `largest_hole` [m] across, and leaves out shells apart from the largest. Surfaces that cross themselves
+/// stay as they are: the body is what they go round.
+/// Throws std::runtime_error(reason) where a hole is larger or cannot be closed.
+RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole);
+
+}  // namespace palpate

@@ -1,0 +1,18 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "tools/organ/solid.hpp"
+
+namespace palpate {
+
+/// A point on the surface between two parts, or between a part and the outside.
+struct SurfaceSample {
+  Eigen::Vector3d place;     ///< [m]
+  std::array<int, 2> parts;  ///< ascending; 0: outside
+};
+
+/// Points on every surface that lines `step` [m] apart cross, a few dozen of each piece, spread over it.
+std::vector<SurfaceSample> surface_samples(const Solid& solid, double step);
+
+}  // namespace palpate

@@ -1,0 +1,174 @@
+#include "tools/organ/surface_shells.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "tools/organ/surface_library.hpp"
+
+namespace palpate {
+namespace {
+
+using Triangle = std::array<int, 3>;
+
+TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& shell) {
+  TriangleMesh part;
+  std::map<int, int> number;
+  for (const int t : shell) {
+    Triangle triangle = mesh.triangles[t];
+    for (int& n : triangle) {
+      const auto [place, is_new] = number.emplace(n, static_cast<int>(part.nodes.size()));
+      if (is_new) part.nodes.push_back(mesh.nodes[n]);
+      n = place->second;
+    }
+    part.triangles.push_back(triangle);
+  }
+  return part;
+}
+
+void turn(TriangleMesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& more) {
+  const int shift = static_cast<int>(mesh.nodes.size());
+  mesh.nodes.insert(mesh.nodes.end(), more.nodes.begin(), more.nodes.end());
+  for (const auto& [a, b, c] : more.triangles) mesh.triangles.push_back({a + shift, b + shift, c + shift});
+}
+
+double widest_hole(const TriangleMesh& mesh) {
+  double widest = 0;
+  for (const std::vector<int>& rim : rims_of(mesh)) {
+    Eigen::Vector3d low = mesh.nodes[rim[0]], high = low;
+    for (const int n : rim) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
+    widest = std::max(widest, (high - low).norm());
+  }
+  return widest;
+}
+
+std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
+  std::vector<TriangleMesh> parts;
+  for (const std::vector<int>& shell : shells_of(mesh)) parts.push_back(part_of(mesh, shell));
+  return parts;
+}
+
+std::string sentence(const char* what, const TriangleMesh& part, const char* so) {
+  return fmt::format("{} of {} triangles and {:.3g} ml at {}: {}", what, part.triangles.size(),
+                     1e6 * std::abs(enclosed_volume(part)), place_in_mm(part.nodes[0]), so);
+}
+
+/// Adds a closed shell to what is kept, or says why not.
+void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept,
+                 std::vector<std::string>& findings) {
+  const auto inside = std::ranges::count_if(part.nodes, [&](const auto& x) { return largest.winding(x) != 0; });
+  if (inside == 0) {
+    findings.push_back(sentence("a stray shell", part, "left out"));
+    return;
+  }
+  const bool cavity = inside == static_cast<std::ptrdiff_t>(part.nodes.size());
+  findings.push_back(cavity ? sentence("a shell inside the largest", part, "taken for a cavity")
+                            : sentence("a shell that crosses the largest", part, "joined to it"));
+  if ((enclosed_volume(part) < 0) != cavity) turn(part);
+  append(kept, part);
+}
+
+}  // namespace
+
+std::string place_in_mm(const Eigen::Vector3d& x) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
+}
+
+double diagonal(const TriangleMesh& mesh) {
+  Eigen::Vector3d low = mesh.nodes[0], high = low;
+  for (const Eigen::Vector3d& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
+}
+
+std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
+  std::vector<int> leader(mesh.triangles.size());
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int t) {
+    while (leader[t] != t) t = leader[t] = leader[leader[t]];
+    return t;
+  };
+  std::map<std::array<int, 2>, int> seen;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (int c = 0; c < 3; ++c) {
+      const auto [a, b] = std::minmax(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]);
+      const auto [other, is_new] = seen.emplace(std::array{a, b}, t);
+      if (!is_new) leader[std::max(find(t), find(other->second))] = std::min(find(t), find(other->second));
+    }
+  std::map<int, std::vector<int>> shells;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) shells[find(t)].push_back(t);
+  std::vector<std::vector<int>> all;
+  for (auto& [first, shell] : shells) all.push_back(std::move(shell));
+  return all;
+}
+
+std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh) {
+  std::map<int, std::map<int, int>> next;  // of an edge from a to b: how often it goes that way less the other
+  for (const Triangle& t : mesh.triangles)
+    for (int c = 0; c < 3; ++c) {
+      const int a = t[c], b = t[(c + 1) % 3];
+      if (const auto back = next.find(b); back != next.end() && back->second.erase(a) > 0) continue;
+      ++next[a][b];
+    }
+  std::vector<std::vector<int>> rims;
+  for (auto& [start, ends] : next)
+    while (!ends.empty()) {
+      std::vector<int> rim;
+      for (int n = start; !next[n].empty();) {
+        const int to = next[n].begin()->first;
+        next[n].erase(to);
+        rim.push_back(n);
+        n = to;
+      }
+      std::ranges::reverse(rim);
+      rims.push_back(rim);
+    }
+  return rims;
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    area += 0.5 * (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]).norm();
+  return area;
+}
+
+double enclosed_volume(const TriangleMesh& mesh) {
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles) volume += mesh.nodes[a].dot(mesh.nodes[b].cross(mesh.nodes[c])) / 6;
+  return volume;
+}
+
+void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<std::string>& findings) {
+  const std::vector<TriangleMesh> parts = parts_of(mesh);
+  const auto largest = std::ranges::max_element(parts, {}, surface_area);
+  TriangleMesh kept = *largest;
+  for (auto part = parts.begin(); part != parts.end(); ++part) {
+    if (part == largest) continue;
+    if (widest_hole(*part) <= largest_hole && part->triangles.size() > 1)
+      append(kept, *part);
+    else
+      findings.push_back(fmt::format("an open sheet of {} triangles at {}: left out", part->triangles.size(),
+                                     place_in_mm(part->nodes[0])));
+  }
+  mesh = kept;
+}
+
+void keep_largest_shell(TriangleMesh& mesh, std::vector<std::string>& findings) {
+  std::vector<TriangleMesh> parts = parts_of(mesh);
+  std::ranges::stable_sort(parts, std::ranges::greater{}, [](const auto& p) { return std::abs(enclosed_volume(p)); });
+  TriangleMesh kept = parts[0];
+  if (enclosed_volume(kept) < 0) turn(kept);
+  const SurfaceTree largest(kept);
+  for (std::size_t p = 1; p < parts.size(); ++p) place_shell(parts[p], largest, kept, findings);
+  mesh = kept;
+}
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+#include "tools/organ/surface_solid.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tools/organ/distance_grid.hpp"
+#include "tools/organ/surface_library.hpp"
+#include "tools/organ/surface_shells.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int kRim = 4;  // cells around the surface
+
+GridShape grid_around(const TriangleMesh& surface, int cells) {
+  Eigen::Vector3d low = surface.nodes[0], high = low;
+  for (const Eigen::Vector3d& x : surface.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  const double cell = (high - low).maxCoeff() / cells;
+  GridShape shape{{}, low - Eigen::Vector3d::Constant((kRim + 0.3183) * cell), Eigen::Vector3d::Constant(cell)};
+  for (int a = 0; a < 3; ++a) shape.count[a] = static_cast<int>(std::ceil((high - low)[a] / cell)) + 2 * kRim + 1;
+  return shape;
+}
+
+/// What the surface goes round at least once; a line that meets an edge twice is set right by those beside it.
+std::vector<char> inside_of(const SurfaceTree& tree, const GridShape& shape) {
+  std::vector<char> inside(shape.size(), 0);
+  for (int k = 0; k < shape.count[2]; ++k)
+    for (int j = 0; j < shape.count[1]; ++j) {
+      const auto crossings = tree.crossings_along_x(shape.place(0, j, k));
+      int turns = 0;
+      std::size_t next = 0;
+      for (int i = 0; i < shape.count[0] - 1; ++i) {
+        for (; next < crossings.size() && crossings[next].first <= i * shape.spacing.x(); ++next)
+          turns += crossings[next].second;
+        inside[shape.index(i, j, k)] = turns > 0;
+      }
+    }
+  return inside;
+}
+
+/// Near the surface the tree says how far it is, and where the grid and it disagree, on which side.
+void make_exact_near_surface(DistanceGrid& grid, const SurfaceTree& tree) {
+  const double near = 2.5 * grid.shape.spacing.x();
+  for (int k = 0; k < grid.shape.count[2]; ++k)
+    for (int j = 0; j < grid.shape.count[1]; ++j)
+      for (int i = 0; i < grid.shape.count[0]; ++i) {
+        float& value = grid.value[grid.shape.index(i, j, k)];
+        if (std::abs(value) > near) continue;
+        value = std::copysign(static_cast<float>(tree.distance(grid.shape.place(i, j, k))), value);
+      }
+}
+
+}  // namespace
+
+SurfaceSolid solid_of(const TriangleMesh& surface, int cells) {
+  const auto tree = std::make_shared<const SurfaceTree>(surface);
+  const GridShape shape = grid_around(surface, cells);
+  auto distance = std::make_shared<DistanceGrid>(distance_to_border(shape, inside_of(*tree, shape)));
+  make_exact_near_surface(*distance, *tree);
+  SurfaceSolid result{{}, {surface_area(surface), {enclosed_volume(surface)}}};
+  Solid& solid = result.solid;
+  solid.part = [distance](const Eigen::Vector3d& x) { return distance->at(x) < 0 ? 1 : 0; };
+  solid.depth = [distance](const Eigen::Vector3d& x) { return std::abs(distance->at(x)); };
+  solid.nearest = [tree](const Eigen::Vector3d& x) { return tree->nearest(x); };
+  solid.low = shape.place(1, 1, 1), solid.high = shape.far_corner() - shape.spacing;
+  return result;
+}
+
+}  // namespace palpate
