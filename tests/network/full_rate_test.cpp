@@ -60,6 +60,7 @@ bool kept_for_late_joiners(const std::string& topic) {
 }
 
 constexpr double kRateHz = kSanitized ? 50 : 1000;
+constexpr double kMostSkipped = 0.1;  ///< of the publisher's ticks
 
 enum class Way { loopback, veth };
 
@@ -88,20 +89,39 @@ class FullRate : public ::testing::TestWithParam<Way> {
                                         over, file.string()));
   }
 
-  /// Records a publisher for so long; `meanwhile` runs with the recorder's process in the midst of it. Every topic has
-  /// to be whole.
-  void expect_nothing_lost(double seconds, const std::function<void(pid_t)>& meanwhile) {
+  /// A publisher and a recorder beside it, as they ended.
+  struct Ended {
+    int publisher = -1, recorder = -1;
+    json written, summary;
+    double skipped = 0;  ///< of the publisher's ticks
+  };
+
+  /// Records a publisher for so long; `meanwhile` runs with the recorder's process in the midst of it.
+  void record(double seconds, const std::function<void(pid_t)>& meanwhile, Ended& run) {
+    fs::remove(log());
     ChildProcess listening = recorder(log());
     ASSERT_TRUE(says_ready(listening));
     ChildProcess writing = publisher(seconds);
     meanwhile(listening.pid());
     ASSERT_TRUE(writing.wait(std::chrono::milliseconds(static_cast<int>(1000 * seconds) + 60'000)));
-    const json written = last_line(writing);
-    EXPECT_EQ(writing.status(), 0) << written;
     listening.interrupt();
     ASSERT_TRUE(listening.wait(60s));
-    const json summary = last_line(listening);
-    EXPECT_EQ(listening.status(), 0);
+    run = {writing.status(), listening.status(), last_line(writing), last_line(listening)};
+    run.skipped = run.written.value("skipped", 0.0) / (kRateHz * seconds);
+  }
+
+  /// Every topic has to be whole. A machine that keeps even the publisher from its rate holds the recorder up for
+  /// longer than anybody promised: the run is repeated then.
+  void expect_nothing_lost(double seconds, const std::function<void(pid_t)>& meanwhile) {
+    Ended run;
+    for (int attempt = 0; attempt < 4 && (attempt == 0 || run.skipped > kMostSkipped); ++attempt)
+      ASSERT_NO_FATAL_FAILURE(record(seconds, meanwhile, run));
+    if (run.skipped > kMostSkipped)
+      GTEST_SKIP() << "four times this machine held the publisher up: at last for " << 100 * run.skipped
+                   << " % of its ticks";
+    EXPECT_EQ(run.publisher, 0) << run.written;
+    EXPECT_EQ(run.recorder, 0);
+    const json &written = run.written, &summary = run.summary;
     EXPECT_EQ(summary["missing"], 0) << summary;
     EXPECT_EQ(summary["lost"], 0) << summary;
 
