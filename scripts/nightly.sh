@@ -13,7 +13,7 @@ for stage in "$@"; do
   case "$stage" in
     long) PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 ;;
     stability)
-      ./scripts/build.sh release
+      ./scripts/build.sh release palpate palpate_study
       ./build/release/bin/palpate stability -o out/stability ;;
     mcap)
       ./scripts/build.sh release palpate test_mcap

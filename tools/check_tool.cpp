@@ -54,7 +54,7 @@ void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckRepor
     return;
   }
   check_grip(*script, file, tool);
-  fmt::print(", {} s of {}\n", script->duration(), file.filename().string());
+  fmt::print(", {} s{}\n", script->duration(), file.empty() ? "" : " of " + file.filename().string());
   for (std::size_t b = 0; b < bodies.size(); ++b) check_start(tool, file, script->at(0), scene.bodies[b], bodies[b]);
 }
 

@@ -9,8 +9,6 @@ void add_check_command(cli::Command& app);
 void add_precompute_command(cli::Command& app);
 void add_solve_command(cli::Command& app);
 void add_modes_command(cli::Command& app);
-void add_stability_command(cli::Command& app);
-void add_study_command(cli::Command& app);
 void add_run_command(cli::Command& app);
 void add_record_command(cli::Command& app);
 void add_info_command(cli::Command& app);
@@ -21,10 +19,10 @@ void add_replay_command(cli::Command& app);
 void add_top_command(cli::Command& app);
 void add_keys_command(cli::Command& app);
 void add_scene_command(cli::Command& app);
-void add_organ_commands(cli::Command& app);  ///< those of `palpate_organ`, for the help
+void add_commands_of_other_programs(cli::Command& app);  ///< those of `palpate_organ` and `palpate_study`, for the help
 
-/// Becomes `palpate_organ` where the command line names one of its commands. Throws std::runtime_error where it is not
-/// installed.
-void start_organ_program(char** argv);
+/// Becomes the program that has the command of the command line, if another one has it. Throws std::runtime_error where
+/// that is not installed.
+void start_other_program(char** argv);
 
 }  // namespace palpate

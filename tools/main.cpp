@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <exception>
-
 #include "common/fem/processor_blas.hpp"
 #include "tools/commands.hpp"
 
@@ -20,22 +17,9 @@ int main(int argc, char** argv) {
   palpate::add_replay_command(app);
   palpate::add_solve_command(app);
   palpate::add_modes_command(app);
-  palpate::add_stability_command(app);
-  palpate::add_study_command(app);
   palpate::add_top_command(app);
   palpate::add_keys_command(app);
-  palpate::add_organ_commands(app);
+  palpate::add_commands_of_other_programs(app);
   palpate::add_scene_command(app);
-  try {
-    palpate::start_organ_program(argv);
-    if (const auto status = app.read(argc, argv)) return *status;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "palpate: %s\n", error.what());
-    return 1;
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-    std::fprintf(stderr, "palpate: not all that was to be printed could be written\n");
-    return 1;
-  }
-  return 0;
+  return app.run(argc, argv, [argv] { palpate::start_other_program(argv); });
 }

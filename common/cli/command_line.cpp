@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 
 namespace palpate::cli {
@@ -187,6 +189,19 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     return app_->exit(error);
   }
   return std::nullopt;
+}
+
+int CommandLine::run(int argc, char** argv, const std::function<void()>& first) {
+  try {
+    if (first) first();
+    if (const auto status = read(argc, argv)) return *status;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "palpate: {}\n", error.what());
+    return 1;
+  }
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return 0;
+  fmt::print(stderr, "palpate: not all that was to be printed could be written\n");
+  return 1;
 }
 
 }  // namespace palpate::cli

@@ -71,6 +71,9 @@ class CommandLine : public Command {
   /// The status with which the program shall end now: after --help, or a mistake, which is said on standard error.
   /// What a command throws passes through.
   std::optional<int> read(int argc, char** argv);
+  /// What main() shall return: does `first`, reads the command line, and says on standard error what these throw, or
+  /// that not all could be printed.
+  int run(int argc, char** argv, const std::function<void()>& first = {});
 
  private:
   std::unique_ptr<CLI::App> own_;

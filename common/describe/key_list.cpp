@@ -50,13 +50,16 @@ DescribedKey& KeyList::enter_key(const Key& key, std::string type, std::string f
   if (key.need == Need::required) fallback = "needed";
   const bool of_kind = !kind_.empty() && kind_at_.back() == inside_.size();
   auto& keys = current().keys;
+  const std::string meaning = (key.unit.empty() ? "" : fmt::format("[{}] ", key.unit)) + std::string(key.meaning);
   auto found = std::ranges::find(keys, key.name, &DescribedKey::name);
   if (found == keys.end()) {
-    const std::string unit = key.unit.empty() ? "" : fmt::format("[{}] ", key.unit);
-    keys.push_back({std::string(key.name), std::move(type), fallback, unit + std::string(key.meaning), {}, false});
+    keys.push_back({std::string(key.name), std::move(type), fallback, meaning, {}, false});
     found = keys.end() - 1;
-  } else if (of_kind && found->fallback.substr(0, found->fallback.find(';')) != fallback) {
-    found->fallback += fmt::format("; {} for `{}`", fallback, kind_.back().second);
+  } else if (of_kind) {
+    if (found->fallback.substr(0, found->fallback.find(';')) != fallback)
+      found->fallback += fmt::format("; {} for `{}`", fallback, kind_.back().second);
+    if (found->meaning.find(meaning) == std::string::npos)
+      found->meaning += fmt::format("; for `{}`: {}", kind_.back().second, meaning);
   }
   if (of_kind) {
     found->kinds.push_back(kind_.back().second);

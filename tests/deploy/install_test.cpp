@@ -49,7 +49,7 @@ TEST(Install, AMovedPrefixRunsItsScenes) {
   EXPECT_NE(said.find("haptic "), std::string::npos) << said;
   EXPECT_EQ(run_command((prefix / "share/palpate/scripts/deploy.sh").string() + " --help", &said), 0) << said;
   const auto files = prefix.files();
-  for (const char* name : {"share/palpate/docs/deploy.md", "share/palpate/idl/palpate.idl",
+  for (const char* name : {"bin/palpate_study", "share/palpate/docs/deploy.md", "share/palpate/idl/palpate.idl",
                            "share/palpate/scripts/deploy_remote.sh", "share/palpate/scripts/study_page.py",
                            "share/palpate/scripts/latency_plot.py", "share/palpate/systemd/palpate@.service"})
     EXPECT_TRUE(files.contains(name)) << name;

@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <exception>
-
 #include "tools/organ/commands.hpp"
 
 int main(int argc, char** argv) {
@@ -9,15 +6,5 @@ int main(int argc, char** argv) {
   app.require_command();
   palpate::add_mesh_command(app);
   palpate::add_organ_command(app);
-  try {
-    if (const auto status = app.read(argc, argv)) return *status;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "palpate: %s\n", error.what());
-    return 1;
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-    std::fprintf(stderr, "palpate: not all that was to be printed could be written\n");
-    return 1;
-  }
-  return 0;
+  return app.run(argc, argv);
 }

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "common/cli/command_line.hpp"
-#include "tools/commands.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
+#include "tools/study/commands.hpp"
 #include "tools/study/run_script.hpp"
 
 namespace palpate {
@@ -36,7 +36,7 @@ void run(const StabilityOptions& o) {
 void add_stability_command(cli::Command& app) {
   auto options = std::make_shared<StabilityOptions>();
   cli::Command command =
-      app.add_command("stability", "stiff and extreme cases, each with its outcome, as a table and a page");
+      app.add_command("stability", "Stiff and extreme cases, each with its outcome, as a table and a page");
   command.add_option("scene", options->scene, "scene file; without one, the general cases");
   command.add_option("-o,--output", options->folder, "folder for stability.csv, plots and page").required();
   command.add_flag("--quick", options->quick, "the subset that takes a minute");

@@ -2,25 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "common/describe/digest.hpp"
+#include "common/describe/toml_writer.hpp"
 #include "common/models/content_hash.hpp"
 
 namespace palpate::stability {
 namespace {
 
-std::string digest_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return digest(bytes);
-}
+/// All keys of a device; files by what is in them.
+class DeviceText : public TomlWriter {
+ public:
+  void file(const Key& key, std::filesystem::path& value) override {
+    if (!value.empty()) line(key, file_digest(value));
+  }
+};
 
-// What runs with a device depend on: its kind, and the file that moves it if there is one.
-std::string text_of(const DeviceSpec& device) {
-  const std::filesystem::path file = motion_file_of(device);
-  return std::string(kind_of(device)) + (file.empty() ? "" : digest_of(file));
+std::string text_of(DeviceSpec device) {
+  DeviceText text;
+  std::visit([&](auto& spec) { describe(text, spec); }, device);
+  return std::string(kind_of(device)) + text.text();
 }
 
 std::string digest_of(const Scene& scene) {
@@ -34,7 +34,7 @@ std::string digest_of(const Scene& scene) {
 
 std::string subject_of(const Scene* scene, bool quick) {
   return fmt::format("{}{} by program {} {}", scene ? "scene " + digest_of(*scene) : "the general cases",
-                     quick ? ", quick," : "", PALPATE_VERSION, digest_of("/proc/self/exe"));
+                     quick ? ", quick," : "", PALPATE_VERSION, file_digest("/proc/self/exe"));
 }
 
 }  // namespace palpate::stability

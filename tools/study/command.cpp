@@ -3,7 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tools/commands.hpp"
+#include "tools/study/commands.hpp"
 #include "tools/study/growth.hpp"
 #include "tools/study/run_script.hpp"
 #include "tools/study/study.hpp"
