@@ -55,6 +55,7 @@ class HapticLoop {
 
   /// Until `seconds` are over (0: no limit), every device has finished, or a stop is requested.
   const LoopReport& run(double seconds);
+  HandlingFigures handling(int tool) const { return publisher_.handling(tool); }  ///< once it has run
 
  private:
   void tick(double seconds);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "common/kernels/code_path.hpp"
+#include "common/node/handling_summary.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/sim/step_messages.hpp"
@@ -169,6 +170,8 @@ void run(const NodeOptions& o) {
   const LoopReport& report = loop.run(o.seconds);
   nlohmann::json summary = summary_of(report);
   if (const nlohmann::json tasks = tasks_of(haptic, scene); !tasks.empty()) summary["tasks"] = tasks;
+  for (std::size_t t = 0; t < scene.tools.size(); ++t)
+    summary["tools"].push_back(handling_summary(scene.tools[t].name, loop.handling(static_cast<int>(t))));
   if (report.damped > 0)
     spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
                  report.damped, -1e3 * report.min_energy);

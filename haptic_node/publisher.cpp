@@ -28,6 +28,7 @@ Publisher::Publisher(Bus& bus, const HapticStep& haptic, std::uint64_t run)
       run_(run),
       of_tool_(haptic.tools()),
       news_(haptic.news()) {
+  for (int t = 0; t < haptic.tools(); ++t) of_tool_[t].trocar = haptic.trocar(t);
   for (BodyNews& news : news_)
     std::visit(
         [&]<class M>(M& message) {
@@ -42,6 +43,9 @@ void Publisher::publish(const StepRecord& r) {
   for (int t = 0; t < r.tools; ++t) {
     OfTool& state = of_tool_[t];
     publish_contacts(r, t);  // first: the picture waits for it
+    const StepRecord::OfTool& of = r.of_tool[t];
+    state.handling.look(1e-9 * static_cast<double>(r.sense_ns), tip_pose(state.trocar, of.dofs).translation(),
+                        Eigen::Map<const Eigen::Vector3d>(of.force.data()));
     ForceState force = force_state(r, t);
     force.run = run_;
     force.seq = ++state.force_seq;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/sim/handling.hpp"
 #include "common/sim/step_record.hpp"
 
 namespace palpate {
@@ -28,6 +29,9 @@ class Publisher {
   /// After the last record: what is told to the end, such as how the tasks ended.
   void finish();
 
+  /// How a tool was handled in what has been published.
+  HandlingFigures handling(int tool) const { return of_tool_[tool].handling.figures(); }
+
  private:
   void publish_contacts(const StepRecord& record, int tool);
   void publish_news(const StepRecord& record);
@@ -36,6 +40,8 @@ class Publisher {
   /// Without contact the topic falls silent but for one sample in so many steps.
   static constexpr int kQuietInterval = 100;
   struct OfTool {
+    Trocar trocar;
+    Handling handling;
     std::uint64_t tool_seq = 0, contact_seq = 0, force_seq = 0;
     bool touching = false;
     int quiet = 0;

@@ -56,7 +56,7 @@ Recorded read_log(LogReader& log) {
   while (log.next(event)) {
     if (event.read(topics::tool_state, tool)) {
       RecordedStep& step = runs[tool.run].steps[tool.step];
-      step.dofs[tool.tool] = {tool.yaw, tool.pitch, tool.depth, tool.roll, tool.grip, tool.pedal, tool.silent != 0};
+      step.dofs[tool.tool] = dofs_of(tool);
       if (tool.local_model_seq != 0) step.model[tool.tool] = {tool.local_model_run, tool.local_model_seq};
     } else if (event.read(topics::force_state, force))
       runs[force.run].steps[force.step].force[force.tool] = force;

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "common/mesh/mesh_file.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "render_node/render_loop.hpp"
+#include "render_node/scene_stage.hpp"
 
 namespace palpate {
 namespace {
@@ -28,23 +28,6 @@ std::unique_ptr<SurfaceSource> make_source(Bus& bus, const Presence& presence, c
   std::vector<std::size_t> nodes;
   for (const Archive& archive : loaded.archives) nodes.push_back(archive.surface.position.size());
   return receive_surfaces(bus, presence, std::move(nodes));
-}
-
-Stage make_stage(const LoadedScene& loaded) {
-  std::vector<SurfaceMap> surfaces;
-  for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
-  TriangleMesh backdrop;
-  const auto& render = loaded.scene.render;
-  if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
-  return Stage(loaded.scene, surfaces, backdrop);
-}
-
-/// A still has time for smooth edges.
-void write_still(const Stage& stage, int width, int height) {
-  Renderer renderer(width, height, 4);
-  Image image;
-  renderer.draw(stage.frame(), image);
-  write_png(image, options.still);
 }
 
 void summarise(const RenderReport& r, const Film* film, const RangeMonitor* range, bool supervised) {
@@ -93,7 +76,7 @@ void run(const NodeOptions& o) {
   say_ready(o);
   const RenderReport& report = loop.run(o.seconds);
   if (film) film->finish();
-  if (!options.still.empty()) write_still(loop.best_moment(), picture.width, picture.height);
+  if (!options.still.empty()) write_still(loop.best_moment(), picture.width, picture.height, options.still);
   summarise(report, film ? &*film : nullptr, source->range(), o.supervised);
 }
 

@@ -4,86 +4,30 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
 
 namespace palpate {
-namespace {
-
-double magnitude(const ForceState& f) {
-  return std::hypot(f.force[0], f.force[1], f.force[2]);
-}
-
-std::string describe(const std::string& tool, const ForceState& f) {
-  std::string words = fmt::format("{}  {:.2f} N", tool, magnitude(f));
-  if (f.grip != 0) words += fmt::format("  grip {:.0f} N mm", 1e3 * f.grip);
-  if (f.flags & fault) return words + "  fault: force off";
-  if (f.flags & (force_limited | slew_limited)) words += "  limited";
-  return words;
-}
-
-void describe(const TaskRecord& task, std::vector<std::string>& lines) {
-  lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted,
-                              1e3 * task.deepest, task.inserting_s));
-  lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops,
-                              task.max_force));
-}
-
-bool tells_task(const Body& body) {
-  return std::visit([](const auto& spec) { return has_task(spec); }, body);
-}
-
-}  // namespace
 
 RenderLoop::RenderLoop(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, Presence& presence,
                        Renderer& renderer)
-    : scene_(scene),
-      stage_(std::move(stage)),
+    : rate_wanted_hz_(scene.rates.visual_hz),
+      show_(scene, std::move(stage), source, bus, presence),
       source_(source),
       bus_(bus),
       presence_(presence),
       renderer_(renderer),
       clock_(bus, presence.node()),
       link_(bus),
-      pictures_(bus.writer(topics::picture_state)),
-      tools_(bus.reader(topics::tool_state)),
-      forces_(bus.reader(topics::force_state)),
-      latest_force_(scene.tools.size()) {
+      pictures_(bus.writer(topics::picture_state)) {
   presence_.set_clock(&clock_);
   picture_.node = presence.node();
-  if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
 }
 
-void RenderLoop::take() {
-  news_ = source_.update();
-  if (topology_) follow_cuts();
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    const SurfaceSource::Shape shape = source_.shape(static_cast<int>(b));
-    stage_.set_surface(static_cast<int>(b), shape.position, shape.normal);
-  }
-  while (const auto tool = tools_->take()) report_.refused += !(presence_.accepts(tool->run) && stage_.set_tool(*tool));
-  while (const auto force = forces_->take()) {
-    const bool good = force->tool < latest_force_.size() && presence_.accepts(force->run);
-    if (good) latest_force_[force->tool] = *force;
-    report_.refused += !good;
-  }
-  while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
-    const bool good =
-        task->body < scene_.bodies.size() && tells_task(scene_.bodies[task->body]) && presence_.accepts(task->run);
-    if (good) latest_task_[task->body] = *task;
-    report_.refused += !good;
-  }
-}
-
-void RenderLoop::follow_cuts() {
-  for (const int body : topology_->take()) stage_.set_triangles(body, topology_->triangles(body));
-}
-
-void RenderLoop::write_overlay() {
-  std::vector<std::string> lines{scene_.title.empty() ? scene_.file.stem().string() : scene_.title};
+std::vector<std::string> RenderLoop::state_lines() const {
+  std::vector<std::string> lines;
   double haptic_hz = 0;
   for (const auto& [name, peer] : presence_.peers())
     if (peer.accepted && peer.status.role == "haptic") haptic_hz = std::max(haptic_hz, peer.status.rate_hz);
@@ -95,20 +39,7 @@ void RenderLoop::write_overlay() {
   lines.push_back(shown_steps_ > 0 ? fmt::format("tool to picture {:.1f} ms (p99 {:.1f})", 1e-3 * shown_latency_.p50,
                                                  1e-3 * shown_latency_.p99)
                                    : std::string("nothing new to show"));
-  for (const auto& [body, task] : latest_task_) describe(task, lines);
-  double strongest = 0, full = 1;
-  for (std::size_t i = 0; i < latest_force_.size(); ++i) {
-    lines.push_back(describe(scene_.tools[i].name, latest_force_[i]));
-    strongest = std::max(strongest, magnitude(latest_force_[i]));
-    full = i == 0 ? scene_.tools[i].max_force : std::max(full, scene_.tools[i].max_force);
-  }
-  std::optional<Gauge> gauge;
-  if (!latest_force_.empty()) gauge = Gauge{strongest, full};
-  stage_.set_overlay(std::move(lines), gauge);
-  if (strongest > 1.01 * report_.peak_force) {
-    report_.peak_force = strongest;
-    best_ = stage_;
-  }
+  return lines;
 }
 
 /// By this process, or by the deform node.
@@ -140,14 +71,14 @@ void RenderLoop::keep_house(std::int64_t now) {
 
 void RenderLoop::step(std::int64_t begin) {
   clock_.follow();
-  take();
-  write_overlay();
+  const bool news = show_.take();
+  show_.tell(state_lines());
   const std::int64_t drawing = now_ns();
-  renderer_.draw(stage_.frame(), image_);
+  renderer_.draw(show_.frame(), image_);
   const std::int64_t done = now_ns();
   report_.draw.record(done - drawing);
   ++report_.frames;
-  if (news_) tell_picture(done);
+  if (news) tell_picture(done);
   if (film_) add_to_film(done - begin);
 }
 
@@ -166,8 +97,8 @@ void RenderLoop::tell_picture(std::int64_t done) {
 }
 
 const RenderReport& RenderLoop::run(double seconds) {
-  PeriodicTimer timer(scene_.rates.visual_hz, 0);
-  renderer_.draw(stage_.frame(), image_);  // compiles the shaders, before the clock runs
+  PeriodicTimer timer(rate_wanted_hz_, 0);
+  renderer_.draw(show_.frame(), image_);  // compiles the shaders, before the clock runs
   const std::int64_t begin = now_ns();
   last_status_ns_ = begin;
   timer.start();
@@ -185,7 +116,8 @@ const RenderReport& RenderLoop::run(double seconds) {
     report_.missed = timer.statistics().skipped;
   }
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
-  report_.refused += source_.refused() + bus_.refused();
+  report_.peak_force = show_.peak_force();
+  report_.refused = show_.refused() + source_.refused() + bus_.refused();
   return report_;
 }
 

@@ -1,19 +1,16 @@
 #pragma once
-#include <array>
-#include <map>
 #include <memory>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
-#include "common/node/surface_source.hpp"
-#include "common/node/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"
-#include "render_node/stage.hpp"
+#include "render_node/show.hpp"
 
 namespace palpate {
 
@@ -36,27 +33,24 @@ class RenderLoop {
   void set_film(Film* film) { film_ = film; }
 
   /// The cuts of the scene's dynamic bodies; null, as at first, where there are none.
-  void set_topology(TopologyFeed* topology) { topology_ = topology; }
+  void set_topology(TopologyFeed* topology) { show_.set_topology(topology); }
 
   /// Until `seconds` are over (0: no limit) or a stop is requested.
   const RenderReport& run(double seconds);
 
   /// What was to be seen at the greatest force, or now if there was none.
-  const Stage& best_moment() const { return best_ ? *best_ : stage_; }
+  const Stage& best_moment() const { return show_.best_moment(); }
 
  private:
   void step(std::int64_t begin);
-  void take();
-  void follow_cuts();
-  void write_overlay();
+  std::vector<std::string> state_lines() const;
   std::string range_warning() const;
   void add_to_film(std::int64_t since_begin);
   void tell_picture(std::int64_t done);
   void keep_house(std::int64_t now);
 
-  const Scene& scene_;
-  Stage stage_;
-  std::optional<Stage> best_;
+  double rate_wanted_hz_;
+  Show show_;
   SurfaceSource& source_;
   Bus& bus_;
   Presence& presence_;
@@ -66,13 +60,6 @@ class RenderLoop {
   std::unique_ptr<Writer<PictureState>> pictures_;
   PictureState picture_;
   Film* film_ = nullptr;
-  TopologyFeed* topology_ = nullptr;
-  std::unique_ptr<Reader<ToolState>> tools_;
-  std::unique_ptr<Reader<ForceState>> forces_;
-  std::unique_ptr<Reader<TaskRecord>> tasks_;        ///< null: no catheter
-  std::vector<ForceState> latest_force_;             ///< by tool
-  std::map<std::uint32_t, TaskRecord> latest_task_;  ///< by catheter
-  bool news_ = false;
   Image image_;
   Histogram recent_latency_;  ///< since the last status
   double rate_hz_ = 0;

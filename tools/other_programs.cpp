@@ -18,6 +18,7 @@ struct OtherProgram {
   const char *name, *where;
 };
 constexpr OtherProgram kOrgan{"palpate_organ", "it is built where CGAL is, on Debian with libcgal-dev"};
+constexpr OtherProgram kFilm{"palpate_film", "`scripts/build.sh release palpate_film` builds it"};
 constexpr OtherProgram kStudy{"palpate_study", "`scripts/build.sh release palpate_study` builds it"};
 
 struct OtherCommand {
@@ -25,6 +26,8 @@ struct OtherCommand {
   const OtherProgram& program;
 };
 constexpr std::array kCommands{
+    OtherCommand{"film", "Draw a topic log, every picture that is due", kFilm},
+    OtherCommand{"report", "A page of recorded sessions: force, path, pictures and figures of skill", kFilm},
     OtherCommand{"mesh", "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP)", kOrgan},
     OtherCommand{"organ", "Make a mesh of tetrahedra of labels in an image (INR, NIfTI, MetaImage, NRRD, DICOM)",
                  kOrgan},

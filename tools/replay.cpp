@@ -5,8 +5,6 @@
 
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
-#include "common/scene/ensure_archive.hpp"
-#include "common/scene/find_archive.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
 #include "tools/commands.hpp"
@@ -28,11 +26,7 @@ constexpr int kPlayerPriority = 30;  // below a node's loop and its publisher
 
 void verify(const std::string& file, const std::string& data) {
   const LoggedScene logged(file, data);
-  for (const Body& body : logged.scene().bodies) {
-    if (!archive_path(body).empty() && !std::filesystem::exists(archive_path(body)))
-      fmt::print(stderr, "body '{}': its archive is computed first\n", name_of(body));
-    ensure_archive(logged.scene(), body);
-  }
+  logged.ensure_archives();
   const VerifyReport report = verify_log(file, logged.scene());
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);

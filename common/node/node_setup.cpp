@@ -32,8 +32,8 @@ BusSettings bus_settings(const Scene& scene, const NodeOptions& o, const std::st
   return settings;
 }
 
-LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic) {
-  LoadedScene loaded{.scene = load_scene(options.scene)};
+LoadedScene with_archives(Scene scene, ArchivePart part, ArchivePart of_dynamic) {
+  LoadedScene loaded{.scene = std::move(scene)};
   loaded.scene_hash = scene_hash(loaded.scene);
   for (const Body& body : loaded.scene.bodies) {
     const ArchivePart needed = owner_of(body) == Owner::deform_node ? of_dynamic : part;
@@ -41,6 +41,10 @@ LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchiveP
     loaded.archive_hash += loaded.archives.back().content_hash;
   }
   return loaded;
+}
+
+LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic) {
+  return with_archives(load_scene(options.scene), part, of_dynamic);
 }
 
 std::uint64_t new_run() {

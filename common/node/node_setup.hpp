@@ -29,7 +29,9 @@ struct LoadedScene {
   std::vector<Archive> archives;  ///< one per body
   std::string scene_hash, archive_hash;
 };
-/// Reads `part` of each body's archive, `of_dynamic` of those whose model is dynamic.
+/// `part` of each body's archive, `of_dynamic` of those whose model is dynamic.
+LoadedScene with_archives(Scene scene, ArchivePart part, ArchivePart of_dynamic);
+/// The same of the scene that a command line names.
 LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic);
 inline LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) {
   return load_for_node(options, part, part);

@@ -52,6 +52,7 @@ class HapticStep {
   const Eigen::Vector3d& torque(int tool) const { return rigs_[tool]->output().torque; }
   std::uint32_t flags(int tool) const { return rigs_[tool]->output().flags; }
   const Eigen::Vector3d& press(int tool) const { return rigs_[tool]->output().press; }
+  const Trocar& trocar(int tool) const { return rigs_[tool]->trocar(); }
   const Eigen::Isometry3d& pose(int tool) const { return rigs_[tool]->pose(); }
   double opening(int tool) const { return rigs_[tool]->end().opening(); }    ///< [rad] between a forceps' jaws
   double grip_torque(int tool) const { return rigs_[tool]->output().grip; }  ///< [N m] on the handle, opens the jaws

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/sim/step_messages.hpp"
 #include "common/tool/instrument.hpp"
 
 namespace palpate {
@@ -10,10 +11,6 @@ namespace {
 
 constexpr double kGoneAfter = 120;   // [s] of silence, as the network forgets a participant
 constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its states may be behind them
-
-ToolDofs dofs_of(const ToolState& s) {
-  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal};
-}
 
 }  // namespace
 

@@ -63,12 +63,11 @@ Watch::Watch(const sim::Simulator& simulator, const std::vector<Archive>& archiv
 void Watch::look_at_tool(const sim::Simulator& simulator, int t) {
   const sim::ToolView view = simulator.tool(t);
   OfTool& own = tools_[t];
+  own.handling.look(static_cast<double>(steps_) * simulator.dt(), view.pose.translation(), view.force);
   own.last_force = view.force.norm();
   own.max_force = larger(own.max_force, own.last_force);
-  own.sum_force += own.last_force;
   own.max_torque = larger(own.max_torque, view.torque.norm());
   own.max_grip = larger(own.max_grip, std::abs(view.grip_torque));
-  own.touching += own.last_force > 0;
   own.limited += (view.flags & (force_limited | slew_limited)) != 0;
   own.faults += (view.flags & fault) != 0;
   finite_ &= std::isfinite(own.last_force) && std::isfinite(own.max_torque) && std::isfinite(own.max_grip);
@@ -110,11 +109,17 @@ Figures Watch::figures(const sim::Simulator& simulator) const {
     const OfTool& own = tools_[t];
     const std::string name = fmt::format("tool.{}.", simulator.scene().tools[t].name);
     all.push_back({name + "force.max", own.max_force, "N"});
-    all.push_back({name + "force.mean", own.touching ? own.sum_force / count(own.touching) : 0, "N"});
+    const HandlingFigures handling = own.handling.figures();
+    all.push_back({name + "force.mean", handling.mean_force, "N"});
     all.push_back({name + "force.end", own.last_force, "N"});
+    all.push_back({name + "force.change", handling.max_change, "N"});
     all.push_back({name + "torque.max", own.max_torque, "N m"});
     all.push_back({name + "grip.max", own.max_grip, "N m"});
-    all.push_back({name + "touching", count(own.touching) * simulator.dt(), "s"});
+    all.push_back({name + "touching", handling.touching, "s"});
+    all.push_back({name + "touches", static_cast<double>(handling.touches), "1"});
+    all.push_back({name + "path", handling.path, "m"});
+    all.push_back({name + "economy", handling.economy, "1"});
+    all.push_back({name + "jerk", handling.jerk, "m/s^3"});
     all.push_back({name + "limited", count(own.limited) * simulator.dt(), "s"});
     all.push_back({name + "fault", count(own.faults) * simulator.dt(), "s"});
   }

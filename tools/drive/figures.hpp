@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/sim/handling.hpp"
 #include "common/sim/simulator.hpp"
 
 namespace palpate::drive {
@@ -36,8 +37,9 @@ class Watch {
 
  private:
   struct OfTool {
-    double max_force = 0, sum_force = 0, last_force = 0, max_torque = 0, max_grip = 0;
-    std::uint64_t touching = 0, limited = 0, faults = 0;
+    Handling handling;
+    double max_force = 0, last_force = 0, max_torque = 0, max_grip = 0;
+    std::uint64_t limited = 0, faults = 0;
   };
   struct OfBody {
     std::vector<Eigen::Vector3f> rest;  ///< [m] per node of the surface map

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
+#include "common/sim/step_messages.hpp"
 #include "common/tool/trajectory.hpp"
 #include "idl/topics.hpp"
 
@@ -25,7 +26,7 @@ class LogDevice : public Device {
       if (!event.read(topics::tool_state, state) || state.tool != place.index) continue;
       if (samples_.empty()) first = state.step;
       if (state.step < first) continue;
-      const ToolDofs dofs{state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal, state.silent != 0};
+      const ToolDofs dofs = dofs_of(state);
       // A step whose sample was lost repeats the one before it.
       while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < kMaxSamples)
         samples_.push_back(samples_.back());

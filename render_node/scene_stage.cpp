@@ -1,0 +1,24 @@
+#include "render_node/scene_stage.hpp"
+
+#include "common/mesh/mesh_file.hpp"
+#include "render_node/renderer.hpp"
+
+namespace palpate {
+
+Stage make_stage(const LoadedScene& loaded) {
+  std::vector<SurfaceMap> surfaces;
+  for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
+  TriangleMesh backdrop;
+  const auto& render = loaded.scene.render;
+  if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
+  return Stage(loaded.scene, surfaces, backdrop);
+}
+
+void write_still(const Stage& stage, int width, int height, const std::filesystem::path& file) {
+  Renderer renderer(width, height, 4);  // a still has time for smooth edges
+  Image image;
+  renderer.draw(stage.frame(), image);
+  write_png(image, file);
+}
+
+}  // namespace palpate

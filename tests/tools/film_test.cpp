@@ -1,0 +1,90 @@
+// Films of logs: every picture that is due.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::LoopbackScene;
+using testing::OwnFolder;
+using testing::program;
+using testing::run_program;
+
+class ToolsFilm : public ::testing::Test {
+ protected:
+  /// A log without pictures and without anybody's status, of a second; its scene is gone afterwards.
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<OwnFolder>("film");
+    const LoopbackScene scene("film-scene", testing::kLinear);
+    const auto run = run_program(fmt::format("{} drive {} --seconds 1.1 --log {}", program("palpate"), scene.scene(),
+                                             (*folder_ / "a.lcmlog").string()));
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path film(const std::string& name) { return *folder_ / (name + ".mp4"); }
+  static testing::ProgramResult draw(const std::string& name, const std::string& more = "") {
+    return run_program(fmt::format("{} film {} -o {} --width 160 --height 120 --samples 1 {}", program("palpate"),
+                                   (*folder_ / "a.lcmlog").string(), film(name).string(), more));
+  }
+  /// As ffprobe counts them, decoding each.
+  static int pictures(const std::string& name) {
+    const auto counted = run_program(
+        "ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=nb_read_frames -of csv=p=0 " +
+        film(name).string());
+    return std::atoi(counted.out.c_str());
+  }
+
+  static std::unique_ptr<OwnFolder> folder_;
+};
+std::unique_ptr<OwnFolder> ToolsFilm::folder_;
+
+TEST_F(ToolsFilm, EveryPictureIsDrawnAndTheSameBytesComeAgain) {
+  const auto first = draw("first", "--still " + (*folder_ / "still.png").string());
+  ASSERT_EQ(first.status, 0) << first.err;
+  ASSERT_EQ(draw("again").status, 0);
+  EXPECT_EQ(testing::text_of(film("first")), testing::text_of(film("again")));
+  EXPECT_TRUE(fs::exists(*folder_ / "still.png"));
+  EXPECT_NEAR(pictures("first"), 30 * 1.1 + 1, 1);
+  EXPECT_EQ(first.out.find("largest force 0.00 N"), std::string::npos) << first.out;
+}
+
+TEST_F(ToolsFilm, ItIsAsSlowAndAsLongAsAskedFor) {
+  const auto slow = draw("slow", "--from 0.1 --to 0.3 --speed 0.1");
+  ASSERT_EQ(slow.status, 0) << slow.err;
+  EXPECT_EQ(pictures("slow"), 61);
+}
+
+TEST_F(ToolsFilm, WhatIsNotThereIsRefused) {
+  const auto late = draw("late", "--from 5");
+  EXPECT_EQ(late.status, 1);
+  EXPECT_NE(late.err.find("the log is 1."), std::string::npos) << late.err;
+  EXPECT_FALSE(fs::exists(film("late")));
+}
+
+TEST_F(ToolsFilm, AReportHasTheSessionsSideBySide) {
+  const std::string log = *folder_ / "a.lcmlog", folder = *folder_ / "report";
+  const auto made =
+      run_program(fmt::format("{} report {} {} -o {} --pictures 2", program("palpate"), log, log, folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto sessions = nlohmann::json::parse(testing::text_of(folder + "/report.json"))["sessions"];
+  ASSERT_EQ(sessions.size(), 2u);
+  const auto& tool = sessions[0]["tools"][0];
+  EXPECT_EQ(tool, sessions[1]["tools"][0]);
+  EXPECT_NEAR(tool["seconds"].get<double>(), 1.1, 0.01);
+  EXPECT_GT(tool["force_max_n"].get<double>(), 0.01);
+  EXPECT_NEAR(tool["path_m"].get<double>(), 0.028, 0.003);  // down to the block and into it
+  EXPECT_EQ(tool["touches"], 1);
+  EXPECT_EQ(sessions[1]["pictures"].size(), 2u);
+  EXPECT_TRUE(fs::exists(folder + "/picture_1_1.png"));
+  const std::string page = testing::text_of(folder + "/index.html");
+  EXPECT_NE(page.find("largest force"), std::string::npos) << made.err;
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate

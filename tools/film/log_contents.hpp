@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace palpate {
+
+/// What has to be known of a log before it is drawn.
+struct LogContents {
+  std::set<std::string> topics;            ///< that it has samples of
+  std::int64_t first_ns = 0, last_ns = 0;  ///< when its first and last samples came
+  std::set<std::uint32_t> shaped;          ///< bodies whose surfaces it has
+};
+
+/// Throws std::runtime_error if the file is no log.
+LogContents contents_of(const std::filesystem::path& log);
+
+}  // namespace palpate

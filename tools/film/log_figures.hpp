@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "common/bus/log_reader.hpp"
+#include "common/scene/scene.hpp"
+#include "common/sim/handling.hpp"
+#include "common/tool/kinematics.hpp"
+#include "idl/messages.hpp"
+
+namespace palpate {
+
+/// What a session comes to: how each tool was handled, what the tissue has lost, how the tasks ended.
+class LogFigures {
+ public:
+  explicit LogFigures(const Scene& scene);
+
+  void look(const LogEvent& event);  ///< in the log's order
+  nlohmann::ordered_json json() const;
+
+  /// Where and how hard a tool was, at most every 10 ms: the largest force of that time [N], the tip's place [m].
+  struct Place {
+    double time = 0;
+    std::size_t tool = 0;
+    Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+    double force = 0;
+  };
+  const std::vector<Place>& course() const { return course_; }
+
+ private:
+  void look(const ToolState& state, const LogEvent& event);
+  double time_of(const ToolState& state, std::int64_t receive_ns);
+
+  struct OfTool {
+    Trocar trocar;
+    ForceState force;
+    Handling handling;
+    std::array<std::uint64_t, 8> flagged{};  ///< steps with each bit of ForceFlag
+    std::size_t latest = 0;                  ///< of its places, from 1; 0: none yet
+  };
+
+  const Scene& scene_;
+  std::vector<OfTool> tools_;
+  std::map<std::uint32_t, std::array<std::uint64_t, 3>> lost_;  ///< tetrahedra of a body, by RemovalCause
+  std::map<std::uint32_t, TaskRecord> tasks_;                   ///< by catheter
+  std::vector<Place> course_;
+  std::uint64_t run_ = 0;
+  std::int64_t first_ns_ = 0, shift_ns_ = 0;  ///< of the log; from the haptic node's clock to it
+};
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+#include "tools/film/log_film.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "render_node/film.hpp"
+#include "render_node/renderer.hpp"
+#include "render_node/scene_stage.hpp"
+#include "tools/film/log_pictures.hpp"
+#include "tools/logs/log_files.hpp"
+
+namespace palpate {
+namespace {
+
+/// Which part of the log is drawn [s].
+struct Stretch {
+  double begin, end;
+};
+
+Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
+  const double whole = 1e-9 * static_cast<double>(contents.last_ns - contents.first_ns);
+  const Stretch stretch{s.from, s.to > 0 ? std::min(s.to, whole) : whole};
+  if (!(stretch.begin < stretch.end))
+    throw std::runtime_error(fmt::format("{}: there is nothing between {} s and {} s: the log is {:.2f} s long", s.log,
+                                         stretch.begin, stretch.end, whole));
+  return stretch;
+}
+
+}  // namespace
+
+LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, long)>& progress) {
+  const LoggedScene logged(s.log, s.data);
+  logged.ensure_archives();
+  const LogContents contents = contents_of(s.log);
+  const Stretch stretch = stretch_of(s, contents);
+  LogPictures pictures(s.log, contents, logged.scene());
+
+  const Render picture = logged.scene().render.value_or(Render{});
+  const int width = s.width > 0 ? s.width : picture.width, height = s.height > 0 ? s.height : picture.height;
+  Renderer renderer(width, height, s.samples);
+  Film film(s.film, width, height, s.rate);
+  const long due = static_cast<long>(std::floor((stretch.end - stretch.begin) * s.rate / s.speed + 1e-6)) + 1;
+  Image image;
+  for (long i = 0; i < due && progress(i, due); ++i) {
+    renderer.draw(pictures.at(stretch.begin + static_cast<double>(i) * s.speed / s.rate), image);
+    film.add(image);
+  }
+  film.finish();
+  if (!s.still.empty()) write_still(pictures.show().best_moment(), width, height, s.still);
+  return {film.frames(), static_cast<double>(film.frames()) / s.rate, pictures.show().peak_force(),
+          pictures.damage_text()};
+}
+
+}  // namespace palpate

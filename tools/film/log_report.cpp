@@ -1,0 +1,94 @@
+#include "tools/film/log_report.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "render_node/renderer.hpp"
+#include "tools/film/log_figures.hpp"
+#include "tools/film/log_pictures.hpp"
+#include "tools/logs/log_files.hpp"
+#include "tools/study/output_folder.hpp"
+#include "tools/study/run_script.hpp"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file);
+  if (!(out << text).flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+}
+
+void write_course(const fs::path& file, const LogFigures& figures, const Scene& scene) {
+  std::string text = "time,tool,x,y,z,force\n";
+  for (const LogFigures::Place& p : figures.course())
+    text += fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5g}\n", p.time, scene.tools[p.tool].name, p.tip.x(),
+                        p.tip.y(), p.tip.z(), p.force);
+  write_text(file, text);
+}
+
+/// The times of `count` pictures [s]: the middles of as many parts of the session.
+std::vector<double> picture_times(const LogContents& contents, int count) {
+  const double whole = 1e-9 * static_cast<double>(contents.last_ns - contents.first_ns);
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) times.push_back(whole * (i + 0.5) / count);
+  return times;
+}
+
+ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedScene& logged) {
+  ordered_json drawn = ordered_json::array();
+  if (s.pictures == 0) return drawn;
+  logged.ensure_archives();
+  const LogContents contents = contents_of(s.logs[session]);
+  LogPictures pictures(s.logs[session], contents, logged.scene());
+  const Render picture = logged.scene().render.value_or(Render{});
+  constexpr int kWidth = 480;
+  Renderer renderer(kWidth, kWidth * picture.height / picture.width, 4);
+  Image image;
+  for (const double time : picture_times(contents, s.pictures)) {
+    Frame frame = pictures.at(time);
+    frame.overlay = {};  // too small to read
+    renderer.draw(frame, image);
+    const std::string name = fmt::format("picture_{}_{}.png", session, drawn.size());
+    write_png(image, s.folder / name);
+    drawn.push_back({{"time", time}, {"file", name}});
+  }
+  return drawn;
+}
+
+ordered_json report_of(const LogReportSettings& s, std::size_t session) {
+  const LoggedScene logged(s.logs[session], s.data);
+  const Scene& scene = logged.scene();
+  LogFigures figures(scene);
+  LogReader reader(s.logs[session]);
+  for (LogEvent event; reader.next(event);) figures.look(event);
+  const std::string course = fmt::format("course_{}.csv", session);
+  write_course(s.folder / course, figures, scene);
+  ordered_json report{{"log", s.logs[session]},
+                      {"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
+                      {"damage", reader.damage_text()},
+                      {"course", course}};
+  report.update(figures.json());
+  report["pictures"] = draw(s, session, logged);
+  return report;
+}
+
+}  // namespace
+
+std::string report_logs(const LogReportSettings& s, const std::function<void(const std::string&)>& progress) {
+  prepare_folder(s.folder, "course_0.csv", "time,tool,x,y,z,force");
+  ordered_json all{{"sessions", ordered_json::array()}};
+  for (std::size_t i = 0; i < s.logs.size(); ++i) {
+    progress(s.logs[i]);
+    all["sessions"].push_back(report_of(s, i));
+  }
+  write_text(s.folder / "report.json", all.dump(2) + "\n");
+  return run_script("report_page.py", s.folder);
+}
+
+}  // namespace palpate

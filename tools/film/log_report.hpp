@@ -1,0 +1,21 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+struct LogReportSettings {
+  std::vector<std::string> logs;  ///< sessions to set side by side
+  std::filesystem::path folder;
+  std::string data;  ///< folder for the files that a log brings along; empty: none
+  int pictures = 8;  ///< of each session, evenly over its time
+};
+
+/// Writes report.json, for each session course_N.csv and picture_N_K.png, N and K from 0, and index.html with all of
+/// it. Returns the sentence of what is missing for the page, empty if nothing is. `progress` is told what is done;
+/// throws std::runtime_error.
+std::string report_logs(const LogReportSettings& settings, const std::function<void(const std::string&)>& progress);
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+
+#include "common/bus/bus.hpp"
+#include "common/node/node_setup.hpp"
+#include "tools/film/log_contents.hpp"
+#include "tools/logs/log_sender.hpp"
+
+namespace palpate {
+
+/// Brings a log to a bus in the order of its times, as far as somebody wants to see it. The haptic node whose samples
+/// come is announced as one of this scene.
+class LogStream {
+ public:
+  LogStream(const std::filesystem::path& log, const LogContents& contents, const LoadedScene& scene, Bus& bus);
+
+  /// Sends what had come until `seconds` after the log's first sample; false once there is no more.
+  bool send_until(double seconds);
+  std::string damage_text() const { return reader_.damage_text(); }  ///< of what has been read
+  double haptic_hz() const { return haptic_hz_; }                    ///< as the node said last, 0: it has not
+
+ private:
+  void look(const LogEvent& event);
+
+  LogReader reader_;
+  std::int64_t first_ns_;
+  LogSender sender_;
+  std::unique_ptr<Writer<NodeStatus>> statuses_;
+  NodeStatus haptic_;
+  double haptic_hz_ = 0;
+  LogEvent next_;
+  bool waits_ = false;  ///< next_ is yet to be sent
+};
+
+}  // namespace palpate

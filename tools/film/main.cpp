@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "common/cli/command_line.hpp"
+#include "common/realtime/shutdown.hpp"
+#include "tools/film/log_film.hpp"
+#include "tools/film/log_report.hpp"
+
+namespace palpate {
+namespace {
+
+void make_film(const LogFilmSettings& settings) {
+  catch_shutdown_signals();
+  const bool terminal = isatty(STDERR_FILENO);
+  const LogFilmReport report = film_log(settings, [&](long done, long due) {
+    if (terminal && done % 10 == 0) fmt::print(stderr, "\r{} of {} pictures", done, due);
+    return !shutdown_requested();
+  });
+  if (terminal) fmt::print(stderr, "\r");
+  if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
+  fmt::print("{}: {} pictures, {:.2f} s, largest force {:.2f} N\n", settings.film, report.frames, report.seconds,
+             report.peak_force);
+}
+
+void add_film_command(cli::Command& app) {
+  cli::Command command = app.add_command(
+      "film",
+      "Draw a topic log: every picture that is due, faster or slower than it was, the same bytes each time.\n"
+      "Example: palpate film out/liver.lcmlog --speed 0.25 --from 2 --to 4 -o out/slow.mp4");
+  auto s = std::make_shared<LogFilmSettings>();
+  command.add_option("LOG", s->log, "topic log").required();
+  command.add_option("-o,--output", s->film, "film (MP4)").required().output_file(".mp4");
+  command.add_option("--still", s->still, "Picture (PNG) of the moment of the greatest force").output_file(".png");
+  command.add_option("--from", s->from, "Begin there [s]").between(0.0, 1e6).show_default();
+  command.add_option("--to", s->to, "End there [s] (default: with the log)").positive();
+  command.add_option("--speed", s->speed, "2 shows it twice as fast").between(1e-4, 1e4).show_default();
+  command.add_option("--rate", s->rate, "Pictures per second of the film").between(1.0, 240.0).show_default();
+  command.add_option("--width", s->width, "Of the film [pixel] (default: the scene's)").between(16, 8192);
+  command.add_option("--height", s->height, "Of the film [pixel] (default: the scene's)").between(16, 8192);
+  command.add_option("--samples", s->samples, "Samples per pixel: 4 smooths edges and takes twice the time")
+      .one_of({1, 4})
+      .show_default();
+  command.add_option("--data", s->data,
+                     "Folder for the files that the log brings along, and with those that are too large for it");
+  command.does([s] { make_film(*s); });
+}
+
+void add_report_command(cli::Command& app) {
+  cli::Command command =
+      app.add_command("report",
+                      "A page of sessions: force and path, pictures, and figures by which trainers compare.\n"
+                      "Example: palpate report monday.lcmlog friday.lcmlog -o out/report");
+  auto s = std::make_shared<LogReportSettings>();
+  command.add_option("LOG", s->logs, "topic logs, which are set side by side").required();
+  command.add_option("-o,--output", s->folder, "folder for the figures and the page").required();
+  command.add_option("--pictures", s->pictures, "Pictures of each session; 0: none, which needs no archives")
+      .between(0, 100)
+      .show_default();
+  command.add_option("--data", s->data,
+                     "Folder for the files that the logs bring along, and with those that are too large for them");
+  command.does([s] {
+    const std::string missing = report_logs(*s, [](const std::string& log) { fmt::print(stderr, "{}\n", log); });
+    if (!missing.empty()) fmt::print(stderr, "palpate: {}\n", missing);
+  });
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  palpate::cli::CommandLine app{"Films and reports of topic logs; started by `palpate`"};
+  app.show_version(PALPATE_VERSION);
+  app.require_command();
+  palpate::add_film_command(app);
+  palpate::add_report_command(app);
+  return app.run(argc, argv);
+}
