@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   palpate::add_keys_command(app);
   palpate::add_commands_of_other_programs(app);
   palpate::add_scene_command(app);
+  palpate::add_motion_command(app);
   return app.run(argc, argv, [argv] { palpate::start_other_program(argv); });
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "common/contact/patch/smooth_surface.hpp"
@@ -14,14 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kSharp = 0.5;  // cosine between the normals of two facets, below which an edge of the body is between
 
-Vector3d point_of(const Triangle& t, const Vector3d& weights) {
-  return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
-}
-
-SurfacePlace place_at(const SmoothSurface& surface, int triangle, const Vector3d& weights) {
-  return {point_of(surface.corners(triangle), weights), -surface.normal(triangle, weights), triangle};
-}
-
 /// Along a facet's plane, unit.
 Vector3d along(const Vector3d& direction, const Vector3d& normal) {
   return (direction - direction.dot(normal) * normal).normalized();
@@ -29,18 +20,11 @@ Vector3d along(const Vector3d& direction, const Vector3d& normal) {
 
 /// The nearest place of the surface on the side of a triangle.
 SurfacePlace nearest(const SmoothSurface& surface, const Vector3d& point, int triangle, double within) {
-  double least = std::numeric_limits<double>::infinity();
-  int best = triangle;
-  Vector3d weights = Vector3d::Zero();
-  for (const int t : surface.near(point, within)) {
-    if (surface.facet_normal(t).dot(surface.facet_normal(triangle)) < kSharp) continue;
-    const ClosestPoint p = closest_point(point, surface.corners(t));
-    if (p.squared_distance >= least) continue;
-    least = p.squared_distance;
-    best = t;
-    weights = p.weights;
-  }
-  return place_at(surface, best, weights);
+  std::vector<int> there;
+  for (const int t : surface.near(point, within))
+    if (surface.facet_normal(t).dot(surface.facet_normal(triangle)) >= kSharp) there.push_back(t);
+  if (there.empty()) there.push_back(triangle);
+  return nearest_place(surface, point, there);
 }
 
 bool is_free(const SurfaceMap& map, int triangle) {

@@ -3,20 +3,9 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/contact/patch/surface_place.hpp"
 
 namespace palpate {
-
-/// A place of a surface at rest, and along what it is pressed there.
-struct SurfacePlace {
-  Eigen::Vector3d point;   ///< [m]
-  Eigen::Vector3d inward;  ///< unit
-  int triangle;            ///< of the surface map
-};
-
-/// Where the middle of a ball is [m] that presses a place by a depth [m].
-inline Eigen::Vector3d centre_at(const SurfacePlace& place, double radius, double depth) {
-  return place.point + (depth - radius) * place.inward;
-}
 
 /// The triangle whose middle is nearest to a point.
 int nearest_triangle(const SurfaceMap& map, const Eigen::Vector3d& point);

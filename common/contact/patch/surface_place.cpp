@@ -1,0 +1,25 @@
+#include "common/contact/patch/surface_place.hpp"
+
+#include <limits>
+
+namespace palpate {
+
+SurfacePlace place_at(const SmoothSurface& surface, int triangle, const Eigen::Vector3d& weights) {
+  const Triangle corner = surface.corners(triangle);
+  return {weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2], -surface.normal(triangle, weights),
+          triangle};
+}
+
+SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles) {
+  ClosestPoint closest{Eigen::Vector3d::Unit(0), std::numeric_limits<double>::infinity()};
+  int best = triangles.front();
+  for (const int t : triangles) {
+    const ClosestPoint p = closest_point(point, surface.corners(t));
+    if (p.squared_distance >= closest.squared_distance) continue;
+    closest = p;
+    best = t;
+  }
+  return place_at(surface, best, closest.weights);
+}
+
+}  // namespace palpate

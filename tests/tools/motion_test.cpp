@@ -1,0 +1,96 @@
+// Motions made of steps.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/tool/trajectory.hpp"
+#include "tests/tools/program_result.hpp"
+#include "tools/motion/motion_rows.hpp"
+#include "tools/motion/motion_step.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::expect_refusal;
+using testing::LoopbackScene;
+using testing::program;
+using testing::run_program;
+
+TEST(MotionSteps, AreReadWithTheirUnits) {
+  using Kind = MotionStep::Kind;
+  const MotionStep to = parse_motion_step("to 20mm,-1cm,0.06");
+  EXPECT_EQ(to.kind, Kind::to);
+  EXPECT_LT((to.place - Eigen::Vector3d(0.02, -0.01, 0.06)).norm(), 1e-15);
+  EXPECT_EQ(parse_motion_step("press 4mm").value, 0.004);
+  EXPECT_EQ(parse_motion_step("press 0.5N").kind, Kind::press_with);
+  EXPECT_EQ(parse_motion_step("press 0.5 N").value, 0.5);
+  EXPECT_EQ(parse_motion_step("hold 1s").value, 1);
+  EXPECT_EQ(parse_motion_step("withdraw").kind, Kind::withdraw);
+  for (const char* wrong : {"", "to", "to 1,2", "to 1,2,3,4", "to 1,2,3feet", "press", "press -1mm", "press 1s",
+                            "hold 0", "hold 1h", "grip 4", "pedal 2", "withdraw 3", "press nan", "to inf,0,0", "dance"})
+    EXPECT_THROW(parse_motion_step(wrong), std::runtime_error) << wrong;
+}
+
+// From rest to rest, at no more than the speed that was asked for.
+TEST(MotionSteps, AWayIsGoneGently) {
+  const Trocar trocar = make_trocar({0, 0, 0.2}, {0, 0, -1}, {0, 1, 0});
+  MotionRows rows(trocar, {0, 0, 0});
+  rows.go({{0.03, 0, 0}, {0.07, 0, 0}}, 0.05);
+  const Trajectory motion = rows.trajectory();
+  const double dt = 1e-3, duration = motion.duration();
+  EXPECT_NEAR(duration, 1.875 * 0.07 / 0.05, 1e-9);
+  double fastest = 0, first = 0, length = 0;
+  Eigen::Vector3d before(0, 0, 0);
+  for (double t = dt; t <= duration; t += dt) {
+    const Eigen::Vector3d tip = tip_pose(trocar, motion.at(t)).translation();
+    const double speed = (tip - before).norm() / dt;
+    if (t < 2 * dt) first = speed;
+    fastest = std::max(fastest, speed);
+    length += (tip - before).norm();
+    before = tip;
+  }
+  EXPECT_LT(first, 1e-3);
+  EXPECT_NEAR(fastest, 0.05, 1e-3);
+  EXPECT_NEAR(length, 0.07, 1e-5);
+  EXPECT_LT((before - Eigen::Vector3d(0.07, 0, 0)).norm(), 1e-5);
+}
+
+class ToolsMotion : public ::testing::Test {
+ protected:
+  std::string motion(const std::string& steps) const {
+    return fmt::format("{} motion {} {} -o {}", program("palpate"), scene_.scene(), steps,
+                       (scene_.folder() / "made.csv").string());
+  }
+  LoopbackScene scene_{"motion", testing::kLinear};
+};
+
+TEST_F(ToolsMotion, ForcesAndDepthsAreWhatTheStepsSay) {
+  const auto made = run_program(motion(
+      "\"to 0,0,1\" \"press 3mm\" \"hold 0.2s\" withdraw \"press 0.1N\" \"hold 0.5s\" \"slide 4mm,0,1\" withdraw"));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(std::count(made.out.begin(), made.out.end(), '\n'), 10) << made.out;
+  const auto run = run_program(
+      fmt::format("{} drive {} --set tool.probe.trajectory=made.csv --json", program("palpate"), scene_.scene()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto figures = nlohmann::json::parse(run.out)["figures"];
+  EXPECT_EQ(figures["tool.probe.touches"], 2);
+  EXPECT_LT(figures["tool.probe.force.change"].get<double>(), 0.02);
+  // In the middle of the hold: the force that was asked for.
+  const std::size_t held = made.out.find("hold 0.5s");
+  ASSERT_NE(held, std::string::npos);
+  const std::size_t line = made.out.rfind('\n', held) + 1;
+  double from = 0, to = 0, largest = 0, end = 0;
+  ASSERT_EQ(std::sscanf(made.out.c_str() + line, "%lf %lf %lf %lf", &from, &to, &largest, &end), 4) << made.out;
+  EXPECT_NEAR(to - from, 0.5, 0.011);
+  EXPECT_NEAR(end, 0.1, 0.002);
+}
+
+TEST_F(ToolsMotion, WhatCannotBeDoneIsToldWithItsStep) {
+  expect_refusal(motion("\"press 3mm\""), {"press 3mm", "begins with a place"});
+  expect_refusal(motion("\"to 0,0,1\" \"press 1e6N\""), {"press 1e6N", "the force is at most"});
+  expect_refusal(motion("\"to 0,0,1\" jump"), {"jump", "a step is to"});
+  expect_refusal(motion("\"to 0,0,1\" withdraw --tool nobody"), {"which tool? It has probe"});
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "common/scene/ensure_archive.hpp"
+#include "tools/choose_body.hpp"
+#include "tools/commands.hpp"
+#include "tools/motion/motion_maker.hpp"
+
+namespace palpate {
+namespace {
+
+struct MotionOptions {
+  std::string scene, out, tool, body;
+  std::vector<std::string> steps;
+  MotionManner manner;
+};
+
+int choose_tool(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.tools, name, &Tool::name);
+  if (found != scene.tools.end()) return static_cast<int>(found - scene.tools.begin());
+  if (name.empty() && scene.tools.size() == 1) return 0;
+  std::string names;
+  for (const Tool& tool : scene.tools) names += (names.empty() ? "" : ", ") + tool.name;
+  throw std::runtime_error(fmt::format("{}: which tool? It has {}", scene.file.string(), names));
+}
+
+/// What the tool felt in each part.
+void print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
+  const std::vector<double> felt = rehearsal.forces(maker.rows().trajectory());
+  const auto at = [&](double time) {
+    return std::min(static_cast<std::size_t>(time / rehearsal.dt()), felt.size() - 1);
+  };
+  fmt::print("   from [s]    to [s]   largest force [N]   at the end [N]   step\n");
+  for (const MotionMaker::Part& part : maker.parts()) {
+    const auto first = felt.begin() + static_cast<std::ptrdiff_t>(at(part.begin));
+    const auto last = felt.begin() + static_cast<std::ptrdiff_t>(at(part.end));
+    fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", part.begin, part.end, *std::max_element(first, last + 1),
+               *last, part.text);
+  }
+}
+
+void make_motion(const MotionOptions& o) {
+  std::vector<MotionStep> steps;
+  for (const std::string& text : o.steps) steps.push_back(parse_motion_step(text));
+  const Scene scene = load_scene(o.scene);
+  const int tool = choose_tool(scene, o.tool);
+  const std::string body = name_of(choose_body(scene, o.body));
+  const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
+  const auto touched = std::ranges::find(scene.bodies, body, [](const Body& b) { return name_of(b); });
+  const Rehearsal rehearsal(scene, archives, tool);
+  MotionMaker maker(scene.tools[tool], archives[touched - scene.bodies.begin()].surface, rehearsal, o.manner);
+  for (const MotionStep& step : steps) maker.add(step);
+
+  std::string comment = fmt::format("{} on {}:", scene.tools[tool].name, body);
+  for (const MotionStep& step : steps) comment += fmt::format(" {};", step.text);
+  maker.rows().write(o.out, comment);
+  print_parts(maker, rehearsal);
+  fmt::print(
+      "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
+      o.out, maker.rows().time(), o.scene, scene.tools[tool].name, o.out);
+}
+
+}  // namespace
+
+void add_motion_command(cli::Command& app) {
+  cli::Command command =
+      app.add_command("motion",
+                      "Make a tool's motion of steps, and say what the tool feels in each: to X,Y,Z (above the "
+                      "surface's nearest place), "
+                      "press DEPTH or FORCE, hold TIME, slide X,Y,Z, withdraw, grip ANGLE, pedal 0|1.\n"
+                      "Example: palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" "
+                      "\"press 0.3N\" \"hold 1s\" "
+                      "withdraw -o press.csv");
+  auto o = std::make_shared<MotionOptions>();
+  command.add_option("SCENE", o->scene, "scene file (TOML)").required();
+  command.add_option("STEP", o->steps, "steps, in their order; each is one word of the shell").required();
+  command.add_option("-o,--output", o->out, "trajectory (CSV)").required().output_file(".csv");
+  command.add_option("--tool", o->tool, "Tool that moves (default: the only one)");
+  command.add_option("--body", o->body, "Body that it touches (default: the only one)");
+  command.add_option("--speed", o->manner.speed, "Of the tip [m/s], at most").between(1e-4, 1.0).show_default();
+  command.add_option("--clear", o->manner.clear, "Between tip and tissue where it does not press [m]")
+      .between(1e-4, 1.0)
+      .show_default();
+  command.does([o] { make_motion(*o); });
+}
+
+}  // namespace palpate
