@@ -62,4 +62,19 @@ std::span<const int> SmoothSurface::near(const Vector3d& point, double radius) c
   return std::span(found_).first(kept);
 }
 
+std::span<const int> SmoothSurface::near(const Segment& segment, double radius) const {
+  const int candidates = buckets_.query(segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end), radius, found_);
+  int kept = 0;
+  for (int i = 0; i < candidates; ++i) {
+    if (left_out_[found_[i]]) continue;
+    const Triangle c = corners(found_[i]);
+    const Vector3d middle = (c[0] + c[1] + c[2]) / 3;
+    const double square = std::max({(c[0] - middle).squaredNorm(), (c[1] - middle).squaredNorm(), (c[2] - middle).squaredNorm()});
+    const double reach = radius + std::sqrt(square);
+    if ((nearest_point(segment, middle) - middle).squaredNorm() <= reach * reach) found_[kept++] = found_[i];
+  }
+  std::sort(found_.begin(), found_.begin() + kept);
+  return std::span(found_).first(kept);
+}
+
 }  // namespace palpate

@@ -100,6 +100,10 @@ void TissuePatches::follow_cut(const CutMesh& topology, const std::function<void
   }
 }
 
+bool TissuePatches::has(int tool, int part) const {
+  return part == kTip && std::ranges::find(tips_, tool, &Tip::tool) != tips_.end();
+}
+
 bool TissuePatches::laid() const {
   return std::ranges::any_of(tips_, [](const Tip& tip) { return !tip.nodes.empty(); });
 }
@@ -147,7 +151,8 @@ void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
   tip.approach = (middle - tool.axis_before(kTip).start).norm();
   tip.met = tip.patch.touches();
   const std::span<const int> nodes = tip.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before,
-                                                   to_rest * tool.now, to_rest * middle, kAbove * tip.radius);
+                                                   to_rest * tool.now, {to_rest * middle, to_rest * middle},
+                                                   kAbove * tip.radius);
   if (nodes.empty()) return lift(tip);
   tip.nodes.assign(nodes.begin(), nodes.end());
   tip.give.clear();
