@@ -26,7 +26,8 @@ std::vector<double> presses(PressRig& rig, std::span<const double> aside, double
   std::vector<double> forces;
   for (const double y : aside) {
     rig.press(shaft_tip(y, 0, -0.5 * kShaftRadius));
-    for (int i = 0; i <= 60; ++i) rig.press(shaft_tip(y, 0, -0.5 * kShaftRadius + (depth + 0.5 * kShaftRadius) * i / 60));
+    for (int i = 0; i <= 60; ++i)
+      rig.press(shaft_tip(y, 0, -0.5 * kShaftRadius + (depth + 0.5 * kShaftRadius) * i / 60));
     for (int i = 0; i < 30; ++i) rig.press(shaft_tip(y, 0, depth));
     forces.push_back(-rig.force().z());
   }

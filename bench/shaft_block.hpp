@@ -27,8 +27,8 @@ inline TetMesh shaft_block_of_edges(double h, double beside = 2.5 * kShaftRadius
 inline QuasiStaticSpec shaft_block(double beside = 2.5 * kShaftRadius) {
   QuasiStaticSpec block = touch_block();
   block.offline = Offline{};
-  block.touchable = NodeSelector{
-      {.indices = {}, .box = Box{{-1, -beside - 1e-6, -1e-6}, {1, beside + 1e-6, 1}}, .group = {}}};
+  block.touchable =
+      NodeSelector{{.indices = {}, .box = Box{{-1, -beside - 1e-6, -1e-6}, {1, beside + 1e-6, 1}}, .group = {}}};
   return block;
 }
 

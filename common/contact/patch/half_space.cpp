@@ -12,9 +12,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Moments = std::array<std::array<Matrix3d, 3>, 3>;
 
-// x ln(y + r) but for what cancels over the corners.
-double leg(double x, double y) {
-  return x == 0 ? 0 : x * std::asinh(y / std::abs(x));
+// x asinh(y / |x|), r being the distance: x ln(y + r) but for what cancels over the corners.
+double leg(double x, double y, double r) {
+  return x == 0 ? 0 : std::copysign(x, x * y) * std::log((std::abs(y) + r) / std::abs(x));
 }
 
 HalfSpace::Corner over_corners(double x, double y, double a) {
@@ -43,7 +43,8 @@ Matrix3d HalfSpace::at(const Vector3d& d, const Vector3d& normal) const {
 
 // The antiderivatives of y^2 / r^3, x^2 / r^3 and x y / r^3.
 HalfSpace::Corner HalfSpace::corner(double x, double y) {
-  return {leg(x, y), leg(y, x), -std::hypot(x, y)};
+  const double r = std::sqrt(x * x + y * y);
+  return {leg(x, y, r), leg(y, x, r), -r};
 }
 
 double HalfSpace::pressed(const Corner& sum) const {

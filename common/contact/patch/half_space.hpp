@@ -18,8 +18,8 @@ struct HalfSpace {
   /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
   Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
 
-  /// What a rectangle's corner at (x, y) [m] gives to what the tractions on all of it do [m]: the sums over its corners,
-  /// with signs + - - + in turn, are what pressed() and sheared() take.
+  /// What a rectangle's corner at (x, y) [m] gives to what the tractions on all of it do [m]: the sums over its
+  /// corners, with signs + - - + in turn, are what pressed() and sheared() take.
   struct Corner {
     double across, along, mixed;
   };

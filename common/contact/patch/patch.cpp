@@ -21,6 +21,7 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   normal_ = Vector3d::UnitZ();
   across_ = up_ = at_ = force_ = travel_ = Vector3d::Zero();
   cells_.resize(points);
+  cell_length_ = grid.edge();
   feet_.resize(grid.feet());
   active_.assign(points, 0);
   wanted_.assign(points, 0.0);
@@ -90,6 +91,7 @@ Vector3d Patch::place_of_force() const {
 
 // G of a force that is spread over a cell, by a distance that is as long for the cell itself.
 void Patch::lie_beside(const Patch& other) {
+  if (other.normal_.dot(normal_) <= 0) return;  // another side of the body
   const HalfSpace& half_space = grid_.half_space();
   const double scale = half_space.scale() * (1 - half_space.poisson) * other.force_.dot(normal_) / other.pressing_;
   const double self = half_space.scale() * (1 - half_space.poisson) / other.kernel_.own();
@@ -299,7 +301,7 @@ void Patch::state(State& s) {
   s.value(pressing_);
   s.all(pressure_force_);
   for (Cell& cell : cells_) s.value(cell.at);
-  if (grid_.strip()) s.value(cell_length_);
+  s.value(cell_length_);
   s.value(depth_);
   s.value(normal_);
   s.value(at_);
@@ -312,6 +314,7 @@ void Patch::state(State& s) {
     s.value(f.force);
   }
   s.value(loaded_);
+  if (s.restoring() && cell_length_ > 0) kernel_.lay(cell_length_);
 }
 
 }  // namespace palpate

@@ -22,6 +22,11 @@ struct PatchForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
 
+/// A straight line within a triangle: its two ends, as a patch sees them, and their weights.
+struct TriangleCut {
+  std::array<Eigen::Vector3d, 2> end, weights;
+};
+
 /// The contact of one sphere, or of a segment's flank, with a body at rest under its loads: pressures on cells that go
 /// along with it, not with the mesh, and one shear over all of them that sticks or slips by Coulomb's law. The tissue
 /// gives way by
@@ -106,7 +111,8 @@ class Patch {
   struct Foot {
     std::array<int, 3> local{-1, -1, -1};  ///< of nodes_
     Eigen::Vector3d weights;
-    double depth = 0;  ///< [m] along the normal, of the rest surface below the patch's origin; infinite where there is none
+    double depth =
+        0;  ///< [m] along the normal, of the rest surface below the patch's origin; infinite where there is none
   };
   struct Cell {
     double gap = 0;    ///< [m] by which the part reaches below the rest surface here; -infinity where there is none
@@ -141,8 +147,10 @@ class Patch {
   bool find_nearest(const Ground& ground, const Segment& axis);
   bool turn_along(const Segment& axis);
   Overlap overlap(const Ground& ground) const;
+  void add_overlap(const Ground& ground, int triangle, double under, TriangleCut cut, Overlap& all) const;
   void lay_window(const Overlap& overlap);
   void lay_strip(const Ground& ground);
+  void keep_below(const Ground& ground);
   void lay_row(int row, const std::array<Eigen::Vector3d, 3>& triangle);
   void lay_squares();
   void stand_on_nearest(const Ground& ground, int foot);
@@ -169,7 +177,7 @@ class Patch {
 
   const PatchGrid& grid_;
   Eigen::Vector3d normal_, across_, up_, at_, force_, travel_;
-  Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();  ///< [m] the sphere's middle, the segment's start, at lay()
+  Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();       ///< [m] the sphere's middle, the segment's start, at lay()
   Eigen::Isometry3d back_ = Eigen::Isometry3d::Identity();  ///< the tool's motion within the step, backwards
   Anchor anchor_;
   Eigen::Vector3d bent_ = Eigen::Vector3d::Zero();     ///< [m] the tissue's shear under the patch
@@ -184,13 +192,13 @@ class Patch {
   std::vector<double> inertia_;                             ///< [m/N] along the normal, per node of nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;
-  std::span<const int> near_;  ///< triangles, of lay() alone
+  std::span<int> near_;  ///< triangles, of lay() alone
   PatchKernel kernel_;
   Flank flank_;
   double window_ = 0, cell_length_ = 0;  ///< [m] along the first axis: where the columns begin, and a column's
   std::vector<Cell> cells_;              ///< per cell of the grid
   std::vector<Foot> feet_;               ///< per foot of the grid
-  std::vector<int> nodes_;     ///< under the patch
+  std::vector<int> nodes_;               ///< under the patch
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
@@ -198,8 +206,8 @@ class Patch {
   std::vector<Eigen::Matrix3d> near_field_;  ///< K between nodes_, kMaxNodes a row
   std::vector<double> k_, k_phi_;
   std::array<PatchForce, kMaxNodes> forces_;
-  int loaded_ = 0;                   ///< how many of them
-  std::vector<double> k_feet_;       ///< [m/N] K between feet, along the normal
+  int loaded_ = 0;              ///< how many of them
+  std::vector<double> k_feet_;  ///< [m/N] K between feet, along the normal
 };
 
 }  // namespace palpate

@@ -36,13 +36,15 @@ void Patch::fill_normal() {
   for (int a = 0; a < grid_.feet(); ++a)
     for (int i = 0; i < count; ++i) {
       double sum = 0;
-      for (int v = 0; v < 3 && feet_[a].local[v] >= 0; ++v) sum += feet_[a].weights[v] * k_[i * kMaxNodes + feet_[a].local[v]];
+      for (int v = 0; v < 3 && feet_[a].local[v] >= 0; ++v)
+        sum += feet_[a].weights[v] * k_[i * kMaxNodes + feet_[a].local[v]];
       k_phi_[a * kMaxNodes + i] = sum;
     }
   for (int a = 0; a < grid_.feet(); ++a)
     for (int b = 0; b <= a; ++b) {
       double sum = 0;
-      for (int v = 0; v < 3 && feet_[b].local[v] >= 0; ++v) sum += feet_[b].weights[v] * k_phi_[a * kMaxNodes + feet_[b].local[v]];
+      for (int v = 0; v < 3 && feet_[b].local[v] >= 0; ++v)
+        sum += feet_[b].weights[v] * k_phi_[a * kMaxNodes + feet_[b].local[v]];
       k_feet_[a * grid_.feet() + b] = k_feet_[b * grid_.feet() + a] = sum;
     }
   list_laid();

@@ -6,9 +6,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kSquaresPerRadius = 4;  // 44 squares in all
-constexpr double kWidth = 0.95;          // of the radius: beyond it the sphere is too steep to press
-constexpr int kStripColumns = 12, kStripRows = 8;
+constexpr double kSquaresPerRadius = 4;            // 44 squares in all
+constexpr double kWidth = 0.95;                    // of the radius: beyond it the sphere is too steep to press
+constexpr int kStripColumns = 10, kStripRows = 8;  // with a tip's, 124
 
 int squares_across() {
   return static_cast<int>(2 * kWidth * kSquaresPerRadius) + 1;
@@ -25,7 +25,8 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
       rows_(strip() ? kStripRows : squares_across()) {
   for (int i = 0; i < columns_; ++i)
     for (int j = 0; j < rows_; ++j) {
-      const double beside = strip() ? std::abs(across(j)) : edge_ * std::hypot(i - 0.5 * (columns_ - 1), j - 0.5 * (rows_ - 1));
+      const double beside =
+          strip() ? std::abs(across(j)) : edge_ * std::hypot(i - 0.5 * (columns_ - 1), j - 0.5 * (rows_ - 1));
       if (beside >= kWidth * radius) continue;
       cells_.push_back({i, j});
       rise_.push_back(std::sqrt(radius * radius - beside * beside));

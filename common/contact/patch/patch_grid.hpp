@@ -26,8 +26,8 @@ class PatchGrid {
   int rows() const { return rows_; }
   int column(int p) const { return cells_[p].column; }
   int row(int p) const { return cells_[p].row; }
-  double across(int row) const { return edge_ * (row - 0.5 * (rows_ - 1)); }    ///< [m] of a row's middle
-  double rise(int p) const { return rise_[p]; }                                ///< [m] of the sphere, or the axis, over it
+  double across(int row) const { return edge_ * (row - 0.5 * (rows_ - 1)); }  ///< [m] of a row's middle
+  double rise(int p) const { return rise_[p]; }  ///< [m] of the sphere, or the axis, over it
   /// [m] about the patch's middle, of a sphere's square.
   Eigen::Vector2d middle(int p) const { return {edge_ * (column(p) - 0.5 * (columns_ - 1)), across(row(p))}; }
 
@@ -55,7 +55,7 @@ class PatchKernel {
 
   /// For cells of a length [m].
   void lay(double length);
-  double own() const { return pressed_[0]; }  ///< [m/N] of a cell by itself
+  double own() const { return pressed_[0]; }                         ///< [m/N] of a cell by itself
   double pressed(int p, int q) const { return pressed_[at(p, q)]; }  ///< [m/N]
   Eigen::Matrix2d sheared(int p, int q) const;                       ///< [m/N]
 

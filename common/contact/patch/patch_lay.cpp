@@ -121,6 +121,7 @@ void Patch::lay_feet(const Ground& ground) {
     const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
     std::array<int, 3> corners{-2, -2, -2};
+    if (grid_.strip() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0)) continue;
     for (int i = 0; i < grid_.feet(); ++i) {
       const Vector2d d = foot_middle(i) - flat[0].head<2>();
       const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;

@@ -9,19 +9,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastLevel = 0.2;    // cosine between the axis and the surface, below which its flank does not press
-constexpr double kWindow = 1.5;        // half a window, over that of an even overlap with the same moments
-constexpr double kBeside = 0.25;       // radii above the surface from which a cell is not there
-constexpr double kMostDepth = 10;        // radii below the surface, likewise
-constexpr double kLeastCover = 1e-3;   // of a cell, likewise
-
-/// A straight line within a triangle: its two ends, as the patch sees them, and their weights.
-struct Cut {
-  std::array<Vector3d, 2> end, weights;
-};
+constexpr double kLeastLevel = 0.2;  // cosine between the axis and the surface, below which its flank does not press
+constexpr double kWindow = 1.5;      // half a window, over that of an even overlap with the same moments
+constexpr double kBeside = 0.25;     // radii above the surface from which a cell is not there
+constexpr double kMostDepth = 10;    // radii below the surface, likewise
+constexpr double kLines[] = {0, -0.35, 0.35, -0.65, 0.65, -0.85, 0.85};  // radii aside, along which it overlaps
+constexpr double kLeastCover = 1e-3;                                     // of a cell, likewise
 
 /// By the line at `y` along the first axis; false if it does not meet the triangle. The ends go along the axis.
-bool cut_at(const std::array<Vector3d, 3>& t, double y, Cut& cut) {
+bool cut_at(const std::array<Vector3d, 3>& t, double y, TriangleCut& cut) {
   int count = 0;
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
@@ -42,11 +38,11 @@ bool cut_at(const std::array<Vector3d, 3>& t, double y, Cut& cut) {
 }
 
 /// The piece of a cut between two places along the axis; false if there is none.
-bool clip(Cut& cut, double from, double to) {
+bool clip(TriangleCut& cut, double from, double to) {
   const double low = cut.end[0].x(), length = cut.end[1].x() - low;
   const double begin = std::max(from, low), end = std::min(to, low + length);
   if (!(end > begin)) return false;
-  const Cut whole = cut;
+  const TriangleCut whole = cut;
   for (const int e : {0, 1}) {
     const double share = ((e == 0 ? begin : end) - low) / length;
     cut.end[e] = (1 - share) * whole.end[0] + share * whole.end[1];
@@ -66,7 +62,7 @@ bool Patch::find_along(const Ground& ground, const Segment& axis) {
     found = overlap(ground);
     if (!(found.sum > 0)) return false;
     const Vector3d next = -found.normal.normalized();
-    const bool done = (next - normal_).squaredNorm() < 1e-20;
+    const bool done = (next - normal_).squaredNorm() < 1e-16;
     normal_ = next;
     if (done) break;
   }
@@ -105,30 +101,42 @@ bool Patch::turn_along(const Segment& axis) {
   return flank_.to > flank_.from;
 }
 
+// Over lines along the axis' underside, spread across the strip.
 Patch::Overlap Patch::overlap(const Ground& ground) const {
   Overlap all;
-  const double under = grid_.radius() * flank_.steep;
+  const double radius = grid_.radius();
   for (const int t : near_) {
     if (!presses(ground, t)) continue;
     const Triangle c = ground.surface.corners(t);
-    Cut cut;
-    if (!cut_at({in_plane(c[0]), in_plane(c[1]), in_plane(c[2])}, 0, cut) || !clip(cut, flank_.from, flank_.to)) continue;
-    const auto gap = [&](const Vector3d& p) { return flank_.slope * p.x() + under - p.z(); };
-    const double g0 = gap(cut.end[0]), g1 = gap(cut.end[1]), x0 = cut.end[0].x(), dx = cut.end[1].x() - x0;
-    if (g0 <= 0 && g1 <= 0) continue;
-    const double zero = g0 / (g0 - g1);
-    if ((g0 < 0 || g1 < 0) && !clip(cut, g0 < 0 ? x0 + zero * dx : x0, g1 < 0 ? x0 + zero * dx : x0 + dx)) continue;
-    const double length = cut.end[1].x() - cut.end[0].x();
-    for (const double share : {0.0, 0.5, 1.0}) {  // Simpson
-      const Vector3d p = (1 - share) * cut.end[0] + share * cut.end[1];
-      const double part = (share == 0.5 ? 4 : 1) * length / 6 * std::max(gap(p), 0.0);
-      all.sum += part;
-      all.first += part * p.x();
-      all.second += part * p.x() * p.x();
-      all.normal += part * ground.surface.normal(t, (1 - share) * cut.weights[0] + share * cut.weights[1]);
+    const double side = up_.dot(laid_at_), y0 = up_.dot(c[0]) - side, y1 = up_.dot(c[1]) - side,
+                 y2 = up_.dot(c[2]) - side;
+    if (std::min({y0, y1, y2}) > radius || std::max({y0, y1, y2}) < -radius) continue;
+    const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+    for (const double share : kLines) {
+      TriangleCut cut;
+      if (cut_at(flat, share * radius, cut) && clip(cut, flank_.from, flank_.to))
+        add_overlap(ground, t, radius * std::sqrt(1 - share * share) * flank_.steep, cut, all);
     }
   }
   return all;
+}
+
+// `under` [m]: of the part's underside below its axis.
+void Patch::add_overlap(const Ground& ground, int triangle, double under, TriangleCut cut, Overlap& all) const {
+  const auto gap = [&](const Vector3d& p) { return flank_.slope * p.x() + under - p.z(); };
+  const double g0 = gap(cut.end[0]), g1 = gap(cut.end[1]), x0 = cut.end[0].x(), dx = cut.end[1].x() - x0;
+  if (g0 <= 0 && g1 <= 0) return;
+  const double zero = x0 + g0 / (g0 - g1) * dx;
+  if ((g0 < 0 || g1 < 0) && !clip(cut, g0 < 0 ? zero : x0, g1 < 0 ? zero : x0 + dx)) return;
+  const double length = cut.end[1].x() - cut.end[0].x();
+  for (const double share : {0.0, 0.5, 1.0}) {  // Simpson
+    const Vector3d p = (1 - share) * cut.end[0] + share * cut.end[1];
+    const double part = (share == 0.5 ? 4 : 1) * length / 6 * std::max(gap(p), 0.0);
+    all.sum += part;
+    all.first += part * p.x();
+    all.second += part * p.x() * p.x();
+    all.normal += part * ground.surface.normal(triangle, (1 - share) * cut.weights[0] + share * cut.weights[1]);
+  }
 }
 
 void Patch::lay_window(const Overlap& o) {
@@ -142,8 +150,8 @@ void Patch::lay_window(const Overlap& o) {
 void Patch::lay_strip(const Ground& ground) {
   kernel_.lay(cell_length_);
   for (Cell& cell : cells_) cell = {.gap = 0, .cover = 0};
+  keep_below(ground);
   for (const int t : near_) {
-    if (!presses(ground, t)) continue;
     const Triangle c = ground.surface.corners(t);
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
     for (int row = 0; row < grid_.rows(); ++row) lay_row(row, flat);
@@ -166,10 +174,27 @@ void Patch::lay_strip(const Ground& ground) {
     if (!std::isfinite(feet_[i].depth)) stand_on_nearest(ground, i);
 }
 
+// Of the triangles that are near, those that the window lies over.
+void Patch::keep_below(const Ground& ground) {
+  const double end = window_ + grid_.columns() * cell_length_;
+  const auto aside = [&](int t) {
+    if (!presses(ground, t)) return true;
+    const Triangle c = ground.surface.corners(t);
+    Vector3d low = in_plane(c[0]), high = low;
+    for (const int v : {1, 2}) {
+      const Vector3d p = in_plane(c[v]);
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    return low.x() > end || high.x() < window_ || low.y() > grid_.radius() || high.y() < -grid_.radius();
+  };
+  near_ = near_.first(std::remove_if(near_.begin(), near_.end(), aside) - near_.begin());
+}
+
 // What a line through the cells of a row finds of a triangle below it: how much of each cell lies over it, and how deep
 // that has come.
 void Patch::lay_row(int row, const std::array<Vector3d, 3>& triangle) {
-  Cut cut;
+  TriangleCut cut;
   const double end = window_ + grid_.columns() * cell_length_;
   if (!cut_at(triangle, grid_.across(row), cut) || !clip(cut, window_, end)) return;
   const double from = cut.end[0].x(), to = cut.end[1].x();
@@ -196,7 +221,6 @@ void Patch::stand_on_nearest(const Ground& ground, int foot) {
   int nearest = -1;
   Vector3d weights;
   for (const int t : near_) {
-    if (!presses(ground, t)) continue;
     const ClosestPoint p = closest_point(under, ground.surface.corners(t));
     if (p.squared_distance >= least) continue;
     least = p.squared_distance;

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 
-#include "common/tool/instrument.hpp"
+#include "common/contact/patch/patch_parts.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-/// A part of a tool that presses by a patch: a ball at a tip, and what is no jaw of the rest.
-bool presses_by_patch(const EndAbilities& can, const ToolPart& part, int number, bool relaxes) {
-  if (part.length == 0) return can.ball.has_value();
-  return !relaxes && (!can.turning || number == 0);
-}
 
 // [m] of a node under a force on another one; zero beyond the touchable ones.
 Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3d& force) {
@@ -29,14 +23,9 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
                        const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep)
     : compliance_(compliance), friction_(settings.contact.friction), surface_(map), grids_(half_space) {
   double largest = 0;
-  for (std::size_t t = 0; t < settings.tools.size(); ++t) {
-    const EndAbilities can = abilities_of(settings.tools[t]);
-    const std::vector<ToolPart> parts = tool_parts(settings.tools[t]);
-    for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-      if (!presses_by_patch(can, parts[p], p, creep.has_value())) continue;
-      parts_.push_back({static_cast<int>(t), p, Patch(grids_.of(parts[p].radius, parts[p].length), creep)});
-      largest = std::max(largest, parts[p].radius);
-    }
+  for (const PatchPart& part : patch_parts(settings.tools, !creep)) {
+    parts_.push_back({part.tool, part.part, Patch(grids_.of(part.radius, part.length), creep)});
+    largest = std::max(largest, part.radius);
   }
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
   moved_.reserve(Patch::kMaxNodes);
