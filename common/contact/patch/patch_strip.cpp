@@ -10,6 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastLevel = 0.2;  // cosine between the axis and the surface, below which its flank does not press
+constexpr int kTurnsOn = 2;          // of the normal within a step once it is known
 constexpr double kWindow = 1.5;      // half a window, over that of an even overlap with the same moments
 constexpr double kBeside = 0.25;     // radii above the surface from which a cell is not there
 constexpr double kMostDepth = 10;    // radii below the surface, likewise
@@ -57,7 +58,8 @@ bool clip(TriangleCut& cut, double from, double to) {
 bool Patch::find_along(const Ground& ground, const Segment& axis) {
   if (!touches() && !find_nearest(ground, axis)) return false;
   Overlap found;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  const int turns = touches() ? kTurnsOn : kTurns;
+  for (int turn = 0; turn < turns; ++turn) {
     if (!turn_along(axis)) return false;
     found = overlap(ground);
     if (!(found.sum > 0)) return false;
@@ -129,14 +131,16 @@ void Patch::add_overlap(const Ground& ground, int triangle, double under, Triang
   const double zero = x0 + g0 / (g0 - g1) * dx;
   if ((g0 < 0 || g1 < 0) && !clip(cut, g0 < 0 ? zero : x0, g1 < 0 ? zero : x0 + dx)) return;
   const double length = cut.end[1].x() - cut.end[0].x();
+  double sum = 0;
   for (const double share : {0.0, 0.5, 1.0}) {  // Simpson
     const Vector3d p = (1 - share) * cut.end[0] + share * cut.end[1];
     const double part = (share == 0.5 ? 4 : 1) * length / 6 * std::max(gap(p), 0.0);
-    all.sum += part;
+    sum += part;
     all.first += part * p.x();
     all.second += part * p.x() * p.x();
-    all.normal += part * ground.surface.normal(triangle, (1 - share) * cut.weights[0] + share * cut.weights[1]);
   }
+  all.sum += sum;
+  all.normal += sum * ground.surface.normal(triangle, 0.5 * (cut.weights[0] + cut.weights[1]));
 }
 
 void Patch::lay_window(const Overlap& o) {
