@@ -55,7 +55,7 @@ ToolContacts::ToolContacts(const ContactSurface& surface, ContactLaw& law, std::
   body_edge_ = sum / (3.0 * surface.triangle_count());
   near_.reserve(parts * surface.triangle_count());
   near_end_.reserve(parts);
-  if (options_.tips) tip_near_.reserve(surface.triangle_count());
+  if (options_.elsewhere) own_near_.reserve(surface.triangle_count());
   candidates_.reserve(surface.triangle_count());
   crossings_.resize(kMaxSwept + 1);
 }

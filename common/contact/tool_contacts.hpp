@@ -25,8 +25,8 @@ class ToolContacts {
   struct Options {
     double offset = 0;  ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
-    /// Whether the spheres of probes' tips touch a triangle so; others see to the rest. Empty: all.
-    std::function<bool(int triangle)> tips;
+    /// Whether a part of a tool touches a triangle otherwise. Empty: none does.
+    std::function<bool(int tool, int part, int triangle)> elsewhere;
   };
 
   /// `parts`: of all tools. Surface and law outlive this object.
@@ -139,7 +139,9 @@ class ToolContacts {
   double thrust(const MovingTool& moving, int part) const;
   Touching touch_of(const TouchContact& contact, const MovingTool& moving, const Segment& axis,
                     const Eigen::Vector3d& into) const;
-  bool is_left_out(const MovingTool& moving, int part, int triangle) const;
+  bool is_left_out(int tool, int part, int triangle) const {
+    return options_.elsewhere && options_.elsewhere(tool, part, triangle);
+  }
   double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
 
   ContactLaw& law_;
@@ -151,7 +153,7 @@ class ToolContacts {
   int vertex_clock_ = 0;
   std::vector<int> near_;              ///< triangles near each part, part by part
   std::vector<std::size_t> near_end_;  ///< where each part's end in near_
-  std::vector<int> tip_near_;          ///< those of a tip that are its own
+  std::vector<int> own_near_;          ///< those of a part that it touches so
   std::vector<Candidate> candidates_;  ///< triangles that a segment may touch
   std::vector<Crossing> crossings_;    ///< of points along a segment
 };

@@ -48,20 +48,16 @@ void ToolContacts::collide(std::span<const MovingTool> tools) {
 
 void ToolContacts::collide_part(const MovingTool& moving, int tool, int part, std::span<const int> near) {
   const bool sphere = moving.parts[part].length == 0;
-  if (sphere && options_.tips) {
-    tip_near_.clear();
-    std::ranges::copy_if(near, std::back_inserter(tip_near_), [&](int t) { return !is_left_out(moving, part, t); });
-    near = tip_near_;
+  if (options_.elsewhere) {
+    own_near_.clear();
+    std::ranges::copy_if(near, std::back_inserter(own_near_), [&](int t) { return !is_left_out(tool, part, t); });
+    near = own_near_;
     if (near.empty()) return;
   }
   const bool crossed = sphere ? add_crossing(moving, tool, part) : add_crossings(moving, tool, part);
   if (near.empty() || (sphere && crossed)) return;
   add_vertices(moving, tool, part, near);
   sphere ? add_face(moving, tool, part, near) : add_faces(moving, tool, part, near);
-}
-
-bool ToolContacts::is_left_out(const MovingTool& moving, int part, int triangle) const {
-  return part == 0 && moving.parts[part].length == 0 && options_.tips && !options_.tips(triangle);
 }
 
 // The contact of a part that carries force and lies nearest to a place along it [m], if one does so within a distance
@@ -84,7 +80,7 @@ bool ToolContacts::add_crossing(const MovingTool& moving, int tool, int part) {
   const Eigen::Vector3d before = moving.axis_before(part).start, now = moving.axis(part).start;
   Crossing first;
   for (int t : surface_.find(before, now, 0))
-    if (!is_left_out(moving, part, t))
+    if (!is_left_out(tool, part, t))
       first.meet(t, sweep_point(before, now, surface_.previous_corners(t), surface_.corners(t)));
   return first.triangle >= 0 && add_at(first, moving, tool, part, 0);
 }

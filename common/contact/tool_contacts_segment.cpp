@@ -91,6 +91,7 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
   const double motion =
       std::sqrt(std::max((now.start - before.start).squaredNorm(), (now.end - before.end).squaredNorm()));
   for (int t : found) {
+    if (is_left_out(tool, part, t)) continue;
     if (surface_.triangle_normal(t).dot(surface_.outer_side(surface_.triangle(t))) <= 0) continue;  // folded over
     const auto [from, to] = points_in(surface_.swept_box(t), now, motion, last);
     for (int i = from; i <= to; ++i) {

@@ -44,7 +44,7 @@ TEST_F(ToolsBadBody, ACheckSaysWhatTouchesHowAndWhatTheTensorsAreFrom) {
     EXPECT_EQ(said.status, 0) << said.err;
     return said.out.find(sentence) != std::string::npos;
   };
-  const std::string patch = "by a patch of its own", chosen = "chosen, since linear ones bend too stiffly";
+  const std::string patch = "each by a patch of its own", chosen = "chosen, since linear ones bend too stiffly";
   EXPECT_TRUE(says(patch));
   EXPECT_TRUE(says("quadratic tetrahedra") && says(chosen));
   replace("[[tool]]\n", "[body.offline]\nelement = \"p1\"\n[[tool]]\n");

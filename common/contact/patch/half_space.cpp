@@ -12,18 +12,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Moments = std::array<std::array<Matrix3d, 3>, 3>;
 
-// Over the corners of a square about (x, y), in turn with signs + - - +.
-template <class Corner>
-double over_corners(double x, double y, double a, Corner&& corner) {
-  double sum = 0;
-  for (const int sx : {1, -1})
-    for (const int sy : {1, -1}) sum += sx * sy * corner(x + 0.5 * sx * a, y + 0.5 * sy * a);
-  return sum;
+// x asinh(y / |x|), r being the distance: x ln(y + r) but for what cancels over the corners.
+double leg(double x, double y, double r) {
+  return x == 0 ? 0 : std::copysign(x, x * y) * std::log((std::abs(y) + r) / std::abs(x));
 }
 
-// x ln(y + r) but for what cancels over the corners.
-double leg(double x, double y) {
-  return x == 0 ? 0 : x * std::asinh(y / std::abs(x));
+HalfSpace::Corner over_corners(double x, double y, double a) {
+  HalfSpace::Corner sum{0, 0, 0};
+  for (const int sx : {1, -1})
+    for (const int sy : {1, -1}) {
+      const HalfSpace::Corner c = HalfSpace::corner(x + 0.5 * sx * a, y + 0.5 * sy * a);
+      sum.across += sx * sy * c.across;
+      sum.along += sx * sy * c.along;
+      sum.mixed += sx * sy * c.mixed;
+    }
+  return sum;
 }
 
 }  // namespace
@@ -38,19 +41,29 @@ Matrix3d HalfSpace::at(const Vector3d& d, const Vector3d& normal) const {
   return scale() / r * ((1 - poisson) * Matrix3d::Identity() + poisson / (r * r) * across * across.transpose());
 }
 
+// The antiderivatives of y^2 / r^3, x^2 / r^3 and x y / r^3.
+HalfSpace::Corner HalfSpace::corner(double x, double y) {
+  const double r = std::sqrt(x * x + y * y);
+  return {leg(x, y, r), leg(y, x, r), -r};
+}
+
+double HalfSpace::pressed(const Corner& sum) const {
+  return scale() * (1 - poisson) * (sum.across + sum.along);
+}
+
+Eigen::Matrix2d HalfSpace::sheared(const Corner& sum) const {
+  Eigen::Matrix2d k;
+  k << sum.along, sum.mixed, sum.mixed, sum.across;
+  k = poisson * k + (1 - poisson) * (sum.along + sum.across) * Eigen::Matrix2d::Identity();
+  return scale() * k;
+}
+
 double HalfSpace::pressed(double x, double y, double a) const {
-  const double whole = over_corners(x, y, a, [](double p, double q) { return leg(p, q) + leg(q, p); });
-  return scale() * (1 - poisson) * whole;
+  return pressed(over_corners(x, y, a));
 }
 
 Eigen::Matrix2d HalfSpace::sheared(double x, double y, double a) const {
-  const double across = over_corners(x, y, a, [](double p, double q) { return leg(p, q); });  // y^2 / r^3
-  const double along = over_corners(x, y, a, [](double p, double q) { return leg(q, p); });   // x^2 / r^3
-  const double mixed = over_corners(x, y, a, [](double p, double q) { return -std::hypot(p, q); });
-  Eigen::Matrix2d k;
-  k << along, mixed, mixed, across;
-  k = poisson * k + (1 - poisson) * (along + across) * Eigen::Matrix2d::Identity();
-  return scale() * k;
+  return sheared(over_corners(x, y, a));
 }
 
 Moments kernel_moments(const HalfSpace& half_space, const Triangle& s, const Triangle& t, const Vector3d& normal) {

@@ -18,6 +18,15 @@ struct HalfSpace {
   /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
   Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
 
+  /// What a rectangle's corner at (x, y) [m] gives to what the tractions on all of it do [m]: the sums over its
+  /// corners, with signs + - - + in turn, are what pressed() and sheared() take.
+  struct Corner {
+    double across, along, mixed;
+  };
+  static Corner corner(double x, double y);
+  double pressed(const Corner& sum) const;           ///< [m/Pa]
+  Eigen::Matrix2d sheared(const Corner& sum) const;  ///< [m/Pa]
+
   /// [m/Pa] along the normal, at (x, y) [m] from the middle of a square of edge `a` [m] under unit pressure (Love
   /// 1929).
   double pressed(double x, double y, double a) const;

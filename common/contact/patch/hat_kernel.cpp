@@ -78,9 +78,13 @@ void HatKernel::integrate() {
 Matrix3d HatKernel::between(int i, int j) const {
   if (const Matrix3d* block = near_.find(std::max(i, j), std::min(i, j)))
     return i >= j ? *block : Matrix3d(block->transpose());
-  const Vector3d &n_i = surface_.node_normal(i), &n_j = surface_.node_normal(j);
+  return far(surface_, half_space_, i, j);
+}
+
+Matrix3d HatKernel::far(const SmoothSurface& surface, const HalfSpace& half_space, int i, int j) {
+  const Vector3d &n_i = surface.node_normal(i), &n_j = surface.node_normal(j);
   if (n_i.dot(n_j) <= 0) return Matrix3d::Zero();
-  return half_space_.at(surface_.map().position[i] - surface_.map().position[j], (n_i + n_j).normalized());
+  return half_space.at(surface.map().position[i] - surface.map().position[j], (n_i + n_j).normalized());
 }
 
 }  // namespace palpate

@@ -14,6 +14,8 @@ class HatKernel {
   HatKernel(const SmoothSurface& surface, const HalfSpace& half_space, const std::vector<bool>& nodes);
 
   Eigen::Matrix3d between(int i, int j) const;  ///< [m/N]
+  /// [m/N] of nodes that are far from each other, of any surface.
+  static Eigen::Matrix3d far(const SmoothSurface& surface, const HalfSpace& half_space, int i, int j);
 
  private:
   void integrate();

@@ -26,6 +26,11 @@ std::vector<double> reach_of_patches(const SurfaceMap& map, double radius) {
   return reach;
 }
 
+/// Whether a node's compliance is known: touchable, or held.
+bool is_known(const SurfaceMap& map, int n) {
+  return n < map.touchable || std::ranges::count(map.fixed[n], true) == 3;
+}
+
 /// A share of a node in an average.
 struct Share {
   int node;
@@ -33,18 +38,17 @@ struct Share {
 };
 using Averages = std::vector<std::vector<Share>>;  // per node
 
-/// Of the nodes that can be pressed, over those whose compliance is known: touchable, or held.
+/// Of the nodes that can be pressed, over those whose compliance is known.
 Averages averages_of(const SmoothSurface& surface, double radius, double resolved) {
   const SurfaceMap& map = surface.map();
   const std::vector<bool> pressed = pressed_nodes(map);
-  const auto known = [&](int n) { return n < map.touchable || std::ranges::count(map.fixed[n], true) == 3; };
   std::vector<double> width;
   for (int n = 0; n < map.size(); ++n) width.push_back(std::max(radius, resolved * std::sqrt(surface.weight(n))));
   Averages averages(map.size());
   const auto add = [&](int i, int k) {
     const double far = (map.position[i] - map.position[k]).squaredNorm() / (width[i] * width[i]);
     const double facing = surface.node_normal(i).dot(surface.node_normal(k));
-    if (pressed[i] && far < 1 && facing > 0 && known(k))
+    if (pressed[i] && far < 1 && facing > 0 && is_known(map, k))
       averages[i].push_back({k, facing * (1 - far) * (1 - far) * surface.weight(k)});
   };
   for_each_near_pair(map.position, width, [&](int i, int k) {
@@ -66,6 +70,12 @@ std::vector<bool> nodes_of(const Averages& averages) {
   return nodes;
 }
 
+/// [m/N] Adds C between two nodes; zero beyond those that can be touched.
+void add_compliance(const Compliance<double>& c, int i, int j, Matrix3d& to) {
+  if (i >= c.row_nodes() || j >= c.column_nodes()) return;
+  for (int axis = 0; axis < 3; ++axis) to.col(axis) += Eigen::Map<const Vector3d>(c.column(j, axis) + 3 * i);
+}
+
 /// [m/N] C - W^T G W between two nodes.
 class Beyond {
  public:
@@ -74,9 +84,7 @@ class Beyond {
       : compliance_(compliance), half_space_(surface, half_space, nodes) {}
   Matrix3d operator()(int i, int j) const {
     Matrix3d beyond = -half_space_.between(i, j);
-    if (i >= compliance_.row_nodes() || j >= compliance_.column_nodes()) return beyond;
-    for (int axis = 0; axis < 3; ++axis)
-      beyond.col(axis) += Eigen::Map<const Vector3d>(compliance_.column(j, axis) + 3 * i);
+    add_compliance(compliance_, i, j, beyond);
     return beyond;
   }
 
@@ -89,7 +97,10 @@ class Beyond {
 
 NearField::NearField(const SmoothSurface& surface, const Compliance<double>& compliance, const HalfSpace& half_space,
                      double radius, double resolved)
-    : pairs_(surface.map().position, reach_of_patches(surface.map(), radius)) {
+    : surface_(surface),
+      compliance_(&compliance),
+      half_space_(half_space),
+      pairs_(surface.map().position, reach_of_patches(surface.map(), radius)) {
   const SurfaceMap& map = surface.map();
   const Averages averages = averages_of(surface, radius, resolved);
   const Beyond beyond(surface, compliance, half_space, nodes_of(averages));
@@ -112,6 +123,7 @@ NearField::NearField(const SmoothSurface& surface, const Compliance<double>& com
 }
 
 void NearField::subtract(const Compliance<double>& compliance) {
+  compliance_ = nullptr;
   for (int i = 0; i < compliance.row_nodes(); ++i) {
     const std::span<const int> near = pairs_.lower(i);
     for (std::size_t n = 0; n < near.size(); ++n)
@@ -126,8 +138,16 @@ std::size_t NearField::bytes_of(const SurfaceMap& map, double radius) {
 
 Matrix3d NearField::between(int i, int j) const {
   const Matrix3d* block = pairs_.find(std::max(i, j), std::min(i, j));
-  if (!block) return Matrix3d::Zero();
+  if (!block) return far(i, j);
   return i >= j ? *block : Matrix3d(block->transpose());
+}
+
+// Of a node whose compliance nobody knows nothing can be said beyond the half-space.
+Matrix3d NearField::far(int i, int j) const {
+  if (i == j || !is_known(surface_.map(), i) || !is_known(surface_.map(), j)) return Matrix3d::Zero();
+  Matrix3d beyond = -HatKernel::far(surface_, half_space_, i, j);
+  if (compliance_) add_compliance(*compliance_, i, j, beyond);
+  return beyond;
 }
 
 }  // namespace palpate

@@ -17,20 +17,27 @@ namespace palpate {
 /// the patch make that error larger than G itself, and G + K negative.
 class NearField {
  public:
-  /// For patches of a ball of `radius` [m]; `resolved` [1]: over how many edges the elements behind C know the true
-  /// compliance.
+  /// For patches of parts of `radius` [m] at most; `resolved` [1]: over how many edges the elements behind C know the
+  /// true compliance. All else outlives this object.
   NearField(const SmoothSurface& surface, const Compliance<double>& compliance, const HalfSpace& half_space,
             double radius, double resolved);
-  /// K - C instead: for tissue whose nodes give way by themselves, by inertia now and by C once they are at rest.
+  /// K - C instead: for tissue whose nodes give way by themselves, by inertia now and by C once they are at rest. `C`
+  /// need not live on.
   void subtract(const Compliance<double>& compliance);
 
-  /// [m/N] symmetric under (i, j) and transposition; zero of nodes that are not near each other.
+  /// [m/N] symmetric under (i, j) and transposition. It is kept for nodes that are near each other; of others it is
+  /// worked out, without an average: there the elements know what they do.
   Eigen::Matrix3d between(int i, int j) const;
 
   /// [bytes] that it will take.
   static std::size_t bytes_of(const SurfaceMap& map, double radius);
 
  private:
+  Eigen::Matrix3d far(int i, int j) const;
+
+  const SmoothSurface& surface_;
+  const Compliance<double>* compliance_;  ///< null: subtracted
+  HalfSpace half_space_;
   NearPairs pairs_;
 };
 

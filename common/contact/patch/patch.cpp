@@ -15,12 +15,14 @@ constexpr double kPivotShare = 0.05;      // of a square's own compliance, to wh
 
 }  // namespace
 
-Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : grid_(grid) {
+Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : grid_(grid), kernel_(grid) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
   across_ = up_ = at_ = force_ = travel_ = Vector3d::Zero();
-  feet_.resize(points);
+  cells_.resize(points);
+  cell_length_ = grid.edge();
+  feet_.resize(grid.feet());
   active_.assign(points, 0);
   wanted_.assign(points, 0.0);
   pressure_force_.assign(points, 0.0);
@@ -37,7 +39,8 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   known_.reserve(kMaxNodes);
   near_field_.assign(kMaxNodes * kMaxNodes, Eigen::Matrix3d::Zero());
   k_.assign(kMaxNodes * kMaxNodes, 0.0);
-  k_phi_.assign(kMaxNodes * points, 0.0);
+  k_phi_.assign(kMaxNodes * grid.feet(), 0.0);
+  k_feet_.assign(grid.feet() * grid.feet(), 0.0);
 }
 
 void Patch::lift() {
@@ -55,9 +58,9 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   fill_normal();
   lift_nodes(ground);
   for (int p = 0; p < grid_.size(); ++p) {
-    const Foot& f = feet_[p];
-    wanted_[p] = f.gap;
-    if (!std::isfinite(f.gap)) {
+    const Foot& f = foot(p);
+    wanted_[p] = cells_[p].gap - cells_[p].dent;
+    if (!laid(p)) {
       active_[p] = 0;
       continue;
     }
@@ -66,9 +69,39 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   }
   settle_pressures();
   sum_pressures();
+  at_ = place_of_force();
+  travel_ = at_ - back_ * at_;
   const Vector3d bent_before = bent_;
   shear(ground, {travel_, {}, {}});
   if (memory_) add_slip(bent_before);
+}
+
+// Pressures act through the part's axis.
+Vector3d Patch::place_of_force() const {
+  double along = 0;
+  if (grid_.strip()) {
+    along = window_ + 0.5 * grid_.columns() * cell_length_;
+    if (pressing_ > 0) {
+      along = 0;
+      for (int p = 0; p < grid_.size(); ++p) along += pressure_force_[p] / pressing_ * cell_middle(grid_.column(p));
+    }
+  }
+  return laid_at_ + along * (across_ + flank_.slope * normal_) + grid_.radius() * normal_;
+}
+
+// G of a force that is spread over a cell, by a distance that is as long for the cell itself.
+void Patch::lie_beside(const Patch& other) {
+  if (other.normal_.dot(normal_) <= 0) return;  // another side of the body
+  const HalfSpace& half_space = grid_.half_space();
+  const double scale = half_space.scale() * (1 - half_space.poisson) * other.force_.dot(normal_) / other.pressing_;
+  const double self = half_space.scale() * (1 - half_space.poisson) / other.kernel_.own();
+  for (int q = 0; q < other.grid_.size(); ++q) {
+    if (!(other.pressure_force_[q] > 0)) continue;
+    for (int p = 0; p < grid_.size(); ++p)
+      if (laid(p))
+        cells_[p].dent += scale * other.pressure_force_[q] /
+                          std::sqrt((cells_[p].at - other.cells_[q].at).squaredNorm() + self * self);
+  }
 }
 
 // What the last step's shear does along the normal.
@@ -99,8 +132,8 @@ void Patch::meet(const Ground& ground, std::span<const Eigen::Matrix3d> give) {
 
 // Within a tick the squares stay where they are on the tissue; the sphere goes on along the normal.
 double Patch::gap(int square, const Step& step) const {
-  const Foot& f = feet_[square];
-  double gap = f.gap + normal_.dot(step.middle - laid_at_);
+  const Foot& f = foot(square);
+  double gap = cells_[square].gap + normal_.dot(step.middle - laid_at_);
   for (int v = 0; v < 3; ++v) gap -= f.weights[v] * (normal_.dot(step.moved[f.local[v]]) + lifted_[f.local[v]]);
   return gap;
 }
@@ -108,16 +141,15 @@ double Patch::gap(int square, const Step& step) const {
 double Patch::depth(const Step& step) const {
   double deepest = -std::numeric_limits<double>::infinity();
   for (int p = 0; p < grid_.size(); ++p)
-    if (std::isfinite(feet_[p].gap)) deepest = std::max(deepest, gap(p, step));
+    if (laid(p)) deepest = std::max(deepest, gap(p, step));
   return deepest;
 }
 
 void Patch::step(const Ground& ground, const Step& step) {
   lift_nodes(ground);
   for (int p = 0; p < grid_.size(); ++p) {
-    const bool over = std::isfinite(feet_[p].gap);
-    if (!over) active_[p] = 0;
-    wanted_[p] = over ? gap(p, step) - step.ease : feet_[p].gap;
+    if (!laid(p)) active_[p] = 0;
+    wanted_[p] = laid(p) ? gap(p, step) - step.ease : cells_[p].gap;
   }
   settle_pressures();
   sum_pressures();
@@ -136,9 +168,9 @@ void Patch::remember(std::span<const Vector3d> moved) {
   const int n = grid_.size();
   const double elastic = 1 / memory_->instant();
   for (int p = 0; p < n; ++p) {
-    const Foot& f = feet_[p];
+    const Foot& f = foot(p);
     wanted_[p] = 0;
-    if (!std::isfinite(f.gap)) continue;
+    if (!laid(p)) continue;
     for (const int q : rows_) wanted_[p] += elastic * compliance_[p * n + q] * pressure_force_[q];
     for (int v = 0; v < 3; ++v) wanted_[p] -= elastic * f.weights[v] * normal_.dot(moved[f.local[v]]);
   }
@@ -156,7 +188,7 @@ void Patch::settle_pressures() {
     double largest = 0;
     for (const double f : pressure_force_) largest = std::max(largest, f);
     for (int p = 0; p < n; ++p) {
-      if (!std::isfinite(feet_[p].gap)) continue;
+      if (!laid(p)) continue;
       if (active_[p]) {
         if (pressure_force_[p] < -1e-12 * largest) active_[p] = 0, changed = true;
         continue;
@@ -180,7 +212,7 @@ bool Patch::solve_active() {
   if (m == 0) return true;
   for (int c = 0; c < m; ++c) {
     for (int r = c; r < m; ++r) factor_[ld * c + r] = compliance_[rows_[r] * n + rows_[c]];
-    floor_[c] = kPivotShare * grid_.pressed(0, 0);
+    floor_[c] = kPivotShare * kernel_.own();
     right_[c] = wanted_[rows_[c]];
   }
   kernels::active().cholesky(factor_.data(), m, ld, floor_.data());
@@ -204,14 +236,14 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
   std::array<double, kMaxNodes> share{};
   for (int p = 0; p < n; ++p)
     for (int v = 0; v < 3 && pressure_force_[p] > 0; ++v)
-      share[feet_[p].local[v]] += feet_[p].weights[v] * pressure_force_[p] / pressing_;
+      share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p] / pressing_;
   Vector3d shear = Vector3d::Zero();
   if (ground.friction > 0) {
     Eigen::Matrix<double, 3, 2> plane;
     plane << across_, up_;
     Eigen::Matrix2d c = Eigen::Matrix2d::Zero(), given = Eigen::Matrix2d::Zero();
     for (const int p : rows_)
-      for (const int q : rows_) c += pressure_force_[p] * pressure_force_[q] * grid_.sheared(p, q);
+      for (const int q : rows_) c += pressure_force_[p] * pressure_force_[q] * kernel_.sheared(p, q);
     c /= pressing_ * pressing_;
     for (int i = 0; i < count; ++i)
       for (int j = 0; j < count; ++j)
@@ -247,7 +279,7 @@ Eigen::Matrix3d Patch::give() const {
   double give = 0;
   for (const int p : rows_) {
     for (const int q : rows_) give += pressure_force_[p] * pressure_force_[q] * compliance_[p * n + q];
-    for (int v = 0; v < 3; ++v) share[feet_[p].local[v]] += feet_[p].weights[v] * pressure_force_[p];
+    for (int v = 0; v < 3; ++v) share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p];
   }
   for (std::size_t i = 0; i < inertia_.size(); ++i) give -= share[i] * share[i] * inertia_[i];
   Eigen::Matrix<double, 3, 2> plane;
@@ -267,6 +299,9 @@ void Patch::state(State& s) {
   s.value(resumed_);
   s.value(force_);
   s.value(pressing_);
+  s.all(pressure_force_);
+  for (Cell& cell : cells_) s.value(cell.at);
+  s.value(cell_length_);
   s.value(depth_);
   s.value(normal_);
   s.value(at_);
@@ -279,6 +314,7 @@ void Patch::state(State& s) {
     s.value(f.force);
   }
   s.value(loaded_);
+  if (s.restoring() && cell_length_ > 0) kernel_.lay(cell_length_);
 }
 
 }  // namespace palpate

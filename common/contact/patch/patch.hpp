@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,17 +22,26 @@ struct PatchForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
 
-/// The contact of one sphere with a body at rest under its loads: pressures on squares that go along with the sphere,
-/// not with the mesh, and one shear over all of them that sticks or slips by Coulomb's law. The tissue gives way by
+/// A straight line within a triangle: its two ends, as a patch sees them, and their weights.
+struct TriangleCut {
+  std::array<Eigen::Vector3d, 2> end, weights;
+};
+
+/// The contact of one sphere, or of a segment's flank, with a body at rest under its loads: pressures on cells that go
+/// along with it, not with the mesh, and one shear over all of them that sticks or slips by Coulomb's law. The tissue
+/// gives way by
 ///   A = G + Phi K Phi^T,
-/// G being the half-space's kernel between the squares, Phi the hats of the surface's nodes at them and K what the
+/// G being the half-space's kernel between the cells, Phi the hats of the surface's nodes at their feet and K what the
 /// body's compliance has beyond the half-space's (NearField). All is measured at the body's rest shape, as linear
 /// elasticity does. On tissue that relaxes A is softer by what it creeps within a step, and the past has moved the
-/// ground.
+/// ground; segments do not know of that.
+///
+/// The cells under a segment cover the piece of it that lies in the tissue's rest shape, by how far it does: their
+/// length, their place and their common normal follow the tool's pose without a jump.
 class Patch {
  public:
   static constexpr int kMaxNodes = 64;    ///< near nodes that a patch may rest on
-  static constexpr int kMaxSquares = 44;  ///< of a grid
+  static constexpr int kMaxSquares = 44;  ///< of a sphere's grid
 
   /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
   explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
@@ -51,10 +61,14 @@ class Patch {
     std::span<const Eigen::Matrix3d> give;   ///< [m/N] of each node within the step under a force on it
     double ease = 0;                         ///< [m] of the depth that is not to be put right yet
   };
-  /// The nodes that lie under the sphere now, found by where it stands; empty: it does not touch, and forgets its
-  /// shear. `above` [m]: how far above the rest surface it may be, where that may come towards it.
+  /// The nodes that lie under the part now, found by where its axis lies, of a sphere a point; empty: it does not
+  /// touch, and forgets its shear. `above` [m]: how far above the rest surface a sphere may be, where that may come
+  /// towards it.
   std::span<const int> lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
-                           const Eigen::Vector3d& middle, double above = 0);
+                           const Segment& axis, double above = 0);
+  /// After lay(): another patch's last forces lie on this tissue too. What they do to the cells by the half-space; what
+  /// they do beyond it comes with `moved`.
+  void lie_beside(const Patch& other);
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
   /// the past.
   void press(const Ground& ground, std::span<const Eigen::Vector3d> moved);
@@ -92,10 +106,29 @@ class Patch {
   bool fits(int nodes) const;  ///< whether what was restored can be of a surface of so many nodes
 
  private:
+  static constexpr int kTurns = 6;  ///< at most, of the normal towards that of what lies below
+
   struct Foot {
     std::array<int, 3> local{-1, -1, -1};  ///< of nodes_
     Eigen::Vector3d weights;
-    double gap = 0;  ///< [m] by which the sphere reaches below the rest surface here
+    double depth =
+        0;  ///< [m] along the normal, of the rest surface below the patch's origin; infinite where there is none
+  };
+  struct Cell {
+    double gap = 0;    ///< [m] by which the part reaches below the rest surface here; -infinity where there is none
+    double cover = 1;  ///< share of it below which there is tissue
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< [m] of the rest surface
+    double dent = 0;                               ///< [m] by other patches
+  };
+  /// How a segment lies over the tissue: its axis above the patch's first axis.
+  struct Flank {
+    double slope = 0, steep = 1;  ///< along the normal per length, and the axis' own length per length
+    double from = 0, to = 0;      ///< [m] its straight part
+  };
+  /// The piece of it that lies in the rest shape, by its moments.
+  struct Overlap {
+    double sum = 0, first = 0, second = 0;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
   /// What a step's forces are to bend, and what that takes.
@@ -106,10 +139,27 @@ class Patch {
   };
 
   int local(int node);
+  const Foot& foot(int cell) const { return feet_[grid_.foot(cell)]; }
+  bool laid(int cell) const { return std::isfinite(cells_[cell].gap); }
   double gap(int square, const Step& step) const;
   bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);
-  void turn_to(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, const Eigen::Vector3d& middle);
-  void lay_feet(const Ground& ground, const Eigen::Vector3d& middle);
+  bool find_along(const Ground& ground, const Segment& axis);
+  bool find_nearest(const Ground& ground, const Segment& axis);
+  bool turn_along(const Segment& axis);
+  Overlap overlap(const Ground& ground) const;
+  void add_overlap(const Ground& ground, int triangle, double under, TriangleCut cut, Overlap& all) const;
+  void lay_window(const Overlap& overlap);
+  void lay_strip(const Ground& ground);
+  void keep_below(const Ground& ground);
+  void lay_row(int row, const std::array<Eigen::Vector3d, 3>& triangle);
+  void lay_squares();
+  void stand_on_nearest(const Ground& ground, int foot);
+  void lay_feet(const Ground& ground);
+  bool presses(const Ground& ground, int triangle) const;
+  Eigen::Vector3d in_plane(const Eigen::Vector3d& p) const;
+  Eigen::Vector2d foot_middle(int foot) const;
+  double cell_middle(int column) const { return window_ + (column + 0.5) * cell_length_; }
+  Eigen::Vector3d place_of_force() const;
   void fill_near_field(const NearField& near_field);
   void fill_normal();
   void keep_positive();
@@ -127,7 +177,8 @@ class Patch {
 
   const PatchGrid& grid_;
   Eigen::Vector3d normal_, across_, up_, at_, force_, travel_;
-  Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();  ///< [m] the sphere's middle at lay()
+  Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();       ///< [m] the sphere's middle, the segment's start, at lay()
+  Eigen::Isometry3d back_ = Eigen::Isometry3d::Identity();  ///< the tool's motion within the step, backwards
   Anchor anchor_;
   Eigen::Vector3d bent_ = Eigen::Vector3d::Zero();     ///< [m] the tissue's shear under the patch
   Eigen::Vector3d resumed_ = Eigen::Vector3d::Zero();  ///< [N] not zero: the shear is to begin with its part
@@ -141,9 +192,13 @@ class Patch {
   std::vector<double> inertia_;                             ///< [m/N] along the normal, per node of nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;
-  std::span<const int> near_;  ///< triangles, of lay() alone
-  std::vector<Foot> feet_;     ///< per square
-  std::vector<int> nodes_;     ///< under the patch
+  std::span<int> near_;  ///< triangles, of lay() alone
+  PatchKernel kernel_;
+  Flank flank_;
+  double window_ = 0, cell_length_ = 0;  ///< [m] along the first axis: where the columns begin, and a column's
+  std::vector<Cell> cells_;              ///< per cell of the grid
+  std::vector<Foot> feet_;               ///< per foot of the grid
+  std::vector<int> nodes_;               ///< under the patch
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
@@ -151,7 +206,8 @@ class Patch {
   std::vector<Eigen::Matrix3d> near_field_;  ///< K between nodes_, kMaxNodes a row
   std::vector<double> k_, k_phi_;
   std::array<PatchForce, kMaxNodes> forces_;
-  int loaded_ = 0;  ///< how many of them
+  int loaded_ = 0;              ///< how many of them
+  std::vector<double> k_feet_;  ///< [m/N] K between feet, along the normal
 };
 
 }  // namespace palpate

@@ -33,25 +33,29 @@ void Patch::fill_normal() {
   for (int i = 0; i < count; ++i)
     for (int j = 0; j <= i; ++j)
       k_[i * kMaxNodes + j] = k_[j * kMaxNodes + i] = normal_.dot(near_field_[i * kMaxNodes + j] * normal_);
-  for (int p = 0; p < n; ++p) {
-    const Foot& f = feet_[p];
-    if (!std::isfinite(f.gap)) continue;
+  for (int a = 0; a < grid_.feet(); ++a)
     for (int i = 0; i < count; ++i) {
       double sum = 0;
-      for (int v = 0; v < 3; ++v) sum += f.weights[v] * k_[i * kMaxNodes + f.local[v]];
-      k_phi_[p * kMaxNodes + i] = sum;
+      for (int v = 0; v < 3 && feet_[a].local[v] >= 0; ++v)
+        sum += feet_[a].weights[v] * k_[i * kMaxNodes + feet_[a].local[v]];
+      k_phi_[a * kMaxNodes + i] = sum;
     }
-  }
-  for (int p = 0; p < n; ++p) {
-    if (!std::isfinite(feet_[p].gap)) continue;
-    for (int q = 0; q <= p; ++q) {
-      const Foot& f = feet_[q];
-      if (!std::isfinite(f.gap)) continue;
-      double sum = grid_.pressed(p, q);
-      for (int v = 0; v < 3; ++v) sum += f.weights[v] * k_phi_[p * kMaxNodes + f.local[v]];
+  for (int a = 0; a < grid_.feet(); ++a)
+    for (int b = 0; b <= a; ++b) {
+      double sum = 0;
+      for (int v = 0; v < 3 && feet_[b].local[v] >= 0; ++v)
+        sum += feet_[b].weights[v] * k_phi_[a * kMaxNodes + feet_[b].local[v]];
+      k_feet_[a * grid_.feet() + b] = k_feet_[b * grid_.feet() + a] = sum;
+    }
+  list_laid();
+  for (const int p : rows_)
+    for (const int q : rows_) {
+      if (q > p) break;
+      const double sum = kernel_.pressed(p, q) + k_feet_[grid_.foot(p) * grid_.feet() + grid_.foot(q)];
       compliance_[p * n + q] = compliance_[q * n + p] = sum;
     }
-  }
+  // A cell of which little lies over tissue gives little force: at an edge it comes and goes by and by.
+  for (const int p : rows_) compliance_[p * n + p] += (1 / cells_[p].cover - 1) * kernel_.own();
 }
 
 // Where the nodes lie closer than the squares, they know of patterns that G does not: without these L is none the less
@@ -74,7 +78,7 @@ bool Patch::is_positive() {
   const std::ptrdiff_t ld = kernels::leading_dimension(n);
   for (int c = 0; c < m; ++c) {
     for (int r = c; r < m; ++r) factor_[ld * c + r] = compliance_[rows_[r] * n + rows_[c]];
-    floor_[c] = kTolerated * grid_.pressed(0, 0);
+    floor_[c] = kTolerated * kernel_.own();
   }
   return kernels::active().cholesky(factor_.data(), m, ld, floor_.data()) == 0;
 }
@@ -82,7 +86,7 @@ bool Patch::is_positive() {
 void Patch::list_laid() {
   rows_.clear();
   for (int p = 0; p < grid_.size(); ++p)
-    if (std::isfinite(feet_[p].gap)) rows_.push_back(p);
+    if (laid(p)) rows_.push_back(p);
 }
 
 // The eigenvalues that are too small are raised.
@@ -93,7 +97,7 @@ void Patch::find_more() {
   for (int r = 0; r < m; ++r)
     for (int c = 0; c < m; ++c) a(r, c) = compliance_[rows_[r] * n + rows_[c]];
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
-  const double least = kLeastGive * grid_.pressed(0, 0);
+  const double least = kLeastGive * kernel_.own();
   std::ranges::fill(more_, 0.0);
   for (int k = 0; k < m && eigen.eigenvalues()[k] < least; ++k) {
     const double raise = least - eigen.eigenvalues()[k];
@@ -113,8 +117,8 @@ void Patch::add_inertia(std::span<const Eigen::Matrix3d> give) {
     for (const int q : rows_)
       for (int v = 0; v < 3; ++v)
         for (int w = 0; w < 3; ++w)
-          if (feet_[p].local[v] == feet_[q].local[w])
-            compliance_[p * n + q] += feet_[p].weights[v] * feet_[q].weights[w] * inertia_[feet_[p].local[v]];
+          if (foot(p).local[v] == foot(q).local[w])
+            compliance_[p * n + q] += foot(p).weights[v] * foot(q).weights[w] * inertia_[foot(p).local[v]];
 }
 
 }  // namespace palpate

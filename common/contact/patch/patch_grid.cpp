@@ -6,33 +6,72 @@
 namespace palpate {
 namespace {
 
-using Eigen::Vector2d;
+constexpr double kSquaresPerRadius = 4;            // 44 squares in all
+constexpr double kWidth = 0.95;                    // of the radius: beyond it the sphere is too steep to press
+constexpr int kStripColumns = 10, kStripRows = 8;  // with a tip's, 124
 
-constexpr double kSquaresPerRadius = 4;  // 44 squares in all
-constexpr double kWidth = 0.95;          // of the radius: beyond it the sphere is too steep to press
+int squares_across() {
+  return static_cast<int>(2 * kWidth * kSquaresPerRadius) + 1;
+}
 
 }  // namespace
 
-PatchGrid::PatchGrid(double radius, const HalfSpace& half_space) : radius_(radius), edge_(radius / kSquaresPerRadius) {
-  const int side = static_cast<int>(2 * kWidth * kSquaresPerRadius);
-  for (int i = 0; i <= side; ++i)
-    for (int j = 0; j <= side; ++j) {
-      const Vector2d at = edge_ * Vector2d(i - 0.5 * side, j - 0.5 * side);
-      if (at.norm() < kWidth * radius) middle_.push_back(at);
-    }
-  for (const Vector2d& at : middle_) rise_.push_back(std::sqrt(radius * radius - at.squaredNorm()));
-  const double per_force = 1 / (edge_ * edge_);
-  for (const Vector2d& p : middle_)
-    for (const Vector2d& q : middle_) {
-      const Vector2d d = p - q;
-      pressed_.push_back(per_force * half_space.pressed(d.x(), d.y(), edge_));
-      sheared_.push_back(per_force * half_space.sheared(d.x(), d.y(), edge_));
+PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
+    : radius_(radius),
+      length_(length),
+      edge_(strip() ? 2 * radius / kStripRows : radius / kSquaresPerRadius),
+      half_space_(half_space),
+      columns_(strip() ? kStripColumns : squares_across()),
+      rows_(strip() ? kStripRows : squares_across()) {
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      const double beside =
+          strip() ? std::abs(across(j)) : edge_ * std::hypot(i - 0.5 * (columns_ - 1), j - 0.5 * (rows_ - 1));
+      if (beside >= kWidth * radius) continue;
+      cells_.push_back({i, j});
+      rise_.push_back(std::sqrt(radius * radius - beside * beside));
     }
 }
 
-const PatchGrid& PatchGrids::of(double radius) {
-  const auto known = std::ranges::find(grids_, radius, [](const auto& g) { return g->radius(); });
-  return known != grids_.end() ? **known : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, half_space_));
+PatchKernel::PatchKernel(const PatchGrid& grid)
+    : grid_(grid),
+      corners_((grid.columns() + 1) * (grid.rows() + 1)),
+      pressed_(grid.columns() * grid.rows()),
+      sheared_(grid.columns() * grid.rows()) {
+  lay(grid.edge());
+}
+
+void PatchKernel::lay(double length) {
+  if (length == length_) return;
+  length_ = length;
+  const int columns = grid_.columns(), rows = grid_.rows();
+  for (int i = 0; i <= columns; ++i)
+    for (int j = 0; j <= rows; ++j)
+      corners_[i * (rows + 1) + j] = HalfSpace::corner((i - 0.5) * length, (j - 0.5) * grid_.edge());
+  const double per_force = 1 / (length * grid_.edge());
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const HalfSpace::Corner* low = &corners_[i * (rows + 1) + j];
+      const HalfSpace::Corner* high = low + rows + 1;
+      const HalfSpace::Corner sum{high[1].across - high[0].across - low[1].across + low[0].across,
+                                  high[1].along - high[0].along - low[1].along + low[0].along,
+                                  high[1].mixed - high[0].mixed - low[1].mixed + low[0].mixed};
+      pressed_[i * rows + j] = per_force * grid_.half_space().pressed(sum);
+      sheared_[i * rows + j] = per_force * grid_.half_space().sheared(sum);
+    }
+}
+
+Eigen::Matrix2d PatchKernel::sheared(int p, int q) const {
+  Eigen::Matrix2d k = sheared_[at(p, q)];
+  if ((grid_.column(p) < grid_.column(q)) != (grid_.row(p) < grid_.row(q))) k(0, 1) = k(1, 0) = -k(0, 1);
+  return k;
+}
+
+const PatchGrid& PatchGrids::of(double radius, double length) {
+  const auto known =
+      std::ranges::find_if(grids_, [&](const auto& g) { return g->radius() == radius && g->length() == length; });
+  return known != grids_.end() ? **known
+                               : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, length, half_space_));
 }
 
 }  // namespace palpate

@@ -7,33 +7,76 @@
 
 namespace palpate {
 
-/// The squares of a sphere's patch: their middles about the patch's own, and what the half-space makes of them. The
-/// same for all patches of one radius on one material.
+/// The cells of a patch, in columns along its first axis and rows along its second. Under a sphere they are squares
+/// about the patch's middle; under a segment rectangles along it, as long as where it lies on the tissue asks for. The
+/// same for all patches of one shape on one material.
 class PatchGrid {
  public:
-  PatchGrid(double radius, const HalfSpace& half_space);
+  /// Of a sphere where `length` [m] is 0.
+  PatchGrid(double radius, double length, const HalfSpace& half_space);
 
-  int size() const { return static_cast<int>(middle_.size()); }
-  double radius() const { return radius_; }                                ///< [m] of the sphere
-  double edge() const { return edge_; }                                    ///< [m] of a square
-  const Eigen::Vector2d& middle(int p) const { return middle_[p]; }        ///< [m]
-  double rise(int p) const { return rise_[p]; }                            ///< [m] of the sphere's middle over it there
-  double pressed(int p, int q) const { return pressed_[size() * p + q]; }  ///< [m/N]
-  const Eigen::Matrix2d& sheared(int p, int q) const { return sheared_[size() * p + q]; }  ///< [m/N]
+  int size() const { return static_cast<int>(cells_.size()); }
+  double radius() const { return radius_; }  ///< [m] of the sphere, or about the segment
+  double length() const { return length_; }  ///< [m] of the segment
+  bool strip() const { return length_ > 0; }
+  double edge() const { return edge_; }  ///< [m] of a square, or across a rectangle
+  const HalfSpace& half_space() const { return half_space_; }
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  int column(int p) const { return cells_[p].column; }
+  int row(int p) const { return cells_[p].row; }
+  double across(int row) const { return edge_ * (row - 0.5 * (rows_ - 1)); }  ///< [m] of a row's middle
+  double rise(int p) const { return rise_[p]; }  ///< [m] of the sphere, or the axis, over it
+  /// [m] about the patch's middle, of a sphere's square.
+  Eigen::Vector2d middle(int p) const { return {edge_ * (column(p) - 0.5 * (columns_ - 1)), across(row(p))}; }
+
+  /// Places at which the tissue under the cells is asked for what it has beyond the half-space: each square's own, one
+  /// for a column of rectangles.
+  int feet() const { return strip() ? columns_ : size(); }
+  int foot(int p) const { return strip() ? column(p) : p; }
 
  private:
-  double radius_, edge_;
-  std::vector<Eigen::Vector2d> middle_;
-  std::vector<double> rise_, pressed_;
-  std::vector<Eigen::Matrix2d> sheared_;
+  struct Cell {
+    int column, row;
+  };
+
+  double radius_, length_, edge_;
+  HalfSpace half_space_;
+  int columns_, rows_;
+  std::vector<Cell> cells_;
+  std::vector<double> rise_;
 };
 
-/// One grid for each radius, on one material.
+/// What the half-space makes of forces on a grid's cells.
+class PatchKernel {
+ public:
+  explicit PatchKernel(const PatchGrid& grid);
+
+  /// For cells of a length [m].
+  void lay(double length);
+  double own() const { return pressed_[0]; }                         ///< [m/N] of a cell by itself
+  double pressed(int p, int q) const { return pressed_[at(p, q)]; }  ///< [m/N]
+  Eigen::Matrix2d sheared(int p, int q) const;                       ///< [m/N]
+
+ private:
+  int at(int p, int q) const {
+    return std::abs(grid_.column(p) - grid_.column(q)) * grid_.rows() + std::abs(grid_.row(p) - grid_.row(q));
+  }
+
+  const PatchGrid& grid_;
+  double length_ = 0;
+  std::vector<HalfSpace::Corner> corners_;
+  std::vector<double> pressed_;           ///< by how many columns and rows lie between
+  std::vector<Eigen::Matrix2d> sheared_;  ///< likewise
+};
+
+/// One grid for each shape, on one material.
 class PatchGrids {
  public:
   explicit PatchGrids(const HalfSpace& half_space) : half_space_(half_space) {}
   /// Stays where it is while this object lives.
-  const PatchGrid& of(double radius);
+  const PatchGrid& of(double radius, double length = 0);
 
  private:
   HalfSpace half_space_;

@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 constexpr double kLookAround = 1.5;  // radii about the sphere's middle, and as much more as it is deep,
 constexpr double kDeepest = 4;       // up to so many radii
 constexpr double kFacing = 0.2;      // cosine between a facet's normal and the patch's, below which it lies aside
-constexpr int kTurns = 6;            // at most, of the normal towards that below the sphere's middle
 
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
 // takes its z axis into the tissue.
@@ -34,17 +33,26 @@ int Patch::local(int node) {
 }
 
 std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
-                                const Vector3d& middle, double above) {
-  near_ = ground.surface.near(middle, kLookAround * grid_.radius() + std::min(depth_, kDeepest * grid_.radius()));
+                                const Segment& axis, double above) {
+  const double deep = grid_.strip() ? depth_ : std::min(depth_, kDeepest * grid_.radius());
+  const double about = kLookAround * grid_.radius() + deep;
+  near_ = grid_.strip() ? ground.surface.near(axis, about) : ground.surface.near(axis.start, about);
   nodes_.clear();
-  laid_at_ = middle;
-  if (find_below(ground, middle, above)) {
-    turn_to(before, now, middle);
-    lay_feet(ground, middle);
+  for (Cell& cell : cells_) cell = {.gap = -std::numeric_limits<double>::infinity()};
+  laid_at_ = axis.start;
+  back_ = before * now.inverse();
+  if (grid_.strip()) {
+    if (find_along(ground, axis)) lay_strip(ground);
+  } else if (find_below(ground, axis.start, above)) {
+    across_ = across_of(now, normal_);
+    up_ = normal_.cross(across_);
+    lay_feet(ground);
+    lay_squares();
   }
   double depth = -std::numeric_limits<double>::infinity();
-  for (const Foot& f : feet_) depth = std::max(depth, f.gap);
+  for (const Cell& cell : cells_) depth = std::max(depth, cell.gap);
   depth_ = std::max(depth, 0.0);
+  at_ = place_of_force();
   if (nodes_.empty() || depth <= -above) lift();
   return nodes_;
 }
@@ -93,35 +101,51 @@ bool Patch::find_below(const Ground& ground, const Vector3d& middle, double abov
   return true;
 }
 
-void Patch::turn_to(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, const Vector3d& middle) {
-  across_ = across_of(now, normal_);
-  up_ = normal_.cross(across_);
-  at_ = middle + grid_.radius() * normal_;
-  travel_ = at_ - before * (now.inverse() * at_);
+Vector3d Patch::in_plane(const Vector3d& p) const {
+  const Vector3d d = p - laid_at_;
+  return {across_.dot(d), up_.dot(d), normal_.dot(d)};
 }
 
-// Where the lines through the squares along the normal meet the surface; the outermost place counts.
-void Patch::lay_feet(const Ground& ground, const Vector3d& middle) {
+Vector2d Patch::foot_middle(int foot) const {
+  return grid_.strip() ? Vector2d(cell_middle(foot), 0) : grid_.middle(foot);
+}
+
+// Where the lines through the feet along the normal meet the surface; the outermost place counts.
+void Patch::lay_feet(const Ground& ground) {
   const SmoothSurface& surface = ground.surface;
-  for (Foot& f : feet_) f.gap = -std::numeric_limits<double>::infinity();
+  for (Foot& f : feet_) f = {.depth = std::numeric_limits<double>::infinity()};
   for (const int t : near_) {
-    if (-surface.facet_normal(t).dot(normal_) < kFacing) continue;
+    if (!presses(ground, t)) continue;
     const Triangle c = surface.corners(t);
-    std::array<Vector2d, 3> flat;
-    for (int v = 0; v < 3; ++v) flat[v] = {across_.dot(c[v] - middle), up_.dot(c[v] - middle)};
-    const Vector2d e1 = flat[1] - flat[0], e2 = flat[2] - flat[0];
+    const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+    const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
     std::array<int, 3> corners{-2, -2, -2};
-    for (int p = 0; p < grid_.size(); ++p) {
-      const Vector2d d = grid_.middle(p) - flat[0];
+    if (grid_.strip() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0)) continue;
+    for (int i = 0; i < grid_.feet(); ++i) {
+      const Vector2d d = foot_middle(i) - flat[0].head<2>();
       const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;
       if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
       const Vector3d w(1 - w1 - w2, w1, w2);
-      const double gap = normal_.dot(middle - (w[0] * c[0] + w[1] * c[1] + w[2] * c[2])) + grid_.rise(p);
-      if (gap <= feet_[p].gap) continue;
+      const double depth = w[0] * flat[0].z() + w[1] * flat[1].z() + w[2] * flat[2].z();
+      if (depth >= feet_[i].depth) continue;
       for (int v = 0; v < 3 && corners[v] == -2; ++v) corners[v] = local(surface.map().triangles[t][v]);
-      if (std::ranges::min(corners) >= 0) feet_[p] = {corners, w, gap};
+      if (std::ranges::min(corners) >= 0) feet_[i] = {corners, w, depth};
     }
+  }
+}
+
+bool Patch::presses(const Ground& ground, int t) const {
+  return -ground.surface.facet_normal(t).dot(normal_) >= kFacing && (!grid_.strip() || ground.surface.touchable(t));
+}
+
+// A sphere's squares stand on their own feet.
+void Patch::lay_squares() {
+  for (int p = 0; p < grid_.size(); ++p) {
+    const double depth = feet_[p].depth;
+    if (!std::isfinite(depth)) continue;
+    const Vector2d at = grid_.middle(p);
+    cells_[p] = {.gap = grid_.rise(p) - depth, .at = laid_at_ + at.x() * across_ + at.y() * up_ + depth * normal_};
   }
 }
 

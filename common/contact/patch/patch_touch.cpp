@@ -2,14 +2,12 @@
 
 #include <algorithm>
 
-#include "common/tool/instrument.hpp"
+#include "common/contact/patch/patch_parts.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr int kTip = 0;  // among a probe's parts
 
 // [m] of a node under a force on another one; zero beyond the touchable ones.
 Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3d& force) {
@@ -25,24 +23,22 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
                        const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep)
     : compliance_(compliance), friction_(settings.contact.friction), surface_(map), grids_(half_space) {
   double largest = 0;
-  for (std::size_t t = 0; t < settings.tools.size(); ++t) {
-    const std::optional<double> ball = abilities_of(settings.tools[t]).ball;
-    if (!ball) continue;
-    tips_.push_back({static_cast<int>(t), Patch(grids_.of(*ball), creep)});
-    largest = std::max(largest, *ball);
+  for (const PatchPart& part : patch_parts(settings.tools, !creep)) {
+    parts_.push_back({part.tool, part.part, Patch(grids_.of(part.radius, part.length), creep)});
+    largest = std::max(largest, part.radius);
   }
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
   moved_.reserve(Patch::kMaxNodes);
 }
 
 void PatchTouch::for_each_force(const VisitForce& visit) const {
-  for (const Tip& p : tips_)
+  for (const Part& p : parts_)
     for (const PatchForce& f : p.patch.forces()) visit(p.tool, f.node, f.force);
 }
 
 Vector3d PatchTouch::displacement(int node) const {
   Vector3d sum = Vector3d::Zero();
-  for (const Tip& p : tips_)
+  for (const Part& p : parts_)
     for (const PatchForce& f : p.patch.forces()) sum += moved_by(compliance_, node, f.node, f.force);
   return sum;
 }
@@ -55,37 +51,55 @@ void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<con
 void PatchTouch::touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others,
                        const Past& past) {
   const Patch::Ground ground{surface_, *near_field_, friction_};
-  for (Tip& own : tips_) {
+  for (Part& own : parts_) {
     const MovingTool& tool = tools[own.tool];
-    const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(kTip).start);
+    const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
     if (nodes.empty()) continue;
     moved_.assign(nodes.size(), Vector3d::Zero());
     if (past) past(nodes, {moved_.data()->data(), 3 * nodes.size()});
     others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
-    for (const Tip& other : tips_)
-      for (const PatchForce& f : other.patch.forces())
-        if (&other != &own) add_displacement(f.node, f.force, nodes);
+    meet_others(own, nodes, static_cast<bool>(past));
     own.patch.press(ground, moved_);
-    own.offset = tool.to_part(kTip, own.patch.at());
+    own.offset = tool.to_part(own.part, own.patch.at());
     if (past) remember(own, nodes);
   }
 }
 
-void PatchTouch::remember(Tip& tip, std::span<const int> nodes) {
+// A patch lies in the other's dent, which the mesh is too coarse to show. Of tissue that relaxes the past knows the
+// nodes' alone.
+void PatchTouch::meet_others(Part& own, std::span<const int> nodes, bool relaxes) {
+  for (const Part& other : parts_) {
+    if (&other == &own || !other.patch.touches()) continue;
+    if (!relaxes) own.patch.lie_beside(other.patch);
+    for (const PatchForce& f : other.patch.forces()) {
+      if (relaxes) {
+        add_displacement(f.node, f.force, nodes);
+        continue;
+      }
+      for (std::size_t i = 0; i < nodes.size(); ++i) moved_[i] += near_field_->between(nodes[i], f.node) * f.force;
+    }
+  }
+}
+
+void PatchTouch::remember(Part& part, std::span<const int> nodes) {
   moved_.assign(nodes.size(), Vector3d::Zero());
-  for (const PatchForce& f : tip.patch.forces()) add_displacement(f.node, f.force, nodes);
-  tip.patch.remember(moved_);
+  for (const PatchForce& f : part.patch.forces()) add_displacement(f.node, f.force, nodes);
+  part.patch.remember(moved_);
+}
+
+bool PatchTouch::has(int tool, int part) const {
+  return std::ranges::any_of(parts_, [&](const Part& p) { return p.tool == tool && p.part == part; });
 }
 
 Vector3d PatchTouch::pressing(int tool) const {
   Vector3d sum = Vector3d::Zero();
-  for (const Tip& p : tips_)
+  for (const Part& p : parts_)
     if (p.tool == tool && p.patch.touches()) sum += p.patch.pressing() * p.patch.normal();
   return sum;
 }
 
 void PatchTouch::load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const {
-  for (const Tip& p : tips_) {
+  for (const Part& p : parts_) {
     if (!p.patch.touches()) continue;
     loads[p.tool].force -= p.patch.force();
     loads[p.tool].torque -= (p.patch.at() - tools[p.tool].now.translation()).cross(p.patch.force());
@@ -93,9 +107,9 @@ void PatchTouch::load(std::span<const MovingTool> tools, std::span<ToolLoad> loa
 }
 
 void PatchTouch::for_each_contact(const BodyPart::VisitContact& visit) const {
-  for (const Tip& p : tips_) {
+  for (const Part& p : parts_) {
     if (!p.patch.touches()) continue;
-    TouchContact c{.by = ToolPoint{.tool = p.tool, .part = kTip, .offset = p.offset}, .face = true};
+    TouchContact c{.by = ToolPoint{.tool = p.tool, .part = p.part, .offset = p.offset}, .face = true};
     c.touch = p.patch.sticks() ? Touch::sticking : Touch::sliding;
     c.anchor = p.patch.anchor();
     c.normal = p.patch.normal();
@@ -106,14 +120,14 @@ void PatchTouch::for_each_contact(const BodyPart::VisitContact& visit) const {
 }
 
 bool PatchTouch::adopt(const TouchContact& contact) {
-  const auto found = std::ranges::find_if(tips_, [&](const Tip& p) { return contact.is_by(p.tool, kTip); });
-  if (found == tips_.end()) return false;
+  const auto found = std::ranges::find_if(parts_, [&](const Part& p) { return contact.is_by(p.tool, p.part); });
+  if (found == parts_.end()) return false;
   found->patch.resume(contact.force);
   return true;
 }
 
 void PatchTouch::state(State& s) {
-  for (Tip& p : tips_) {
+  for (Part& p : parts_) {
     p.patch.state(s);
     s.value(p.offset);
     s.require(p.patch.fits(surface_.map().size()), "the state holds a patch that this body cannot have");

@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// The patches of all probes' tips on one body at rest under its loads. Nothing is allocated after
-/// construction.
+/// The patches of tools on one body at rest under its loads: of probes' tips, and of shafts where the body does not
+/// relax. Nothing is allocated after construction.
 class PatchTouch {
  public:
   /// `map` and `compliance` outlive this object; `half_space`: the material at the surface; `resolved`: see
@@ -17,6 +17,9 @@ class PatchTouch {
   /// relaxes; compliance and material are softer by its instant() then.
   PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
              const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep = {});
+
+  /// Whether a part has a patch.
+  bool has(int tool, int part) const;
 
   /// Visits (tool, node, force [N] on the tissue).
   using VisitForce = BodyPart::VisitForce;
@@ -42,21 +45,22 @@ class PatchTouch {
   void state(State& s);
 
  private:
-  struct Tip {
-    int tool;
+  struct Part {
+    int tool, part;
     Patch patch;
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   };
 
   void add_displacement(int from, const Eigen::Vector3d& force, std::span<const int> nodes);
-  void remember(Tip& tip, std::span<const int> nodes);
+  void meet_others(Part& own, std::span<const int> nodes, bool relaxes);
+  void remember(Part& part, std::span<const int> nodes);
 
   const Compliance<double>& compliance_;
   double friction_;
   SmoothSurface surface_;
   std::unique_ptr<NearField> near_field_;
   PatchGrids grids_;
-  std::vector<Tip> tips_;
+  std::vector<Part> parts_;
   std::vector<Eigen::Vector3d> moved_;
 };
 

@@ -33,6 +33,9 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
     const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
     facet_normal_.push_back(doubled_area.normalized());
     area_.push_back(0.5 * doubled_area.norm());
+    middle_.push_back((c[0] + c[1] + c[2]) / 3);
+    reach_.push_back(0);
+    for (const Vector3d& corner : c) reach_.back() = std::max(reach_.back(), (corner - middle_.back()).norm());
     for (int v = 0; v < 3; ++v) {
       const Vector3d a = (c[(v + 1) % 3] - c[v]).normalized(), b = (c[(v + 2) % 3] - c[v]).normalized();
       weight_[map.triangles[t][v]] += area_.back() / 3;
@@ -48,7 +51,7 @@ Vector3d SmoothSurface::normal(int t, const Vector3d& weights) const {
       .normalized();
 }
 
-std::span<const int> SmoothSurface::near(const Vector3d& point, double radius) const {
+std::span<int> SmoothSurface::near(const Vector3d& point, double radius) const {
   const int candidates = buckets_.query(point, point, radius, found_);
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
@@ -57,6 +60,20 @@ std::span<const int> SmoothSurface::near(const Vector3d& point, double radius) c
     const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]), high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
     const Vector3d apart = (low - point).cwiseMax(point - high).cwiseMax(0.0);
     if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
+  }
+  std::sort(found_.begin(), found_.begin() + kept);
+  return std::span(found_).first(kept);
+}
+
+std::span<int> SmoothSurface::near(const Segment& segment, double radius) const {
+  const int candidates =
+      buckets_.query(segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end), radius, found_);
+  int kept = 0;
+  for (int i = 0; i < candidates; ++i) {
+    if (left_out_[found_[i]]) continue;
+    const Vector3d& middle = middle_[found_[i]];
+    const double reach = radius + reach_[found_[i]];
+    if ((nearest_point(segment, middle) - middle).squaredNorm() <= reach * reach) found_[kept++] = found_[i];
   }
   std::sort(found_.begin(), found_.begin() + kept);
   return std::span(found_).first(kept);

@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "common/archive/archive.hpp"
 #include "common/geometry/buckets.hpp"
+#include "common/geometry/segment.hpp"
 #include "common/geometry/triangle.hpp"
 
 namespace palpate {
@@ -26,17 +28,22 @@ class SmoothSurface {
   const Eigen::Vector3d& facet_normal(int t) const { return facet_normal_[t]; }  ///< outward, unit
   Eigen::Vector3d normal(int t, const Eigen::Vector3d& weights) const;           ///< outward, unit, continuous
   const Eigen::Vector3d& node_normal(int n) const { return node_normal_[n]; }    ///< outward, unit
-  double area(int t) const { return area_[t]; }                                  ///< [m^2]
-  double weight(int n) const { return weight_[n]; }                              ///< [m^2] integral of its hat
+  bool touchable(int t) const { return std::ranges::min(map_.triangles[t]) < map_.touchable; }
+  double area(int t) const { return area_[t]; }      ///< [m^2]
+  double weight(int n) const { return weight_[n]; }  ///< [m^2] integral of its hat
 
-  /// Triangles that come within `radius` of a point; ascending, a few others among them. Valid until the next call.
-  std::span<const int> near(const Eigen::Vector3d& point, double radius) const;
+  /// Triangles that come within `radius` of a point, or of a segment; ascending, a few others among them. Valid until
+  /// the next call, and the caller's till then.
+  std::span<int> near(const Eigen::Vector3d& point, double radius) const;
+  std::span<int> near(const Segment& segment, double radius) const;
   /// A triangle that is no longer there: near() leaves it out.
   void leave_out(int t) { left_out_[t] = 1; }
 
  private:
   const SurfaceMap& map_;
   std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
+  std::vector<Eigen::Vector3d> middle_;  ///< [m] per triangle
+  std::vector<double> reach_;            ///< [m] of its corners from there
   std::vector<double> area_, weight_;
   std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;

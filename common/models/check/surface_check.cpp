@@ -6,6 +6,7 @@
 
 #include "common/archive/compliance.hpp"
 #include "common/contact/patch/near_field.hpp"
+#include "common/contact/patch/patch_parts.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/geometry/buckets.hpp"
@@ -80,18 +81,27 @@ void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report) {
         "  touch: by its mesh, as under rule \"barycentric\": patches are for bodies of one part, at rest or moving");
 }
 
-void say_patches(const CheckSettings& settings, const std::string& body, CheckReport& report) {
+void say_patches(const CheckSettings& settings, const std::string& body, bool shafts, CheckReport& report) {
   if (settings.contact.rule != "patch") return;
-  for (const Tool& tool : settings.tools)
-    report.say(abilities_of(tool).ball
-                   ? fmt::format("  touch: the tip of '{}' presses '{}' by a patch of its own, its shaft by the mesh",
-                                 tool.name, body)
-                   : fmt::format("  touch: '{}' has no ball at its tip and touches '{}' by the mesh", tool.name, body));
+  for (const Tool& tool : settings.tools) {
+    const bool ball = abilities_of(tool).ball.has_value();
+    if (shafts)
+      report.say(
+          ball ? fmt::format("  touch: tip and shaft of '{}' press '{}', each by a patch of its own", tool.name, body)
+               : fmt::format("  touch: the shaft of '{}' presses '{}' by a patch of its own, its jaws by the mesh",
+                             tool.name, body));
+    else
+      report.say(
+          ball ? fmt::format("  touch: the tip of '{}' presses '{}' by a patch of its own, its shaft by the mesh",
+                             tool.name, body)
+               : fmt::format("  touch: '{}' has no ball at its tip and touches '{}' by the mesh", tool.name, body));
+  }
 }
 
-void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report) {
+void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, bool shafts,
+                    CheckReport& report) {
   double radius = 0;
-  for (const Tool& tool : settings.tools) radius = std::max(radius, abilities_of(tool).ball.value_or(0));
+  for (const PatchPart& part : patch_parts(settings.tools, shafts)) radius = std::max(radius, part.radius);
   if (settings.contact.rule != "patch" || radius == 0) return;
   report.memory.push_back({owner, "near field of patches", NearField::bytes_of(surface, radius)});
 }

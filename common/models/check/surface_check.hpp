@@ -20,10 +20,12 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
 
 /// One sentence for bodies without patches, where the rule asks for them.
 void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report);
-/// For bodies with patches: which parts of tools press by them, and what the others do.
-void say_patches(const CheckSettings& settings, const std::string& body, CheckReport& report);
-/// What `owner` computes for patches when it starts; nothing where there are none.
-void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, CheckReport& report);
+/// For bodies with patches of tips and, where `shafts`, of shafts: which parts of tools press by them, and what the
+/// others do.
+void say_patches(const CheckSettings& settings, const std::string& body, bool shafts, CheckReport& report);
+/// What `owner` computes for those patches when it starts; nothing where there are none.
+void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, bool shafts,
+                    CheckReport& report);
 /// size_warnings() of the tools that press by no patch: the others press with a size of their own, not the mesh's.
 std::vector<std::string> size_warnings_by_mesh(const CheckSettings& settings, const std::string& body,
                                                const SurfaceMap& surface);

@@ -130,7 +130,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   if (archive.hybrid) {
     say_touched_by_mesh(settings, report);
   } else {
-    say_patches(settings, body.name, report);
+    say_patches(settings, body.name, false, report);
     report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   }
   const std::vector<std::string> of_material = material_warnings(body);
@@ -141,7 +141,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
-  if (!archive.hybrid) add_near_field("deform_node", settings, archive.surface, report);
+  if (!archive.hybrid) add_near_field("deform_node", settings, archive.surface, false, report);
 }
 
 void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report) {

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "common/contact/patch/local_motion.hpp"
+#include "common/contact/patch/patch_parts.hpp"
 #include "common/geometry/triangle.hpp"
-#include "common/tool/instrument.hpp"
 
 namespace palpate {
 namespace {
@@ -69,11 +69,9 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     triangle_of_facet_[found->second] = t;
   }
   double largest = 0;
-  for (std::size_t t = 0; t < settings.tools.size(); ++t) {
-    const std::optional<double> ball = abilities_of(settings.tools[t]).ball;
-    if (!ball) continue;
-    tips_.push_back({.tool = static_cast<int>(t), .patch = Patch(grids_.of(*ball)), .radius = *ball});
-    largest = std::max(largest, *ball);
+  for (const PatchPart& part : patch_parts(settings.tools, false)) {
+    tips_.push_back({.tool = part.tool, .patch = Patch(grids_.of(part.radius)), .radius = part.radius});
+    largest = std::max(largest, part.radius);
   }
   for (Tip& tip : tips_) {
     tip.nodes.reserve(Patch::kMaxNodes);
@@ -98,6 +96,10 @@ void TissuePatches::follow_cut(const CutMesh& topology, const std::function<void
     const int facet = facet_of_triangle_[t];
     if (facet < 0 || !topology.is_visible(facet)) surface_.leave_out(static_cast<int>(t));
   }
+}
+
+bool TissuePatches::has(int tool, int part) const {
+  return part == kTip && std::ranges::find(tips_, tool, &Tip::tool) != tips_.end();
 }
 
 bool TissuePatches::laid() const {
@@ -146,8 +148,9 @@ void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
   const Vector3d middle = tool.axis(kTip).start;
   tip.approach = (middle - tool.axis_before(kTip).start).norm();
   tip.met = tip.patch.touches();
-  const std::span<const int> nodes = tip.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before,
-                                                   to_rest * tool.now, to_rest * middle, kAbove * tip.radius);
+  const std::span<const int> nodes =
+      tip.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before, to_rest * tool.now,
+                    {to_rest * middle, to_rest * middle}, kAbove * tip.radius);
   if (nodes.empty()) return lift(tip);
   tip.nodes.assign(nodes.begin(), nodes.end());
   tip.give.clear();

@@ -36,6 +36,8 @@ class TissuePatches {
   void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds);
   /// Whether one is laid.
   bool laid() const;
+  /// Whether a part of a tool has one.
+  bool has(int tool, int part) const;
   /// Whether a facet of the CutMesh is theirs.
   bool covers(int facet) const { return triangle_of_facet_[facet] >= 0; }
   /// After a step of `dt` [s] of the tissue without them: their forces put it right. `tools`: as they are at its

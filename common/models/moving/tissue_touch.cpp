@@ -9,7 +9,10 @@ constexpr double kGivingWay = 10;  // [m/s^2] at which what has been cut away gi
 
 ToolContacts::Options tips_beside(const TissuePatches* patches) {
   ToolContacts::Options options;
-  if (patches) options.tips = [patches](int facet) { return !patches->covers(facet); };
+  if (patches)
+    options.elsewhere = [patches](int tool, int part, int facet) {
+      return patches->has(tool, part) && patches->covers(facet);
+    };
   return options;
 }
 

@@ -107,12 +107,12 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
   say_offline(body, solid.mesh, solid.surface.size(), report);
-  say_patches(settings, body.name, report);
+  say_patches(settings, body.name, !body.relaxation, report);
   say_nonlinear(body, settings, report);
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
-  add_near_field("haptic_node", settings, solid.surface, report);
+  add_near_field("haptic_node", settings, solid.surface, !body.relaxation, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
   report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   QuasiStaticSpec chosen = body;

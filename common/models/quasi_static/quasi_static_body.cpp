@@ -12,12 +12,6 @@ bool by_patch(const StepSettings& settings) {
   return settings.contact.rule == "patch";
 }
 
-ToolContacts::Options tips_of(const StepSettings& settings) {
-  ToolContacts::Options options;
-  if (by_patch(settings)) options.tips = [](int) { return false; };
-  return options;
-}
-
 // [1] Over how many edges of the mesh the elements behind the tensors know its compliance: nearer by they are too
 // stiff.
 double edges_resolved(const Offline& offline) {
@@ -45,7 +39,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
 
 QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings,
                                  const std::optional<CreepStep>& creep)
-    : TouchBody(archive.surface, softened(archive, creep), settings, tips_of(settings)) {
+    : TouchBody(archive.surface, softened(archive, creep), settings, beside_patches()) {
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
   if (by_patch(settings))
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
@@ -63,6 +57,12 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   of_tool_.reserve(3 * map().size());
   held_.reserve(map().size());
   whole_.assign(compliance().stride(), 0.0);
+}
+
+ToolContacts::Options QuasiStaticBody::beside_patches() {
+  ToolContacts::Options options;
+  options.elsewhere = [this](int tool, int part, int) { return patch_ && patch_->has(tool, part); };
+  return options;
 }
 
 void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {

@@ -35,6 +35,7 @@ class QuasiStaticBody : public TouchBody {
   QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& body, const StepSettings& settings,
                   const std::optional<CreepStep>& creep);
 
+  ToolContacts::Options beside_patches();
   bool is_held(int node) const;
   void superpose(int tool, std::vector<double>& displacement);
   void correct(std::span<const MovingTool> tools);
@@ -48,7 +49,7 @@ class QuasiStaticBody : public TouchBody {
 
   std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
-  std::unique_ptr<PatchTouch> patch_;    ///< null: spheres touch as everything else does
+  std::unique_ptr<PatchTouch> patch_;    ///< null: all parts touch by the mesh
   std::vector<const double*> columns_;
   std::vector<double> coefficients_, displacement_, of_tool_, whole_;
   std::vector<int> held_;               ///< places among the marked nodes
