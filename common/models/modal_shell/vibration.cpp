@@ -9,8 +9,8 @@ namespace palpate {
 
 FreeVibration vibration(const ModalShellSpec& body) {
   const ShellMesh mesh = load_shell_mesh(body.mesh, body.scale);
-  ShellSystem system = shell_system(body, mesh, fmt::format("body '{}'", body.name));
-  return {std::move(system.stiffness), std::move(system.mass)};
+  const ShellSystem system = shell_system(body, mesh, fmt::format("body '{}'", body.name));
+  return {system.stiffness, system.mass};
 }
 
 }  // namespace palpate

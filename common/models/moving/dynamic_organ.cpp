@@ -237,7 +237,7 @@ void DynamicOrgan::cut_from_model(std::span<const int> gone) {
   std::vector<int> nodes;
   for (const int t : gone) nodes.insert(nodes.end(), mesh_.tetrahedra[t].begin(), mesh_.tetrahedra[t].end());
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   const auto joined = [&](int n) { return still_ && std::ranges::count(still_->part().connection(), n) > 0; };
   std::erase_if(nodes, [&](int n) { return !topology_.has_node(n) || joined(n); });
   const std::size_t first = fading_.size();
