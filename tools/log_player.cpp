@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "common/bus/log_reader.hpp"
 #include "common/realtime/clock.hpp"
@@ -15,6 +18,28 @@ namespace {
 
 constexpr std::int64_t kSpinNs = 100'000;
 constexpr std::int64_t kProgressNs = 250'000'000;
+constexpr std::int64_t kLongestSilence = 3600 * kNsPerS;
+
+constexpr double kLongestPlay = 1e18;  // [ns]
+
+/// The time in a log since its first event. Times more than an hour apart are not true: between them none passes.
+class LogTime {
+ public:
+  explicit LogTime(std::int64_t first_ns) : last_(first_ns) {}
+
+  std::int64_t since_start(std::int64_t receive_ns) {
+    const std::int64_t passed = receive_ns - std::exchange(last_, receive_ns);
+    const bool silence = std::abs(passed) > kLongestSilence;
+    leaps_ += silence;
+    if (!silence) since_start_ += passed;
+    return std::max<std::int64_t>(since_start_, 0);
+  }
+  std::uint64_t leaps() const { return leaps_; }
+
+ private:
+  std::int64_t last_, since_start_ = 0;
+  std::uint64_t leaps_ = 0;
+};
 
 template <class M>
 struct Outlet {
@@ -102,12 +127,14 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
   PlayReport report;
   LogReader reader(file);
   LogEvent event;
-  std::int64_t start = 0, first = 0, next_progress = 0;
+  std::optional<LogTime> time;
+  std::int64_t start = 0, next_progress = 0;
   bool go_on = true;
   while (go_on && (report.complete = !reader.next(event), !report.complete)) {
-    if (start == 0) start = now_ns(), first = event.receive_ns;
-    const auto in_log = std::max<std::int64_t>(event.receive_ns - first, 0);
-    const std::int64_t due = start + static_cast<std::int64_t>(static_cast<double>(in_log) / settings.speed);
+    if (!time) start = now_ns(), time.emplace(event.receive_ns);
+    const std::int64_t in_log = time->since_start(event.receive_ns);
+    const double after = std::min(static_cast<double>(in_log) / settings.speed, kLongestPlay);
+    const std::int64_t due = start + static_cast<std::int64_t>(after);
     while (go_on && due - now_ns() > kProgressNs) {  // a long silence in the log must not delay Ctrl-C
       sleep_until_ns(now_ns() + kProgressNs);
       go_on = progress(report.seconds);
@@ -123,6 +150,7 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
     go_on = progress(report.seconds);
   }
   report.damage = reader.damage_text();
+  if (time) report.leaps = time->leaps();
   return report;
 }
 
