@@ -123,9 +123,14 @@ Felt disturb_a_copy(TwoNodes& nodes, const Motion& motion, int tools, Victim vic
 
 struct Storm {
   std::vector<Felt> felt;
-  /// The undisturbed run: of each tick the force of each tool [N].
-  std::vector<std::array<double, kMaxTools>> undisturbed;
-  Felt whole;  ///< of it
+  Felt whole;                ///< of the undisturbed run
+  std::vector<int> changes;  ///< its ticks in which tissue was cut, tore or fell away
+
+  /// What should have been cut while a node was away is not, and the tool meets it.
+  bool missed(const Felt& felt) const {
+    const auto first = std::ranges::lower_bound(changes, felt.first);
+    return first != changes.end() && *first < felt.back;
+  }
 };
 
 Storm storm(const Scene& scene, const std::vector<Archive>& archives, Victim victim, int trials) {
@@ -148,42 +153,52 @@ Storm storm(const Scene& scene, const std::vector<Archive>& archives, Victim vic
       all.felt.push_back(disturb_a_copy(nodes, motion, tools, victim, k, at->second));
     nodes.step(motion.at(k));
     hands.look(all.whole, true);
-    auto& forces = all.undisturbed.emplace_back();
-    for (int t = 0; t < tools; ++t) forces[t] = nodes.force(t).norm();
+    for (int i = 0; i < nodes.world().organs(); ++i)
+      if (!nodes.world().organ(i).changes().empty()) all.changes.push_back(k);
   }
   return all;
 }
 
+/// The worst of some trials.
+struct Worst {
+  int trials = 0, over = 0;
+  double force = 0, ratio = 0, rise = 0, change = 0;
+  Felt of;  ///< that with the largest ratio
+
+  void add(const Felt& felt, const Felt& undisturbed, int tools) {
+    bool is_over = false;
+    for (int t = 0; t < tools; ++t) {
+      is_over |= felt.largest[t] > kTolerance * undisturbed.largest[t];
+      force = std::max(force, felt.largest[t]);
+      if (felt.largest[t] > ratio * undisturbed.largest[t]) ratio = felt.largest[t] / undisturbed.largest[t], of = felt;
+    }
+    ++trials;
+    over += is_over;
+    rise = std::max(rise, felt.rise);
+    change = std::max(change, felt.change);
+  }
+};
+
 void tell(const std::string& name, const Storm& storm, int tools) {
-  const auto row = [&](const char* metric, double value, const char* unit) {
+  const auto row = [&](const std::string& metric, double value, const char* unit) {
     bench::report("storms", name, metric, value, unit);
   };
-  double largest = 0, undisturbed = 0, ratio = 0, rise = 0, change = 0;
-  int kicks = 0, worst = 0;
-  for (int i = 0; i < static_cast<int>(storm.felt.size()); ++i) {
-    const Felt& felt = storm.felt[i];
-    bool kick = false;
-    for (int t = 0; t < tools; ++t) {
-      largest = std::max(largest, felt.largest[t]);
-      kick |= felt.largest[t] > kTolerance * storm.whole.largest[t];
-      const double more = felt.largest[t] / storm.whole.largest[t];
-      if (more > ratio) ratio = more, worst = i;
-    }
-    kicks += kick;
-    rise = std::max(rise, felt.rise), change = std::max(change, felt.change);
-  }
-  for (int t = 0; t < tools; ++t) undisturbed = std::max(undisturbed, storm.whole.largest[t]);
-  row("trials", static_cast<double>(storm.felt.size()), "1");
-  row("undisturbed_force", undisturbed, "N");
-  row("force", largest, "N");
-  row("force_ratio", ratio, "1");
-  row("over_a_tenth_more", kicks, "1");
+  row("undisturbed_force", *std::max_element(storm.whole.largest, storm.whole.largest + tools), "N");
   row("undisturbed_rise", storm.whole.rise, "N/tick");
-  row("rise", rise, "N/tick");
   row("undisturbed_change", storm.whole.change, "N/tick");
-  row("change", change, "N/tick");
-  row("worst_from_tick", storm.felt[worst].first, "1");
-  row("worst_to_tick", storm.felt[worst].back, "1");
+  Worst whole, missed;
+  for (const Felt& felt : storm.felt) (storm.missed(felt) ? missed : whole).add(felt, storm.whole, tools);
+  for (const auto& [worst, suffix] : {std::pair{&whole, ""}, {&missed, "_where_a_cut_was_missed"}}) {
+    if (worst->trials == 0) continue;
+    row(std::string("trials") + suffix, worst->trials, "1");
+    row(std::string("force") + suffix, worst->force, "N");
+    row(std::string("force_ratio") + suffix, worst->ratio, "1");
+    row(std::string("over_a_tenth_more") + suffix, worst->over, "1");
+    row(std::string("rise") + suffix, worst->rise, "N/tick");
+    row(std::string("change") + suffix, worst->change, "N/tick");
+    row(std::string("worst_from_tick") + suffix, worst->of.first, "1");
+    row(std::string("worst_to_tick") + suffix, worst->of.back, "1");
+  }
 }
 
 std::string scene_file(const std::string& name) {

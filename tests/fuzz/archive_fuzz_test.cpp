@@ -171,15 +171,15 @@ TEST_F(ArchiveFuzz, OfTensors) {
 }
 
 TEST_F(ArchiveFuzz, OfTissueThatRelaxes) {
-  spoil(testing::relaxing_block(), 150, 2);
+  spoil(testing::relaxing_block(), 80, 2);
 }
 
 TEST_F(ArchiveFuzz, OfTetrahedraWithInertia) {
-  spoil(testing::cut_block<TensorMassSpec>(), 150, 3);
+  spoil(testing::cut_block<TensorMassSpec>(), 80, 3);
 }
 
 TEST_F(ArchiveFuzz, OfSprings) {
-  spoil(testing::cut_block<SpringMassSpec>(), 150, 4);
+  spoil(testing::cut_block<SpringMassSpec>(), 80, 4);
 }
 
 TEST_F(ArchiveFuzz, OfTwoPartsThatAreConnected) {

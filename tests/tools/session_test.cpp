@@ -249,9 +249,11 @@ bool status_says(const fs::path& log, const std::string& role, const std::string
 }
 
 TEST(SessionTest, TissueThatNoMachineKeepsUpWithIsSaidToFallBehind) {
-  const LoopbackScene scene("overload");
+  // 35,000 tetrahedra, of which a tick has 100 us.
+  const LoopbackScene scene("overload", "[body.touchable]\nbox = [[-0.01, -0.01, -0.001], [0.01, 0.01, 0.001]]\n");
+  write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {22, 22, 12}), scene.folder() / "block.msh");
   scene.replace("quasi_static", "tensor_mass");
-  scene.replace("[[tool]]", "[rates]\nhaptic_hz = 20000\n\n[[tool]]");  // a tick of the tissue has 50 us
+  scene.replace("[[tool]]", "[rates]\nhaptic_hz = 10000\n\n[[tool]]");
   scene.write("motion.csv", kLongRest);
   const fs::path log = scene.folder() / "session.lcmlog";
   const auto run = run_program(fmt::format("{} run {} --processes 3 --seconds 4 --domain {} --record {}",
