@@ -184,6 +184,7 @@ void DynamicLoop::publish_frames() {
 
 void DynamicLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  if (const std::string lost = presence_.lost_claim(); !lost.empty()) throw std::runtime_error(lost);
   for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < kNsPerS) return;
@@ -191,9 +192,11 @@ void DynamicLoop::keep_house(std::int64_t now) {
                                            : 1e9 * static_cast<double>(report_.ticks - last_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
-  const std::string silence = link_.silence("haptic", now);
+  pace_.look(report_.ticks, report_.period.skipped);
+  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  const std::string silence = link_.silence("haptic", now), warning = silence.empty() ? pace_.status() : silence;
   presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99),
-                     silence.empty() ? range_.warning() : silence);
+                     warning.empty() ? range_.warning() : warning);
   last_status_ns_ = now;
   last_ticks_ = report_.ticks;
 }

@@ -8,6 +8,7 @@
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
 #include "common/node/contact_feed.hpp"
+#include "common/node/pace_watch.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/sim/dynamic_world.hpp"
@@ -76,6 +77,7 @@ class DynamicLoop {
   ContactFeed feed_;
   SurfacePublisher surfaces_;
   RangeMonitor range_;
+  PaceWatch pace_{"the tissue", "its time goes slower"};
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Writer<TopologyChange>> changes_;
   std::unique_ptr<Writer<LocalContactModel>> models_;

@@ -66,7 +66,7 @@ const LoopReport& HapticLoop::run(double seconds) {
 
   const std::int64_t begin = now_ns();
   PeriodicTimer timer(1 / haptic_.dt());
-  while (!shutdown_requested()) {
+  while (!shutdown_requested() && !gives_way_.load(std::memory_order_relaxed)) {
     const std::uint64_t tick_number = timer.wait();
     const double time = static_cast<double>(tick_number) * haptic_.dt();
     if ((seconds > 0 && time >= seconds) || all_finished(time)) break;
@@ -84,6 +84,8 @@ const LoopReport& HapticLoop::run(double seconds) {
   report_.refused_messages = bus_.refused();
   over_.store(true);
   wake_.release();
+  publisher.join();
+  if (!lost_claim_.empty()) throw std::runtime_error(lost_claim_);
   return report_;
 }
 
@@ -177,8 +179,11 @@ void HapticLoop::report_status(std::int64_t now) {
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(ticks - last_status_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
+  const std::uint64_t missed = shown_missed_.load(std::memory_order_relaxed);
   say_interventions();
-  presence_.announce(rate, ticks, shown_missed_.load(std::memory_order_relaxed), 0, 0, told_.status());
+  pace_.look(ticks, missed);
+  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  presence_.announce(rate, ticks, missed, 0, 0, told_.status().empty() ? pace_.status() : told_.status());
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
 }
@@ -198,6 +203,8 @@ std::uint64_t HapticLoop::refused_samples() const {
 
 void HapticLoop::check_peers() {
   for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  if (lost_claim_.empty() && !(lost_claim_ = presence_.lost_claim()).empty())
+    gives_way_.store(true, std::memory_order_relaxed);
   if (const Presence::Peer* deform = presence_.holder("deform")) local_feed_.follow(deform->status.run);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -42,6 +43,7 @@ struct RecordedRun {
 struct Recorded {
   std::map<std::uint64_t, RecordedRun> runs;
   RunOrder deform_runs;
+  bool thinned = false;  ///< not every step's force was to be kept
 };
 
 Recorded read_log(LogReader& log) {
@@ -67,6 +69,7 @@ Recorded read_log(LogReader& log) {
     else if (event.read(topics::local_contact_model, model))
       recorded.deform_runs.try_emplace(model.run, static_cast<int>(recorded.deform_runs.size()));
   }
+  recorded.thinned = log.thinned_steps() > 0;
   return recorded;
 }
 
@@ -100,15 +103,15 @@ void take_code_path(const std::string& recorded) {
 
 class RunVerifier {
  public:
-  RunVerifier(const Scene& scene, const std::vector<Archive>& archives, VerifyReport& report)
-      : scene_(scene), archives_(archives), report_(report) {}
+  RunVerifier(const Scene& scene, const std::vector<Archive>& archives, bool thinned, VerifyReport& report)
+      : scene_(scene), archives_(archives), thinned_(thinned), report_(report) {}
 
   void verify(const RecordedRun& run, RecordedModels& models) {
     models_ = &models;
     auto keyframe = run.keyframes.begin();
     while (keyframe != run.keyframes.end() && report_.mismatch.empty()) {
       const std::uint64_t reached = verify_from(run, keyframe->second);
-      keyframe = run.keyframes.upper_bound(reached);
+      keyframe = run.keyframes.upper_bound(std::max(reached, keyframe->first));
     }
   }
 
@@ -116,6 +119,12 @@ class RunVerifier {
   /// Goes on as long as no input is missing; returns the first step that could not be computed.
   std::uint64_t verify_from(const RecordedRun& run, const HapticKeyframe& keyframe) {
     HapticStep haptic(scene_, archives_);
+    if (keyframe.dt != haptic.dt()) {
+      report_.gaps.push_back(
+          fmt::format("cannot verify from step {}: its keyframe has steps of {} s, the scene of {} s", keyframe.step,
+                      keyframe.dt, haptic.dt()));
+      return keyframe.step;
+    }
     haptic.restore(keyframe.state);
     const auto interval = static_cast<std::uint64_t>(std::lround(1 / keyframe.dt));
     std::vector<ToolDofs> dofs(haptic.tools());
@@ -163,6 +172,7 @@ class RunVerifier {
     for (int t = 0; t < haptic.tools() && report_.mismatch.empty(); ++t) {
       const auto force = recorded.force.find(static_cast<std::uint32_t>(t));
       if (force == recorded.force.end()) {
+        if (thinned_) continue;
         report_.gaps.push_back(
             fmt::format("cannot verify the force of tool {} at step {}: it is not in the log", t, step));
         continue;
@@ -202,6 +212,7 @@ class RunVerifier {
 
   const Scene& scene_;
   const std::vector<Archive>& archives_;
+  bool thinned_;
   VerifyReport& report_;
   RecordedModels* models_ = nullptr;
 };
@@ -240,7 +251,7 @@ VerifyReport verify_log(const std::filesystem::path& file, const Scene& scene) {
 
   std::vector<Archive> archives;
   for (const Body& body : scene.bodies) archives.push_back(archive_for_step(scene, body));
-  RunVerifier verifier(scene, archives, report);
+  RunVerifier verifier(scene, archives, recorded.thinned, report);
   for (const auto& [id, run] : runs) {
     if (run.keyframes.empty() || !report.mismatch.empty()) continue;
     RecordedModels models(file, recorded.deform_runs, id);

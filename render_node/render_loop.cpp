@@ -61,9 +61,11 @@ void RenderLoop::keep_house(std::int64_t now) {
   rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
   shown_steps_ = recent_latency_.count();
-  const std::string silence = link_.silence("haptic", now);
+  pace_.look(passes_, report_.missed);
+  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  const std::string silence = link_.silence("haptic", now), warning = silence.empty() ? pace_.status() : silence;
   presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99,
-                     silence.empty() && source_.range() ? source_.range()->warning() : silence);
+                     warning.empty() && source_.range() ? source_.range()->warning() : warning);
   recent_latency_.clear();
   last_status_ns_ = now;
   last_frames_ = report_.frames;
@@ -112,6 +114,7 @@ const RenderReport& RenderLoop::run(double seconds) {
       next_house = now + 50'000'000;
     }
     step(begin);
+    ++passes_;
     timer.wait();
     report_.missed = timer.statistics().skipped;
   }

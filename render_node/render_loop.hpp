@@ -7,6 +7,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
+#include "common/node/pace_watch.hpp"
 #include "common/realtime/histogram.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"
@@ -65,7 +66,8 @@ class RenderLoop {
   double rate_hz_ = 0;
   Percentiles shown_latency_;      ///< of the last second, for the overlay
   std::uint64_t shown_steps_ = 0;  ///< that it is of
-  std::uint64_t last_frames_ = 0;
+  PaceWatch pace_{"the picture", "frames are left out"};
+  std::uint64_t last_frames_ = 0, passes_ = 0;
   std::int64_t last_status_ns_ = 0;
   RenderReport report_;
 };

@@ -43,6 +43,7 @@ Json json_of(const LogSummary& s, const std::string& file) {
             {"complete", s.footer.has_value() && s.damage.empty()},
             {"lost", s.footer ? Json(s.footer->lost) : Json(nullptr)},
             {"loss_reason", s.footer ? s.footer->error : ""},
+            {"thinned_steps", s.thinned_steps},
             {"unknown_events", s.unknown}};
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
@@ -116,6 +117,9 @@ void print_text(const LogSummary& s, const std::string& file) {
   if (s.footer && s.footer->lost > 0)
     fmt::print("the recorder lost {} messages: {}\n", s.footer->lost, s.footer->error);
   if (!s.damage_text.empty()) fmt::print("{}\n", s.damage_text);
+  if (s.thinned_steps > 0)
+    fmt::print("keeps enough: one in {} steps of what can be computed again, and no surface that can\n",
+               s.thinned_steps);
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
   print_table(s);
   print_hops(s);

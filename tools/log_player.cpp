@@ -5,12 +5,14 @@
 
 #include "common/realtime/clock.hpp"
 #include "tools/logs/log_sender.hpp"
+#include "tools/logs/log_time.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr std::int64_t kSpinNs = 100'000;
 constexpr std::int64_t kProgressNs = 250'000'000;
+constexpr double kLongestPlay = 1e18;  // [ns]
 
 void wait_until(std::int64_t time) {
   while (time - now_ns() > kSpinNs) sleep_until_ns(std::min(time - kSpinNs, now_ns() + kProgressNs));
@@ -29,12 +31,14 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
   PlayReport report;
   LogReader reader(file);
   LogEvent event;
-  std::int64_t start = 0, first = 0, next_progress = 0;
+  LogTime time;
+  std::int64_t start = 0, next_progress = 0;
   bool go_on = true;
   while (go_on && (report.complete = !reader.next(event), !report.complete)) {
-    if (start == 0) start = now_ns(), first = event.receive_ns;
-    const auto in_log = std::max<std::int64_t>(event.receive_ns - first, 0);
-    const std::int64_t due = start + static_cast<std::int64_t>(static_cast<double>(in_log) / settings.speed);
+    if (start == 0) start = now_ns();
+    const std::int64_t in_log = time.since_start(event.receive_ns);
+    const double after = std::min(static_cast<double>(in_log) / settings.speed, kLongestPlay);
+    const std::int64_t due = start + static_cast<std::int64_t>(after);
     while (go_on && due - now_ns() > kProgressNs) {  // a long silence in the log must not delay Ctrl-C
       sleep_until_ns(now_ns() + kProgressNs);
       go_on = progress(report.seconds);
@@ -50,6 +54,7 @@ PlayReport play_log(const std::filesystem::path& file, Bus& bus, const PlaySetti
     go_on = progress(report.seconds);
   }
   report.damage = reader.damage_text();
+  report.leaps = time.leaps();
   return report;
 }
 

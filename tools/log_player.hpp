@@ -19,6 +19,7 @@ struct PlaySettings {
 struct PlayReport {
   std::uint64_t played = 0;   ///< samples sent
   std::uint64_t skipped = 0;  ///< events left out: other topics, invalid, refused by the bus
+  std::uint64_t leaps = 0;    ///< of the receive times, by more than an hour: they count as no time
   double seconds = 0;         ///< of the log, from its first sample
   Histogram pace;             ///< [ns] from a sample's recorded time until the bus had it
   bool complete = false;      ///< the end of the log was reached

@@ -1,8 +1,10 @@
 #include "tools/log_summary.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "common/bus/sequence.hpp"
+#include "common/bus/thinning.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
@@ -36,6 +38,7 @@ class Summariser {
     for (auto& [name, topic] : summary_.topics) {
       const SequenceCheck& check = sequences_[name];
       topic.streams = check.streams();
+      if (summary_.thinned_steps > 0 && may_be_thin_.contains(name)) continue;
       topic.gaps = check.gaps();
       topic.missing = check.missing();
       topic.repeated = check.repeated();
@@ -61,6 +64,7 @@ class Summariser {
     }
     learn(message);
     summary_.hops.add(message);
+    if (Thinning::concerns<M>()) may_be_thin_.insert(topic.name);
   }
 
   void keep(const TaskRecord& task) {
@@ -83,6 +87,7 @@ class Summariser {
 
   LogSummary& summary_;
   std::map<std::string, SequenceCheck> sequences_;
+  std::set<std::string> may_be_thin_;  ///< topics of which a log may leave out messages
 };
 
 }  // namespace
@@ -105,6 +110,7 @@ LogSummary summarise_log(const std::filesystem::path& file) {
     first = std::min(first, event.receive_ns);
     last = std::max(last, event.receive_ns);
   }
+  summary.thinned_steps = reader.thinned_steps();
   summariser.finish();
   summary.has_header = reader.has_header();
   summary.header = reader.header();  // complete now that the scene's event was read

@@ -16,11 +16,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr double kShort = 600;  // [s]
+constexpr const char *kEverything = "everything", *kEnough = "enough";
+
 struct RecordOptions {
   BusSettings network;
   std::string file;
   double seconds = 0;
+  std::string keep;
   bool supervised = false;
+
+  /// Unless it is told: everything of a recording whose end is near.
+  bool keeps_everything() const { return keep.empty() ? seconds > 0 && seconds <= kShort : keep == kEverything; }
 };
 
 std::string default_file() {
@@ -75,9 +82,11 @@ void record(RecordOptions& o) {
   if (o.file.empty()) o.file = default_file();
   catch_shutdown_signals();
   const auto bus = make_dds_bus(o.network);
-  Recorder recorder(*bus, {.file = o.file, .version = PALPATE_VERSION, .files = [](const std::string& scene) {
-                             return files_for_log(scene);
-                           }});
+  RecorderSettings settings{.file = o.file, .version = PALPATE_VERSION, .files = [](const std::string& scene) {
+                              return files_for_log(scene);
+                            }};
+  if (!o.keeps_everything()) settings.thinning = thinning_for_log;
+  Recorder recorder(*bus, settings);
   fmt::print("{}\n", o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
   std::fflush(stdout);
 
@@ -105,6 +114,11 @@ void add_record_command(cli::Command& app) {
   add_network_options(command, o->network, "recorder");
   command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)").output_file();
   command.add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)").positive();
+  command
+      .add_option("--keep", o->keep,
+                  "everything, or enough to verify and to draw: what can be computed again is kept at the rate of "
+                  "pictures or not at all (default: enough, everything with --seconds up to 600)")
+      .one_of(std::vector<std::string>{kEverything, kEnough});
   command.add_flag("--supervised", o->supervised).hidden();
   command.does([o] { record(*o); });
 }

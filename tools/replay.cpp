@@ -58,6 +58,7 @@ nlohmann::ordered_json json_of(const ReplayOptions& o, const PlayReport& report)
       {"seconds", report.seconds},
       {"played", report.played},
       {"skipped", report.skipped},
+      {"leaps", report.leaps},
       {"pace_us", {{"p50", pace.p50}, {"p90", pace.p90}, {"p99", pace.p99}, {"p999", pace.p999}, {"max", pace.max}}},
       {"damage", report.damage}};
 }
@@ -78,6 +79,9 @@ void play(const ReplayOptions& o) {
     return;
   }
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
+  if (report.leaps > 0)
+    fmt::print(stderr, "palpate: {}: {} leaps of its times by more than an hour are played at once\n", o.file,
+               report.leaps);
   const Percentiles pace = percentiles_us(report.pace);
   fmt::print(
       "{}: {} of {:.2f} s: {} messages to domain {}, {} left out\npaced: median {:.1f} us, p99 {:.1f} us after the "

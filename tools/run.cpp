@@ -22,10 +22,11 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+constexpr double kShortRun = 600;               // [s]: its log keeps everything
 const std::string kScenesPort = "the scene's";  // for --web without a port
 
 struct RunOptions {
-  std::string scene, record, film, still, summary, keys, domain, web;
+  std::string scene, record, keep, film, still, summary, keys, domain, web;
   double seconds = 0;
   int processes = 2;
   bool strict = false;
@@ -122,11 +123,12 @@ class Nodes {
 };
 
 /// The recorder knows no scene, so the scene's network is passed on.
-std::vector<std::string> recorder_command(const Scene& scene, const std::string& log, const std::string& keys) {
-  std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log};
+std::vector<std::string> recorder_command(const Scene& scene, const std::string& log, const RunOptions& o) {
+  std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log, "--keep", o.keep};
+  if (o.keep.empty()) command.back() = o.seconds > 0 && o.seconds <= kShortRun ? "everything" : "enough";
   if (!scene.network.interface.empty()) command.insert(command.end(), {"--interface", scene.network.interface});
   for (const std::string& peer : scene.network.peers) command.insert(command.end(), {"--peer", peer});
-  if (keys.empty() && scene.network.security) command.insert(command.end(), {"--keys", scene.network.security->keys});
+  if (o.keys.empty() && scene.network.security) command.insert(command.end(), {"--keys", scene.network.security->keys});
   return command;
 }
 
@@ -154,7 +156,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     return arguments;
   };
   const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
-  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o.keys)));
+  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o)));
   const bool watched = !o.web.empty();
   // In a browser or off screen: nobody would see a third picture.
   const bool drawn = (scene.render && !watched) || !o.film.empty() || !o.still.empty();
@@ -287,6 +289,11 @@ void add_run_command(cli::Command& app) {
                   "Stop after so many seconds (default: when a scripted motion ends, with --web never, or Ctrl-C)")
       .positive();
   run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file();
+  run_command
+      .add_option(
+          "--keep", o->keep,
+          "What the log keeps, as `palpate record` has it (default: enough, everything with --seconds up to 600)")
+      .one_of(std::vector<std::string>{"everything", "enough"});
   run_command.add_option("--film", o->film, "Write a film (MP4)").output_file(".mp4");
   run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force")
       .output_file(".png");

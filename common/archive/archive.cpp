@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "common/archive/archive_dynamic.hpp"
 #include "common/archive/archive_modal.hpp"
 #include "common/archive/archive_presses.hpp"
 #include "common/archive/atomic_file.hpp"
+#include "common/archive/fits.hpp"
 #include "common/archive/hdf5_file.hpp"
 #include "common/archive/rows.hpp"
 
@@ -16,6 +18,7 @@ namespace {
 
 constexpr const char* kFormat = "palpate compliance archive";
 constexpr std::size_t kMetadataBytes = 64 * 1024;
+constexpr std::size_t kMaxMaterials = 1 << 16;  // of_element holds 16 bits
 
 std::size_t payload_bytes(const Archive& archive) {
   const auto& surface = archive.surface;
@@ -85,8 +88,19 @@ SurfaceMap read_surface(const Hdf5Reader& file) {
   surface.node_number.assign(numbers.begin(), numbers.end());
   surface.fixed = rows_of<std::array<bool, 3>>(3, file.integers("surface/fixed"));
   surface.triangles = rows_of<std::array<int, 3>>(3, file.integers("surface/triangles"));
-  surface.touchable = static_cast<int>(file.integer("touchable_nodes"));
+  surface.touchable = file.count("touchable_nodes");
   return surface;
+}
+
+void read_material(const Hdf5Reader& file, Archive& archive) {
+  archive.young = file.doubles("material/young", kAboveZero);
+  archive.poisson = file.doubles("material/poisson", strictly_within(-1, 0.5));
+  archive.density = file.doubles("material/density", kAboveZero);
+  const auto material = file.integers("material/of_element");
+  const auto known = static_cast<int>(std::min<std::size_t>(archive.young.size(), kMaxMaterials));
+  if (!std::ranges::all_of(material, [&](int row) { return within(row, known); }))
+    file.fail("damaged: 'material/of_element' names a material that is not there");
+  archive.material_of_element.assign(material.begin(), material.end());
 }
 
 void check_identity(const Hdf5Reader& file, const std::string& expected_hash) {
@@ -98,17 +112,35 @@ void check_identity(const Hdf5Reader& file, const std::string& expected_hash) {
     file.fail("made for another mesh, material or boundary conditions");
 }
 
-void check_sizes(const Hdf5Reader& file, const Archive& archive, ArchivePart part) {
-  const auto& surface = archive.surface;
-  const std::size_t nodes = surface.position.size(), touchable = archive.touchable_dofs.size();
-  bool consistent = surface.node_number.size() == nodes && surface.fixed.size() == nodes &&
-                    surface.touchable <= surface.size() && !archive.young.empty() &&
-                    archive.young.size() == archive.poisson.size() && dynamic_part_fits(archive, part) &&
-                    modal_part_fits(archive, part) && presses_fit(archive);
-  if (part != ArchivePart::header) consistent &= archive.touchable_compliance.size() == touchable * (touchable + 1) / 2;
-  if (part == ArchivePart::surface)
-    consistent &= archive.other_compliance.size() == archive.other_dofs.size() * touchable;
-  if (!consistent) file.fail("damaged: its datasets do not fit together");
+/// Nodes are each of the mesh and there once, and triangles have three.
+bool surface_fits(const SurfaceMap& surface, int mesh_nodes) {
+  const std::size_t nodes = surface.position.size();
+  if (surface.node_number.size() != nodes || surface.fixed.size() != nodes || surface.touchable > surface.size())
+    return false;
+  std::vector<int> numbers = surface.node_number;
+  std::ranges::sort(numbers);
+  if (nodes > 0 && (numbers.front() < 0 || numbers.back() >= mesh_nodes)) return false;
+  const auto is_triangle = [&](const std::array<int, 3>& t) {
+    return all_within(t, surface.size()) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+  };
+  return std::ranges::adjacent_find(numbers) == numbers.end() && std::ranges::all_of(surface.triangles, is_triangle);
+}
+
+bool compliance_fits(const Archive& archive, ArchivePart part) {
+  const SurfaceMap& surface = archive.surface;
+  const std::size_t touchable = archive.touchable_dofs.size();
+  if (!are_free_dofs(archive.touchable_dofs, surface, 0, surface.touchable)) return false;
+  if (!are_free_dofs(archive.other_dofs, surface, surface.touchable, surface.size())) return false;
+  if (part != ArchivePart::header && !is_packed_compliance(archive.touchable_compliance, touchable)) return false;
+  return part != ArchivePart::surface || archive.other_compliance.size() == archive.other_dofs.size() * touchable;
+}
+
+/// That its datasets fit together, and that no number in them leads out of another one.
+void check_fit(const Hdf5Reader& file, const Archive& archive, ArchivePart part) {
+  const bool fits = !archive.young.empty() && archive.young.size() == archive.poisson.size() &&
+                    surface_fits(archive.surface, archive.mesh_nodes) && compliance_fits(archive, part) &&
+                    dynamic_part_fits(archive, part) && modal_part_fits(archive, part) && presses_fit(archive);
+  if (!fits) file.fail("damaged: its datasets do not fit together");
 }
 
 }  // namespace
@@ -141,19 +173,14 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   Archive archive;
   archive.body = reader.text("body");
   archive.model = reader.text("model");
-  archive.parts = {.dynamic = reader.integer("has_dynamic") != 0,
-                   .hybrid = reader.integer("has_hybrid") != 0,
-                   .modal = reader.integer("has_modal") != 0};
+  archive.parts = {
+      .dynamic = reader.flag("has_dynamic"), .hybrid = reader.flag("has_hybrid"), .modal = reader.flag("has_modal")};
   archive.content_hash = reader.text("content_hash");
   archive.software = reader.text("software");
-  archive.mesh_nodes = static_cast<int>(reader.integer("mesh_nodes"));
+  archive.mesh_nodes = reader.count("mesh_nodes");
   archive.specimen_force_slope = reader.number("specimen_force_slope");
   archive.specimen_radial_slope = reader.number("specimen_radial_slope");
-  archive.young = reader.doubles("material/young");
-  archive.poisson = reader.doubles("material/poisson");
-  archive.density = reader.doubles("material/density");
-  const auto material = reader.integers("material/of_element");
-  archive.material_of_element.assign(material.begin(), material.end());
+  read_material(reader, archive);
   archive.surface = read_surface(reader);
   archive.touchable_dofs = read_dofs(reader, "touchable/dofs");
   archive.other_dofs = read_dofs(reader, "other/dofs");
@@ -162,7 +189,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   read_dynamic_part(reader, part, archive);
   read_modal_part(reader, part, archive);
   read_presses(reader, archive);
-  check_sizes(reader, archive, part);
+  check_fit(reader, archive, part);
   return archive;
 }
 

@@ -1,7 +1,9 @@
 #include "common/archive/archive_dynamic.hpp"
 
 #include <algorithm>
+#include <functional>
 
+#include "common/archive/fits.hpp"
 #include "common/archive/rows.hpp"
 
 namespace palpate {
@@ -46,12 +48,12 @@ void write_hybrid(Hdf5Writer& file, const HybridTensors& hybrid) {
 HybridTensors read_hybrid(const Hdf5Reader& file, ArchivePart part) {
   HybridTensors hybrid;
   hybrid.bound = file.number("hybrid_bound");
-  hybrid.held_by_connection = file.integer("held_by_connection") != 0;
-  hybrid.quasi_static_triangles = static_cast<int>(file.integer("quasi_static_triangles"));
+  hybrid.held_by_connection = file.flag("held_by_connection");
+  hybrid.quasi_static_triangles = file.count("quasi_static_triangles");
   hybrid.max_gap = file.number("max_gap");
   const auto connection = file.integers("hybrid/connection");
   hybrid.connection.assign(connection.begin(), connection.end());
-  hybrid.mass = file.doubles("hybrid/mass");
+  hybrid.mass = file.doubles("hybrid/mass", at_least(0));
   hybrid.interface = rows_of<std::array<int, 4>>(4, file.integers("hybrid/interface"));
   hybrid.dofs = read_dofs(file, "hybrid/dofs");
   const auto nodes = rows_of<std::array<int, 4>>(4, file.integers("hybrid/gap_nodes"));
@@ -67,25 +69,30 @@ HybridTensors read_hybrid(const Hdf5Reader& file, ArchivePart part) {
   return hybrid;
 }
 
-bool within(int node, int nodes) {
-  return node >= 0 && node < nodes;
+bool connection_fits(const HybridTensors& hybrid, const SurfaceMap& surface) {
+  const std::vector<int>& nodes = hybrid.connection;
+  const bool ascends = std::ranges::adjacent_find(nodes, std::greater_equal<>()) == nodes.end();
+  return ascends &&
+         (nodes.empty() || (within(nodes.front(), surface.size()) && within(nodes.back(), surface.size()))) &&
+         hybrid.mass.size() == nodes.size() && are_free_dofs(hybrid.dofs, surface, 0, surface.size()) &&
+         std::ranges::all_of(hybrid.dofs, [&](const Dof& dof) { return std::ranges::binary_search(nodes, dof.node); });
+}
+
+bool border_fits(const HybridTensors& hybrid, const Archive& archive) {
+  const int nodes = archive.surface.size();
+  const auto facets = static_cast<int>(4 * archive.tetrahedra.size());
+  for (const auto& [p, q, r, facet] : hybrid.interface)
+    if (!all_within(std::array{p, q, r}, nodes) || !within(facet, facets)) return false;
+  return std::ranges::all_of(
+      hybrid.gap, [&](const GapPair& pair) { return within(pair.node, nodes) && all_within(pair.triangle, nodes); });
 }
 
 bool hybrid_fits(const Archive& archive, ArchivePart part) {
   const HybridTensors& hybrid = *archive.hybrid;
-  const int nodes = archive.surface.size(), facets = 4 * static_cast<int>(archive.tetrahedra.size());
   const std::size_t c = hybrid.dofs.size(), i = archive.touchable_dofs.size() + archive.other_dofs.size();
-  bool fits = hybrid.mass.size() == hybrid.connection.size() && hybrid.quasi_static_triangles >= 0 &&
-              hybrid.quasi_static_triangles <= static_cast<int>(archive.surface.triangles.size());
-  for (int node : hybrid.connection) fits &= within(node, nodes);
-  for (const Dof& dof : hybrid.dofs)
-    fits &= std::binary_search(hybrid.connection.begin(), hybrid.connection.end(), dof.node) && within(dof.axis, 3);
-  for (const auto& [p, q, r, facet] : hybrid.interface)
-    fits &= within(p, nodes) && within(q, nodes) && within(r, nodes) && within(facet, facets);
-  for (const GapPair& pair : hybrid.gap) {
-    fits &= within(pair.node, nodes);
-    for (int node : pair.triangle) fits &= within(node, nodes);
-  }
+  const auto triangles = static_cast<int>(archive.surface.triangles.size());
+  const bool fits = hybrid.bound >= 0 && hybrid.quasi_static_triangles <= triangles &&
+                    connection_fits(hybrid, archive.surface) && border_fits(hybrid, archive);
   if (part != ArchivePart::surface) return fits;
   return fits && hybrid.stiffness.size() == c * (c + 1) / 2 && hybrid.reaction.size() == c &&
          hybrid.follow.size() == i * c && hybrid.sag.size() == i;
@@ -117,11 +124,10 @@ bool dynamic_part_fits(const Archive& archive, ArchivePart part) {
   if (count > 0)
     fits &= archive.density.size() == archive.young.size() &&
             (archive.material_of_element.empty() || archive.material_of_element.size() == count);
-  for (const auto& tetrahedron : archive.tetrahedra)
-    for (int node : tetrahedron) fits &= within(node, archive.surface.size());
-  const std::size_t dofs = archive.moving_dofs.size();
-  for (const Dof& dof : archive.moving_dofs) fits &= within(dof.node, archive.surface.touchable) && within(dof.axis, 3);
-  if (part == ArchivePart::surface) fits &= archive.moving_compliance.size() == dofs * (dofs + 1) / 2;
+  fits &= std::ranges::all_of(archive.tetrahedra,
+                              [&](const auto& nodes) { return all_within(nodes, archive.surface.size()); });
+  fits &= are_free_dofs(archive.moving_dofs, archive.surface, 0, archive.surface.touchable);
+  if (part == ArchivePart::surface) fits &= is_packed_compliance(archive.moving_compliance, archive.moving_dofs.size());
   return fits && (!archive.hybrid || hybrid_fits(archive, part));
 }
 

@@ -20,8 +20,8 @@ void read_modal_part(const Hdf5Reader& file, ArchivePart part, Archive& archive)
   if (!file.has_attribute("shell_thickness")) return;
   ModalTensors& modal = archive.modal.emplace();
   modal.thickness = file.number("shell_thickness");
-  modal.omega = file.doubles("modal/omega");
-  modal.mass = file.doubles("modal/mass");
+  modal.omega = file.doubles("modal/omega", kAboveZero);
+  modal.mass = file.doubles("modal/mass", kAboveZero);
   if (part != ArchivePart::header) modal.shape = file.doubles("modal/shape");
 }
 
@@ -31,7 +31,7 @@ bool modal_part_fits(const Archive& archive, ArchivePart part) {
   const ModalTensors& modal = *archive.modal;
   const std::size_t nodes = archive.surface.position.size();
   const bool shapes = part == ArchivePart::header || modal.shape.size() == 3 * nodes * modal.omega.size();
-  return shapes && modal.mass.size() == nodes && modal.modes() > 0 && modal.omega.front() > 0 &&
+  return shapes && modal.mass.size() == nodes && modal.modes() > 0 && modal.thickness > 0 &&
          std::is_sorted(modal.omega.begin(), modal.omega.end());
 }
 

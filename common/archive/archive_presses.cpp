@@ -53,7 +53,7 @@ void write_presses(Hdf5Writer& file, const Archive& archive) {
 
 void read_presses(const Hdf5Reader& file, Archive& archive) {
   const auto place = rows_of<Eigen::Vector3d>(3, file.doubles("presses/place"));
-  auto depth = file.doubles("presses/depth");
+  auto depth = file.doubles("presses/depth", kAboveZero);
   auto count = rows_of<std::array<std::int32_t, 2>>(2, file.integers("presses/count"));
   auto force = rows_of<PressedPlace::Pair>(2, file.doubles("presses/force"));
   auto radial = rows_of<PressedPlace::Pair>(2, file.doubles("presses/radial"));

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr const char* kChecksum = "xxh3_128";
+constexpr std::size_t kLongestText = 64 * 1024;  // of an attribute
 
 /// An HDF5 identifier and the function that closes it.
 class Handle {
@@ -109,6 +111,7 @@ bool read_text(hid_t object, const std::string& name, std::string& value) {
   if (attribute < 0) return false;
   const Handle type(H5Aget_type(attribute), H5Tclose);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) return false;
+  if (H5Tget_size(type) > kLongestText) return false;
   value.assign(H5Tget_size(type), '\0');
   if (H5Aread(attribute, type, value.data()) < 0) return false;
   value.resize(value.find('\0') == std::string::npos ? value.size() : value.find('\0'));
@@ -218,7 +221,21 @@ std::int64_t Hdf5Reader::integer(const std::string& name) const {
 double Hdf5Reader::number(const std::string& name) const {
   double value = 0;
   if (!read_scalar(id_, name, value)) fail("damaged: attribute '" + name + "' cannot be read");
+  if (!kAnyNumber.contains(value)) fail("damaged: attribute '" + name + "' is no number");
   return value;
+}
+
+int Hdf5Reader::count(const std::string& name) const {
+  const std::int64_t value = integer(name);
+  if (value < 0 || value > std::numeric_limits<int>::max()) fail("damaged: attribute '" + name + "' is no count");
+  return static_cast<int>(value);
+}
+
+std::vector<double> Hdf5Reader::doubles(const std::string& name, const Range& each) const {
+  auto values = read<double>(name);
+  if (!std::ranges::all_of(values, [&](double x) { return each.contains(x); }))
+    fail("damaged: '" + name + "' has a number that cannot be");
+  return values;
 }
 
 template <class T>
@@ -235,6 +252,9 @@ std::vector<T> Hdf5Reader::read(const std::string& name) const {
   if (data < 0) fail("damaged: '" + name + "' cannot be read");
   const Handle space(H5Dget_space(data), H5Sclose);
   const auto count = H5Sget_simple_extent_npoints(space);
+  // Nothing is taken on the word of a file that is shorter than that.
+  if (count > 0 && static_cast<std::uintmax_t>(count) > std::filesystem::file_size(file_) / sizeof(T))
+    fail("damaged: '" + name + "' is longer than the file");
   std::vector<T> values(count > 0 ? static_cast<std::size_t>(count) : 0);
   std::string expected;
   if (H5Dread(data, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)

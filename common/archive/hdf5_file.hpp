@@ -1,10 +1,18 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "common/describe/range.hpp"
+
 namespace palpate {
+
+/// Of numbers that are read: any, and those above zero. Neither holds an infinity.
+inline constexpr Range kAnyNumber =
+    strictly_within(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+inline constexpr Range kAboveZero = strictly_within(0, std::numeric_limits<double>::infinity());
 
 /// What a dataset says about itself.
 struct DatasetLabel {
@@ -50,10 +58,13 @@ class Hdf5Reader {
 
   bool has_attribute(const std::string& name) const;
   std::string text(const std::string& name) const;
-  std::int64_t integer(const std::string& name) const;
+  bool flag(const std::string& name) const { return integer(name) != 0; }
+  /// From 0 to the largest `int`.
+  int count(const std::string& name) const;
   double number(const std::string& name) const;
-  /// Empty if there is no such dataset. The payload is checked against its checksum.
-  std::vector<double> doubles(const std::string& name) const { return read<double>(name); }
+  std::int64_t integer(const std::string& name) const;
+  /// Empty if there is no such dataset. The payload is checked against its checksum, and each number against its range.
+  std::vector<double> doubles(const std::string& name, const Range& each = kAnyNumber) const;
   std::vector<std::int32_t> integers(const std::string& name) const { return read<std::int32_t>(name); }
   [[noreturn]] void fail(const std::string& reason) const;
 

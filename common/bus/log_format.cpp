@@ -40,6 +40,11 @@ void fields(Visitor& visit, File& f) {
   visit("size", f.size);
   visit("content", f.content);
 }
+template <class Visitor, class Thinned>
+requires std::same_as<std::remove_const_t<Thinned>, LogThinned>
+void fields(Visitor& visit, Thinned& t) {
+  visit("steps", t.steps);
+}
 template <class Visitor, class Footer>
 requires std::same_as<std::remove_const_t<Footer>, LogFooter>
 void fields(Visitor& visit, Footer& f) {
@@ -53,6 +58,8 @@ template void encode(const LogHeader&, Bytes&);
 template bool decode(std::span<const std::uint8_t>, LogHeader&);
 template void encode(const LogFile&, Bytes&);
 template bool decode(std::span<const std::uint8_t>, LogFile&);
+template void encode(const LogThinned&, Bytes&);
+template bool decode(std::span<const std::uint8_t>, LogThinned&);
 template void encode(const LogFooter&, Bytes&);
 template bool decode(std::span<const std::uint8_t>, LogFooter&);
 
@@ -111,7 +118,8 @@ bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std:
   in("", crc);
   in("", receive_ns);
   payload = in.in;
-  return in.good && found_version == kVersion && reserved == 0 && crc == checksum(channel, receive_ns, payload);
+  return in.good && found_version == kVersion && reserved == 0 && is_log_time(receive_ns) &&
+         crc == checksum(channel, receive_ns, payload);
 }
 
 }  // namespace envelope

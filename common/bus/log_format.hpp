@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -31,6 +32,11 @@ struct LogFile {
   Bytes content;           ///< empty if it is too large for a log
 };
 
+/// That a log from here on goes without what follows from the rest, see Thinning.
+struct LogThinned {
+  std::uint64_t steps = 0;  ///< from one kept outcome of a step to the next
+};
+
 /// Last event of a log whose recorder ended in order.
 struct LogFooter {
   std::int64_t stop_monotonic_ns = 0;
@@ -41,6 +47,7 @@ struct LogFooter {
 
 inline constexpr const char* kHeaderChannel = "palpate/log_header";
 inline constexpr const char* kFileChannel = "palpate/log_file";
+inline constexpr const char* kThinnedChannel = "palpate/log_thinned";
 inline constexpr const char* kFooterChannel = "palpate/log_footer";
 
 /// The encoding of every message, one line each, then "topic NAME MESSAGE" lines.
@@ -48,6 +55,11 @@ std::string schema_text();
 
 /// True if the two texts describe the same messages, in whatever order.
 bool same_schema(const std::string& a, const std::string& b);
+
+/// Whether a log may hold it as a time [ns]: differences of such, and their sums, are times too.
+constexpr bool is_log_time(std::int64_t ns) {
+  return ns >= 0 && ns <= std::numeric_limits<std::int64_t>::max() / 3;
+}
 
 /// Envelope of each event's data: "PLPT", u16 version, u16 0, u32 CRC-32 of channel name, receive time and
 /// payload, i64 receive time, payload.
@@ -58,7 +70,7 @@ inline constexpr std::uint16_t kVersion = 1;
 /// Receive time [ns] is CLOCK_MONOTONIC of the recorder's host.
 Bytes wrap(const std::string& channel, std::int64_t receive_ns, std::span<const std::uint8_t> payload);
 
-/// The payload inside `data`, and its time. False if it is not such an envelope or is damaged.
+/// The payload inside `data`, and its time. False if it is not such an envelope, is damaged, or has no possible time.
 bool unwrap(const std::string& channel, std::span<const std::uint8_t> data, std::int64_t& receive_ns,
             std::span<const std::uint8_t>& payload);
 }  // namespace envelope

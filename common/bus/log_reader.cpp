@@ -48,7 +48,8 @@ LogReader::LogReader(const std::filesystem::path& file) : path_(file), file_(ope
                                          : foreign  ? "is an LCM log without a readable topic of this simulator"
                                                     : "is not a topic log"));
   }
-  has_header_ = first.channel == kHeaderChannel && decode(first.payload, header_);
+  has_header_ = first.channel == kHeaderChannel && decode(first.payload, header_) &&
+                is_log_time(header_.start_wall_ns) && is_log_time(header_.start_monotonic_ns);
   if (!has_header_) {
     header_ = {};
     position_ = 0;
@@ -116,7 +117,8 @@ bool LogReader::next_raw(LogEvent& event) {
 bool LogReader::next(LogEvent& event) {
   while (next_raw(event)) {
     if (event.channel == kFileChannel) note_file(event);
-    if (event.channel == kHeaderChannel || event.channel == kFileChannel) continue;
+    if (event.channel == kThinnedChannel) decode(event.payload, thinned_);
+    if (event.channel == kHeaderChannel || event.channel == kFileChannel || event.channel == kThinnedChannel) continue;
     if (header_.scene.empty()) complete_header(event);
     if (event.channel != kFooterChannel) return true;
     LogFooter footer;

@@ -44,12 +44,14 @@ class LogReader {
   const LogHeader& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// The next sample; false at the end. Header, files and footer are not samples.
+  /// The next sample; false at the end. Header, files, thinning and footer are not samples.
   bool next(LogEvent& event);
   /// The next file that goes along; samples before it are passed over. False at the end.
   bool next_file(LogFile& file);
 
-  const std::vector<LogFile>& files() const { return files_; }        ///< passed so far by next(), without contents
+  const std::vector<LogFile>& files() const { return files_; }  ///< passed so far by next(), without contents
+  /// [steps] from one kept outcome of a step to the next, passed so far by next(); 0: the log leaves out nothing.
+  std::uint64_t thinned_steps() const { return thinned_.steps; }
   const std::vector<LogDamage>& damage() const { return damage_; }    ///< found so far
   const std::optional<LogFooter>& footer() const { return footer_; }  ///< once read
   std::uint64_t size() const { return size_; }                        ///< [bytes] when opened
@@ -76,6 +78,7 @@ class LogReader {
   LogHeader header_;
   bool has_header_ = false;
   std::optional<LogFooter> footer_;
+  LogThinned thinned_;
   std::vector<LogFile> files_;
   std::vector<LogDamage> damage_;
 };

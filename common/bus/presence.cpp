@@ -16,9 +16,14 @@ namespace {
 constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
 constexpr std::string_view kRecorder = "recorder";
 constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;  // each node says once a second how it is
+constexpr std::int64_t kBeginningNs = 3 * kNsPerS;  // in which two that began at once have heard of each other
 constexpr std::size_t kMostPeers = 256;
 constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
 constexpr int kMostTold = 8;  // sentences about one of them
+
+std::string also(const std::string& first, const std::string& second) {
+  return first.empty() ? second : first + "; " + second;
+}
 
 void make_printable(NodeStatus& status) {
   for (std::string* text : {&status.node, &status.role, &status.scene_hash, &status.archive_hash, &status.version,
@@ -50,11 +55,11 @@ void Presence::announce(double rate_hz, std::uint64_t ticks, std::uint64_t misse
   ++status_.seq;
   status_.stamp_ns = now_ns();
   status_.rate_hz = rate_hz;
-  status_.ticks = ticks;
+  status_.ticks = claimed_.empty() ? ticks : std::max<std::uint64_t>(ticks, 1);  // 0: it has not begun
   status_.missed = missed;
   status_.latency_p50_us = p50_us;
   status_.latency_p99_us = p99_us;
-  status_.text = text.empty() && bus_->refused() > told_refused_ ? kRefused : text;
+  status_.text = bus_->refused() > told_refused_ ? also(text, kRefused) : text;
   told_refused_ = bus_->refused();
   if (clock_ && clock_->known()) {
     const ClockOffset::Estimate clock = clock_->estimate();
@@ -121,23 +126,39 @@ bool Presence::accepts(std::uint64_t run) const {
   return haptic && haptic->status.run == run;
 }
 
+bool Presence::is_rival(const Peer& peer, std::int64_t now) const {
+  return peer.accepted && peer.status.role == status_.role && peer.status.run != 0 && now - peer.heard_ns < kAliveNs;
+}
+
 // Of two that begin at once one gives way: the same one for both.
 const NodeStatus* Presence::owner() const {
   const std::int64_t now = now_ns();
   for (const auto& [name, peer] : peers_) {
     const NodeStatus& s = peer.status;
-    const bool rival = peer.accepted && s.role == status_.role && s.run != 0 && now - peer.heard_ns < kAliveNs;
-    if (rival && (s.ticks > 0 || s.run < status_.run)) return &s;
+    if (is_rival(peer, now) && (s.ticks > 0 || s.run < status_.run)) return &s;
   }
   return nullptr;
 }
 
-void Presence::claim(const std::string& what) const {
-  if (const NodeStatus* other = owner())
-    throw std::runtime_error(
-        fmt::format("{} has {} in {}: a second owner would fight with it. Stop it, or give another "
-                    "--domain",
-                    other->node, what, bus_->place()));
+std::string Presence::fight_with(const NodeStatus& other, const std::string& what) const {
+  return fmt::format("{} has {} in {}: a second owner would fight with it. Stop it, or give another --domain",
+                     other.node, what, bus_->place());
+}
+
+void Presence::claim(const std::string& what) {
+  if (const NodeStatus* other = owner()) throw std::runtime_error(fight_with(*other, what));
+  claimed_ = what;
+  claim_ns_ = now_ns();
+  announce(0, 0, 0, 0, 0);
+}
+
+std::string Presence::lost_claim() const {
+  const std::int64_t now = now_ns();
+  if (claimed_.empty() || now - claim_ns_ > kBeginningNs) return {};
+  for (const auto& [name, peer] : peers_)
+    if (is_rival(peer, now) && peer.status.ticks > 0 && peer.status.run < status_.run)
+      return fight_with(peer.status, claimed_);
+  return {};
 }
 
 const Presence::Peer* Presence::holder(const std::string& role) const {

@@ -20,8 +20,8 @@ class Presence {
   /// Whose estimate goes out with what is announced; nullptr, as at first: none.
   void set_clock(const ClockFollower* clock) { clock_ = clock; }
 
-  /// Publishes what has been measured; call about once a second and when `text` changes. Where that is empty, it says
-  /// so if messages have been refused since the last time.
+  /// Publishes what has been measured; call about once a second and when `text` changes. It also says so if messages
+  /// have been refused since the last time.
   void announce(double rate_hz, std::uint64_t ticks, std::uint64_t missed, double p50_us, double p99_us,
                 const std::string& text = "");
 
@@ -48,12 +48,18 @@ class Presence {
   /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
   /// if there is none.
   const NodeStatus* owner() const;
-  /// Throws std::runtime_error, which names the other, where there is one.
-  void claim(const std::string& what) const;
+  /// Tells the others that this node owns it from now on. Throws std::runtime_error, which names the other, where there
+  /// is one.
+  void claim(const std::string& what);
+  /// For three seconds after the claim: a sentence where another node claimed the same before the two heard of each
+  /// other, and this is the one of them that gives way; else empty.
+  std::string lost_claim() const;
   /// Those heard of within the last ten minutes, by name.
   const std::map<std::string, Peer>& peers() const { return peers_; }
 
  private:
+  bool is_rival(const Peer& peer, std::int64_t now) const;
+  std::string fight_with(const NodeStatus& other, const std::string& what) const;
   bool same_scene(const NodeStatus& peer) const;
   std::string meet(const NodeStatus& status) const;
   void hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said);
@@ -64,6 +70,8 @@ class Presence {
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
   std::map<std::string, Peer> peers_;
+  std::string claimed_;             ///< what this node owns
+  std::int64_t claim_ns_ = 0;       ///< since when
   std::uint64_t told_refused_ = 0;  ///< messages that were when it was announced last
   bool said_refused_ = false;
 };

@@ -53,6 +53,7 @@ class Recorder::Impl {
   Impl(Bus& bus, const RecorderSettings& settings)
       : bus_(bus),
         files_(settings.files),
+        thinning_of_(settings.thinning),
         log_(settings.file, make_header(settings)),
         tracks_(make_tracks(bus, topics::all)),
         status_writer_(bus.writer(topics::node_status)) {
@@ -103,9 +104,16 @@ class Recorder::Impl {
       track.sequence.add(*message);
       ++track.samples;
       if constexpr (std::same_as<M, SceneText>) status_.scene_hash = message->scene_hash;
-      log_.write(track.topic.name, receive_ns, *message);
-      if constexpr (std::same_as<M, SceneText>) write_files(message->text, receive_ns);
+      if (thinning_.keeps(*message)) log_.write(track.topic.name, receive_ns, *message);
+      if constexpr (std::same_as<M, SceneText>) learn_scene(message->text, receive_ns);
     }
+  }
+
+  void learn_scene(const std::string& scene, std::int64_t receive_ns) {
+    write_files(scene, receive_ns);
+    if (!thinning_of_) return;
+    thinning_ = thinning_of_(scene);
+    log_.write(kThinnedChannel, receive_ns, LogThinned{thinning_.steps});
   }
 
   void write_files(const std::string& scene, std::int64_t receive_ns) {
@@ -127,6 +135,8 @@ class Recorder::Impl {
 
   Bus& bus_;
   std::function<std::vector<LogFile>(const std::string&)> files_;
+  std::function<Thinning(const std::string&)> thinning_of_;
+  Thinning thinning_;
   std::string scene_with_files_;  ///< whose files are in the log
   LogWriter log_;
   Tracks tracks_;

@@ -9,6 +9,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/log_writer.hpp"
+#include "common/bus/thinning.hpp"
 
 namespace palpate {
 
@@ -17,6 +18,8 @@ struct RecorderSettings {
   std::string version;  ///< software version, for the header
   /// Gives what goes along with a scene; not asked again for the same text. None: nothing does.
   std::function<std::vector<LogFile>(const std::string& scene)> files = nullptr;
+  /// Gives what the log may go without once the scene is known. None: nothing.
+  std::function<Thinning(const std::string& scene)> thinning = nullptr;
 };
 
 struct RecordedTopic {
@@ -32,7 +35,8 @@ struct RecorderReport {
   std::uint64_t missing() const;
 };
 
-/// Writes every sample of every topic of a bus into a log, and tells the others how it fares (NodeStatus).
+/// Writes every sample of every topic of a bus, but what it is told to leave out, into a log, and tells the others how
+/// it fares (NodeStatus).
 class Recorder {
  public:
   /// Throws std::runtime_error if the file cannot be created; afterwards it is a log that opens, whatever becomes of

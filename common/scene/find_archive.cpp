@@ -24,7 +24,9 @@ Archive find_archive(const Scene& scene, const Body& body, ArchivePart part) {
   if (!std::filesystem::exists(file))
     throw std::runtime_error(fmt::format("body '{}' has no archive of tensors yet: {}", name_of(body), advice));
   try {
-    return read_archive(file, part, hash);
+    Archive archive = read_archive(file, part, hash);
+    if (archive.model != kind_of(body)) throw std::runtime_error(file.string() + ": made for another kind of tissue");
+    return archive;
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}; {}", error.what(), advice));
   }

@@ -54,6 +54,18 @@ TEST_F(PresenceTest, AnOwnerThatRunsKeepsItAndTheNextIsTold) {
   EXPECT_NO_THROW(render.claim("the picture")) << "there may be any number of them";
 }
 
+TEST_F(PresenceTest, OfTwoThatClaimedBeforeTheyMetOneGivesWay) {
+  Presence lower(*here_, "haptic", 4, "scene", "archive"), higher(*here_, "haptic", 900, "scene", "archive");
+  lower.claim("the tools");
+  higher.claim("the tools");
+  EXPECT_EQ(lower.lost_claim(), "");
+  say("haptic", 9, 1);
+  lower.watch();
+  higher.watch();
+  EXPECT_EQ(lower.lost_claim(), "");
+  EXPECT_NE(higher.lost_claim().find("has the tools"), std::string::npos) << higher.lost_claim();
+}
+
 TEST_F(PresenceTest, TheOneMetFirstKeepsTheWordWhileItIsHeard) {
   Presence render(*here_, "render", 0, "scene", "archive");
   say("haptic", 9, 500);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/node/pace_watch.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
@@ -23,6 +24,29 @@ TEST(Interventions, AreToldOnceAndStandInTheStatusWhileTheyLast) {
   EXPECT_NE(told.status().find("a fault has taken the force away"), std::string::npos);
   told.look({.refused_samples = 4});
   EXPECT_EQ(told.status(), "");
+}
+
+TEST(PaceWatchTest, ALoopThatFallsBehindTwiceInARowSaysSoOnceAndThatItKeepsUpAgain) {
+  PaceWatch pace("the tissue", "its time goes slower");
+  std::uint64_t done = 0, missed = 0;
+  const auto look = [&](std::uint64_t more, std::uint64_t left_out) { pace.look(done += more, missed += left_out); };
+  look(1000, 0);
+  look(700, 300);
+  EXPECT_EQ(pace.status(), "") << "once may be anything";
+  look(960, 40);
+  look(700, 300);
+  EXPECT_EQ(pace.status(), "");
+  look(600, 400);
+  EXPECT_EQ(pace.status(), "the tissue falls behind by 40 %: its time goes slower; this machine has too much to do");
+  EXPECT_EQ(pace.news(), pace.status());
+  look(500, 500);
+  EXPECT_NE(pace.status(), "");
+  EXPECT_EQ(pace.news(), "");
+  look(990, 10);
+  EXPECT_EQ(pace.status(), "");
+  EXPECT_EQ(pace.news(), "the tissue keeps up again");
+  look(0, 0);
+  EXPECT_EQ(pace.news(), "");
 }
 
 }  // namespace

@@ -203,14 +203,33 @@ TEST_F(LocalBodyTest, AModelThatIsTooOldFadesWithinFiftyMillisecondsAndSaysSo) {
 }
 
 TEST_F(LocalBodyTest, ATouchThatBeginsFromNothingIsFeltAtOnce) {
-  LocalContactModel m = model({0, 0, 0.02});
-  add_square(m, 0, 250);
-  ASSERT_TRUE(haptic_->consume(m));
-  feel({0, 0, 0.02});
+  LocalContactModel m;
+  for (int i = 0; i < 60; ++i) {  // the first model of all has come in
+    m = model({0, 0, 0.02});
+    add_square(m, 0, 250);
+    ASSERT_TRUE(haptic_->consume(m));
+    feel({0, 0, 0.02});
+  }
   EXPECT_NEAR(feel({0, 0, 0.006}).z(), 250 * 2e-3, 1e-9);
   EXPECT_EQ(haptic_->flags(0) & stale_model, 0u);
   for (int i = 0; i < 250; ++i) feel({0, 0, 0.02});
   EXPECT_EQ(haptic_->flags(0) & stale_model, 0u) << "away from the tissue nothing is missing";
+}
+
+TEST_F(LocalBodyTest, AToolThatIsFirstToldOfFromWithinTheTissueIsPushedOutSlowly) {
+  LocalContactModel m = model({0, 0, 0.006});
+  ASSERT_TRUE(haptic_->consume(m));  // the tissue does not know of it yet
+  feel({0, 0, 0.006});
+  double before = 0;
+  for (int i = 0; i < 60; ++i) {
+    m = model({0, 0, 0.006});
+    add_square(m, 0, 250);
+    ASSERT_TRUE(haptic_->consume(m));
+    const double now = feel({0, 0, 0.006}).z();
+    EXPECT_LE(now - before, 2.01 * 250 * 2e-3 / 50);
+    before = now;
+  }
+  EXPECT_NEAR(before, 250 * 2e-3, 1e-9);
 }
 
 TEST_F(LocalBodyTest, ARunGoesOnBitForBitFromASavedState) {

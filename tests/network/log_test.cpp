@@ -101,8 +101,8 @@ void LogOfQuasiStatic::expect_proof() const {
 void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
   const fs::path again = scene_.folder() / "again.lcmlog";
   const auto on_a = std::make_unique<Inside>(hosts_->a());  // where nothing else is, on its loopback
-  ChildProcess recorder = start("palpate", fmt::format("{} record --supervised --domain {} -o {}", program("palpate"),
-                                                       own_domain(), again.string()));
+  ChildProcess recorder = start("palpate", fmt::format("{} record --supervised --keep everything --domain {} -o {}",
+                                                       program("palpate"), own_domain(), again.string()));
   ASSERT_TRUE(says_ready(recorder));
   std::string said;
   ASSERT_EQ(

@@ -39,8 +39,9 @@ ChildProcess Nodes::start(const NetworkNamespace& host, const char* peer, const 
 }
 
 ChildProcess Nodes::recorder_on_b(const std::string& file) const {
-  return launch(hosts_.b(), TwoHosts::address_a, "palpate",
-                fmt::format("{} record -o {}", program("palpate"), (scene_.folder() / file).string()));
+  return launch(
+      hosts_.b(), TwoHosts::address_a, "palpate",
+      fmt::format("{} record --keep everything -o {}", program("palpate"), (scene_.folder() / file).string()));
 }
 
 ChildProcess Nodes::launch(const NetworkNamespace& host, const char* peer, const std::string& name,

@@ -33,8 +33,8 @@ TEST_F(Observed, ObserversAndARecorderHearEverySampleWhileOneDraws) {
   ChildProcess deform = nodes_->on_b("deform_node");
   ChildProcess render = nodes_->on_b("render_node");
   ChildProcess listener = watcher(program("listener"));
-  ChildProcess recorder =
-      watcher(program("palpate") + " record --supervised -o " + (scene_.folder() / "observed.lcmlog").string());
+  ChildProcess recorder = watcher(program("palpate") + " record --supervised --keep everything -o " +
+                                  (scene_.folder() / "observed.lcmlog").string());
   ASSERT_TRUE(says_ready(listener));
   ASSERT_TRUE(says_ready(recorder));
   std::this_thread::sleep_for(500ms);

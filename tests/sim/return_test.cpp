@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "common/fem/dense.hpp"
-#include "tests/sim/interrupted_tissue.hpp"
+#include "tests/sim/played_scenes.hpp"
+#include "tools/rig/two_nodes.hpp"
 
 namespace palpate {
 namespace {
-
-using testing::InterruptedTissue;
 
 class InterruptedPress : public ::testing::Test {
  protected:
@@ -30,18 +29,18 @@ class InterruptedPress : public ::testing::Test {
     return tip_at(scene_.scene.tools[0], {-0.005 + 0.01 * aside, 0.002, 0.041 - 0.009 * down});
   }
 
-  /// The tissue is gone for `away` ticks from tick `first` on.
+  /// A node is gone for `away` ticks from tick `first` on.
   template <class Gone, class Back>
   Felt feel(int first, int away, Gone&& gone, Back&& back) const {
-    InterruptedTissue tissue(scene_.scene, scene_.archives);
-    tissue.start(at(0));
+    TwoNodes nodes(scene_.scene, scene_.archives);
+    nodes.start(std::array{at(0)});
     Felt felt;
     double before = 0;
     for (int k = 0; k < 3500; ++k) {
-      if (k == first) gone(tissue);
-      if (k == first + away) back(tissue);
-      tissue.step(at(k));
-      felt.end = tissue.haptic().force(0).norm();
+      if (k == first) gone(nodes);
+      if (k == first + away) back(nodes);
+      nodes.step(std::array{at(k)});
+      felt.end = nodes.force(0).norm();
       felt.largest = std::max(felt.largest, felt.end);
       felt.rise = std::max(felt.rise, felt.end - before);
       before = felt.end;
@@ -70,12 +69,27 @@ class InterruptedPress : public ::testing::Test {
 
 TEST_F(InterruptedPress, IsNoKickWhenTheTissueDiesAndComesBackOrAnotherTakesOverAtOnce) {
   expect_no_kicks(
-      {30, 700}, [](auto& t) { t.die(); }, [](auto& t) { t.come_back(); });
+      {30, 700}, [](auto& t) { t.kill_tissue(); }, [](auto& t) { t.restart_tissue(); });
 }
 
 TEST_F(InterruptedPress, IsNoKickWhenTheTissueStopsForAWhile) {
   expect_no_kicks(
-      {8, 30, 120, 400}, [](auto& t) { t.stop(); }, [](auto& t) { t.go_on(); });
+      {8, 30, 120, 400}, [](auto& t) { t.stop_tissue(); }, [](auto& t) { t.continue_tissue(); });
+}
+
+TEST_F(InterruptedPress, IsNoKickWhenTheHapticNodeDiesAndAnotherComesBack) {
+  // The hand is where the script has it when the other one comes.
+  const Felt undisturbed = feel(
+      -1, 0, [](auto&) {}, [](auto&) {});
+  for (const int away : {300, 900})
+    for (const int first : {200, 450, 800, 1200, 1700, 2400}) {
+      SCOPED_TRACE(fmt::format("{} ticks from {} on", away, first));
+      const int back = first + away;
+      expect_no_kick(
+          feel(
+              first, away, [](auto& t) { t.kill_haptic(); }, [&](auto& t) { t.restart_haptic(std::array{at(back)}); }),
+          undisturbed);
+    }
 }
 
 }  // namespace

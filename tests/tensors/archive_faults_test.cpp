@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <functional>
+#include <limits>
 
 #include "common/archive/hdf5_file.hpp"
 #include "tests/tensors/files_for_tests.hpp"
@@ -115,6 +116,23 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
       [](Archive& a) { a.hybrid->interface[0][3] = 16; },
       [](Archive& a) { a.hybrid->gap[1].triangle[2] = 99; },
       [](Archive& a) { a.hybrid->quasi_static_triangles = 100; },
+      [](Archive& a) { a.surface.triangles[3][1] = a.surface.size(); },
+      [](Archive& a) { a.surface.triangles[3][1] = -1; },
+      [](Archive& a) { a.surface.triangles[3][1] = a.surface.triangles[3][0]; },
+      [](Archive& a) { a.surface.node_number[3] = a.mesh_nodes; },
+      [](Archive& a) { a.surface.node_number[3] = a.surface.node_number[2]; },
+      [](Archive& a) { a.surface.touchable = a.surface.size() + 1; },
+      [](Archive& a) {
+        a.touchable_dofs[3] = {1 << 30, 0};
+      },
+      [](Archive& a) { a.touchable_dofs[3].axis = 3; },
+      [](Archive& a) { a.touchable_dofs[3] = a.touchable_dofs[2]; },
+      [](Archive& a) {
+        a.touchable_dofs[0] = {0, 0};
+      },  // fixed
+      [](Archive& a) { a.other_dofs[0].node = 0; },
+      [](Archive& a) { a.touchable_compliance[2] = -1; },  // of the second dof with itself
+      [](Archive& a) { a.touchable_compliance[1] = 1.5; },
   };
   write_archive(testing::make_hybrid_archive(20, 8), folder / "a.h5");
   EXPECT_EQ(refusal(folder / "a.h5"), "");
@@ -125,6 +143,27 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
     EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": damaged: its datasets do not fit together")
         << i;
   }
+}
+
+TEST(ArchiveFaults, NumbersThatCannotBeAreNamed) {
+  const TemporaryFolder folder;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN(), kEndless = std::numeric_limits<double>::infinity();
+  const auto expect_named = [&](const char* name, auto&& change) {
+    auto archive = testing::make_hybrid_archive(20, 8);
+    change(archive);
+    write_archive(archive, folder / "a.h5");
+    const std::string said = refusal(folder / "a.h5");
+    EXPECT_TRUE(says(said, std::string("damaged: ") + name)) << name << ": " << said;
+  };
+  expect_named("'surface/position' has", [&](Archive& a) { a.surface.position[2].y() = kNone; });
+  expect_named("'touchable/compliance' has", [&](Archive& a) { a.touchable_compliance[4] = kEndless; });
+  expect_named("'material/young' has", [](Archive& a) { a.young[1] = 0; });
+  expect_named("'material/poisson' has", [](Archive& a) { a.poisson[0] = 0.5; });
+  expect_named("'material/of_element' names", [](Archive& a) { a.material_of_element[0] = 2; });
+  expect_named("'hybrid/stiffness' has", [&](Archive& a) { a.hybrid->stiffness[0] = kNone; });
+  expect_named("'hybrid/mass' has", [](Archive& a) { a.hybrid->mass[0] = -1; });
+  expect_named("attribute 'hybrid_bound' is no number", [&](Archive& a) { a.hybrid->bound = kNone; });
+  expect_named("attribute 'mesh_nodes' is no count", [](Archive& a) { a.mesh_nodes = -1; });
 }
 
 TEST(ArchiveFaults, StaleArchiveIsRefused) {

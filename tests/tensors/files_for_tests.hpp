@@ -73,6 +73,7 @@ inline Archive make_archive(int touchable, int others, unsigned seed = 1) {
   archive.other_compliance.resize(t * archive.other_dofs.size());
   for (auto* values : {&archive.touchable_compliance, &archive.other_compliance})
     std::generate(values->begin(), values->end(), [&] { return uniform(random); });
+  for (std::size_t i = 0; i < t; ++i) archive.touchable_compliance[i * (i + 1) / 2 + i] = 1;
   archive.specimen_force_slope = 12.5;
   archive.specimen_radial_slope = 0.25;
   return archive;

@@ -238,5 +238,53 @@ TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
   EXPECT_EQ(owner.status(), 0);
 }
 
+/// Whether a log holds a status of a node of this role with these words in it.
+bool status_says(const fs::path& log, const std::string& role, const std::string& words) {
+  LogReader reader(log);
+  NodeStatus status;
+  for (LogEvent event; reader.next(event);)
+    if (event.read(topics::node_status, status) && status.role == role && status.text.find(words) != std::string::npos)
+      return true;
+  return false;
+}
+
+TEST(SessionTest, TissueThatNoMachineKeepsUpWithIsSaidToFallBehind) {
+  // 35,000 tetrahedra, of which a tick has 100 us.
+  const LoopbackScene scene("overload", "[body.touchable]\nbox = [[-0.01, -0.01, -0.001], [0.01, 0.01, 0.001]]\n");
+  write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {22, 22, 12}), scene.folder() / "block.msh");
+  scene.replace("quasi_static", "tensor_mass");
+  scene.replace("[[tool]]", "[rates]\nhaptic_hz = 10000\n\n[[tool]]");
+  scene.write("motion.csv", kLongRest);
+  const fs::path log = scene.folder() / "session.lcmlog";
+  const auto run = run_program(fmt::format("{} run {} --processes 3 --seconds 4 --domain {} --record {}",
+                                           program("palpate"), scene.scene(), testing::own_domain(), log.string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("the tissue falls behind by"), std::string::npos) << run.err;
+  EXPECT_TRUE(status_says(log, "deform", "the tissue falls behind by"));
+}
+
+// From both at once to the second one while the first is about to begin.
+TEST(SessionTest, OfTwoHapticNodesWithinASecondExactlyOneStays) {
+  const LoopbackScene scene("rivals", kLinear);
+  scene.write("motion.csv", kLongRest);
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  const std::vector<std::string> command{program("haptic_node"), scene.scene(), "--domain",
+                                         std::to_string(testing::own_domain()), "--supervised"};
+  for (int i = 0; i < 10; ++i) {
+    SCOPED_TRACE(fmt::format("{} ms apart", 100 * i));
+    ChildProcess first("haptic_node", command);
+    std::this_thread::sleep_for(i * 100ms);
+    ChildProcess second("haptic_node", command);
+    ASSERT_TRUE(comes_within(30s, [&] { return !first.running() || !second.running(); })) << "both stay";
+    std::this_thread::sleep_for(1s);
+    ASSERT_NE(first.running(), second.running()) << "neither stays";
+    ChildProcess& stays = first.running() ? first : second;
+    EXPECT_EQ((first.running() ? second : first).status(), 1);
+    stays.interrupt();
+    ASSERT_TRUE(stays.wait(30s));
+    EXPECT_EQ(stays.status(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

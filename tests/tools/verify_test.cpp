@@ -64,6 +64,30 @@ class ToolsVerify : public ::testing::Test {
 };
 std::unique_ptr<LoopbackScene> ToolsVerify::scene_;
 
+/// Samples of a topic in a log, from where it goes without what can be computed again.
+int samples_of(const fs::path& file, const std::string& topic) {
+  LogReader reader(file);
+  int count = 0;
+  for (LogEvent event; reader.next(event);) count += reader.thinned_steps() > 0 && event.channel == topic;
+  return count;
+}
+
+TEST_F(ToolsVerify, ALogThatKeepsEnoughIsVerifiedWithoutTheRest) {
+  const auto run =
+      run_program(fmt::format("{} run {} --seconds 2.3 --processes 3 --domain {} --record {} --keep enough",
+                              program("palpate"), scene_->scene(), testing::own_domain(), changed().string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto verified = verify(changed());
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  const int steps = samples_of(changed(), topics::tool_state.name);
+  EXPECT_GT(steps, 500);
+  EXPECT_EQ(samples_of(changed(), topics::surface_state.name), 0) << "they follow from the contacts";
+  EXPECT_NEAR(samples_of(changed(), topics::force_state.name), steps / 17.0, 1);
+  EXPECT_LE(samples_of(changed(), topics::contact_state.name), steps / 17 + 1);
+  const auto info = run_program(program("palpate") + " info " + changed().string());
+  EXPECT_NE(info.out.find("keeps enough: one in 17 steps"), std::string::npos) << info.out;
+}
+
 TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   rewrite(log(), changed(), [](LogEvent&) {});
   EXPECT_EQ(verify(changed()).status, 0) << "a log that was written anew as it was";

@@ -8,9 +8,9 @@ namespace palpate {
 
 /// What has to be known of a log before it is drawn.
 struct LogContents {
-  std::set<std::string> topics;            ///< that it has samples of
-  std::int64_t first_ns = 0, last_ns = 0;  ///< when its first and last samples came
-  std::set<std::uint32_t> shaped;          ///< bodies whose surfaces it has
+  std::set<std::string> topics;    ///< that it has samples of
+  double seconds = 0;              ///< from its first sample to its last
+  std::set<std::uint32_t> shaped;  ///< bodies whose surfaces it has
 };
 
 /// Throws std::runtime_error if the file is no log.

@@ -22,15 +22,16 @@ LogFigures::LogFigures(const Scene& scene) : scene_(scene) {
 }
 
 // By the haptic node's clock, which knows when a step was; each run of it begins where the log has it.
-double LogFigures::time_of(const ToolState& state, std::int64_t receive_ns) {
-  if (state.run != run_) shift_ns_ = receive_ns - first_ns_ - state.sense_ns;
+double LogFigures::time_of(const ToolState& state) {
+  const double own = 1e-9 * static_cast<double>(state.sense_ns);
+  if (state.run != run_) shift_ = now_ - own;
   run_ = state.run;
-  return 1e-9 * static_cast<double>(state.sense_ns + shift_ns_);
+  return own + shift_;
 }
 
-void LogFigures::look(const ToolState& state, const LogEvent& event) {
+void LogFigures::look(const ToolState& state) {
   if (state.tool >= tools_.size()) return;
-  const double time = time_of(state, event.receive_ns);
+  const double time = time_of(state);
   OfTool& tool = tools_[state.tool];
   const Eigen::Vector3d tip = tip_pose(tool.trocar, dofs_of(state)).translation();
   const Eigen::Vector3d force = Eigen::Map<const Eigen::Vector3d>(tool.force.force.data());
@@ -45,12 +46,12 @@ void LogFigures::look(const ToolState& state, const LogEvent& event) {
 }
 
 void LogFigures::look(const LogEvent& event) {
-  if (first_ns_ == 0) first_ns_ = event.receive_ns;
+  now_ = 1e-9 * static_cast<double>(log_time_.since_start(event.receive_ns));
   ForceState force;
   ToolState tool;
   TopologyChange change;
   TaskRecord task;
-  if (event.read(topics::tool_state, tool)) return look(tool, event);
+  if (event.read(topics::tool_state, tool)) return look(tool);
   if (event.read(topics::force_state, force) && force.tool < tools_.size()) tools_[force.tool].force = force;
   if (event.read(topics::topology_change, change) && change.cause < lost_[change.body].size())
     lost_[change.body][change.cause] += change.removed.size();

@@ -12,6 +12,7 @@
 #include "common/sim/handling.hpp"
 #include "common/tool/kinematics.hpp"
 #include "idl/messages.hpp"
+#include "tools/logs/log_time.hpp"
 
 namespace palpate {
 
@@ -33,8 +34,8 @@ class LogFigures {
   const std::vector<Place>& course() const { return course_; }
 
  private:
-  void look(const ToolState& state, const LogEvent& event);
-  double time_of(const ToolState& state, std::int64_t receive_ns);
+  void look(const ToolState& state);
+  double time_of(const ToolState& state);
 
   struct OfTool {
     Trocar trocar;
@@ -50,7 +51,8 @@ class LogFigures {
   std::map<std::uint32_t, TaskRecord> tasks_;                   ///< by catheter
   std::vector<Place> course_;
   std::uint64_t run_ = 0;
-  std::int64_t first_ns_ = 0, shift_ns_ = 0;  ///< of the log; from the haptic node's clock to it
+  LogTime log_time_;
+  double now_ = 0, shift_ = 0;  ///< [s] of the log; from the haptic node's clock to it
 };
 
 }  // namespace palpate

@@ -20,7 +20,7 @@ struct Stretch {
 };
 
 Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
-  const double whole = 1e-9 * static_cast<double>(contents.last_ns - contents.first_ns);
+  const double whole = contents.seconds;
   const Stretch stretch{s.from, s.to > 0 ? std::min(s.to, whole) : whole};
   if (!(stretch.begin < stretch.end))
     throw std::runtime_error(fmt::format("{}: there is nothing between {} s and {} s: the log is {:.2f} s long", s.log,

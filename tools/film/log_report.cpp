@@ -34,9 +34,8 @@ void write_course(const fs::path& file, const LogFigures& figures, const Scene& 
 
 /// The times of `count` pictures [s]: the middles of as many parts of the session.
 std::vector<double> picture_times(const LogContents& contents, int count) {
-  const double whole = 1e-9 * static_cast<double>(contents.last_ns - contents.first_ns);
   std::vector<double> times;
-  for (int i = 0; i < count; ++i) times.push_back(whole * (i + 0.5) / count);
+  for (int i = 0; i < count; ++i) times.push_back(contents.seconds * (i + 0.5) / count);
   return times;
 }
 

@@ -11,10 +11,7 @@ std::set<std::string> without_statuses(std::set<std::string> topics) {
 }  // namespace
 
 LogStream::LogStream(const std::filesystem::path& log, const LogContents& contents, const LoadedScene& scene, Bus& bus)
-    : reader_(log),
-      first_ns_(contents.first_ns),
-      sender_(bus, without_statuses(contents.topics)),
-      statuses_(bus.writer(topics::node_status)) {
+    : reader_(log), sender_(bus, without_statuses(contents.topics)), statuses_(bus.writer(topics::node_status)) {
   haptic_.node = "log";
   haptic_.role = "haptic";
   haptic_.scene_hash = scene.scene_hash;
@@ -35,9 +32,9 @@ void LogStream::look(const LogEvent& event) {
 }
 
 bool LogStream::send_until(double seconds) {
-  const std::int64_t end = first_ns_ + static_cast<std::int64_t>(1e9 * seconds);
   while (waits_ || reader_.next(next_)) {
-    waits_ = next_.receive_ns > end;
+    if (!waits_) next_s_ = 1e-9 * static_cast<double>(time_.since_start(next_.receive_ns));
+    waits_ = next_s_ > seconds;
     if (waits_) return true;
     look(next_);
     sender_.send(next_, next_.receive_ns);

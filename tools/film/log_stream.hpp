@@ -5,6 +5,7 @@
 #include "common/node/node_setup.hpp"
 #include "tools/film/log_contents.hpp"
 #include "tools/logs/log_sender.hpp"
+#include "tools/logs/log_time.hpp"
 
 namespace palpate {
 
@@ -23,13 +24,14 @@ class LogStream {
   void look(const LogEvent& event);
 
   LogReader reader_;
-  std::int64_t first_ns_;
+  LogTime time_;
   LogSender sender_;
   std::unique_ptr<Writer<NodeStatus>> statuses_;
   NodeStatus haptic_;
   double haptic_hz_ = 0;
   LogEvent next_;
-  bool waits_ = false;  ///< next_ is yet to be sent
+  double next_s_ = 0;   ///< [s] its time
+  bool waits_ = false;  ///< it is yet to be sent
 };
 
 }  // namespace palpate

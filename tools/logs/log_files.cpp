@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -100,6 +101,18 @@ std::vector<LogFile> files_for_log(const std::string& scene_text) {
     return files_for_log(parse_scene(scene_text, "scene.toml"));
   } catch (const std::exception&) {
     return {};  // the tools' host has what it names, and this one has not
+  }
+}
+
+Thinning thinning_for_log(const std::string& scene_text) {
+  try {
+    const Scene scene = parse_scene(scene_text, "scene.toml");
+    Thinning thinning;
+    thinning.steps = std::max(1l, std::lround(scene.rates.haptic_hz / scene.rates.visual_hz));
+    for (const Body& body : scene.bodies) thinning.redrawn.push_back(owner_of(body) == Owner::haptic_node);
+    return thinning;
+  } catch (const std::exception&) {
+    return {};
   }
 }
 

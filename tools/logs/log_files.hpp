@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/bus/log_format.hpp"
+#include "common/bus/thinning.hpp"
 #include "common/scene/moved_files.hpp"
 
 namespace palpate {
@@ -17,6 +18,9 @@ inline constexpr std::uint64_t kLargestLogFile = 16u << 20, kLogFiles = 48u << 2
 std::vector<LogFile> files_for_log(const Scene& scene);
 /// The same of a resolved scene as a haptic node published it; nothing if it cannot be read here.
 std::vector<LogFile> files_for_log(const std::string& scene_text);
+
+/// What a long log of a resolved scene goes without; nothing if the scene cannot be read here.
+Thinning thinning_for_log(const std::string& scene_text);
 
 /// The haptic node's archives, as the log's first message about it says: the hashes of all bodies; empty if none does.
 std::string recorded_archive_hash(const std::filesystem::path& log);

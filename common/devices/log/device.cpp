@@ -27,6 +27,10 @@ class LogDevice : public Device {
       if (samples_.empty()) first = state.step;
       if (state.step < first) continue;
       const ToolDofs dofs = dofs_of(state);
+      if (state.step - first > samples_.size() + kMaxGap)
+        throw std::runtime_error(fmt::format("{}: the motion of tool '{}' (number {}) lacks {} steps in a row",
+                                             file.string(), place.tool.name, place.index,
+                                             state.step - first - samples_.size()));
       // A step whose sample was lost repeats the one before it.
       while (!samples_.empty() && samples_.size() < state.step - first && samples_.size() < kMaxSamples)
         samples_.push_back(samples_.back());
@@ -40,6 +44,7 @@ class LogDevice : public Device {
   bool finished(double seconds) const override { return at(seconds) >= samples_.size(); }
 
  private:
+  static constexpr std::size_t kMaxGap = 600'000;  // ten minutes at 1 kHz
   static constexpr std::size_t kMaxSamples = 50'000'000;
   std::size_t at(double seconds) const { return static_cast<std::size_t>(std::llround(seconds * rate_hz_)); }
   double rate_hz_;

@@ -6,6 +6,7 @@
 
 #include "common/kernels/kernels.hpp"
 #include "common/mesh/shell_quality.hpp"
+#include "common/models/modal_shell/modal_shape.hpp"
 #include "common/models/modal_shell/spec.hpp"
 
 namespace palpate {
@@ -39,7 +40,7 @@ std::vector<double> softness_of(std::span<const Tool> tools) {
 }  // namespace
 
 ModalBody::ModalBody(const Archive& archive, const ShellSpec& body, const StepSettings& settings)
-    : ModalBody(archive, body, settings, constants_of(*archive.modal, body.shell, settings.dt)) {}
+    : ModalBody(archive, body, settings, constants_of(modes_of(archive), body.shell, settings.dt)) {}
 
 ModalBody::ModalBody(const Archive& archive, const ShellSpec& body, const StepSettings& settings,
                      ModalConstants constants)

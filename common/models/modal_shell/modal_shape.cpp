@@ -6,8 +6,6 @@
 #include <stdexcept>
 
 namespace palpate {
-namespace {
-
 const ModalTensors& modes_of(const Archive& archive) {
   if (!archive.modal || archive.modal->modes() == 0)
     throw std::runtime_error(fmt::format("body '{}': the archive holds no modes", archive.body));
@@ -15,8 +13,6 @@ const ModalTensors& modes_of(const Archive& archive) {
     throw std::runtime_error(fmt::format("body '{}': the archive's modes are those of another surface", archive.body));
   return *archive.modal;
 }
-
-}  // namespace
 
 ModalShape::ModalShape(const Archive& archive)
     : compliance_(archive, Compliance<float>::Rows::surface),

@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+/// What the archive holds of a wall's modes. Throws std::runtime_error if it holds none, or those of another surface.
+const ModalTensors& modes_of(const Archive& archive);
+
 /// The full displacement field of a thin wall from its reduced state: u = Phi X' + C f over the whole surface (BHS01
 /// eq. 18 and the static share of the modes left out), in single precision.
 class ModalShape {

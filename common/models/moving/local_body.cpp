@@ -45,7 +45,9 @@ LocalBody::LocalBody(const Tool& tool, double friction, double dt)
 
 void LocalBody::consume(const LocalModel& model) {
   const bool after_silence = state_.silent > silent_;
-  if (state_.model.seq != 0 && (after_silence || model.run != state_.model.run)) {
+  // The first one as well: the tool of a haptic node that has come back may be within the tissue, which learns of it
+  // only now.
+  if (after_silence || model.run != state_.model.run) {
     state_.from_force = state_.force;
     state_.from_torque = state_.torque;
     state_.from_weight = weight();
