@@ -57,8 +57,8 @@ TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
   EXPECT_GT(deep.energy_growth, -1e-12);
 }
 
-/// Moving tissue whose two contacts, from the second tick on, pull against each other with `force` [N], ten millimetres
-/// apart.
+/// Moving tissue whose two contacts, once its first models have come in, pull against each other with `force` [N], ten
+/// millimetres apart.
 Result pulled_by_a_couple(double force) {
   Scene scene = block_scene();
   scene.bodies[0] = as_kind<TensorMassSpec>(block_of(scene));
@@ -67,12 +67,12 @@ Result pulled_by_a_couple(double force) {
   const ToolDofs dofs = tip_at(scene.tools[0], {0, 0, 0.008});
   haptic.start(std::array{dofs});
   Watch watch;
-  for (std::uint64_t i = 0; i < 50; ++i) {
+  for (std::uint64_t i = 0; i < 110; ++i) {
     LocalContactModel m;
     m.run = 1, m.seq = i + 1, m.tool_run = 1, m.tool_step = i;
     m.yaw = dofs.yaw, m.pitch = dofs.pitch, m.depth = dofs.depth, m.roll = dofs.roll, m.grip = dofs.grip;
     for (const double side : {1.0, -1.0})
-      if (i > 0)
+      if (i > 60)
         m.contacts.push_back(
             {0, 0, {0.005 * side, 0, 0}, {0, 0, -side}, {0, 0, -side * force}, {0, 0, 0, 0, 0, 0, 0, 0, 0}});
     haptic.consume(m);

@@ -143,7 +143,7 @@ TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
               "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0.06,0.02,0.199,0.3,0\n");
   const Session session(scene.folder());
   ChildProcess run("palpate", session.arguments(scene, GetParam()));
-  ASSERT_TRUE(comes_within(30s, [&] { return run.running() && forces_in(session.log) > 2000; }));
+  ASSERT_TRUE(comes_within(30s, [&] { return run.running() && forces_in(session.log) > 100; }));
   EXPECT_GT(processes_of(scene.folder()).size(), static_cast<std::size_t>(GetParam()))
       << "the run, the nodes and the recorder";
   run.interrupt();
@@ -154,7 +154,7 @@ TEST_P(ToolsSession, CtrlCEndsARunWithWholeFilesAndNoChildLeft) {
   expect_whole_session(session);
   const json info = info_of(session.log);
   EXPECT_TRUE(info["complete"].get<bool>()) << info.dump();
-  EXPECT_GT(info["topics"]["palpate/force_state"]["samples"].get<int>(), 500);
+  EXPECT_GT(info["topics"]["palpate/force_state"]["samples"].get<int>(), 100);
   EXPECT_TRUE(json::parse(text_of(session.summary))["haptic_node"].is_object());
 }
 
