@@ -115,7 +115,7 @@ def figures_table(sessions, tool):
     head = "".join(f"<th>{html.escape(session_name(sessions, i))}" for i in range(len(sessions)))
     lines = [f"<table><tr><th>{head}</tr>"]
     for key, words, unit, factor, digits in ROWS:
-        cells = "".join(f"<td class=n>{factor * t[key]:.{digits}f} {unit}" if t else "<td class=n>–" for t in found)
+        cells = "".join(f"<td class=n>{factor * t[key]:.{digits}f} {unit}" if t and key in t else "<td class=n>–" for t in found)
         lines.append(f"<tr><td>{words}{cells}</tr>")
     for flag, words in FLAGS.items():
         counts = [t.get("flags", {}).get(flag, 0) if t else 0 for t in found]

@@ -122,10 +122,24 @@ class Nodes {
   std::vector<Node> nodes_;
 };
 
+/// [s] after which the run ends by itself; 0: who knows.
+double end_of(const Scene& scene, const RunOptions& o) {
+  if (o.seconds > 0) return o.seconds;
+  if (!o.web.empty()) return 0;
+  double longest = 0;
+  for (const Tool& tool : scene.tools) {
+    const std::optional<Trajectory> script = script_of(tool.device);
+    if (!script) return 0;
+    longest = std::max(longest, script->duration());
+  }
+  return longest;
+}
+
 /// The recorder knows no scene, so the scene's network is passed on.
 std::vector<std::string> recorder_command(const Scene& scene, const std::string& log, const RunOptions& o) {
   std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log, "--keep", o.keep};
-  if (o.keep.empty()) command.back() = o.seconds > 0 && o.seconds <= kShortRun ? "everything" : "enough";
+  const double end = o.keep.empty() ? end_of(scene, o) : 0;
+  if (o.keep.empty()) command.back() = end > 0 && end <= kShortRun ? "everything" : "enough";
   if (!scene.network.interface.empty()) command.insert(command.end(), {"--interface", scene.network.interface});
   for (const std::string& peer : scene.network.peers) command.insert(command.end(), {"--peer", peer});
   if (o.keys.empty() && scene.network.security) command.insert(command.end(), {"--keys", scene.network.security->keys});
@@ -290,9 +304,9 @@ void add_run_command(cli::Command& app) {
       .positive();
   run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file();
   run_command
-      .add_option(
-          "--keep", o->keep,
-          "What the log keeps, as `palpate record` has it (default: enough, everything with --seconds up to 600)")
+      .add_option("--keep", o->keep,
+                  "What the log keeps, as `palpate record` has it (default: everything where the run ends by itself "
+                  "within 600 s, else enough)")
       .one_of(std::vector<std::string>{"everything", "enough"});
   run_command.add_option("--film", o->film, "Write a film (MP4)").output_file(".mp4");
   run_command.add_option("--still", o->still, "Write a picture (PNG) of the moment of the largest force")

@@ -85,8 +85,8 @@ class FullRate : public ::testing::TestWithParam<Way> {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->b()) : nullptr;
     const std::string over =
         hosts_ ? fmt::format("--interface {} --peer {}", TwoHosts::device, TwoHosts::address_a) : "";
-    return start("palpate", fmt::format("{} record --supervised --domain {} {} -o {}", program("palpate"), own_domain(),
-                                        over, file.string()));
+    return start("palpate", fmt::format("{} record --supervised --keep everything --domain {} {} -o {}",
+                                        program("palpate"), own_domain(), over, file.string()));
   }
 
   /// A publisher and a recorder beside it, as they ended.

@@ -36,6 +36,7 @@ void LogFigures::look(const ToolState& state) {
   const Eigen::Vector3d tip = tip_pose(tool.trocar, dofs_of(state)).translation();
   const Eigen::Vector3d force = Eigen::Map<const Eigen::Vector3d>(tool.force.force.data());
   tool.handling.look(time, tip, force);
+  ++tool.steps;
   for (std::size_t bit = 0; bit < tool.flagged.size(); ++bit) tool.flagged[bit] += tool.force.flags >> bit & 1;
   if (tool.latest == 0 || time - course_[tool.latest - 1].time >= kCourseInterval) {
     course_.push_back({time, state.tool, tip, 0});
@@ -52,7 +53,10 @@ void LogFigures::look(const LogEvent& event) {
   TopologyChange change;
   TaskRecord task;
   if (event.read(topics::tool_state, tool)) return look(tool);
-  if (event.read(topics::force_state, force) && force.tool < tools_.size()) tools_[force.tool].force = force;
+  if (event.read(topics::force_state, force) && force.tool < tools_.size()) {
+    tools_[force.tool].force = force;
+    ++tools_[force.tool].forces;
+  }
   if (event.read(topics::topology_change, change) && change.cause < lost_[change.body].size())
     lost_[change.body][change.cause] += change.removed.size();
   if (event.read(topics::task_record, task)) tasks_[task.body] = task;
@@ -63,6 +67,7 @@ nlohmann::ordered_json LogFigures::json() const {
   for (std::size_t t = 0; t < tools_.size(); ++t) {
     const OfTool& tool = tools_[t];
     nlohmann::ordered_json one = handling_summary(scene_.tools[t].name, tool.handling.figures());
+    if (2 * tool.forces < tool.steps) one.erase("force_change_max_n");  // one force stands for many steps
     for (std::size_t bit = 0; bit < kFlags.size(); ++bit)
       if (kFlags[bit] && tool.flagged[bit] > 0) one["flags"][kFlags[bit]] = tool.flagged[bit];
     all["tools"].push_back(one);
