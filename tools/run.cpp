@@ -12,6 +12,7 @@
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "common/tool/trajectory.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
 #include "tools/domain_claim.hpp"
