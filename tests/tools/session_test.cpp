@@ -248,7 +248,7 @@ bool status_says(const fs::path& log, const std::string& role, const std::string
   return false;
 }
 
-TEST(SessionTest, TissueThatNoMachineKeepsUpWithIsSaidToFallBehind) {
+TEST(OverloadTest, TissueThatNoMachineKeepsUpWithIsSaidToFallBehind) {
   // 35,000 tetrahedra, of which a tick has 100 us.
   const LoopbackScene scene("overload", "[body.touchable]\nbox = [[-0.01, -0.01, -0.001], [0.01, 0.01, 0.001]]\n");
   write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {22, 22, 12}), scene.folder() / "block.msh");
