@@ -76,15 +76,7 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
   nlohmann::json tasks = nlohmann::json::array();
   for (const TaskRecord& task : task_records(haptic)) {
     const std::string& body = name_of(scene.bodies[task.body]);
-    tasks.push_back({{"body", body},
-                     {"inserted_m", task.inserted},
-                     {"deepest_m", task.deepest},
-                     {"inserting_s", task.inserting_s},
-                     {"force_max_n", task.max_force},
-                     {"wall_contacts", task.wall_contacts},
-                     {"grasps", task.grasps},
-                     {"drops", task.drops},
-                     {"held_s", task.held_s}});
+    tasks.push_back(task_summary(body, task));
     spdlog::info(
         "task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} "
         "N, {} wall contacts, "

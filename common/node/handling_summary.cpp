@@ -18,4 +18,16 @@ nlohmann::json handling_summary(const std::string& tool, const HandlingFigures& 
           {"force_change_max_n", f.max_change}};
 }
 
+nlohmann::json task_summary(const std::string& body, const TaskRecord& task) {
+  return {{"body", body},
+          {"inserted_m", task.inserted},
+          {"deepest_m", task.deepest},
+          {"inserting_s", task.inserting_s},
+          {"force_max_n", task.max_force},
+          {"wall_contacts", task.wall_contacts},
+          {"grasps", task.grasps},
+          {"drops", task.drops},
+          {"held_s", task.held_s}};
+}
+
 }  // namespace palpate

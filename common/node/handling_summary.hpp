@@ -3,10 +3,13 @@
 #include <string>
 
 #include "common/sim/handling.hpp"
+#include "idl/messages.hpp"
 
 namespace palpate {
 
 /// How a tool was handled, for summaries and reports.
 nlohmann::json handling_summary(const std::string& tool, const HandlingFigures& figures);
+/// How a task of a body stands, for the same.
+nlohmann::json task_summary(const std::string& body, const TaskRecord& task);
 
 }  // namespace palpate

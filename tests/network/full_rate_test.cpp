@@ -111,14 +111,11 @@ class FullRate : public ::testing::TestWithParam<Way> {
   }
 
   /// Every topic has to be whole. A machine that keeps even the publisher from its rate holds the recorder up for
-  /// longer than anybody promised: the run is repeated then.
+  /// longer than anybody promised: the run is repeated then, and the fourth is judged as it is.
   void expect_nothing_lost(double seconds, const std::function<void(pid_t)>& meanwhile) {
     Ended run;
     for (int attempt = 0; attempt < 4 && (attempt == 0 || run.skipped > kMostSkipped); ++attempt)
       ASSERT_NO_FATAL_FAILURE(record(seconds, meanwhile, run));
-    if (run.skipped > kMostSkipped)
-      GTEST_SKIP() << "four times this machine held the publisher up: at last for " << 100 * run.skipped
-                   << " % of its ticks";
     EXPECT_EQ(run.publisher, 0) << run.written;
     EXPECT_EQ(run.recorder, 0);
     const json &written = run.written, &summary = run.summary;

@@ -79,15 +79,7 @@ nlohmann::ordered_json LogFigures::json() const {
                                {"torn", lost[torn]},
                                {"fallen", lost[fell_away]}});
   for (const auto& [body, task] : tasks_)
-    if (body < scene_.bodies.size())
-      all["tasks"].push_back({{"body", name_of(scene_.bodies[body])},
-                              {"inserted_m", task.inserted},
-                              {"deepest_m", task.deepest},
-                              {"inserting_s", task.inserting_s},
-                              {"force_max_n", task.max_force},
-                              {"wall_contacts", task.wall_contacts},
-                              {"grasps", task.grasps},
-                              {"drops", task.drops}});
+    if (body < scene_.bodies.size()) all["tasks"].emplace_back(task_summary(name_of(scene_.bodies[body]), task));
   return all;
 }
 
