@@ -15,8 +15,10 @@ namespace {
 
 constexpr std::int64_t kForgottenAfterNs = 600 * kNsPerS;
 constexpr std::string_view kRecorder = "recorder";
-constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;  // each node says once a second how it is
-constexpr std::int64_t kBeginningNs = 3 * kNsPerS;  // in which two that began at once have heard of each other
+constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;     // each node says once a second how it is
+constexpr std::int64_t kStoodNs = 2 * kNsPerS;         // one that only stood for a moment has said so again by then
+constexpr std::int64_t kNoticedNs = 3 * kNsPerS / 10;  // an end shows so long after it at most
+constexpr std::int64_t kBeginningNs = 3 * kNsPerS;     // in which two that began at once have heard of each other
 constexpr std::size_t kMostPeers = 256;
 constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
 constexpr int kMostTold = 8;  // sentences about one of them
@@ -100,7 +102,7 @@ std::vector<std::string> Presence::watch() {
   }
   while (auto ended = reader_->take_ended()) {
     const auto peer = peers_.find(printable(ended->node));
-    if (peer != peers_.end()) peer->second.ended = true;
+    if (peer != peers_.end()) peer->second.ended_ns = now;
   }
   std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.heard_ns > kForgottenAfterNs; });
   return said;
@@ -113,7 +115,7 @@ void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std:
   const bool news = before.node.empty() || before.run != status.run || before.scene_hash != status.scene_hash ||
                     before.archive_hash != status.archive_hash;
   peer.status = status;
-  peer.ended = false;
+  peer.ended_ns = 0;
   peer.heard_ns = now;
   if (!news) return;
   peer.met_ns = now;
@@ -163,13 +165,20 @@ std::string Presence::lost_claim() const {
 
 const Presence::Peer* Presence::holder(const std::string& role) const {
   const std::int64_t now = now_ns();
-  const Peer *first = nullptr, *last = nullptr;
+  const Peer *first = nullptr, *standing = nullptr, *last = nullptr;
+  const auto take_earlier = [](const Peer*& of, const Peer& peer) {
+    if (!of || peer.met_ns < of->met_ns) of = &peer;
+  };
   for (const auto& [name, peer] : peers_) {
     if (!peer.accepted || peer.status.role != role) continue;
     if (!last || peer.met_ns >= last->met_ns) last = &peer;
-    const bool alive = !peer.ended && now - peer.heard_ns < kAliveNs;
-    if (alive && (!first || peer.met_ns < first->met_ns)) first = &peer;
+    const std::int64_t silent = now - peer.heard_ns;
+    if (peer.ended_ns == 0 && silent < kAliveNs) take_earlier(first, peer);
+    if (peer.ended_ns != 0 && silent < kStoodNs) take_earlier(standing, peer);
   }
+  const bool intruder =
+      standing && first && standing->met_ns < first->met_ns && first->met_ns < standing->ended_ns - kNoticedNs;
+  if (intruder) return standing;
   return first ? first : last;
 }
 

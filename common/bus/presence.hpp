@@ -39,11 +39,13 @@ class Presence {
     std::int64_t met_ns = 0;    ///< when it was first heard of, or began another run; own clock
     std::int64_t heard_ns = 0;  ///< when it was heard of last
     bool accepted = false;      ///< it has the same scene and archives
-    bool ended = false;         ///< its writer is gone, and nothing has come since
+    std::int64_t ended_ns = 0;  ///< when its writer was found gone or silent, if nothing has come since; else 0
     int told = 0;               ///< sentences about it
   };
   /// The accepted node whose word counts for this role: of those that live the one met first, since another that
-  /// says it is one has come into a running system; else the one met last. nullptr if there is none.
+  /// says it is one has come into a running system; else the one met last. nullptr if there is none. One whose writer
+  /// falls silent may only stand still for a moment: for two seconds after its last word none follows it that was there
+  /// beside it before, but one that comes then follows at once.
   const Peer* holder(const std::string& role) const;
   /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
   /// if there is none.

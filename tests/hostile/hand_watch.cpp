@@ -62,10 +62,9 @@ void HandWatch::begin_anew() {
   max_force_ = max_rise_ = 0;
 }
 
-double HandWatch::rate_hz() const {
+double HandWatch::rate_hz(const HostWatch& host) const {
   if (!first_ || newest_.sense_ns <= first_->sense_ns) return 0;
-  return 1e9 * static_cast<double>(newest_.step - first_->step) /
-         static_cast<double>(newest_.sense_ns - first_->sense_ns);
+  return host.rate_hz(static_cast<double>(newest_.step - first_->step), first_->sense_ns, newest_.sense_ns);
 }
 
 }  // namespace palpate::testing

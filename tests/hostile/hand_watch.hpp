@@ -6,6 +6,7 @@
 
 #include "common/bus/dds_entity.hpp"
 #include "idl/messages.hpp"
+#include "tests/realtime/host_watch.hpp"
 
 namespace palpate::testing {
 
@@ -21,7 +22,7 @@ class HandWatch {
   double max_force() const { return max_force_; }  ///< [N]
   double max_rise() const { return max_rise_; }    ///< [N] from one step to the next
   bool finite() const { return finite_; }
-  double rate_hz() const;  ///< of the steps, by their sense times
+  double rate_hz(const HostWatch& host) const;  ///< of the steps, by their sense times, while the machine ran
   std::uint64_t steps() const { return steps_; }
   const ForceState& newest() const { return newest_; }
 

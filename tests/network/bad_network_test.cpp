@@ -1,4 +1,5 @@
 #include "tests/network/network_test.hpp"
+#include "tests/realtime/host_watch.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -52,15 +53,15 @@ class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
     const std::int64_t begin = now_ns();
     const std::uint64_t step = observer_->tool.step;
     observer_->listen(800ms);
-    const double seconds = 1e-9 * static_cast<double>(now_ns() - begin);
-    const Measured s{static_cast<double>(observer_->tool.step - step) / seconds, ages(observer_->surfaces, begin),
-                     ages(observer_->pictures, begin)};
+    const Measured s{host_.rate_hz(static_cast<double>(observer_->tool.step - step), begin, now_ns()),
+                     ages(observer_->surfaces, begin), ages(observer_->pictures, begin)};
     fmt::print("{:64} {:4} surfaces p50 {:5.1f} ms p99 {:5.1f} ms, {:2} pictures p50 {:5.1f} ms, haptic {:.0f} Hz\n",
                c.line, s.surfaces.size(), 1e3 * at_share(s.surfaces, 0.5), 1e3 * at_share(s.surfaces, 0.99),
                s.pictures.size(), 1e3 * at_share(s.pictures, 0.5), s.haptic_hz);
     return s;
   }
 
+  HostWatch host_;
   std::unique_ptr<ChildProcess> deform_, render_, haptic_;
 };
 
@@ -89,8 +90,8 @@ TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
     hosts_->impair("both cut 1");
     const std::int64_t begin = now_ns();
     observer_->listen(cut);
-    const double seconds = 1e-9 * static_cast<double>(now_ns() - begin);
-    EXPECT_GE(static_cast<double>(observer_->tool.step - step) / seconds, 0.9 * undisturbed.haptic_hz);
+    EXPECT_GE(host_.rate_hz(static_cast<double>(observer_->tool.step - step), begin, now_ns()),
+              0.9 * undisturbed.haptic_hz);
     const std::int64_t back = now_ns();
     EXPECT_EQ(first_since(observer_->surfaces, begin + 100'000'000), 0) << "nothing crosses the cut";
     hosts_->impair("both cut 0");

@@ -1,0 +1,78 @@
+#include "tests/realtime/host_watch.hpp"
+
+#include <sched.h>
+
+#include <algorithm>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/periodic.hpp"
+#include "common/realtime/settings.hpp"
+
+namespace palpate::testing {
+namespace {
+
+constexpr int kBeforeAll = 99;                // SCHED_FIFO
+constexpr double kRateHz = 1000;              // of waking
+constexpr std::int64_t kPauseNs = 2'000'000;  // later than this is the host's doing
+constexpr std::int64_t kNoSpin = 0;
+
+std::vector<int> allowed_cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  sched_getaffinity(0, sizeof set, &set);
+  std::vector<int> cores;
+  for (int core = 0; core < CPU_SETSIZE; ++core)
+    if (CPU_ISSET(core, &set)) cores.push_back(core);
+  return cores;
+}
+
+}  // namespace
+
+HostWatch::HostWatch() {
+  for (const int core : allowed_cores())
+    threads_.emplace_back([this, core](const std::stop_token& stop) { watch(stop, core); });
+}
+
+HostWatch::~HostWatch() {
+  threads_.clear();
+}
+
+void HostWatch::watch(const std::stop_token& stop, int core) {
+  request_realtime({.priority = kBeforeAll, .lock_memory = false, .core = core});
+  PeriodicTimer timer(kRateHz, kNoSpin);
+  timer.start();
+  std::int64_t last_ns = now_ns();
+  while (!stop.stop_requested()) {
+    timer.wait();
+    const std::int64_t now = now_ns();
+    if (now - last_ns > timer.period_ns() + kPauseNs) {
+      const std::lock_guard lock(mutex_);
+      pauses_.push_back({last_ns, now});
+    }
+    last_ns = now;
+  }
+}
+
+double HostWatch::stood_still(std::int64_t from_ns, std::int64_t to_ns) const {
+  std::vector<Pause> pauses;
+  {
+    const std::lock_guard lock(mutex_);
+    pauses = pauses_;
+  }
+  std::ranges::sort(pauses, {}, &Pause::from_ns);
+  std::int64_t sum = 0, counted_to = from_ns;
+  for (const Pause& p : pauses) {
+    const std::int64_t from = std::max(p.from_ns, counted_to), to = std::min(p.to_ns, to_ns);
+    if (to <= from) continue;
+    sum += to - from;
+    counted_to = to;
+  }
+  return 1e-9 * static_cast<double>(sum);
+}
+
+double HostWatch::rate_hz(double ticks, std::int64_t from_ns, std::int64_t to_ns) const {
+  const double seconds = 1e-9 * static_cast<double>(to_ns - from_ns) - stood_still(from_ns, to_ns);
+  return seconds > 0 ? ticks / seconds : 0;
+}
+
+}  // namespace palpate::testing

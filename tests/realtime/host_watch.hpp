@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace palpate::testing {
+
+/// When this machine did not run: a virtual one's host has other things to do now and then, for up to a second, and no
+/// loop's rate says anything then. On each core a thread before which nothing else comes wakes each millisecond; where
+/// it is late, so would any loop have been. Without real-time rights it is late where others compute, too.
+class HostWatch {
+ public:
+  HostWatch();
+  ~HostWatch();
+
+  /// [s] of this time (of the monotonic clock) in which one core or another stood still.
+  double stood_still(std::int64_t from_ns, std::int64_t to_ns) const;
+  /// [Hz] of so many ticks in this time, without what stood still. 0 where nothing else is left.
+  double rate_hz(double ticks, std::int64_t from_ns, std::int64_t to_ns) const;
+
+ private:
+  struct Pause {
+    std::int64_t from_ns, to_ns;
+  };
+  void watch(const std::stop_token& stop, int core);
+
+  mutable std::mutex mutex_;
+  std::vector<Pause> pauses_;  ///< as they ended
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace palpate::testing
