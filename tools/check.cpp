@@ -14,17 +14,11 @@
 #include "common/tool/instrument.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
+#include "tools/human_bytes.hpp"
 #include "tools/tool_warnings.hpp"
 
 namespace palpate {
 namespace {
-
-/// Bytes as a person reads them: "1.2 MB".
-std::string human(std::size_t bytes) {
-  const double b = static_cast<double>(bytes);
-  if (b < 1e6) return fmt::format("{:.1f} kB", b * 1e-3);
-  return b < 1e9 ? fmt::format("{:.1f} MB", b * 1e-6) : fmt::format("{:.2f} GB", b * 1e-9);
-}
 
 void print_archive(const Scene& scene, const Body& body) {
   const auto file = archive_path(body);
@@ -35,7 +29,7 @@ void print_archive(const Scene& scene, const Body& body) {
   }
   try {
     find_archive(scene, body, ArchivePart::header);
-    fmt::print("  archive: {} ({})\n", file.string(), human(std::filesystem::file_size(file)));
+    fmt::print("  archive: {} ({})\n", file.string(), human_bytes(std::filesystem::file_size(file)));
   } catch (const std::exception& error) {
     fmt::print("  archive: refused and to be rebuilt, because {}\n", error.what());
   }
@@ -70,7 +64,7 @@ CheckReport check_body(const Scene& scene, const Body& body) {
   std::visit([&](const auto& spec) { check(spec, settings, report); }, body);
   print_archive(scene, body);
   for (const MemoryPart& part : report.memory)
-    fmt::print("  {:>10}  {:<20}  {}\n", human(part.bytes), part.owner, part.what);
+    fmt::print("  {:>10}  {:<20}  {}\n", human_bytes(part.bytes), part.owner, part.what);
   return report;
 }
 
@@ -99,8 +93,9 @@ void print_sections(const Scene& scene) {
   fmt::print("render: {} x {}, coloured by {}\n", scene.render->width, scene.render->height, scene.render->colour);
   if (scene.render->backdrop.empty()) return;
   const TriangleMesh backdrop = load_triangle_mesh(scene.render->backdrop, scene.render->backdrop_scale);
-  fmt::print("  backdrop: {} triangles, {}\n", backdrop.triangles.size(),
-             human(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
+  fmt::print(
+      "  backdrop: {} triangles, {}\n", backdrop.triangles.size(),
+      human_bytes(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
 }
 
 std::vector<DeviceSpec> devices_of(const Scene& scene) {
@@ -168,7 +163,8 @@ void check_scene(const Scene& scene) {
 void add_check_command(cli::Command& app) {
   cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
   auto file = std::make_shared<std::string>();
-  command.add_option("SCENE", *file, "scene file").required();
+  command.add_option("SCENE", *file, "Scene file").required();
+  command.examples({"palpate check scenes/liver.toml"});
   command.does([file] { check_scene(load_scene(*file)); });
 }
 

@@ -20,6 +20,7 @@ void add_top_command(cli::Command& app);
 void add_keys_command(cli::Command& app);
 void add_scene_command(cli::Command& app);
 void add_motion_command(cli::Command& app);
+void add_cache_command(cli::Command& app);
 void add_commands_of_other_programs(cli::Command& app);  ///< those of `palpate_organ` and `palpate_study`, for the help
 
 /// Becomes the program that has the command of the command line, if another one has it. Throws std::runtime_error where

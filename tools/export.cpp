@@ -90,17 +90,15 @@ void run(const ExportOptions& o) {
 void add_export_command(cli::Command& app) {
   auto o = std::make_shared<ExportOptions>();
   cli::Command command = app.add_command("export", "Write one topic of a log as CSV or JSON lines, or a log as MCAP");
-  command.add_option("log", o->log, "LCM event log").required();
+  command.add_option("LOG", o->log, "LCM event log").required();
   command.add_option("--topic", o->topic, "Topic, with or without palpate/ before it; MCAP without one has all");
   command.add_flag("--csv", o->csv, "CSV (the default): one line a sample, sequences as quoted JSON");
   command.add_flag("--jsonl", o->json, "One JSON object a line").excludes({"--csv"});
   command.add_flag("--mcap", o->mcap, "MCAP for Foxglove and other readers: messages as CDR, types as IDL; with -o")
       .excludes({"--csv", "--jsonl"});
   command.add_option("-o,--output", o->file, "File (default: standard output)").output_file();
-  command.footer(
-      "Examples:\n"
-      "  palpate export session.lcmlog --topic force_state --csv -o force.csv\n"
-      "  palpate export session.lcmlog --mcap -o session.mcap");
+  command.examples({"palpate export session.lcmlog --topic force_state --csv -o force.csv",
+                    "palpate export session.lcmlog --mcap -o session.mcap"});
   command.does([o] { run(*o); });
 }
 

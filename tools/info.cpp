@@ -135,8 +135,9 @@ void add_info_command(cli::Command& app) {
   };
   auto o = std::make_shared<Options>();
   cli::Command command = app.add_command("info", "Rates, gaps and latencies of a topic log");
-  command.add_option("log", o->file, "LCM event log").required();
+  command.add_option("LOG", o->file, "LCM event log").required();
   command.add_flag("--json", o->json, "Print JSON");
+  command.examples({"palpate info out/liver.lcmlog", "palpate info out/liver.lcmlog --json > out/liver.json"});
   command.does([o] {
     const LogSummary summary = summarise_log(o->file);
     if (o->json) {

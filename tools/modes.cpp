@@ -36,9 +36,10 @@ void add_modes_command(cli::Command& app) {
   cli::Command command = app.add_command(
       "modes", "Frequencies at which a body swings freely, of its own elements: CSV on the standard output");
   auto arguments = std::make_shared<ModesArguments>();
-  command.add_option("SCENE", arguments->scene, "scene file").required();
-  command.add_option("--body", arguments->body, "name of the body; needed where the scene has several");
-  command.add_option("--count", arguments->count, "how many, from the lowest").between(1, 1000).show_default();
+  command.add_option("SCENE", arguments->scene, "Scene file").required();
+  command.add_option("--body", arguments->body, "Name of the body; needed where the scene has several");
+  command.add_option("--count", arguments->count, "How many, from the lowest").between(1, 1000).show_default();
+  command.examples({"palpate modes scenes/plate_cut.toml --count 12"});
   command.does([arguments] { print_modes(*arguments); });
 }
 

@@ -63,7 +63,8 @@ void precompute_body(const Scene& scene, const Body& body) {
 void add_precompute_command(cli::Command& app) {
   cli::Command command = app.add_command("precompute", "Compute the tensors of every body of a scene, once");
   auto file = std::make_shared<std::string>();
-  command.add_option("SCENE", *file, "scene file").required();
+  command.add_option("SCENE", *file, "Scene file").required();
+  command.examples({"palpate precompute scenes/liver.toml"});
   command.does([file] {
     const Scene scene = load_scene(*file);
     for (const auto& body : scene.bodies) precompute_body(scene, body);

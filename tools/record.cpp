@@ -120,6 +120,7 @@ void add_record_command(cli::Command& app) {
                   "pictures or not at all (default: enough, everything with --seconds up to 600)")
       .one_of(std::vector<std::string>{kEverything, kEnough});
   command.add_flag("--supervised", o->supervised).hidden();
+  command.examples({"palpate record --seconds 60 -o out/session.lcmlog"});
   command.does([o] { record(*o); });
 }
 

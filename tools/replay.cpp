@@ -95,7 +95,7 @@ void play(const ReplayOptions& o) {
 void add_replay_command(cli::Command& app) {
   auto o = std::make_shared<ReplayOptions>();
   cli::Command command = app.add_command("replay", "Play a topic log back to DDS, or verify it");
-  command.add_option("log", o->file, "LCM event log").required();
+  command.add_option("LOG", o->file, "LCM event log").required();
   command.add_option("--speed", o->play.speed, "2 plays twice as fast").positive().show_default();
   command.add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
   add_network_options(command, o->network, "player");
@@ -110,6 +110,8 @@ void add_replay_command(cli::Command& app) {
       .add_option("--data", o->data,
                   "Folder for the files that the log brings along, and with those that are too large for it")
       .needs(verifies);
+  command.examples(
+      {"palpate replay out/liver.lcmlog --verify", "palpate replay out/liver.lcmlog --speed 0.5 --topic force_state"});
   command.does([o] { o->verify ? verify(o->file, o->data) : play(*o); });
 }
 

@@ -298,7 +298,7 @@ void run(const RunOptions& o) {
 void add_run_command(cli::Command& app) {
   auto o = std::make_shared<RunOptions>();
   cli::Command run_command = app.add_command("run", "Start the nodes that a scene needs on this machine");
-  run_command.add_option("scene", o->scene, "Scene file").required();
+  run_command.add_option("SCENE", o->scene, "Scene file").required();
   run_command
       .add_option("--seconds", o->seconds,
                   "Stop after so many seconds (default: when a scripted motion ends, with --web never, or Ctrl-C)")
@@ -331,6 +331,8 @@ void add_run_command(cli::Command& app) {
           "where nothing is drawn here")
       .one_of({2, 3});
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
+  run_command.examples({"palpate run scenes/liver.toml --web",
+                        "palpate run scenes/hepatectomy.toml --record out/cut.lcmlog --film out/cut.mp4"});
   run_command.does([o] { run(*o); });
 }
 

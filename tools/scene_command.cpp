@@ -58,12 +58,10 @@ void make_scene(const SceneOptions& o) {
 }  // namespace
 
 void add_scene_command(cli::Command& app) {
-  cli::Command command =
-      app.add_command("scene",
-                      "Make a scene of a mesh: its material, what holds it, a probe with a first motion, a camera.\n"
-                      "Example: palpate scene organ.msh --tissue liver -o organ.toml");
+  cli::Command command = app.add_command(
+      "scene", "Make a scene of a mesh: its material, what holds it, a probe with a first motion, a camera");
   auto o = std::make_shared<SceneOptions>();
-  command.add_option("MESH", o->mesh, "mesh of tetrahedra in metres (.msh, .vtk)").required();
+  command.add_option("MESH", o->mesh, "Mesh of tetrahedra in metres (.msh, .vtk)").required();
   command.add_option("-o,--output", o->output, "Scene to write (.toml); its motion goes beside it")
       .required()
       .output_file(".toml");
@@ -75,6 +73,7 @@ void add_scene_command(cli::Command& app) {
       .add_option("--press", o->wishes.press,
                   "How deep it presses [m] (default: a fortieth of the diagonal, 0.01 at most)")
       .positive();
+  command.examples({"palpate scene organ.msh --tissue liver -o organ.toml"});
   command.does([o] { make_scene(*o); });
 }
 

@@ -162,8 +162,8 @@ void solve(const SolveArguments& arguments) {
 void add_solve_command(cli::Command& app) {
   cli::Command command = app.add_command("solve", "Compute one static state of a body, offline");
   auto arguments = std::make_shared<SolveArguments>();
-  command.add_option("SCENE", arguments->scene, "scene file").required();
-  command.add_option("--body", arguments->body, "name of the body; needed where the scene has several");
+  command.add_option("SCENE", arguments->scene, "Scene file").required();
+  command.add_option("--body", arguments->body, "Name of the body; needed where the scene has several");
   command
       .add_option("--hold", arguments->holds,
                   "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
@@ -183,10 +183,12 @@ void add_solve_command(cli::Command& app) {
       .show_default();
   command
       .add_option("--csv", arguments->csv,
-                  "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
+                  "Write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
                   "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero")
       .output_file(".csv");
-  command.add_option("--vtu", arguments->vtu, "write a file for ParaView").output_file(".vtu");
+  command.add_option("--vtu", arguments->vtu, "Write a file for ParaView").output_file(".vtu");
+  command.examples({"palpate solve scenes/plate.toml --touch \"0,0,0.01:0,0,-0.004\" --vtu out/plate.vtu",
+                    "palpate solve scenes/plate.toml --force \"12:0,0,-0.5\" --method direct --csv out/plate.csv"});
   command.does([arguments] { solve(*arguments); });
 }
 

@@ -170,6 +170,7 @@ void add_top_command(cli::Command& app) {
   command.add_option("--interval", o->interval, "Time between two looks [s]").between(0.1, 60.0).show_default();
   command.add_flag("--once", o->once, "One look, then end");
   add_network_options(command, o->network, "observer");
+  command.examples({"palpate top", "palpate top --once --domain 3"});
   command.does([o] { run(*o); });
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "common/archive/archive_dynamic.hpp"
 #include "common/archive/archive_modal.hpp"
@@ -144,14 +143,6 @@ void check_fit(const Hdf5Reader& file, const Archive& archive, ArchivePart part)
 }
 
 }  // namespace
-
-std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
-                                   const std::string& content_hash) {
-  const char* cache = std::getenv("PALPATE_CACHE");
-  const auto folder =
-      cache && *cache ? std::filesystem::path(cache) : std::filesystem::absolute(mesh_file).parent_path() / ".palpate";
-  return folder / (body + "-" + content_hash + ".h5");
-}
 
 void write_archive(const Archive& archive, const std::filesystem::path& file) {
   AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes);

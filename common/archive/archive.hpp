@@ -80,11 +80,6 @@ struct Archive {
 /// Changes with every change of the layout or of the meaning of a stored number.
 constexpr int kArchiveFormat = 7;
 
-/// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
-/// set.
-std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
-                                   const std::string& content_hash);
-
 /// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either
 /// whole or as it was. Removes temporary files that killed writers of the same body left. Throws
 /// std::runtime_error on failure (a full disk, say), leaving nothing.

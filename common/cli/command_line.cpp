@@ -139,8 +139,8 @@ Command Command::add_command(const std::string& name, const std::string& meaning
   return Command(app_->add_subcommand(name, meaning));
 }
 
-void Command::footer(const std::string& text) {
-  app_->footer(text);
+void Command::examples(std::initializer_list<std::string> lines) {
+  app_->footer("Examples:\n  " + fmt::format("{}", fmt::join(lines, "\n  ")));
 }
 
 void Command::does(const std::function<void()>& work) {

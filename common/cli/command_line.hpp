@@ -51,7 +51,7 @@ class Command {
   Option add_option(const std::string& name, T& value, const std::string& meaning);
   Option add_flag(const std::string& name, bool& value, const std::string& meaning = "");
   Command add_command(const std::string& name, const std::string& meaning);
-  void footer(const std::string& text);  ///< the end of its help: examples
+  void examples(std::initializer_list<std::string> lines);  ///< command lines, at the end of its help
   /// What it does; run while the command line is read.
   void does(const std::function<void()>& work);
 

@@ -12,7 +12,7 @@ namespace palpate {
 
 void add_node_options(cli::CommandLine& app, NodeOptions& o) {
   app.show_version(PALPATE_VERSION);
-  app.add_option("scene", o.scene, "Scene file").required();
+  app.add_option("SCENE", o.scene, "Scene file").required();
   app.add_option("--seconds", o.seconds, "Stop after so many seconds").positive();
   app.add_option("--domain", o.domain, "DDS domain in place of the scene's").between(0, 230);
   app.add_option("--interface", o.interface, "Network interface in place of the scene's");

@@ -1,5 +1,6 @@
 #pragma once
 #include "common/archive/archive.hpp"
+#include "common/archive/archive_place.hpp"
 #include "common/scene/scene.hpp"
 
 namespace palpate {

@@ -1,15 +1,18 @@
 #include "common/archive/archive.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
 
+#include "common/archive/archive_place.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::make_archive;
 using testing::make_hybrid_archive;
 using testing::TemporaryFolder;
@@ -110,12 +113,38 @@ TEST(Archive, TouchablePartDoesNotReadTheOtherRows) {
             std::string::npos);
 }
 
-TEST(Archive, LivesBesideTheSceneOrInTheCache) {
+TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) {
+  const TemporaryFolder folder;
+  const auto mesh = folder / "liver.msh", beside = folder / ".palpate" / "liver-abc.h5";
+  const auto place = [&] { return archive_path(mesh, "liver", "abc"); };
   unsetenv("PALPATE_CACHE");
-  EXPECT_EQ(archive_path("/scenes/liver.toml", "liver", "abc"), "/scenes/.palpate/liver-abc.h5");
+  EXPECT_EQ(place(), beside);
+
+  const uid_t user = geteuid();
+  fs::permissions(folder / ".", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  if (user == 0) ASSERT_EQ(seteuid(65534), 0);  // before whom permissions hold
+  setenv("XDG_CACHE_HOME", "/caches", 1);
+  EXPECT_EQ(place(), "/caches/palpate/liver-abc.h5");
+  unsetenv("XDG_CACHE_HOME");
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", "/home/somebody", 1);
+  EXPECT_EQ(place(), "/home/somebody/.cache/palpate/liver-abc.h5");
+  unsetenv("HOME");
+  EXPECT_THROW(place(), std::runtime_error);
   setenv("PALPATE_CACHE", "/cache", 1);
-  EXPECT_EQ(archive_path("/scenes/liver.toml", "liver", "abc"), "/cache/liver-abc.h5");
+  EXPECT_EQ(place(), "/cache/liver-abc.h5");
   unsetenv("PALPATE_CACHE");
+  if (!home.empty()) setenv("HOME", home.c_str(), 1);
+  ASSERT_EQ(seteuid(user), 0);
+
+  // What came with the mesh is used, though nothing can be added.
+  fs::permissions(folder / ".", fs::perms::owner_all | fs::perms::others_exec);
+  fs::create_directory(folder / ".palpate");
+  testing::write_bytes(beside, std::vector<char>{'a'}, 1);
+  fs::permissions(folder / ".palpate", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  if (user == 0) ASSERT_EQ(seteuid(65534), 0);
+  EXPECT_EQ(place(), beside);
+  ASSERT_EQ(seteuid(user), 0);
 }
 
 /// What a stranger to this program sees.

@@ -22,13 +22,6 @@ namespace {
 
 using namespace drive;
 
-constexpr const char* kExamples = R"(Examples:
-  palpate drive scenes/liver.toml --expect "tool.force.max<3" --expect finite==1
-  palpate drive scenes/liver.toml --set body.young=8000 --course out/stiff.csv
-  palpate drive scenes/liver.toml --sweep body.young=4000,6000,8000 --sweep contact.friction=0.1,0.5 -o out/table.csv
-  palpate drive scenes/liver.toml --sweep body.young=4000,8000 --tasks | parallel > out/results.jsonl
-  palpate drive --merge out/results.jsonl -o out/table.csv)";
-
 struct DriveOptions {
   std::string scene, log, course, output;
   std::vector<std::string> set, sweep, expect, merge;
@@ -174,7 +167,7 @@ void add_drive_command(cli::Command& app) {
   auto o = std::make_shared<DriveOptions>();
   cli::Command command =
       app.add_command("drive", "Run a scene in lock step, as fast as it goes, and say what it comes to");
-  command.add_option("SCENE", o->scene, "scene file");
+  command.add_option("SCENE", o->scene, "Scene file");
   command
       .add_option("--set", o->set,
                   "KEY=VALUE in place of what the scene file says, such as body.young=8000; may be repeated")
@@ -201,7 +194,13 @@ void add_drive_command(cli::Command& app) {
   command.add_option("--merge", o->merge, "Files with what such commands printed, for one table")
       .excludes({"--set", "--sweep", "--tasks"});
   command.add_option("--point", o->point, "").hidden();
-  command.footer(kExamples);
+  command.examples(
+      {"palpate drive scenes/liver.toml --expect \"tool.force.max<3\" --expect finite==1",
+       "palpate drive scenes/liver.toml --set body.young=8000 --course out/stiff.csv",
+       "palpate drive scenes/liver.toml --sweep body.young=4000,6000,8000 --sweep contact.friction=0.1,0.5 -o "
+       "out/table.csv",
+       "palpate drive scenes/liver.toml --sweep body.young=4000,8000 --tasks | parallel > out/results.jsonl",
+       "palpate drive --merge out/results.jsonl -o out/table.csv"});
   command.does([o] { run(*o); });
 }
 

@@ -24,12 +24,10 @@ void make_film(const LogFilmSettings& settings) {
 
 void add_film_command(cli::Command& app) {
   cli::Command command = app.add_command(
-      "film",
-      "Draw a topic log: every picture that is due, faster or slower than it was, the same bytes each time.\n"
-      "Example: palpate film out/liver.lcmlog --speed 0.25 --from 2 --to 4 -o out/slow.mp4");
+      "film", "Draw a topic log: every picture that is due, faster or slower than it was, the same bytes each time");
   auto s = std::make_shared<LogFilmSettings>();
-  command.add_option("LOG", s->log, "topic log").required();
-  command.add_option("-o,--output", s->film, "film (MP4)").required().output_file(".mp4");
+  command.add_option("LOG", s->log, "Topic log").required();
+  command.add_option("-o,--output", s->film, "Film (MP4)").required().output_file(".mp4");
   command.add_option("--still", s->still, "Picture (PNG) of the moment of the greatest force").output_file(".png");
   command.add_option("--from", s->from, "Begin there [s]").between(0.0, 1e6).show_default();
   command.add_option("--to", s->to, "End there [s] (default: with the log)").positive();
@@ -42,22 +40,22 @@ void add_film_command(cli::Command& app) {
       .show_default();
   command.add_option("--data", s->data,
                      "Folder for the files that the log brings along, and with those that are too large for it");
+  command.examples({"palpate film out/liver.lcmlog --speed 0.25 --from 2 --to 4 -o out/slow.mp4"});
   command.does([s] { make_film(*s); });
 }
 
 void add_report_command(cli::Command& app) {
   cli::Command command =
-      app.add_command("report",
-                      "A page of sessions: force and path, pictures, and figures by which trainers compare.\n"
-                      "Example: palpate report monday.lcmlog friday.lcmlog -o out/report");
+      app.add_command("report", "A page of sessions: force and path, pictures, and figures by which trainers compare");
   auto s = std::make_shared<LogReportSettings>();
-  command.add_option("LOG", s->logs, "topic logs, which are set side by side").required();
-  command.add_option("-o,--output", s->folder, "folder for the figures and the page").required();
+  command.add_option("LOG", s->logs, "Topic logs, which are set side by side").required();
+  command.add_option("-o,--output", s->folder, "Folder for the figures and the page").required();
   command.add_option("--pictures", s->pictures, "Pictures of each session; 0: none, which needs no archives")
       .between(0, 100)
       .show_default();
   command.add_option("--data", s->data,
                      "Folder for the files that the logs bring along, and with those that are too large for them");
+  command.examples({"palpate report monday.lcmlog friday.lcmlog -o out/report"});
   command.does([s] {
     const std::string missing = report_logs(*s, [](const std::string& log) { fmt::print(stderr, "{}\n", log); });
     if (!missing.empty()) fmt::print(stderr, "palpate: {}\n", missing);

@@ -96,19 +96,19 @@ int main(int argc, char** argv) {
   std::filesystem::path file;
   const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
     cli::Command shape = app.add_command(name, what);
-    shape.add_option("-o,--output", file, "file to write").required().output_file();
+    shape.add_option("-o,--output", file, "File to write").required().output_file();
     shape.does(make);
     return shape;
   };
 
   LiverOptions liver;
   cli::Command shape = add_shape("liver", "the default organ (.msh)", [&] { save(make_liver(liver), file); });
-  shape.add_option("--frequency", liver.frequency, "fineness f of the surface: 10 f^2 + 2 nodes").between(2, 64);
-  shape.add_option("--size", liver.inner_size, "edge length inside [m]").positive();
+  shape.add_option("--frequency", liver.frequency, "Fineness f of the surface: 10 f^2 + 2 nodes").between(2, 64);
+  shape.add_option("--size", liver.inner_size, "Edge length inside [m]").positive();
 
   int plate_cells = 18;
   shape = add_shape("plate", "a thin square plate (.msh)", [&] { save(make_plate(plate_cells), file); });
-  shape.add_option("--cells", plate_cells, "cells along each side").between(4, 1000);
+  shape.add_option("--cells", plate_cells, "Cells along each side").between(4, 1000);
 
   add_shape("ribs", "the backdrop of the liver scene (.stl)", [&] { save(make_ribs(), file); });
 
@@ -119,22 +119,22 @@ int main(int argc, char** argv) {
 
   add_shape("duct", "the cystic duct, a surface (.msh)", [&] { save(make_duct(), file); });
   shape = app.add_command("motions", "the trajectories of a scene of the duct");
-  shape.add_option("SCENE", file, "scene file, which names them").required();
+  shape.add_option("SCENE", file, "Scene file, which names them").required();
   shape.does([&] { save_motions(file); });
 
   BlockOptions block;
   shape = add_shape("block", "a block (.msh)", [&] { save(make_top_centred_block(block), file); });
-  shape.add_option("--min", block.min, "lowest corner [m]");
-  shape.add_option("--max", block.max, "highest corner [m]");
-  shape.add_option("--cells", block.cells, "cells along x, y, z");
-  shape.add_option("--growth", block.growth, "growth of the cells away from the middle of the top; 1: uniform");
+  shape.add_option("--min", block.min, "Lowest corner [m]");
+  shape.add_option("--max", block.max, "Highest corner [m]");
+  shape.add_option("--cells", block.cells, "Cells along x, y, z");
+  shape.add_option("--growth", block.growth, "Growth of the cells away from the middle of the top; 1: uniform");
 
   CylinderOptions cylinder;
   shape =
       add_shape("cylinder", "a cylinder about the z axis (.msh)", [&] { save(make_sized_cylinder(cylinder), file); });
   shape.add_option("--radius", cylinder.radius, "[m]").positive();
   shape.add_option("--height", cylinder.height, "[m]").positive();
-  shape.add_option("--size", cylinder.size, "edge length aimed at [m]").positive();
+  shape.add_option("--size", cylinder.size, "Edge length aimed at [m]").positive();
 
   try {
     if (const auto status = app.read(argc, argv)) return *status;

@@ -69,12 +69,13 @@ void add_keys_command(cli::Command& app) {
   auto o = std::make_shared<KeysOptions>();
   cli::Command command =
       app.add_command("keys", "Make the keys by which nodes know each other and encrypt what they send");
-  command.add_option("folder", o->folder, "Folder to make, with an authority and a folder for each role").required();
+  command.add_option("FOLDER", o->folder, "Folder to make, with an authority and a folder for each role").required();
   command.add_option("--days", o->days, "How long the keys hold").between(1, 7300).show_default();
   const cli::Option add =
       command.add_option("--add", o->role, "Make further keys of this role from the authority that is there")
           .one_of(bus_roles());
   command.add_option("--name", o->name, "Their folder's name (default: the role)").needs(add);
+  command.examples({"palpate keys out/keys --days 90", "palpate keys out/keys --add render --name projector"});
   command.does([o] { run(*o); });
 }
 

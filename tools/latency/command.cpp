@@ -264,7 +264,7 @@ void add_latency_command(cli::Command& app) {
   cli::Command command = app.add_command(
       "latency",
       "Round trips to another process or host, beside bare DDS and bare UDP, and one-way times of a simulation");
-  command.add_option("scene", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
+  command.add_option("SCENE", o->scene, "Run this scene meanwhile and measure its hops up to the picture");
   command.add_flag("--attach", o->attach, "Measure the hops of a simulation that runs already");
   command.add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
   command.add_option("--rate", o->rate, "Messages a second over each way [Hz]").between(1.0, 5000.0).show_default();
@@ -273,6 +273,7 @@ void add_latency_command(cli::Command& app) {
   command.add_flag("--json", o->json, "Print JSON");
   command.add_option("-o,--output", o->out, "Folder for latency.json and its plot");
   add_network_options(command, o->network, "latency");
+  command.examples({"palpate latency scenes/liver.toml --seconds 10 -o out/latency", "palpate latency --answer"});
   command.does([o] { run(*o); });
 }
 

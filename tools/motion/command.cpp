@@ -70,20 +70,20 @@ void add_motion_command(cli::Command& app) {
       app.add_command("motion",
                       "Make a tool's motion of steps, and say what the tool feels in each: to X,Y,Z (above the "
                       "surface's nearest place), "
-                      "press DEPTH or FORCE, hold TIME, slide X,Y,Z, withdraw, grip ANGLE, pedal 0|1.\n"
-                      "Example: palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" "
-                      "\"press 0.3N\" \"hold 1s\" "
-                      "withdraw -o press.csv");
+                      "press DEPTH or FORCE, hold TIME, slide X,Y,Z, withdraw, grip ANGLE, pedal 0|1");
   auto o = std::make_shared<MotionOptions>();
-  command.add_option("SCENE", o->scene, "scene file (TOML)").required();
-  command.add_option("STEP", o->steps, "steps, in their order; each is one word of the shell").required();
-  command.add_option("-o,--output", o->out, "trajectory (CSV)").required().output_file(".csv");
+  command.add_option("SCENE", o->scene, "Scene file (TOML)").required();
+  command.add_option("STEP", o->steps, "Steps, in their order; each is one word of the shell").required();
+  command.add_option("-o,--output", o->out, "Trajectory (CSV)").required().output_file(".csv");
   command.add_option("--tool", o->tool, "Tool that moves (default: the only one)");
   command.add_option("--body", o->body, "Body that it touches (default: the only one)");
   command.add_option("--speed", o->manner.speed, "Of the tip [m/s], at most").between(1e-4, 1.0).show_default();
   command.add_option("--clear", o->manner.clear, "Between tip and tissue where it does not press [m]")
       .between(1e-4, 1.0)
       .show_default();
+  command.examples(
+      {"palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" \"press 0.3N\" \"hold "
+       "1s\" withdraw -o press.csv"});
   command.does([o] { make_motion(*o); });
 }
 

@@ -47,11 +47,9 @@ void make_mesh(const SurfaceOptions& o) {
 
 void add_mesh_command(cli::Command& app) {
   cli::Command command = app.add_command(
-      "mesh",
-      "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP), repaired where it has to be.\n"
-      "Example: palpate mesh liver.stl --unit mm --nodes 2000 --group attachment=above:z -o liver.msh");
+      "mesh", "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP), repaired where it has to be");
   auto o = std::make_shared<SurfaceOptions>();
-  command.add_option("SURFACE", o->surface, "surface file").required();
+  command.add_option("SURFACE", o->surface, "Surface file").required();
   std::vector<std::string> units;
   for (const auto& [name, metres] : kUnits) units.push_back(name);
   command.add_option("--unit", o->unit, "Unit of the file's coordinates").one_of(units).show_default();
@@ -59,6 +57,7 @@ void add_mesh_command(cli::Command& app) {
       .add_option("--hole", o->hole, "Close holes of up to this size [m] (default: a fifth of the surface's diagonal)")
       .positive();
   add_mesh_options(command, *o);
+  command.examples({"palpate mesh liver.stl --unit mm --nodes 2000 --group attachment=above:z -o liver.msh"});
   command.does([o] { make_mesh(*o); });
 }
 

@@ -130,13 +130,10 @@ void make_organ(const OrganOptions& o) {
 }  // namespace
 
 void add_organ_command(cli::Command& app) {
-  cli::Command command = app.add_command(
-      "organ",
-      "Make a mesh of tetrahedra of labels in an image (INR, NIfTI, MetaImage, NRRD, DICOM).\n"
-      "Example: palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o "
-      "organ.msh");
+  cli::Command command =
+      app.add_command("organ", "Make a mesh of tetrahedra of labels in an image (INR, NIfTI, MetaImage, NRRD, DICOM)");
   auto o = std::make_shared<OrganOptions>();
-  command.add_option("VOLUME", o->volume, "image file, or a folder with a DICOM series").required();
+  command.add_option("VOLUME", o->volume, "Image file, or a folder with a DICOM series").required();
   command
       .add_option("--label", o->labels,
                   "Value of the organ's voxels, and its name: NUMBER or NUMBER=NAME; several make one mesh of several "
@@ -147,6 +144,8 @@ void add_organ_command(cli::Command& app) {
       .between(0.0, 5.0)
       .show_default();
   add_mesh_options(command, *o);
+  command.examples(
+      {"palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o organ.msh"});
   command.does([o] { make_organ(*o); });
 }
 

@@ -37,10 +37,11 @@ void add_stability_command(cli::Command& app) {
   auto options = std::make_shared<StabilityOptions>();
   cli::Command command =
       app.add_command("stability", "Stiff and extreme cases, each with its outcome, as a table and a page");
-  command.add_option("scene", options->scene, "scene file; without one, the general cases");
-  command.add_option("-o,--output", options->folder, "folder for stability.csv, plots and page").required();
-  command.add_flag("--quick", options->quick, "the subset that takes a minute");
-  command.add_option("--only", options->only, "cases whose name contains this");
+  command.add_option("SCENE", options->scene, "Scene file; without one, the general cases");
+  command.add_option("-o,--output", options->folder, "Folder for stability.csv, plots and page").required();
+  command.add_flag("--quick", options->quick, "The subset that takes a minute");
+  command.add_option("--only", options->only, "Cases whose name contains this");
+  command.examples({"palpate stability --quick -o out/stability", "palpate stability scenes/plate.toml -o out/plate"});
   command.does([options] { run(*options); });
 }
 

@@ -78,16 +78,19 @@ void run(const Arguments& arguments) {
 void add_study_command(cli::Command& app) {
   cli::Command command = app.add_command("study", "Error against run time of all that can serve a scene");
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("SCENE", arguments->scenes, "scene files (TOML)");
+  command.add_option("SCENE", arguments->scenes, "Scene files (TOML)");
   command
-      .add_option("-o,--out", arguments->out, "folder for figures and page; with several scenes one folder each in it")
+      .add_option("-o,--output", arguments->out,
+                  "Folder for figures and page; with several scenes one folder each in it")
       .required();
   command.add_option("--budget", arguments->budget,
-                     "names the most accurate configuration whose step takes no longer, such as 1ms, and "
+                     "Names the most accurate configuration whose step takes no longer, such as 1ms, and "
                      "writes it as a scene");
   command.add_flag("--growth", arguments->growth,
-                   "how a step's time grows over surface nodes, contacts, edges, modes and particles");
-  command.add_flag("--quick", arguments->quick, "fewer patches, samples and knobs");
+                   "How a step's time grows over surface nodes, contacts, edges, modes and particles");
+  command.add_flag("--quick", arguments->quick, "Fewer patches, samples and knobs");
+  command.examples({"palpate study scenes/plate.toml --quick -o out/study",
+                    "palpate study scenes/liver.toml --budget 200us -o out/liver"});
   command.does([arguments] { run(*arguments); });
 }
 

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# package.sh: builds the programs and makes Debian packages of them, with manual pages, into build/packages.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+./scripts/install.sh help2man dpkg-dev libcgal-dev libinsighttoolkit5-dev
+./scripts/build.sh release programs palpate_study palpate_organ
+rm -rf build/release/man build/packages
+./scripts/manual_pages.sh build/release/bin build/release/man
+mkdir -p build/packages
+(cd build/release && cpack -B ../packages >cpack.log) || { cat build/release/cpack.log >&2; exit 1; }
+rm -rf build/packages/_CPack_Packages
+ls -sh build/packages

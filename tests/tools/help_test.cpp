@@ -1,0 +1,63 @@
+// What every command says of itself.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "tests/tools/program_result.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::program;
+using testing::run_program;
+
+struct HelpOf {
+  std::string command, text;
+};
+
+/// Of every command that `palpate help` names and whose program is built.
+std::vector<HelpOf> all_help() {
+  const std::string all = run_program(program("palpate") + " help").out;
+  const std::regex row(R"(\n  ([a-z]+) {2,})");
+  std::vector<HelpOf> found;
+  for (std::sregex_iterator at(all.begin(), all.end(), row), end; at != end; ++at) {
+    const auto help = run_program(program("palpate") + " help " + (*at)[1].str());
+    if (help.err.find("is in a program of its own that is not here") != std::string::npos) continue;
+    EXPECT_EQ(help.status, 0) << (*at)[1] << ": " << help.err;
+    found.push_back({(*at)[1], help.out});
+  }
+  return found;
+}
+
+std::set<std::string> matches(const std::string& text, const char* pattern) {
+  const std::regex sought(pattern);
+  std::set<std::string> all;
+  for (std::sregex_iterator at(text.begin(), text.end(), sought), end; at != end; ++at) all.insert((*at)[1]);
+  return all;
+}
+
+TEST(ToolsHelp, EveryCommandHasExamplesOfOptionsThatItHas) {
+  const std::vector<HelpOf> all = all_help();
+  EXPECT_GE(all.size(), 19u);
+  for (const auto& [command, text] : all) {
+    const std::size_t at = text.find("\nExamples:\n  palpate " + command);
+    ASSERT_NE(at, std::string::npos) << text;
+    const std::set<std::string> options = matches(text.substr(0, at), R"([ ,](--?[a-z][a-z-]*))");
+    for (const std::string& used : matches(text.substr(at), R"([ "](--?[a-z][a-z-]*))"))
+      EXPECT_TRUE(options.contains(used)) << command << ": its example has " << used;
+  }
+}
+
+TEST(ToolsHelp, WhatIsToldByItsPlaceIsInCapitalsAndTheFolderOrFileThatIsMadeIsTheOutput) {
+  for (const auto& [command, text] : all_help()) {
+    const auto usage = matches(text, R"((Usage: [^\n]*))");
+    ASSERT_EQ(usage.size(), 1u) << text;
+    EXPECT_FALSE(std::regex_search(*usage.begin(), std::regex(command + R"([^\n]* [a-z]+( |$))"))) << *usage.begin();
+    EXPECT_EQ(text.find("--out "), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace palpate
