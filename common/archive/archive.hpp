@@ -78,7 +78,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 7;
+constexpr int kArchiveFormat = 8;
 
 /// Where the archive of a body lives: MESH_DIR/.palpate/BODY-HASH.h5, or below $PALPATE_CACHE if that is
 /// set.
