@@ -1,8 +1,8 @@
 """Writes docs/papers.md: every figure and claim of the three papers beside ours: papers.py BIN_DIR [DOCS_DIR].
 
 BIN_DIR is the folder of the built programs. The items stand in scripts/papers_items.py, each with its commands, which are run,
-and with the range in which each of its values must be. --short runs short forms of the commands, writes no page, and fails
-where a command fails or a value has left its range; --only NAME takes the items whose name has NAME in it."""
+and with the ranges in which its values must be: where a command fails or a value has left its range, so does this program.
+--short leaves out what takes long and writes no page; --only NAME takes the items whose name has NAME in it, likewise."""
 import argparse
 import csv
 import json
@@ -29,12 +29,12 @@ simulation*, INRIA RR-3510, 1998 (**RR3510**); C. Basdogan, C.-H. Ho and M. A. S
 Transactions on Mechatronics 6(3), 2001 (**BHS01**).
 
     python3 scripts/papers.py build/release/bin           # all of it, this page
-    python3 scripts/papers.py build/release/bin --short   # short forms, judged: what the tests run
+    python3 scripts/papers.py build/release/bin --short   # judged, without the items that take long: what the tests run
 
 The commands below are run from the top of the repository with `build/release/bin` in the `PATH`; files go to `out/papers`. Figures in *italics* depend
-on the machine, here {machine}, and on what else it did meanwhile; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
-judges these. The papers' own are of a 166 MHz Pentium, DEC Alphas of 233 and 400 MHz
-and a dual Pentium II of 300 MHz: the ratio is 25 years of hardware and only what is left of it is the method's.
+on the machine, here {machine}, of which linear algebra takes one, and on what else it did meanwhile; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
+judges these. The papers' own are of a Pentium of 166 MHz, DEC Alphas of 233 and 400 MHz
+and a pair of Pentium II of 300 MHz: much of what lies between theirs and ours is 25 years of hardware.
 """
 
 
@@ -79,7 +79,8 @@ class Runner:
 
     def __init__(self, programs, folder, short):
         self.programs, self.folder, self.short, self.done = programs, folder, short, {}
-        self.environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}"}
+        threads = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # as the papers' machines had one processor
+        self.environment = os.environ | threads | {"PATH": f"{programs}:{os.environ['PATH']}"}
 
     def output(self, command):
         if command not in self.done:
@@ -94,8 +95,9 @@ class Runner:
         return self.done[command]
 
     def values(self, item):
-        commands = item.short if self.short and item.short is not None else item.commands
-        return item.values(Run([self.output(c) for c in commands], self.folder)) if commands else {}
+        if not item.commands or (self.short and item.too_long):
+            return {}
+        return item.values(Run([self.output(c) for c in item.commands], self.folder))
 
 
 def complaints(item, values):
@@ -112,12 +114,17 @@ def machine():
     return platform.machine()
 
 
+def typeset(text):
+    """True minus signs, and a space before per cent."""
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<!\w)-(?=\d)", "−", text))
+
+
 def section(title, items, values):
     lines = [f"## {title}", "", "| | the paper | here | where we differ, and why |", "| --- | --- | --- | --- |"]
     for item in items:
-        ours = item.ours.format(**values[item]) if values[item] else item.ours
-        mark = " †" if item.short == () else ""
-        lines.append(f"| **{item.name}**{mark} | {item.claim} | {ours} | {item.differs} |")
+        ours, differs = (typeset(text.format(**values[item])) for text in (item.ours, item.differs))
+        mark = " †" if item.too_long else ""
+        lines.append(f"| **{item.name}**{mark} | {item.claim} | {ours} | {differs} |")
     lines += [""] + [f"![{words}](pictures/{file})\n" for item in items for file, words in item.pictures]
     lines += [f"### Commands of {title}", ""]
     for item in items:

@@ -84,8 +84,7 @@ std::vector<Constraint> parse_hold(const std::string& text, const GroupNodes& gr
   const auto [left, right] = parser.halves(text);
   const std::string_view name = trim(left);
   const bool named = group && !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
-  const auto nodes =
-      named ? group(std::string(name)) : std::vector<int>{parser.number<int>(name, "a node number")};
+  const auto nodes = named ? group(std::string(name)) : std::vector<int>{parser.number<int>(name, "a node number")};
   const auto displacement = parser.components(right);
   if (empty(displacement)) parser.fail("no axis is held");
   std::vector<Constraint> holds;

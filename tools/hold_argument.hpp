@@ -19,8 +19,8 @@ struct TouchArgument {
 /// Numbers of the mesh nodes of a group. Throws std::runtime_error where there is none of that name.
 using GroupNodes = std::function<std::vector<int>(const std::string& name)>;
 
-/// Parses `--hold "NODE:ux,uy,uz"`, one constraint per component given; with `group` also "GROUP:ux,uy,uz", one per node
-/// and component. Throws std::runtime_error on anything that is not a number, and if no component is given.
+/// Parses `--hold "NODE:ux,uy,uz"`, one constraint per component given; with `group` also "GROUP:ux,uy,uz", one per
+/// node and component. Throws std::runtime_error on anything that is not a number, and if no component is given.
 std::vector<Constraint> parse_hold(const std::string& text, const GroupNodes& group = {});
 
 TouchArgument parse_touch(const std::string& text);

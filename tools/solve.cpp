@@ -175,6 +175,8 @@ void solve(const SolveArguments& arguments) {
     throw std::runtime_error("nothing is held or loaded: give --hold, --touch, --force or --gravity");
   if (falls(arguments) && arguments.method != "direct")
     throw std::runtime_error("--gravity: an archive knows no loads inside: take --method direct");
+  if (arguments.plain && arguments.method == "direct")
+    throw std::runtime_error("--plain: it is tensors that are summed: take --method tensors");
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
   check_model(body);
@@ -217,7 +219,7 @@ void add_solve_command(cli::Command& app) {
       .add_flag("--plain", arguments->plain,
                 "sum what each held node would do alone, without what the others do to it (TVCG99 fig. 10): to see "
                 "what the correction is worth")
-      .excludes({"--touch", "--force", "--gravity", "--method"});
+      .excludes({"--touch", "--force", "--gravity"});
   command
       .add_option("--csv", arguments->csv,
                   "write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "

@@ -60,7 +60,9 @@ TEST(HoldArgument, HoldsEachNodeOfAGroup) {
   EXPECT_EQ(holds[2].terms[0].axis, 1);
   EXPECT_EQ(holds[3].value, -0.2);
   EXPECT_EQ(refusal([&] { parse_holds({"roof:1,1,1"}, 10, groups); }), "no roof");
-  EXPECT_NE(refusal([&] { parse_holds({"lid:1,,", "7:1,,"}, 10, groups); }).find("node 7 is held twice"),
+  EXPECT_NE(refusal([&] {
+              parse_holds({"lid:1,,", "7:1,,"}, 10, groups);
+            }).find("node 7 is held twice"),
             std::string::npos);
 }
 

@@ -164,9 +164,13 @@ TEST_F(ToolsSolve, PlainSuperpositionGoesFurtherThanItsNodesAreHeld) {
   EXPECT_LT(carried, -0.0003);
   EXPECT_NEAR(plain({one, two}), -0.001 + carried, 1e-12);
   EXPECT_NEAR(solve(plate(), "tensors", {one, two}).at(node).displacement.z(), -0.001, 1e-12);
+  const auto refused = run_program(
+      fmt::format("{} solve {} --plain --touch 0,0,0.008:0,0,-0.001", program("palpate"), plate().string()));
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.err.find("--touch excludes --plain"), std::string::npos) << refused.err;
   testing::expect_refusal(
-      fmt::format("{} solve {} --plain --touch 0,0,0.008:0,0,-0.001", program("palpate"), plate().string()),
-      {"--touch", "--plain"});
+      fmt::format("{} solve {} --plain --method direct --hold {}", program("palpate"), plate().string(), one),
+      {"--plain", "--method tensors"});
 }
 
 TEST_F(ToolsSolve, AGroupIsHeldNodeByNode) {
@@ -213,7 +217,8 @@ TEST_F(ToolsSolve, ABodyHangsUnderItsOwnWeight) {
       if (row.position.z() < 1e-9) carried += row.force.z();
     }
     const double weight = density * g * std::numbers::pi * 0.015 * 0.015 * height;
-    EXPECT_NEAR(sag, -density * g * height * height / (2 * young), 0.02 * 0.0003) << element;
+    const double expected = -density * g * height * height / (2 * young);
+    EXPECT_NEAR(sag / expected, 1, element == std::string("p1") ? 0.02 : 0.05) << element;
     EXPECT_GT(carried, 0.85 * weight) << element;
     EXPECT_LT(carried, weight) << element;
     EXPECT_LT(std::abs(sum), 1e-9 * weight) << element;
