@@ -307,7 +307,7 @@ BHS01 = [
          **bench("catheter", "catheter_step", p50="particles60 p50"), too_long=True),
     Item("BHS01", "sec. IV-VI", "Forces at about 1 kHz, pictures at 30 Hz at least, on two processors of 300 MHz.",
          "A haptic step of duct, catheter and two forceps takes *{p50:.0f} µs* (median): 1 kHz with 60 pictures a second beside it ([duct.md](duct.md)).", "",
-         **bench("duct_step", p50="insertion p50")),
+         **bench("duct_step", p50="insertion p50"), too_long=True),
     Item("BHS01", "sec. III, figs. 6, 8", "A catheter of 2 to 3 mm in a duct of 8 to 10 mm; forceps of three segments.",
          "2.5 mm and 9 mm; a shaft and two jaws that meet at the joint.", "Segments have a radius; the picture's forceps is the one that collides."),
     Item("BHS01", "sec. VII", "Forces and torques of line segments, the reaction at the port, grip forces on the handle.",
