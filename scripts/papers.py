@@ -32,7 +32,7 @@ Transactions on Mechatronics 6(3), 2001 (**BHS01**).
     python3 scripts/papers.py build/release/bin --short   # judged, without the items that take long: what the tests run
 
 The commands below are run from the top of the repository with `build/release/bin` in the `PATH`; files go to `out/papers`. Figures in *italics* depend
-on the machine, here {machine}, of which linear algebra takes one, and on what else it did meanwhile; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
+on the machine, here {machine}; linear algebra takes one core; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
 judges these. The papers' own are of a Pentium of 166 MHz, DEC Alphas of 233 and 400 MHz
 and a pair of Pentium II of 300 MHz: much of what lies between theirs and ours is 25 years of hardware.
 """
@@ -110,7 +110,7 @@ def complaints(item, values):
 def machine():
     for line in open("/proc/cpuinfo"):
         if line.startswith("model name"):
-            return f"{line.split(':')[1].strip()}, {os.cpu_count()} virtual cores"
+            return f"{line.split(':')[1].strip()}, {os.cpu_count()} virtual cores, with a load of {os.getloadavg()[0]:.1f} by others"
     return platform.machine()
 
 
@@ -133,12 +133,12 @@ def section(title, items, values):
     return "\n".join(lines)
 
 
-def write_page(docs, values):
+def write_page(docs, values, machine):
     import papers_plots  # matplotlib is for the page alone
     (docs / "pictures").mkdir(parents=True, exist_ok=True)
     papers_plots.draw(ROOT, docs / "pictures", values)
     sections = [section(title, items, values) for title, items in PAPERS.items()]
-    (docs / "papers.md").write_text(INTRODUCTION.format(machine=machine()) + "\n" + "\n".join(sections))
+    (docs / "papers.md").write_text(INTRODUCTION.format(machine=machine) + "\n" + "\n".join(sections))
 
 
 def main():
@@ -148,7 +148,7 @@ def main():
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--only", metavar="NAME", default="")
     arguments = parser.parse_args()
-    bad, values = [], {}
+    bad, values, measured_on = [], {}, machine()
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(arguments.programs.resolve(), pathlib.Path(folder), arguments.short)
         for item in (i for items in PAPERS.values() for i in items if arguments.only in f"{i.paper} {i.name}"):
@@ -156,7 +156,7 @@ def main():
             bad += complaints(item, values[item])
             print(f"{item.paper} {item.name}: " + ", ".join(f"{name} {value:.6g}" for name, value in values[item].items()), flush=True)
     if not arguments.short and not arguments.only:
-        write_page(arguments.docs, values)
+        write_page(arguments.docs, values, measured_on)
     if bad:
         sys.exit("\n".join(bad))
 
