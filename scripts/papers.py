@@ -31,7 +31,7 @@ Transactions on Mechatronics 6(3), 2001 (**BHS01**).
     python3 scripts/papers.py build/release/bin           # all of it, this page
     python3 scripts/papers.py build/release/bin --short   # judged, without the items that take long: what the tests run
 
-The commands below are run from the top of the repository with `build/release/bin` in the `PATH`; files go to `out/papers`. Figures in *italics* depend
+The commands below are run from the top of the repository with `build/release/bin` in the `PATH`; files go to `out/papers` (`mkdir -p out/papers`). Figures in *italics* depend
 on the machine, here {machine}; linear algebra takes one core; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
 judges these. The papers' own are of a Pentium of 166 MHz, DEC Alphas of 233 and 400 MHz
 and a pair of Pentium II of 300 MHz: much of what lies between theirs and ours is 25 years of hardware.
