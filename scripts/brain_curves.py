@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the loading curves of a brain specimen to scenes/curves/.
+"""Writes the loading curves of a brain specimen to scenes/curves/, or to the folder given: brain_curves.py [FOLDER].
 
 The experimental curves behind the quasi non-linear correction are not public, the law that was fitted to them is:
 the hyper-viscoelastic law of Miller and Chinzei (Journal of Biomechanics 30, 1997). Its strain energy is
@@ -23,6 +23,7 @@ it is T(t) = int_0^t g(t - tau) dT0/dtau dtau. The force on the plate is -pi R^2
 R (lambda^(-1/2) - 1), whatever the speed.
 """
 import pathlib
+import sys
 
 import numpy as np
 
@@ -66,7 +67,8 @@ def write(path, column, x, y, remark):
 
 
 def main():
-    folder = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "curves"
+    scenes = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else scenes / "curves"
     folder.mkdir(parents=True, exist_ok=True)
     specimen = f"brain specimen, radius {RADIUS} m, height {HEIGHT} m, loading"
     for speed in SPEEDS_MM_MIN:

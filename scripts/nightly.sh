@@ -2,12 +2,13 @@
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
 # undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
-# out/mcap_reader), python (the module and its examples; installs pybind11-dev and python3-dev). All of them where none is named.
+# out/mcap_reader), python (the module and its examples; installs pybind11-dev and python3-dev), papers (docs/papers.md in
+# full, into out/papers_docs). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long address thread tidy stability mcap python
+[ $# -gt 0 ] || set -- long address thread tidy stability mcap python papers
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -26,12 +27,15 @@ for stage in "$@"; do
         echo "$example"
         PYTHONPATH=build/python/python MPLBACKEND=Agg python3 "$example" scenes
       done ;;
+    papers)
+      ./scripts/build.sh release
+      python3 scripts/papers.py build/release/bin out/papers_docs ;;
     address|thread)
       ./scripts/build.sh "$stage"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
       OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
     tidy) ./scripts/tidy.sh ;;
-    -h|--help) sed -n '2,5p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,6p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done

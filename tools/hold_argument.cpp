@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -78,15 +79,18 @@ bool empty(const Components& components) {
 
 }  // namespace
 
-std::vector<Constraint> parse_hold(const std::string& text) {
+std::vector<Constraint> parse_hold(const std::string& text, const GroupNodes& group) {
   const Parser parser("--hold", text, "NODE:ux,uy,uz");
   const auto [left, right] = parser.halves(text);
-  const int node = parser.number<int>(left, "a node number");
+  const std::string_view name = trim(left);
+  const bool named = group && !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
+  const auto nodes = named ? group(std::string(name)) : std::vector<int>{parser.number<int>(name, "a node number")};
   const auto displacement = parser.components(right);
   if (empty(displacement)) parser.fail("no axis is held");
   std::vector<Constraint> holds;
-  for (int axis = 0; axis < 3; ++axis)
-    if (displacement[axis]) holds.push_back(hold(node, axis, *displacement[axis]));
+  for (const int node : nodes)
+    for (int axis = 0; axis < 3; ++axis)
+      if (displacement[axis]) holds.push_back(hold(node, axis, *displacement[axis]));
   return holds;
 }
 
@@ -100,11 +104,11 @@ TouchArgument parse_touch(const std::string& text) {
   return touch;
 }
 
-std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes) {
+std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes, const GroupNodes& group) {
   std::vector<Constraint> all;
   std::set<std::pair<int, int>> seen;
   for (const auto& text : texts)
-    for (const auto& one : parse_hold(text)) {
+    for (const auto& one : parse_hold(text, group)) {
       const auto& [node, axis, weight] = one.terms[0];
       require_node("--hold", text, node, mesh_nodes);
       if (!seen.insert({node, axis}).second)

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,15 +16,19 @@ struct TouchArgument {
   std::array<std::optional<double>, 3> displacement;  ///< [m]
 };
 
-/// Parses `--hold "NODE:ux,uy,uz"`, one constraint per component given. Throws std::runtime_error on anything
-/// that is not a number, and if no component is given.
-std::vector<Constraint> parse_hold(const std::string& text);
+/// Numbers of the mesh nodes of a group. Throws std::runtime_error where there is none of that name.
+using GroupNodes = std::function<std::vector<int>(const std::string& name)>;
+
+/// Parses `--hold "NODE:ux,uy,uz"`, one constraint per component given; with `group` also "GROUP:ux,uy,uz", one per
+/// node and component. Throws std::runtime_error on anything that is not a number, and if no component is given.
+std::vector<Constraint> parse_hold(const std::string& text, const GroupNodes& group = {});
 
 TouchArgument parse_touch(const std::string& text);
 
 /// All holds together. Throws std::runtime_error if an axis of a node is held twice or a node is not in the
 /// mesh.
-std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes);
+std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int mesh_nodes,
+                                    const GroupNodes& group = {});
 
 /// Parses `--force "NODE:fx,fy,fz"`. Throws std::runtime_error as parse_holds does; a node may have several.
 std::vector<NodalLoad> parse_forces(const std::vector<std::string>& texts, int mesh_nodes);

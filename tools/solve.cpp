@@ -6,11 +6,15 @@
 #include <stdexcept>
 
 #include "common/archive/static_solve.hpp"
+#include "common/fem/selection.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "common/mesh/shell_file.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/models/static_state.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "common/shell/boundary_conditions.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
@@ -22,7 +26,13 @@ namespace {
 struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
   std::vector<std::string> holds, touches, forces;
+  std::array<double, 3> gravity{};  // [m/s^2]
+  bool plain = false;
 };
+
+bool falls(const SolveArguments& arguments) {
+  return arguments.gravity != std::array{0.0, 0.0, 0.0};
+}
 
 /// A static state, and what was held for it.
 struct Solved {
@@ -30,12 +40,25 @@ struct Solved {
   std::vector<Constraint> held;
 };
 
+std::vector<int> nodes_of(const NamedSpec& body, const Selector&) {
+  throw std::runtime_error(fmt::format("--hold: body '{}' has no mesh, and so no groups", body.name));
+}
+std::vector<int> nodes_of(const SolidSpec& body, const Selector& group) {
+  return select_nodes(load_tet_mesh(body.mesh, body.scale), group, "--hold");
+}
+std::vector<int> nodes_of(const ShellSpec& body, const Selector& group) {
+  return select_nodes(load_shell_mesh(body.mesh, body.scale), group, "--hold");
+}
+
 /// Every hold and touch of the command line; positions, numbers and triangles are those of the surface.
-std::vector<Constraint> constraints_of(const SolveArguments& arguments, int mesh_nodes,
+std::vector<Constraint> constraints_of(const Body& body, const SolveArguments& arguments, int mesh_nodes,
                                        const std::vector<Eigen::Vector3d>& position,
                                        const std::vector<int>& node_number,
                                        const std::vector<std::array<int, 3>>& triangles) {
-  auto constraints = parse_holds(arguments.holds, mesh_nodes);
+  const auto group = [&](const std::string& name) {
+    return std::visit([&](const auto& spec) { return nodes_of(spec, Selector{.group = name}); }, body);
+  };
+  auto constraints = parse_holds(arguments.holds, mesh_nodes, group);
   for (const auto& text : arguments.touches) {
     const auto touch = touch_constraints(parse_touch(text), position, node_number, triangles);
     constraints.insert(constraints.end(), touch.begin(), touch.end());
@@ -53,8 +76,12 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   table.tetrahedra = mesh.tetrahedra;
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
-      constraints_of(arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  const auto solution = problem.solve(constraints, parse_forces(arguments.forces, static_cast<int>(mesh.nodes.size())));
+      constraints_of(body, arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
+  auto loads = parse_forces(arguments.forces, static_cast<int>(mesh.nodes.size()));
+  if (falls(arguments))
+    for (const int node : table.node)
+      loads.push_back({node, problem.mass[node] * Eigen::Vector3d(arguments.gravity.data())});
+  const auto solution = problem.solve(constraints, loads);
   table.displacement = solution.displacement;
   table.force = solution.force;
   return {table, constraints};
@@ -86,7 +113,8 @@ Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArgumen
   const auto archive = find_archive(scene, body, ArchivePart::surface);
   const auto& surface = archive.surface;
   const auto held =
-      constraints_of(arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
+      constraints_of(body, arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
+  if (arguments.plain) return {sorted_table(surface, superpose_tensors(archive, held, Superposition::plain)), held};
   const auto loads = parse_forces(arguments.forces, archive.mesh_nodes);
   return {sorted_table(surface, solve_tensors(archive, held, loads)), held};
 }
@@ -108,7 +136,8 @@ void correct(const Scene& scene, const Body& body, bool given_forces, Solved& so
   if (!correction) return;
   if (given_forces)
     throw std::runtime_error(fmt::format(
-        "--force: body '{}' has [body.nonlinear], whose law is of tissue held at displacements: give --hold or --touch",
+        "--force, --gravity: body '{}' has [body.nonlinear], whose law is of tissue held at displacements: give --hold "
+        "or --touch",
         name_of(body)));
   ensure_archive(scene, body);  // it holds the press of the specimen
   const Archive archive = find_archive(scene, body, ArchivePart::header);
@@ -142,14 +171,18 @@ void check_model(const Body& body) {
 }
 
 void solve(const SolveArguments& arguments) {
-  if (arguments.holds.empty() && arguments.touches.empty() && arguments.forces.empty())
-    throw std::runtime_error("nothing is held or loaded: give --hold, --touch or --force");
+  if (arguments.holds.empty() && arguments.touches.empty() && arguments.forces.empty() && !falls(arguments))
+    throw std::runtime_error("nothing is held or loaded: give --hold, --touch, --force or --gravity");
+  if (falls(arguments) && arguments.method != "direct")
+    throw std::runtime_error("--gravity: an archive knows no loads inside: take --method direct");
+  if (arguments.plain && arguments.method == "direct")
+    throw std::runtime_error("--plain: it is tensors that are summed: take --method tensors");
   const Scene scene = load_scene(arguments.scene);
   const Body& body = choose_body(scene, arguments.body);
   check_model(body);
   Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
-  correct(scene, body, !arguments.forces.empty(), solved);
+  correct(scene, body, !arguments.forces.empty() || falls(arguments), solved);
   const SolutionTable& table = solved.table;
   require_numbers(table);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
@@ -167,7 +200,7 @@ void add_solve_command(cli::Command& app) {
   command
       .add_option("--hold", arguments->holds,
                   "\"NODE:ux,uy,uz\": hold a node (0-based, of the mesh file) at a displacement in metres; an empty "
-                  "component leaves that axis free")
+                  "component leaves that axis free; \"GROUP:ux,uy,uz\": each node of a group of the mesh")
       .one_value_each_time();
   command
       .add_option("--touch", arguments->touches,
@@ -178,9 +211,15 @@ void add_solve_command(cli::Command& app) {
           "--force", arguments->forces,
           "\"NODE:fx,fy,fz\": load a node by a force in newtons; several add up, and go with --hold and --touch")
       .one_value_each_time();
+  command.add_option("--gravity", arguments->gravity, "x y z: the body's own weight, in m/s2; with --method direct");
   command.add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
       .one_of({"tensors", "direct"})
       .show_default();
+  command
+      .add_flag("--plain", arguments->plain,
+                "sum what each held node would do alone, without what the others do to it (TVCG99 fig. 10): to see "
+                "what the correction is worth")
+      .excludes({"--touch", "--force", "--gravity"});
   command
       .add_option("--csv", arguments->csv,
                   "Write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "

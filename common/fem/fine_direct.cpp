@@ -77,7 +77,7 @@ StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constr
   std::vector<Vector3d> load(problem.run_time_dofs.nodes(), Vector3d::Zero());
   for (const NodalLoad& one : given) load[one.node] += one.force;
   const FineFactor factor(problem, 4 * sizeof(double) * static_cast<std::size_t>(loads.size()));
-  const MatrixXd response = factor.solve_corrected(loads);
+  const MatrixXd response = count > 0 ? factor.solve_corrected(loads) : loads;
   VectorXd moved = VectorXd::Zero(problem.dofs.size());  // by the given loads alone
   if (!given.empty()) moved = factor.solve_corrected(gather(problem.dofs, spread_loads(problem, load)));
   const MatrixXd compliance = loads.transpose() * response;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "common/fem/direct.hpp"
+#include "common/fem/fine_problem.hpp"
+#include "common/fem/fine_space.hpp"
 #include "common/fem/selection.hpp"
 #include "common/mesh/surface.hpp"
 
@@ -44,7 +46,7 @@ double mean_outward(const TetMesh& mesh, const std::vector<int>& surface, const 
 
 }  // namespace
 
-SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material) {
+SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material, const std::optional<Offline>& offline) {
   const auto surface = extract_surface(mesh).nodes;
   const Extent extent = extent_of(mesh, surface);
   MaterialField materials;
@@ -67,7 +69,10 @@ SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material) {
   std::vector<Constraint> plate;
   for (int node : top)
     for (int axis = 0; axis < 3; ++axis) plate.push_back(hold(node, axis, axis == 2 ? -press : 0.0));
-  const auto solution = solve_direct(problem, plate);
+  const auto solution =
+      is_finer(offline)
+          ? solve_direct(make_fine_problem(mesh, *offline, problem.materials, problem.dofs, "specimen"), plate)
+          : solve_direct(problem, plate);
   double force = 0;
   for (int node : top) force -= solution.force[node].z();
   return {force / press, mean_outward(mesh, surface, extent, solution.displacement) / press};

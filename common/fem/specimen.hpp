@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+
+#include "common/fem/offline_spec.hpp"
 #include "common/fem/solid_spec.hpp"
 #include "common/mesh/tet_mesh.hpp"
 
@@ -12,7 +15,9 @@ struct SpecimenSlopes {
 };
 
 /// Presses a specimen along -z: its lowest nodes are fixed, its highest move along -z with x and y held. The
-/// axis is the vertical through the middle of the specimen's bounding box.
-SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material);
+/// axis is the vertical through the middle of the specimen's bounding box. `offline`: the better discretisation of the
+/// body that is to answer as the specimen does.
+SpecimenSlopes press_specimen(const TetMesh& mesh, const Material& material,
+                              const std::optional<Offline>& offline = {});
 
 }  // namespace palpate

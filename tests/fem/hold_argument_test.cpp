@@ -49,6 +49,23 @@ TEST(HoldArgument, RefusesAnAxisHeldTwice) {
   EXPECT_EQ(parse_holds({"3:1,,1", "3:,1,"}, 10).size(), 3u);
 }
 
+TEST(HoldArgument, HoldsEachNodeOfAGroup) {
+  const GroupNodes groups = [](const std::string& name) {
+    if (name != "lid") throw std::runtime_error("no " + name);
+    return std::vector<int>{4, 7};
+  };
+  const auto holds = parse_holds({"lid:,0.1,-0.2", "3:1,1,1"}, 10, groups);
+  ASSERT_EQ(holds.size(), 7u);
+  EXPECT_EQ(holds[2].terms[0].node, 7);
+  EXPECT_EQ(holds[2].terms[0].axis, 1);
+  EXPECT_EQ(holds[3].value, -0.2);
+  EXPECT_EQ(refusal([&] { parse_holds({"roof:1,1,1"}, 10, groups); }), "no roof");
+  EXPECT_NE(refusal([&] {
+              parse_holds({"lid:1,,", "7:1,,"}, 10, groups);
+            }).find("node 7 is held twice"),
+            std::string::npos);
+}
+
 TEST(HoldArgument, TouchMovesTheNearestSurfacePoint) {
   const std::vector<Eigen::Vector3d> position{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}};
   const auto constraints =

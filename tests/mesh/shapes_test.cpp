@@ -145,6 +145,18 @@ TEST(CylinderTear, IsWhatItsGeneratorMakesWithThePapersCounts) {
   EXPECT_GT(min_angle(cylinder), 13.9);
 }
 
+// RR3510 fig. 4b: two blocks, of which only the corners of the common face coincide.
+TEST(PartialBlocks, AreWhatTheGeneratorMakesAndShareFourNodes) {
+  const TetMesh fine = load_tet_mesh(kMeshes / "block_fine.msh", 1),
+                coarse = load_tet_mesh(kMeshes / "block_coarse.msh", 1);
+  expect_same(make_block({-0.015, -0.015, 0}, {0.015, 0.015, 0.025}, {5, 5, 4}), fine);
+  expect_same(make_block({-0.015, -0.015, -0.025}, {0.015, 0.015, 0}, {3, 3, 3}), coarse);
+  const auto shared = std::ranges::count_if(fine.nodes, [&](const Eigen::Vector3d& x) {
+    return std::ranges::any_of(coarse.nodes, [&](const Eigen::Vector3d& y) { return (x - y).norm() < 1e-6; });
+  });
+  EXPECT_EQ(shared, 4);
+}
+
 TEST(CylinderHybrid, IsWhatItsGeneratorMakesInTwoEqualHalves) {
   const TetMesh cylinder = load_tet_mesh(kMeshes / "cylinder_hybrid.msh", 1);
   expect_same(make_cylinder_hybrid(), cylinder);

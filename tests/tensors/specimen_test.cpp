@@ -30,6 +30,25 @@ TEST(Specimen, StuckEndsAreStifferThanFreeOnesAndBulge) {
   }
 }
 
+// A body with better tensors than its mesh's answers as the specimen does by such tensors: linear elements of the
+// specimen are stiffer, and the curves would be met at the wrong forces.
+TEST(Specimen, IsPressedByTheElementsOfTheBody) {
+  const auto mesh = make_cylinder(kRadius, kHeight, 4, 4);
+  const Material material{kYoung, 0.45, 1000};
+  const Offline quadratic{.element = "p2"};
+  const double linear = press_specimen(mesh, material).force,
+               quadratic_force = press_specimen(mesh, material, quadratic).force,
+               finer_mesh = press_specimen(make_cylinder(kRadius, kHeight, 6, 6), material).force;
+  EXPECT_LT(finer_mesh, linear);
+  EXPECT_LT(quadratic_force, finer_mesh);
+  EXPECT_GT(quadratic_force, 0.9 * finer_mesh);
+
+  auto body = testing::make_body(kYoung, 0.3);
+  body.offline = quadratic;
+  const auto archive = precompute(body, testing::make_organ({3, 3, 2}), &mesh);
+  EXPECT_EQ(archive.specimen_force_slope, press_specimen(mesh, body.material, quadratic).force);
+}
+
 TEST(Specimen, GoesIntoTheArchiveOfABodyThatNamesOne) {
   const auto mesh = testing::make_organ({3, 3, 2});
   const auto specimen = make_cylinder(kRadius, kHeight, 3, 4);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <sstream>
 
 #include "common/mesh/mesh_file.hpp"
@@ -51,7 +52,7 @@ class ToolsSolve : public ::testing::Test {
 
   Table solve(const fs::path& scene, const std::string& method, const std::vector<std::string>& holds,
               const std::vector<std::string>& forces = {}) {
-    const fs::path csv = folder_ / (method + ".csv");
+    const fs::path csv = folder_ / (method.substr(0, method.find(' ')) + ".csv");
     std::string command =
         fmt::format("{} solve {} --method {} --csv {}", program("palpate"), scene.string(), method, csv.string());
     for (const std::string& hold : holds) command += " --hold " + hold;
@@ -147,6 +148,83 @@ TEST_F(ToolsSolve, LoadsMoveWhatIsFreeByBothMethodsAlike) {
   testing::expect_refusal(
       fmt::format("{} solve {} --force 1:0,0,1", program("palpate"), linear_elements("brain_cylinder").string()),
       {"--force", "[body.nonlinear]"});
+}
+
+// TVCG99 fig. 10: two nodes near one another, each carried along by what is done to the other.
+TEST_F(ToolsSolve, PlainSuperpositionGoesFurtherThanItsNodesAreHeld) {
+  const TetMesh mesh = plate_mesh();
+  const int node = nearest_node(mesh, {-0.011, 0, 0.008}), other = nearest_node(mesh, {0.011, 0, 0.008});
+  const std::string one = fmt::format("{}:0,0,-0.001", node), two = fmt::format("{}:0,0,-0.001", other);
+  const auto plain = [&](const std::vector<std::string>& holds) {
+    return solve(plate(), "tensors --plain", holds).at(node).displacement.z();
+  };
+  EXPECT_NEAR(plain({one}), -0.001, 1e-12);
+  const Table alone = solve(plate(), "tensors", {two});
+  const double carried = alone.at(node).displacement.z();
+  EXPECT_LT(carried, -0.0003);
+  EXPECT_NEAR(plain({one, two}), -0.001 + carried, 1e-12);
+  EXPECT_NEAR(solve(plate(), "tensors", {one, two}).at(node).displacement.z(), -0.001, 1e-12);
+  const auto refused = run_program(
+      fmt::format("{} solve {} --plain --touch 0,0,0.008:0,0,-0.001", program("palpate"), plate().string()));
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.err.find("--touch excludes --plain"), std::string::npos) << refused.err;
+  testing::expect_refusal(
+      fmt::format("{} solve {} --plain --method direct --hold {}", program("palpate"), plate().string(), one),
+      {"--plain", "--method tensors"});
+}
+
+TEST_F(ToolsSolve, AGroupIsHeldNodeByNode) {
+  const fs::path scene = linear_elements("brain_cylinder");
+  const TetMesh mesh = load_tet_mesh(fs::path(PALPATE_SOURCE) / "scenes/meshes/cylinder.msh", 1);
+  for (const std::string method : {"direct", "tensors"}) {
+    const Table table = solve(scene, method, {"top:0,,-0.001"});
+    double slid = 0;
+    for (const int node : mesh.groups.at("top").nodes) {
+      EXPECT_LT((table.at(node).displacement - Vector3d(0, table.at(node).displacement.y(), -0.001)).norm(), 1e-12);
+      slid = std::max(slid, std::abs(table.at(node).displacement.y()));
+    }
+    EXPECT_GT(slid, 1e-4) << method;
+  }
+  testing::expect_refusal(fmt::format("{} solve {} --hold lid:0,0,1", program("palpate"), scene.string()),
+                          {"--hold", "no group 'lid'", "top"});
+  const int held = mesh.groups.at("top").nodes[0];
+  testing::expect_refusal(
+      fmt::format("{} solve {} --hold {}:0,0,1 --hold top:0,0,1", program("palpate"), scene.string(), held),
+      {"held twice"});
+}
+
+// What is fixed carries the weight of all other nodes, whatever elements it is solved by, and a bar hangs by
+// rho g L^2 / 2 E.
+TEST_F(ToolsSolve, ABodyHangsUnderItsOwnWeight) {
+  const fs::path scene = linear_elements("brain_cylinder"), file = folder_ / "bar.toml";
+  const double young = 3000, density = 1040, height = 0.013, g = 9.81;
+  for (const char* element : {"p1", "p2"}) {
+    std::string text = testing::text_of(scene);
+    const auto nonlinear = text.find("[body.nonlinear]");
+    text.erase(nonlinear, text.find("\n[", nonlinear) - nonlinear);
+    const auto replace = [&](const std::string& what, const std::string& by) {
+      ASSERT_NE(text.find(what), text.npos) << what;
+      text.replace(text.find(what), what.size(), by);
+    };
+    replace("poisson = 0.45", "poisson = 0");
+    replace("element = \"p1\"", fmt::format("element = \"{}\"", element));
+    std::ofstream(file) << text;
+    const Table table = solve(file, "direct --gravity 0 0 -9.81", {});
+    double sag = 0, carried = 0, sum = 0;
+    for (const auto& [node, row] : table) {
+      sag = std::min(sag, row.displacement.z());
+      sum += row.force.z();
+      if (row.position.z() < 1e-9) carried += row.force.z();
+    }
+    const double weight = density * g * std::numbers::pi * 0.015 * 0.015 * height;
+    const double expected = -density * g * height * height / (2 * young);
+    EXPECT_NEAR(sag / expected, 1, element == std::string("p1") ? 0.02 : 0.05) << element;
+    EXPECT_GT(carried, 0.85 * weight) << element;
+    EXPECT_LT(carried, weight) << element;
+    EXPECT_LT(std::abs(sum), 1e-9 * weight) << element;
+  }
+  testing::expect_refusal(fmt::format("{} solve {} --gravity 0 0 -9.81", program("palpate"), file.string()),
+                          {"--gravity", "--method direct"});
 }
 
 TEST_F(ToolsSolve, WhatIsNoNumberIsNoSolution) {

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Brings a log to a bus in the order of its times, as far as somebody wants to see it. The haptic node whose samples
-/// come is announced as one of this scene.
+/// Brings a log to a bus in the order of its times, as far as somebody wants to see it. The nodes whose samples come,
+/// the haptic one and the one that owns moving tissue, are announced as ones of this scene.
 class LogStream {
  public:
   LogStream(const std::filesystem::path& log, const LogContents& contents, const LoadedScene& scene, Bus& bus);
@@ -22,12 +22,14 @@ class LogStream {
 
  private:
   void look(const LogEvent& event);
+  /// Tells of a node's run where it is another than the last that was told.
+  void announce(NodeStatus& node, std::uint64_t run, std::int64_t at);
 
   LogReader reader_;
   LogTime time_;
   LogSender sender_;
   std::unique_ptr<Writer<NodeStatus>> statuses_;
-  NodeStatus haptic_;
+  NodeStatus haptic_, deform_;
   double haptic_hz_ = 0;
   LogEvent next_;
   double next_s_ = 0;   ///< [s] its time

@@ -7,7 +7,6 @@
 
 #include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
-#include "common/mesh/quality.hpp"
 
 namespace palpate {
 namespace {
@@ -89,16 +88,6 @@ double largest_eigenvalue(const MatrixXd& connection, const std::vector<Dof>& co
 }
 
 }  // namespace
-
-std::vector<double> lumped_mass(const HybridSplit& split, const MaterialField& materials) {
-  const TetMesh& mesh = split.quasi_static_mesh;
-  std::vector<double> mass(mesh.nodes.size(), 0.0);
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
-    const auto& tet = mesh.tetrahedra[e];
-    for (int node : tet) mass[node] += materials.at(static_cast<int>(e)).density * tet_volume(mesh, tet) / 4;
-  }
-  return mass;
-}
 
 void condense_on_connection(const HybridSplit& split, const MaterialField& materials, const std::vector<Dof>& rows,
                             const std::vector<Dof>& columns, const std::vector<double>& mass,

@@ -4,9 +4,6 @@
 
 namespace palpate {
 
-/// Lumped mass [kg] per mesh node of the quasi-static tetrahedra, whose materials are given.
-std::vector<double> lumped_mass(const HybridSplit& split, const MaterialField& materials);
-
 /// Fills in the tensors of HybridTensors (bound, stiffness, reaction, follow, sag), whose `dofs` are given,
 /// by one sparse factorisation of K_ii and blocks of right-hand sides. `rows`: mesh node and axis of the dofs
 /// whose rows of H and u_g are stored; `columns`: mesh node and axis of HybridTensors::dofs. `mass` [kg] per

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/fem/lumped_mass.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
@@ -77,7 +78,7 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
   tensors.interface = interface_faces(mesh, split, index);
   archive.touchable_dofs = free_dofs(split.inner, surface, 0, surface.touchable);
   archive.other_dofs = free_dofs(split.inner, surface, surface.touchable, surface.size());
-  const auto mass = lumped_mass(split, materials);
+  const auto mass = lumped_mass(split.quasi_static_mesh, materials);
   for (int i = 0; i < surface.size(); ++i) {
     const int node = surface.node_number[i];
     if (!split.connection[node]) continue;

@@ -39,7 +39,7 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
   if (cost) *cost = {compliance.flops, compliance.condensed};
   if (specimen) {
     Stopwatch specimen_watch(progress);
-    const auto slopes = press_specimen(*specimen, body.material);
+    const auto slopes = press_specimen(*specimen, body.material, body.offline);
     archive.specimen_force_slope = slopes.force;
     archive.specimen_radial_slope = slopes.radial;
     specimen_watch.lap("specimen");

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "common/fem/lumped_mass.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/kind.hpp"
 
@@ -16,7 +17,8 @@ DirectProblem direct_problem(const NamedSpec& body) {
 DirectProblem direct_problem(const SolidSpec& body) {
   StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
   TetMesh mesh = problem.mesh;
-  return {std::move(mesh), [problem = std::move(problem)](const auto& constraints, const auto& loads) {
+  auto mass = lumped_mass(mesh, problem.materials);
+  return {std::move(mesh), std::move(mass), [problem = std::move(problem)](const auto& constraints, const auto& loads) {
             return solve_direct(problem, constraints, loads);
           }};
 }
