@@ -19,8 +19,9 @@ std::optional<fs::path> variable(const char* name) {
 
 /// It is there or can be made, and files can be made in it.
 bool can_hold_files(const fs::path& folder) {
-  const fs::path asked = fs::exists(folder) ? folder : folder.parent_path();
-  return faccessat(AT_FDCWD, asked.c_str(), W_OK | X_OK, AT_EACCESS) == 0;
+  std::error_code error;
+  const fs::path asked = fs::exists(folder, error) ? folder : folder.parent_path();
+  return !error && faccessat(AT_FDCWD, asked.c_str(), W_OK | X_OK, AT_EACCESS) == 0;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::kLinear;
 using testing::LoopbackScene;
 using testing::OwnFolder;
 using testing::program;
@@ -35,7 +36,7 @@ class ToolsCache : public ::testing::Test {
 
 TEST_F(ToolsCache, ListsWhatIsThereAndRemovesWhatIsOfNoUse) {
   EXPECT_NE(cache("list").find("cache: 0 archives"), std::string::npos) << "no folder yet";
-  const LoopbackScene scene;
+  const LoopbackScene scene("cache", kLinear);
   ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
   ASSERT_EQ(files(), 1u);
   const std::string hash(32, 'a');
