@@ -42,7 +42,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
-      contacts_(archive, mesh_, topology_, surface_, *model_, settings),
+      contacts_(archive, mesh_, topology_, surface_, *model_, still_.get(), settings),
       fading_ticks_(std::max(1, static_cast<int>(std::lround(kFading / settings.dt)))),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
@@ -104,8 +104,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   take_tools(tools);
   work_jaws(tools);
   fade();
-  contacts_.find(in_tick_, dt / steps_in(dt, true));
   if (still_) still_->find(in_tick_);
+  contacts_.find(in_tick_, dt / steps_in(dt, true), [this](int tool) { return holds(tool); });
   const bool touched = contacts_.touched();
   const int steps = steps_in(dt, touched);
   in_step_ = in_tick_;

@@ -26,26 +26,26 @@ void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
 }  // namespace
 
 TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
-                         DynamicModel& model, const StepSettings& settings)
+                         DynamicModel& model, HybridTouch* still, const StepSettings& settings)
     : mesh_(mesh),
       model_(model),
       surface_(surface),
       free_(mesh.rest),
       response_(mesh, model),
       law_({response_, free_}, ContactLaw::Rule::barycentric, settings.contact.friction, kMaxContacts),
-      patches_(settings.contact.rule == "patch" && !archive.hybrid
-                   ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, response_, settings)
+      patches_(settings.contact.rule == "patch"
+                   ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
                    : nullptr),
       contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
   aimed_.reserve(kMaxContacts);
   all_.reserve(kMaxContacts + settings.tools.size());
 }
 
-void TissueTouch::find(std::span<const MovingTool> tools, double dt) {
+void TissueTouch::find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds) {
   if (dt != dt_) follow_response(dt);
   contacts_.look(tools);
   contacts_.collide(tools);
-  if (patches_) patches_->find(tools, [this](int tool) { return grasping(tool); });
+  if (patches_) patches_->find(tools, holds);
 }
 
 void TissueTouch::drop_tool(int tool) {
@@ -108,6 +108,7 @@ void TissueTouch::follow_response(double dt) {
   dt_ = dt;
   response_.follow(dt);
   law_.follow_response();
+  if (patches_) patches_->follow_response();
 }
 
 void TissueTouch::solve(std::span<const MovingTool> tools) {
