@@ -112,6 +112,15 @@ std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& que
   }
 }
 
+template <class Visit>
+void LocalStiffness::for_each_followed(int node, int axis, const DofMap& dofs, Visit&& visit) const {
+  const std::span<const double> follow = joined_.part->follow(node, axis);
+  for (std::size_t k = 0; k < follow.size(); ++k) {
+    const int dof = dofs.index(joined_.nodes[k / 3], static_cast<int>(k % 3));
+    if (dof >= 0) visit(dof, follow[k]);
+  }
+}
+
 LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
   std::vector<bool> gone(mesh_.tetrahedra.size(), false);
@@ -135,15 +144,29 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   const SparseMatrix k = static_matrix(left, materials, dofs, joined_);
   Factorisation factor(k);
   factor.factorise(k);
+  // Rows of a node: the free dofs by which it moves. A node of the joined part follows those of the nodes that join it.
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dofs.size(), 3 * n);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(answer.nodes[i], axis)) unit(dofs.index(answer.nodes[i], axis), 3 * i + axis) = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int node = answer.nodes[i];
+      if (is_joined(node))
+        for_each_followed(node, axis, dofs, [&](int dof, double share) { unit(dof, 3 * i + axis) = share; });
+      else if (dofs.is_free(node, axis))
+        unit(dofs.index(node, axis), 3 * i + axis) = 1;
+    }
   const Eigen::MatrixXd x = factor.solve(unit);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(answer.nodes[i], axis))
-        answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
+    for (int axis = 0; axis < 3; ++axis) {
+      const int node = answer.nodes[i];
+      if (is_joined(node))
+        for_each_followed(node, axis, dofs, [&](int dof, double share) { answer.compliance.row(3 * i + axis) += share * x.row(dof); });
+      else if (dofs.is_free(node, axis))
+        answer.compliance.row(3 * i + axis) = x.row(dofs.index(node, axis));
+    }
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (is_joined(answer.nodes[i]) && is_joined(answer.nodes[j]))
+        answer.compliance.block<3, 3>(3 * i, 3 * j) += joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
   return answer;
 }
 

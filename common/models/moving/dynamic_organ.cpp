@@ -180,6 +180,11 @@ void DynamicOrgan::grasp(int tool, const ToolInTick& with) {
   take(still_->search(), [&](int node) { return still_->part().owns(node); });
 }
 
+Eigen::Vector3d DynamicOrgan::position(int node) const {
+  if (still_ && still_->part().owns(node)) return mesh_.rest[node] + still_->part().displacement(node);
+  return surface_.positions()[node];
+}
+
 bool DynamicOrgan::holds(int tool) const {
   return contacts_.grasping(tool) || (still_ && still_->grasping(tool));
 }
