@@ -53,9 +53,9 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
     const ElasticMesh& mesh = world.organ(i).mesh();
     double edges = 0;
     for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
-    organs_.push_back(
-        {.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]], world.organ(i)), worker),
-         .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
+    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(
+                           mesh, condensed_part(archives[world.bodies()[i]], world.organ(i)), worker),
+                       .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
   }
 }
 

@@ -159,7 +159,8 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
     for (int axis = 0; axis < 3; ++axis) {
       const int node = answer.nodes[i];
       if (is_joined(node))
-        for_each_followed(node, axis, dofs, [&](int dof, double share) { answer.compliance.row(3 * i + axis) += share * x.row(dof); });
+        for_each_followed(node, axis, dofs,
+                          [&](int dof, double share) { answer.compliance.row(3 * i + axis) += share * x.row(dof); });
       else if (dofs.is_free(node, axis))
         answer.compliance.row(3 * i + axis) = x.row(dofs.index(node, axis));
     }

@@ -118,8 +118,8 @@ void Patch::add_nodes_give(std::span<const NodeGive> give) {
     for (const int q : rows_)
       for (int v = 0; v < 3; ++v)
         for (int w = 0; w < 3; ++w)
-          compliance_[p * n + q] += foot(p).weights[v] * foot(q).weights[w] *
-                                    nodes_give_[foot(p).local[v] * kMaxNodes + foot(q).local[w]];
+          compliance_[p * n + q] +=
+              foot(p).weights[v] * foot(q).weights[w] * nodes_give_[foot(p).local[v] * kMaxNodes + foot(q).local[w]];
 }
 
 }  // namespace palpate

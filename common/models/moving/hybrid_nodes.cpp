@@ -48,8 +48,7 @@ void HybridNodes::push(int patch, std::span<const PatchForce> forces, double dt)
   part_.draw(patch, drawn_);
   for (std::size_t k = 0; k < part_.connection().size(); ++k) {
     const Map<const Vector3d> force(drawn_.data() + 3 * k);
-    if (!force.isZero(0))
-      accelerate(part_.connection()[k], inertia(static_cast<int>(k)).cwiseProduct(force), dt);
+    if (!force.isZero(0)) accelerate(part_.connection()[k], inertia(static_cast<int>(k)).cwiseProduct(force), dt);
   }
   for (const PatchForce& f : forces)
     if (!part_.touches(f.node)) accelerate(f.node, response().of_node(f.node).cwiseProduct(f.force), dt);

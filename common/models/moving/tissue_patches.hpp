@@ -22,9 +22,9 @@ namespace palpate {
 /// the step's end, where
 ///   (L + Phi D Phi^T) p = gap of the step without them,   p >= 0, one of them an equality,
 ///   L = G + Phi (K - C) Phi^T,
-/// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how these
-/// give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A patch
-/// lies on both parts of a hybrid alike. What has been cut open is left to contacts by nodes.
+/// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
+/// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
+/// patch lies on both parts of a hybrid alike. What has been cut open is left to contacts by nodes.
 class TissuePatches {
  public:
   /// [m/s] At which tissue that is found deep within a tool is led out of it.

@@ -33,9 +33,9 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
       free_(mesh.rest),
       response_(mesh, model),
       law_({response_, free_}, ContactLaw::Rule::barycentric, settings.contact.friction, kMaxContacts),
-      patches_(settings.contact.rule == "patch"
-                   ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
-                   : nullptr),
+      patches_(settings.contact.rule == "patch" ? std::make_unique<TissuePatches>(archive, mesh, topology, surface,
+                                                                                  model, still, response_, settings)
+                                                : nullptr),
       contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
   aimed_.reserve(kMaxContacts);
   all_.reserve(kMaxContacts + settings.tools.size());
