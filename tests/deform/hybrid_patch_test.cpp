@@ -15,10 +15,6 @@ using testing::block_scene;
 constexpr double kFace = 0.03, kBall = 0.006, kDeep = 0.003;  // [m]
 constexpr double kSeam = 0.0026;                              // [m] x: what lies before it has no inertia
 
-TetMesh mesh() {
-  return middle_block_mesh(6);
-}
-
 Scene hybrid_scene(double friction) {
   HybridSpec split;
   split.hybrid.regions.push_back({{.box = Box{Vector3d(kSeam, -1, -1), Vector3d(1, 1, 1)}}});
@@ -27,8 +23,8 @@ Scene hybrid_scene(double friction) {
   return scene;
 }
 
-PressRig rig_of(const Scene& scene) {
-  return {scene, {precompute_on(scene.bodies[0], mesh())}};
+PressRig rig_of(const Scene& scene, int cells = 6) {
+  return {scene, {precompute_on(scene.bodies[0], middle_block_mesh(cells))}};
 }
 
 double smooth(double t) {
@@ -139,6 +135,40 @@ TEST_P(HybridPatchSlides, ContactNeverPutsOutWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Friction, HybridPatchSlides, ::testing::Values(0.0, 0.2));
+
+// A second tool cuts the moving part away beside a tip that presses over the seam: what the mesh takes along goes by
+// small steps.
+TEST(HybridPatch, StaysOnWhatACutBesideItLeaves) {
+  Scene scene = hybrid_scene(0.2);
+  scene.tools.push_back(scene.tools[0]);
+  Tool& scalpel = scene.tools[1];
+  scalpel.name = "scalpel";
+  std::get<ProbeSpec>(scalpel.end) = {.radius = 0.004, .cautery = Cautery{0.005}};
+  PressRig rig = rig_of(scene, 12);
+  const auto press = [&](double depth, double beside, double pedal) {
+    std::array dofs{tip_at(scene.tools[0], tip(-0.002, depth)),
+                    tip_at(scalpel, Vector3d(beside, 0.0013, kFace + 0.0045))};
+    dofs[1].pedal = pedal;
+    rig.press(dofs);
+  };
+  for (int i = 0; i < 600; ++i) press(-0.0005 + (kDeep + 0.0005) * smooth(i / 300.0), 0.024, 0);
+  const auto felt = [&] {
+    Vector3d sum = Vector3d::Zero();
+    for (const TouchContact& c : rig.organ().contacts())
+      if (c.is_by(0)) sum += c.force;
+    return sum;
+  };
+  double worst = 0, least = felt().norm();
+  for (int i = 0; i < 800; ++i) {
+    const Vector3d before = felt();
+    press(kDeep, 0.024 - 0.008 * std::min(1.0, i / 600.0), 1);
+    worst = std::max(worst, (felt() - before).norm());
+    least = std::min(least, felt().norm());
+  }
+  EXPECT_FALSE(rig.organ().removed().empty());
+  EXPECT_GT(least, 0.03);
+  EXPECT_LT(worst, 0.0005);
+}
 
 TEST(HybridPatch, GoesOnBitForBitFromAKeyframe) {
   const Scene scene = hybrid_scene(0.2);

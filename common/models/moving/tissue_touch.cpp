@@ -28,6 +28,7 @@ void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
 TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
                          DynamicModel& model, HybridTouch* still, const StepSettings& settings)
     : mesh_(mesh),
+      still_(still),
       model_(model),
       surface_(surface),
       free_(mesh.rest),
@@ -87,9 +88,10 @@ void TissueTouch::leave(TouchContact c, std::span<const MovingTool> tools, const
 }
 
 void TissueTouch::follow_cut(const CutMesh& topology, std::span<const MovingTool> tools) {
+  const auto is_there = [&](int node) { return topology.has_node(node) || (still_ && still_->part().owns(node)); };
   const auto node_gone = [&](const TouchContact& c) {
     for (int v = 0; v < 3; ++v)
-      if (c.anchor.weights[v] != 0 && !topology.has_node(c.anchor.nodes[v])) return true;
+      if (c.anchor.weights[v] != 0 && !is_there(c.anchor.nodes[v])) return true;
     return false;
   };
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {

@@ -61,6 +61,7 @@ class TissueTouch {
   void put_right(double dt);
 
   const ElasticMesh& mesh_;
+  const HybridTouch* still_;
   DynamicModel& model_;
   CutSurface& surface_;
   std::vector<Eigen::Vector3d> free_;   ///< [m] per node: where it is at a step's end without contacts
