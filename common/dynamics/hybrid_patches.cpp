@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "common/dynamics/hybrid_part.hpp"
 
 /// Patches on a HybridPart, whose forces others solve for.

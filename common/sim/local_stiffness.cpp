@@ -112,8 +112,14 @@ std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& que
   }
 }
 
+// The free dofs with which a node goes along an axis, and how far: its own; of the joined part's nodes those of the
+// nodes that join it.
 template <class Visit>
-void LocalStiffness::for_each_followed(int node, int axis, const DofMap& dofs, Visit&& visit) const {
+void LocalStiffness::for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const {
+  if (!is_joined(node)) {
+    if (dofs.is_free(node, axis)) visit(dofs.index(node, axis), 1.0);
+    return;
+  }
   const std::span<const double> follow = joined_.part->follow(node, axis);
   for (std::size_t k = 0; k < follow.size(); ++k) {
     const int dof = dofs.index(joined_.nodes[k / 3], static_cast<int>(k % 3));
@@ -134,6 +140,10 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   }
   const auto n = static_cast<Eigen::Index>(answer.nodes.size());
   answer.compliance.setZero(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (is_joined(answer.nodes[i]) && is_joined(answer.nodes[j]))
+        answer.compliance.block<3, 3>(3 * i, 3 * j) = joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
   DofMap dofs(left);
   for (int node = 0; node < mesh_.nodes(); ++node)
     for (int axis = 0; axis < 3; ++axis)
@@ -144,30 +154,13 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   const SparseMatrix k = static_matrix(left, materials, dofs, joined_);
   Factorisation factor(k);
   factor.factorise(k);
-  // Rows of a node: the free dofs by which it moves. A node of the joined part follows those of the nodes that join it.
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dofs.size(), 3 * n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      const int node = answer.nodes[i];
-      if (is_joined(node))
-        for_each_followed(node, axis, dofs, [&](int dof, double share) { unit(dof, 3 * i + axis) = share; });
-      else if (dofs.is_free(node, axis))
-        unit(dofs.index(node, axis), 3 * i + axis) = 1;
-    }
+  for (int row = 0; row < 3 * n; ++row)
+    for_each_share(answer.nodes[row / 3], row % 3, dofs, [&](int dof, double share) { unit(dof, row) = share; });
   const Eigen::MatrixXd x = factor.solve(unit);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      const int node = answer.nodes[i];
-      if (is_joined(node))
-        for_each_followed(node, axis, dofs,
-                          [&](int dof, double share) { answer.compliance.row(3 * i + axis) += share * x.row(dof); });
-      else if (dofs.is_free(node, axis))
-        answer.compliance.row(3 * i + axis) = x.row(dofs.index(node, axis));
-    }
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (is_joined(answer.nodes[i]) && is_joined(answer.nodes[j]))
-        answer.compliance.block<3, 3>(3 * i, 3 * j) += joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
+  for (int row = 0; row < 3 * n; ++row)
+    for_each_share(answer.nodes[row / 3], row % 3, dofs,
+                   [&](int dof, double share) { answer.compliance.row(row) += share * x.row(dof); });
   return answer;
 }
 

@@ -64,7 +64,7 @@ class LocalStiffness {
   std::optional<Answer> answer(const Question& question) const;
   bool is_joined(int node) const { return joined_.part && joined_.part->owns(node); }
   template <class Visit>
-  void for_each_followed(int node, int axis, const DofMap& dofs, Visit&& visit) const;
+  void for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const;
   Answer solve(const Question& question) const;
 
   const ElasticMesh mesh_;

@@ -1,5 +1,7 @@
 #include "common/models/moving/hybrid_nodes.hpp"
 
+#include <algorithm>
+
 namespace palpate {
 
 using Eigen::Map;
