@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include "common/contact/patch/local_motion.hpp"
 #include "common/contact/patch/patch_parts.hpp"
@@ -58,8 +57,8 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
       triangle_of_facet_(4 * topology.size(), -1),
       facet_of_triangle_(map_.triangles.size(), -1),
       grids_(material_of(archive)),
-      position_(mesh.rest),
-      seen_in_(mesh.rest.size(), 0) {
+      ground_of_node_(mesh.rest.size(), 0),
+      position_(mesh.rest) {
   std::map<std::array<int, 3>, int> facets;
   for (const int facet : topology.visible()) facets[ascending(topology.facet(facet))] = facet;
   for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t) {
@@ -87,6 +86,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     nodes_ = std::make_unique<HybridNodes>(model, response, still->part(), static_cast<int>(tips_.size()));
     grounds_.push_back({still->surface(), {}});
     for (int t = 0; t < still->surface().triangle_count(); ++t) grounds_.back().triangle.push_back(t);
+    for (int node = 0; node < mesh.nodes(); ++node) ground_of_node_[node] = still->part().owns(node);
   } else {
     nodes_ = std::make_unique<TissueNodes>(model, response);
   }
@@ -124,7 +124,6 @@ bool TissuePatches::laid() const {
 }
 
 void TissuePatches::find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds) {
-  ++tick_;
   for (Tip& tip : tips_) {
     tip.impulse.setZero();
     if (holds(tip.tool))
@@ -160,8 +159,7 @@ bool TissuePatches::find_place(const Tip& tip, const MovingTool& tool, Vector3d&
 Eigen::Isometry3d TissuePatches::motion_about(const Vector3d& place, double within) {
   for (const int t : surface_.near(place, within))
     for (const int node : map_.triangles[t])
-      if (std::exchange(seen_in_[node], tick_) != tick_)
-        position_[node] = mesh_.rest[node] + nodes_->displacement(node);
+      position_[node] = grounds_[ground_of_node_[node]].surface.positions()[node];
   return local_motion(surface_, place, within, position_);
 }
 

@@ -107,9 +107,8 @@ class TissuePatches {
   std::vector<Tip> tips_;
   std::vector<Eigen::Vector3d> moved_, went_;
   std::vector<PatchForce> forces_;
-  std::vector<Eigen::Vector3d> position_;  ///< [m] per node, of those seen in this tick
-  std::vector<int> seen_in_;               ///< per node: the tick
-  int tick_ = 0;
+  std::vector<int> ground_of_node_;        ///< per node: the one that knows where it is
+  std::vector<Eigen::Vector3d> position_;  ///< [m] per node, of those near a tip
 };
 
 }  // namespace palpate
