@@ -60,8 +60,8 @@ struct Archive {
   std::vector<std::uint16_t> material_of_element;
   SurfaceMap surface;
   std::vector<std::array<int, 4>> tetrahedra;  ///< those that move with inertia: surface nodes, positively oriented
-  std::vector<Dof> moving_dofs;                ///< free dofs of their touchable nodes, ascending; none of a hybrid body
-  /// Compliance of these tetrahedra at rest among those dofs, packed like C_tt [m/N].
+  std::vector<Dof> moving_dofs;                ///< free dofs of the touchable nodes, ascending, where there are any
+  /// Compliance at rest of such a body as a whole among those dofs, packed like C_tt [m/N].
   std::vector<double> moving_compliance;
   std::vector<Dof> touchable_dofs;  ///< free dofs of touchable nodes (hybrid: those among i), ascending
   std::vector<Dof> other_dofs;      ///< free dofs of the remaining visible nodes (hybrid: those among i)
@@ -78,7 +78,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 8;
+constexpr int kArchiveFormat = 9;
 
 /// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either
 /// whole or as it was. Removes temporary files that killed writers of the same body left. Throws

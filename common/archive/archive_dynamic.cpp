@@ -103,10 +103,10 @@ bool hybrid_fits(const Archive& archive, ArchivePart part) {
 void write_dynamic_part(Hdf5Writer& file, const Archive& archive) {
   file.dataset({"dynamic/tetrahedra", "1", "nodes of each tetrahedron that moves with inertia, positively oriented"},
                flatten_integers(archive.tetrahedra), 4);
-  file.dataset({"dynamic/dofs", "1", "node and axis of each free dof of their touchable nodes"},
+  file.dataset({"dynamic/dofs", "1", "node and axis of each free dof of the touchable nodes"},
                flatten(archive.moving_dofs), 2);
   file.dataset({"dynamic/compliance", "m/N",
-                "compliance of these tetrahedra at rest among their touchable dofs; lower triangle packed by rows"},
+                "compliance of the whole body at rest among these dofs; lower triangle packed by rows"},
                archive.moving_compliance);
   if (archive.hybrid) write_hybrid(file, *archive.hybrid);
 }

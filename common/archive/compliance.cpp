@@ -73,7 +73,7 @@ Compliance<Scalar>::Compliance(int row_nodes, int column_nodes)
 }
 
 template <class Scalar>
-Compliance<Scalar> Compliance<Scalar>::of_moving_part(const Archive& archive) {
+Compliance<Scalar> Compliance<Scalar>::at_rest(const Archive& archive) {
   const std::size_t dofs = archive.moving_dofs.size();
   if (archive.moving_compliance.size() != dofs * (dofs + 1) / 2)
     throw std::runtime_error("the archive was read without the compliance of what moves");

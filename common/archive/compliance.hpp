@@ -17,8 +17,8 @@ class Compliance {
   /// `rows`: touchable nodes only (haptic node) or the whole visible surface (deformation node).
   enum class Rows { touchable, surface };
   Compliance(const Archive& archive, Rows rows);
-  /// That of the tetrahedra that move with inertia, at rest, among the touchable nodes; zero where they have none.
-  static Compliance of_moving_part(const Archive& archive);
+  /// That of a body that moves with inertia, or a part of which does, at rest, among the touchable nodes.
+  static Compliance at_rest(const Archive& archive);
 
   int row_nodes() const { return row_nodes_; }
   int column_nodes() const { return column_nodes_; }

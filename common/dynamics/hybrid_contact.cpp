@@ -21,7 +21,8 @@ Vector3d HybridPart::still_position(const Anchor& anchor) const {
   Vector3d position = Vector3d::Zero();
   for (int v = 0; v < 3; ++v) {
     const int node = anchor.nodes[v];
-    if (anchor.weights[v] != 0) position += anchor.weights[v] * (rest_[node] + sag_[node] + respond(node, dead_));
+    if (anchor.weights[v] != 0)
+      position += anchor.weights[v] * (rest_[node] + sag_[node] + respond(node, dead_) + pushed(node));
   }
   return position;
 }
@@ -76,7 +77,7 @@ void HybridPart::fill_row(int r) {
     if (place_[node] >= 0) out.segment<3>(3 * place_[node]) += along;
     if (row_[node] < 0) continue;
     for (int axis = 0; axis < 3; ++axis)
-      if (along[axis] != 0) out += along[axis] * ConstVector(follow(node, axis), size_);
+      if (along[axis] != 0) out += along[axis] * ConstVector(follow(node, axis).data(), size_);
   }
 }
 
@@ -108,15 +109,16 @@ void HybridPart::factorise() {
 
 /// load_ += H^T J^T f, connection nodes of the anchor included.
 void HybridPart::add_follow_force(const Anchor& anchor, const Vector3d& force) {
-  Vector load(load_.data(), size_);
-  for (int v = 0; v < 3; ++v) {
-    const int node = anchor.nodes[v];
-    if (anchor.weights[v] == 0) continue;
-    if (place_[node] >= 0) load.segment<3>(3 * place_[node]) += anchor.weights[v] * force;
-    if (row_[node] < 0) continue;
-    for (int axis = 0; axis < 3; ++axis)
-      load += anchor.weights[v] * force[axis] * ConstVector(follow(node, axis), size_);
-  }
+  for (int v = 0; v < 3; ++v)
+    if (anchor.weights[v] != 0) add_follow_force(anchor.nodes[v], anchor.weights[v] * force, load_);
+}
+
+/// The same of a node, to the forces on the connection nodes.
+void HybridPart::add_follow_force(int node, const Vector3d& force, std::span<double> to) const {
+  Vector load(to.data(), size_);
+  if (place_[node] >= 0) load.segment<3>(3 * place_[node]) += force;
+  if (row_[node] < 0) return;
+  for (int axis = 0; axis < 3; ++axis) load += force[axis] * ConstVector(follow(node, axis).data(), size_);
 }
 
 void HybridPart::condense() {

@@ -188,17 +188,17 @@ Vector3d HybridPart::followed(int node) const {
   if (place_[node] >= 0) return Eigen::Map<const Vector3d>(u_.data() + 3 * place_[node]);
   if (row_[node] < 0) return Vector3d::Zero();
   Vector3d u = sag_[node];
-  for (int axis = 0; axis < 3; ++axis) u[axis] += dot(follow(node, axis), u_.data(), size_);
+  for (int axis = 0; axis < 3; ++axis) u[axis] += dot(follow(node, axis).data(), u_.data(), size_);
   return u;
 }
 
 Vector3d HybridPart::displacement(int node) const {
-  return followed(node) + respond(node, node_forces_);
+  return followed(node) + respond(node, node_forces_) + pushed(node);
 }
 
 void HybridPart::update(std::span<const int> nodes) {
   for (int node : nodes) {
-    const Vector3d u = followed(node);
+    const Vector3d u = followed(node) + pushed(node);
     free_[node] = rest_[node] + u + respond(node, dead_);
     position_[node] = rest_[node] + u + respond(node, node_forces_);
   }
@@ -215,12 +215,15 @@ LawOutcome HybridPart::hold() {
 void HybridPart::superpose(std::span<Eigen::Vector3f> displacement) {
   columns_.assign(follow_columns_f_.begin(), follow_columns_f_.end());
   coefficients_.assign(u_.begin(), u_.end());
-  for (const auto& [node, force] : node_forces_)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (node >= picture_.column_nodes()) continue;
-      columns_.push_back(picture_.column(node, axis));
-      coefficients_.push_back(static_cast<float>(force[axis]));
-    }
+  const auto add = [&](std::span<const NodeForce> forces) {
+    for (const auto& [node, force] : forces)
+      for (int axis = 0; axis < 3 && node < picture_.column_nodes(); ++axis) {
+        columns_.push_back(picture_.column(node, axis));
+        coefficients_.push_back(static_cast<float>(force[axis]));
+      }
+  };
+  add(node_forces_);
+  for (const auto& forces : pushed_) add(forces);
   const int nodes = picture_.row_nodes();
   kernels::active().combine_f(columns_.data(), coefficients_.data(), static_cast<int>(columns_.size()), 3 * nodes,
                               whole_.data());

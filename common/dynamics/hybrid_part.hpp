@@ -6,6 +6,7 @@
 #include "common/archive/archive.hpp"
 #include "common/archive/compliance.hpp"
 #include "common/contact/contact_law.hpp"
+#include "common/contact/patch/patch.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 
 namespace palpate {
@@ -48,6 +49,16 @@ class HybridPart final : public Coupling {
   /// std::runtime_error for any other node.
   void set_force(int node, const Eigen::Vector3d& force);
 
+  /// Beside the law's contacts, so many patches may press this part. push() says the last forces of one, in place of
+  /// its earlier ones: on nodes of this part alone they count from then on, as the law's contacts do; what a patch does
+  /// to the connection nodes, draw() [N, three entries each] says, and it is for the caller to put in.
+  void expect_patches(int patches);
+  void push(int patch, std::span<const PatchForce> forces);
+  void draw(int patch, std::span<double> force) const;
+  /// [m/N] of a node under a force on another one that lasts for one step, where connection nodes give way by
+  /// `inertia` [m/N], three entries each. Both belong to this part, if with others.
+  Eigen::Matrix3d give(int node, int under, std::span<const double> inertia) const;
+
   void take(const DynamicModel& model);
   /// The same, with given forces [N] of the law's contacts: to go on from a recorded state.
   void adopt(const DynamicModel& model, std::span<const Eigen::Vector3d> forces);
@@ -83,6 +94,15 @@ class HybridPart final : public Coupling {
   double gap(const DynamicModel& model) const;
   /// Whether a node belongs to this part alone.
   bool owns(int node) const { return row_[node] >= 0; }
+  /// Whether it belongs to it at all.
+  bool touches(int node) const { return owns(node) || place_[node] >= 0; }
+  double mass(int k) const { return mass_[k]; }  ///< [kg] that connection()[k] carries for this part
+  /// [m/N] between nodes of this part while the connection nodes stand still.
+  Eigen::Matrix3d compliance(int i, int j) const;
+  /// [1] How far a node of this part alone goes along an axis with each dof of the connection nodes.
+  std::span<const double> follow(int node, int axis) const {
+    return {follow_.data() + static_cast<std::size_t>(size_) * (row_[node] + axis), static_cast<std::size_t>(size_)};
+  }
 
  private:
   template <class T>
@@ -93,19 +113,14 @@ class HybridPart final : public Coupling {
     int contact;
     Eigen::Vector3d axis;
   };
-  /// A force [N] on a node.
-  struct NodeForce {
-    int node;
-    Eigen::Vector3d force;
-  };
+  using NodeForce = PatchForce;
 
   void fill_stiffness(const HybridTensors& hybrid);
   void fill_follow(const Archive& archive);
-  const double* follow(int node, int axis) const { return follow_.data() + size_ * (row_[node] + axis); }
   Eigen::Vector3d followed(int node) const;
-  Eigen::Matrix3d compliance(int i, int j) const;
   Eigen::Matrix3d compliance(const Anchor& a, const Anchor& b) const;
   Eigen::Vector3d respond(int node, std::span<const NodeForce> forces) const;
+  Eigen::Vector3d pushed(int node) const;
   double softness(const TouchContact& contact) const;
   void count_shares();
   void list_rows();
@@ -113,6 +128,7 @@ class HybridPart final : public Coupling {
   void factorise();
   void condense();
   void add_follow_force(const Anchor& anchor, const Eigen::Vector3d& force);
+  void add_follow_force(int node, const Eigen::Vector3d& force, std::span<double> to) const;
   Eigen::Vector3d still_position(const Anchor& anchor) const;
   void find_forces();
   void list_node_forces();
@@ -139,6 +155,7 @@ class HybridPart final : public Coupling {
   CompliantResponse response_;
   ContactLaw law_;
   std::vector<NodeForce> dead_, node_forces_;
+  std::vector<std::vector<NodeForce>> pushed_;  // per patch
   std::vector<HeldRow> rows_;
   std::vector<int> row_begin_;  // first row of each contact, and the end
   kernels::Buffer factor_, floor_;

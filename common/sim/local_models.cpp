@@ -21,9 +21,10 @@ void copy(const Eigen::Matrix3d& from, std::array<double, 9>& to) {
 }
 
 /// The quasi-static part of a hybrid body as its connection nodes feel it.
-CondensedPart condensed_part(const Archive& archive) {
+CondensedPart condensed_part(const Archive& archive, const DynamicOrgan& organ) {
   CondensedPart part;
   if (!archive.hybrid) return part;
+  part.part = &organ.still_part()->part();
   const HybridTensors& h = *archive.hybrid;
   part.nodes = h.connection;
   part.stiffness.setZero(3 * h.connection.size(), 3 * h.connection.size());
@@ -37,6 +38,13 @@ CondensedPart condensed_part(const Archive& archive) {
   return part;
 }
 
+Eigen::Vector3d position_of(const Anchor& anchor, const DynamicOrgan& organ) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (int v = 0; v < 3; ++v)
+    if (anchor.weights[v] != 0) position += anchor.weights[v] * organ.position(anchor.nodes[v]);
+  return position;
+}
+
 }  // namespace
 
 LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives, LocalStiffness::Worker worker)
@@ -45,9 +53,9 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
     const ElasticMesh& mesh = world.organ(i).mesh();
     double edges = 0;
     for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
-    organs_.push_back(
-        {.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]]), worker),
-         .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
+    organs_.push_back({.stiffness = std::make_unique<LocalStiffness>(
+                           mesh, condensed_part(archives[world.bodies()[i]], world.organ(i)), worker),
+                       .look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size())});
   }
 }
 
@@ -65,13 +73,19 @@ void LocalModels::refresh() {
       for (int p = 0; p < tool.moving.size(); ++p) {
         const Segment axis = tool.moving.axis(p);
         const double radius = tool.moving.radius(p);
-        for (int facet : organ.surface().find(axis.start, axis.end, radius + own.look_ahead))
-          for (int node : organ.topology().facet(facet)) {
-            const Eigen::Vector3d& x = organ.surface().positions()[node];
+        const auto want = [&](const ContactSurface& surface, int triangle) {
+          for (int node : surface.triangle(triangle)) {
+            const Eigen::Vector3d& x = surface.positions()[node];
             const double distance = (x - nearest_point(axis, x)).norm() - radius;
             by_distance_.emplace_back(distance, node);
             lacks |= distance < 0.5 * own.look_ahead && own.stiffness->current().find(node) < 0;
           }
+        };
+        for (int facet : organ.surface().find(axis.start, axis.end, radius + own.look_ahead))
+          want(organ.surface(), facet);
+        if (!organ.still_part()) continue;
+        const TouchSurface& still = organ.still_part()->surface();
+        for (int triangle : still.find(axis, axis, radius + own.look_ahead)) want(still, triangle);
       }
     }
     for (const TouchContact& c : organ.contacts())
@@ -131,7 +145,7 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;
-    copy(anchor_position(c.anchor, world_.organ(i).surface().positions()), out.position);
+    copy(position_of(c.anchor, world_.organ(i)), out.position);
     copy(c.normal, out.normal);
     copy(c.force, out.force);
     copy(own.contact[k], out.stiffness);

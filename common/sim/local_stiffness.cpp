@@ -112,6 +112,21 @@ std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& que
   }
 }
 
+// The free dofs with which a node goes along an axis, and how far: its own; of the joined part's nodes those of the
+// nodes that join it.
+template <class Visit>
+void LocalStiffness::for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const {
+  if (!is_joined(node)) {
+    if (dofs.is_free(node, axis)) visit(dofs.index(node, axis), 1.0);
+    return;
+  }
+  const std::span<const double> follow = joined_.part->follow(node, axis);
+  for (std::size_t k = 0; k < follow.size(); ++k) {
+    const int dof = dofs.index(joined_.nodes[k / 3], static_cast<int>(k % 3));
+    if (dof >= 0) visit(dof, follow[k]);
+  }
+}
+
 LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
   std::vector<bool> gone(mesh_.tetrahedra.size(), false);
@@ -125,6 +140,10 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   }
   const auto n = static_cast<Eigen::Index>(answer.nodes.size());
   answer.compliance.setZero(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (is_joined(answer.nodes[i]) && is_joined(answer.nodes[j]))
+        answer.compliance.block<3, 3>(3 * i, 3 * j) = joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
   DofMap dofs(left);
   for (int node = 0; node < mesh_.nodes(); ++node)
     for (int axis = 0; axis < 3; ++axis)
@@ -136,14 +155,12 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   Factorisation factor(k);
   factor.factorise(k);
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dofs.size(), 3 * n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(answer.nodes[i], axis)) unit(dofs.index(answer.nodes[i], axis), 3 * i + axis) = 1;
+  for (int row = 0; row < 3 * n; ++row)
+    for_each_share(answer.nodes[row / 3], row % 3, dofs, [&](int dof, double share) { unit(dof, row) = share; });
   const Eigen::MatrixXd x = factor.solve(unit);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(answer.nodes[i], axis))
-        answer.compliance.row(3 * i + axis) = x.row(dofs.index(answer.nodes[i], axis));
+  for (int row = 0; row < 3 * n; ++row)
+    for_each_share(answer.nodes[row / 3], row % 3, dofs,
+                   [&](int dof, double share) { answer.compliance.row(row) += share * x.row(dof); });
   return answer;
 }
 

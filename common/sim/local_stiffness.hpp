@@ -11,13 +11,16 @@
 
 #include "common/describe/state.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/dynamics/hybrid_part.hpp"
+#include "common/fem/boundary_conditions.hpp"
 
 namespace palpate {
 
 /// Stiffness of one part of a body that is condensed onto some of its nodes, to be added where it is joined.
 struct CondensedPart {
   std::vector<int> nodes;
-  Eigen::MatrixXd stiffness;  ///< [N/m] 3 nodes x 3 nodes; rows of fixed axes are zero
+  Eigen::MatrixXd stiffness;         ///< [N/m] 3 nodes x 3 nodes; rows of fixed axes are zero
+  const HybridPart* part = nullptr;  ///< what its other nodes do; outlives this
 };
 
 /// The static compliance of a dynamic body at a few of its nodes, for the local contact model. It is solved from the
@@ -59,6 +62,9 @@ class LocalStiffness {
   void work(const std::stop_token& stop);
   void settle(std::optional<Answer> found);
   std::optional<Answer> answer(const Question& question) const;
+  bool is_joined(int node) const { return joined_.part && joined_.part->owns(node); }
+  template <class Visit>
+  void for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const;
   Answer solve(const Question& question) const;
 
   const ElasticMesh mesh_;

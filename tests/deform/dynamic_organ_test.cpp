@@ -228,6 +228,7 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   HybridSpec split;
   split.hybrid.regions.push_back({{.box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}}});
   Scene scene = block_scene(split);
+  scene.contact.rule = "barycentric";
   moving_block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto move = [](Bench& bench, int i) {

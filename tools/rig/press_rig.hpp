@@ -10,9 +10,9 @@
 
 namespace palpate {
 
-/// [N] on the tissue, of all contacts with the part of an organ that moves with inertia.
+/// [N] on the tissue, of all contacts with an organ but those by nodes with a hybrid's quasi-static part.
 Eigen::Vector3d force_on_moving_part(const DynamicOrgan& organ);
-/// The same with those of a hybrid's quasi-static part.
+/// The same with those.
 Eigen::Vector3d force_on(const DynamicOrgan& organ);
 
 /// Points of the haptic step's body that contacts hold: of one tool, or of all where it is -1.

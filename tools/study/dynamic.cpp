@@ -179,7 +179,6 @@ class Dynamic : public Method {
     Scene scene = solid_->scene();
     Body moving = scene.bodies[body()];
     model_.become(moving);
-    if (std::holds_alternative<HybridSpec>(moving)) scene.contact.rule = "barycentric";  // as hybrids are touched
     auto still = as_kind<QuasiStaticSpec>(solid_->solid());
     still.offline = Offline{.element = "p1"};
     scene.bodies[body()] = still;

@@ -34,7 +34,7 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   floor_.assign(ld, 0.0);
   rows_.reserve(points);
   nodes_.reserve(kMaxNodes);
-  inertia_.reserve(kMaxNodes);
+  nodes_give_.assign(kMaxNodes * kMaxNodes, 0.0);
   lifted_.reserve(kMaxNodes);
   known_.reserve(kMaxNodes);
   near_field_.assign(kMaxNodes * kMaxNodes, Eigen::Matrix3d::Zero());
@@ -56,7 +56,7 @@ void Patch::lift() {
 void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   fill_near_field(ground.near_field);
   fill_normal();
-  lift_nodes(ground);
+  lift_nodes(ground, {});
   for (int p = 0; p < grid_.size(); ++p) {
     const Foot& f = foot(p);
     wanted_[p] = cells_[p].gap - cells_[p].dent;
@@ -105,15 +105,22 @@ void Patch::lie_beside(const Patch& other) {
 }
 
 // What the last step's shear does along the normal.
-void Patch::lift_nodes(const Ground& ground) {
+void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
   lifted_.assign(nodes_.size(), 0.0);
   if (ground.friction == 0) return;
+  std::array<Vector3d, kMaxNodes> shear;
+  shear.fill(Vector3d::Zero());
   for (const PatchForce& f : forces()) {
     const auto found = std::ranges::find(nodes_, f.node);
     if (found == nodes_.end()) continue;
     const auto j = found - nodes_.begin();
-    const Vector3d shear = f.force - f.force.dot(normal_) * normal_;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) lifted_[i] += normal_.dot(near_field_[i * kMaxNodes + j] * shear);
+    shear[j] = f.force - f.force.dot(normal_) * normal_;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      lifted_[i] += normal_.dot(near_field_[i * kMaxNodes + j] * shear[j]);
+  }
+  for (const auto& [i, j, block] : give) {
+    lifted_[i] += normal_.dot(block * shear[j]);
+    if (i != j) lifted_[j] += normal_.dot(block.transpose() * shear[i]);
   }
 }
 
@@ -122,11 +129,11 @@ void Patch::sum_pressures() {
   for (const double f : pressure_force_) pressing_ += f;
 }
 
-void Patch::meet(const Ground& ground, std::span<const Eigen::Matrix3d> give) {
+void Patch::meet(const Ground& ground, std::span<const NodeGive> give) {
   fill_near_field(ground.near_field);
   fill_normal();
   keep_positive();
-  add_inertia(give);
+  add_nodes_give(give);
   lifted_.assign(nodes_.size(), 0.0);
 }
 
@@ -146,7 +153,7 @@ double Patch::depth(const Step& step) const {
 }
 
 void Patch::step(const Ground& ground, const Step& step) {
-  lift_nodes(ground);
+  lift_nodes(ground, step.give);
   for (int p = 0; p < grid_.size(); ++p) {
     if (!laid(p)) active_[p] = 0;
     wanted_[p] = laid(p) ? gap(p, step) - step.ease : cells_[p].gap;
@@ -222,8 +229,8 @@ bool Patch::solve_active() {
 }
 
 // One shear force, spread as the pressures are. The tissue is bent along until Coulomb's bound is met; from there it
-// slips and stays bent as far as the bound allows, so that the shear never turns against the travel. Nodes that move
-// with inertia take a part of the travel, which is not bent any more at the next step.
+// slips and stays bent as far as the bound allows, so that the shear never turns against the travel. Nodes that move by
+// themselves take a part of the travel, which is not bent any more at the next step.
 void Patch::shear(const Ground& ground, const Drag& drag) {
   loaded_ = 0;
   sheared_.setZero();
@@ -253,9 +260,12 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
     Vector2d bent = plane.transpose() * (bent_ + drag.travel - past);
     if (!resumed_.isZero(0)) bent = c * plane.transpose() * resumed_;
     resumed_.setZero();
-    for (std::size_t i = 0; i < drag.went.size(); ++i) {
-      bent -= share[i] * plane.transpose() * drag.went[i];
-      given += share[i] * share[i] * plane.transpose() * drag.give[i] * plane;
+    for (std::size_t i = 0; i < drag.went.size(); ++i) bent -= share[i] * plane.transpose() * drag.went[i];
+    for (const auto& [i, j, block] : drag.give) {
+      if (share[i] == 0 || share[j] == 0) continue;
+      const Eigen::Matrix3d both = i == j ? block : Eigen::Matrix3d(block + block.transpose());
+      given += share[i] * share[j] * plane.transpose() * both * plane;
+      bent -= share[i] * share[j] * pressing_ * plane.transpose() * both * normal_;
     }
     Vector2d force = (c + given).inverse() * bent;
     const double most = ground.friction * pressing_, size = force.norm();
@@ -281,7 +291,8 @@ Eigen::Matrix3d Patch::give() const {
     for (const int q : rows_) give += pressure_force_[p] * pressure_force_[q] * compliance_[p * n + q];
     for (int v = 0; v < 3; ++v) share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p];
   }
-  for (std::size_t i = 0; i < inertia_.size(); ++i) give -= share[i] * share[i] * inertia_[i];
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t j = 0; j < nodes_.size(); ++j) give -= share[i] * share[j] * nodes_give_[i * kMaxNodes + j];
   Eigen::Matrix<double, 3, 2> plane;
   plane << across_, up_;
   return give / (pressing_ * pressing_) * normal_ * normal_.transpose() + plane * sheared_give_ * plane.transpose();

@@ -22,6 +22,13 @@ struct PatchForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
 };
 
+/// [m/N] By which a node of a patch gives way within a step under a force on another one, or on itself. The transpose
+/// goes the other way.
+struct NodeGive {
+  int i, j;  ///< places among the nodes of Patch::lay()
+  Eigen::Matrix3d block;
+};
+
 /// A straight line within a triangle: its two ends, as a patch sees them, and their weights.
 struct TriangleCut {
   std::array<Eigen::Vector3d, 2> end, weights;
@@ -52,13 +59,13 @@ class Patch {
     const NearField& near_field;
     double friction;
   };
-  /// One step of tissue that moves with inertia, as the patch meets it. Of the spans, one entry for each node of lay().
+  /// One step of tissue that moves, as the patch meets it. Of `moved` and `went`, one entry for each node of lay().
   struct Step {
     Eigen::Isometry3d before, now;           ///< of the tool
     Eigen::Vector3d middle;                  ///< [m] of the sphere, now
     std::span<const Eigen::Vector3d> moved;  ///< [m] from rest to the step's end, by all but this patch
     std::span<const Eigen::Vector3d> went;   ///< [m] of that within the step
-    std::span<const Eigen::Matrix3d> give;   ///< [m/N] of each node within the step under a force on it
+    std::span<const NodeGive> give;          ///< each pair of nodes once; those left out do not move one another
     double ease = 0;                         ///< [m] of the depth that is not to be put right yet
   };
   /// The nodes that lie under the part now, found by where its axis lies, of a sphere a point; empty: it does not
@@ -72,10 +79,10 @@ class Patch {
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
   /// the past.
   void press(const Ground& ground, std::span<const Eigen::Vector3d> moved);
-  /// Begins a tick of tissue that moves with inertia, after lay() for the tool as it is at the tick's end: what the
+  /// Begins a tick of tissue that moves, after lay() for the tool as it is at the tick's end: what the
   /// nodes do under forces comes from its steps, and K is what the body's compliance has beyond both the half-space's
   /// and the nodes' own. `give`: as in Step; the same in all steps of the tick.
-  void meet(const Ground& ground, std::span<const Eigen::Matrix3d> give);
+  void meet(const Ground& ground, std::span<const NodeGive> give);
   /// Solves for the pressures and the shear at the end of a step within that tick.
   void step(const Ground& ground, const Step& step);
   /// [m] By how much the sphere reaches below the surface at most, in such a step without this patch's forces;
@@ -95,8 +102,7 @@ class Patch {
   const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
   const Eigen::Vector3d& normal() const { return normal_; }  ///< unit, into the tissue
   const Anchor& anchor() const { return anchor_; }           ///< of the surface, at its middle
-  /// [m/N] By how much the tissue gives way under the patch as it is pressed and sheared now, its nodes' own inertia
-  /// apart.
+  /// [m/N] By how much the tissue gives way under the patch as it is pressed and sheared now, beyond what its nodes do.
   Eigen::Matrix3d give() const;
   bool sticks() const { return sticks_; }
   /// On the nodes under it.
@@ -135,7 +141,7 @@ class Patch {
   struct Drag {
     Eigen::Vector3d travel;                 ///< [m] of the tool over the step
     std::span<const Eigen::Vector3d> went;  ///< empty: the nodes stay where they are but for the patch's forces
-    std::span<const Eigen::Matrix3d> give;
+    std::span<const NodeGive> give;
   };
 
   int local(int node);
@@ -167,10 +173,10 @@ class Patch {
   bool is_positive();
   void list_laid();
   void find_more();
-  void add_inertia(std::span<const Eigen::Matrix3d> give);
+  void add_nodes_give(std::span<const NodeGive> give);
   void settle_pressures();
   bool solve_active();
-  void lift_nodes(const Ground& ground);
+  void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
   void sum_pressures();
   void shear(const Ground& ground, const Drag& drag);
   void add_slip(const Eigen::Vector3d& bent_before);
@@ -189,7 +195,7 @@ class Patch {
   Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
   std::vector<double> more_;                                ///< [m/N] between squares: what keeps L positive
   bool has_more_ = false;                                   ///< more_ is of known_
-  std::vector<double> inertia_;                             ///< [m/N] along the normal, per node of nodes_
+  std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;
   std::span<int> near_;  ///< triangles, of lay() alone

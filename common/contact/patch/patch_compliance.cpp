@@ -108,17 +108,18 @@ void Patch::find_more() {
   has_more_ = true;
 }
 
-// What a step's forces do to the nodes by inertia, to all squares over them.
-void Patch::add_inertia(std::span<const Eigen::Matrix3d> give) {
-  inertia_.clear();
-  for (const Eigen::Matrix3d& of_node : give) inertia_.push_back(normal_.dot(of_node * normal_));
+// What a step's forces do to the nodes, to all squares over them.
+void Patch::add_nodes_give(std::span<const NodeGive> give) {
+  std::ranges::fill(nodes_give_, 0.0);
+  for (const auto& [i, j, block] : give)
+    nodes_give_[i * kMaxNodes + j] = nodes_give_[j * kMaxNodes + i] = normal_.dot(block * normal_);
   const int n = grid_.size();
   for (const int p : rows_)
     for (const int q : rows_)
       for (int v = 0; v < 3; ++v)
         for (int w = 0; w < 3; ++w)
-          if (foot(p).local[v] == foot(q).local[w])
-            compliance_[p * n + q] += foot(p).weights[v] * foot(q).weights[w] * inertia_[foot(p).local[v]];
+          compliance_[p * n + q] +=
+              foot(p).weights[v] * foot(q).weights[w] * nodes_give_[foot(p).local[v] * kMaxNodes + foot(q).local[w]];
 }
 
 }  // namespace palpate

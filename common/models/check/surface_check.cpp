@@ -77,8 +77,7 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
 
 void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report) {
   if (settings.contact.rule == "patch" && !settings.tools.empty())
-    report.say(
-        "  touch: by its mesh, as under rule \"barycentric\": patches are for bodies of one part, at rest or moving");
+    report.say("  touch: by its mesh, as under rule \"barycentric\": patches are for solid bodies");
 }
 
 void say_patches(const CheckSettings& settings, const std::string& body, bool shafts, CheckReport& report) {

@@ -125,6 +125,7 @@ Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* c
   watch.lap("surface");
   const auto split = split_hybrid(body, parts.mesh, dofs, parts.dynamic);
   add_hybrid(body, parts.mesh, split, materials, index, progress, archive);
+  add_compliance_at_rest(parts.mesh, dofs, materials, progress, archive);
   if (coarse) add_gap(parts.mesh, split, index, *archive.hybrid);
   return archive;
 } catch (const std::bad_alloc&) {

@@ -127,12 +127,8 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
                          d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
                          d.corotational ? ", corotational" : ""));
   say_step(body, kind, archive, report);
-  if (archive.hybrid) {
-    say_touched_by_mesh(settings, report);
-  } else {
-    say_patches(settings, body.name, false, report);
-    report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
-  }
+  say_patches(settings, body.name, false, report);
+  report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   const std::vector<std::string> of_material = material_warnings(body);
   report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
   if (body.tearing)
@@ -141,7 +137,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
-  if (!archive.hybrid) add_near_field("deform_node", settings, archive.surface, false, report);
+  add_near_field("deform_node", settings, archive.surface, false, report);
 }
 
 void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report) {

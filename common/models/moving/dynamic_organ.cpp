@@ -42,7 +42,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
                  : nullptr),
-      contacts_(archive, mesh_, topology_, surface_, *model_, settings),
+      contacts_(archive, mesh_, topology_, surface_, *model_, still_.get(), settings),
       fading_ticks_(std::max(1, static_cast<int>(std::lround(kFading / settings.dt)))),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
@@ -104,8 +104,8 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   take_tools(tools);
   work_jaws(tools);
   fade();
-  contacts_.find(in_tick_, dt / steps_in(dt, true));
   if (still_) still_->find(in_tick_);
+  contacts_.find(in_tick_, dt / steps_in(dt, true), [this](int tool) { return holds(tool); });
   const bool touched = contacts_.touched();
   const int steps = steps_in(dt, touched);
   in_step_ = in_tick_;
@@ -178,6 +178,11 @@ void DynamicOrgan::grasp(int tool, const ToolInTick& with) {
   };
   if (take(contacts_.search(), [&](int node) { return topology_.has_node(node); }) || !still_) return;
   take(still_->search(), [&](int node) { return still_->part().owns(node); });
+}
+
+Eigen::Vector3d DynamicOrgan::position(int node) const {
+  if (still_ && still_->part().owns(node)) return mesh_.rest[node] + still_->part().displacement(node);
+  return surface_.positions()[node];
 }
 
 bool DynamicOrgan::holds(int tool) const {

@@ -68,6 +68,8 @@ class DynamicOrgan {
   std::span<const TouchContact> contacts() const { return contacts_.contacts(); }
   /// The quasi-static part of a hybrid organ; null for others.
   const HybridTouch* still_part() const { return still_.get(); }
+  /// [m] of a surface node of either part.
+  Eigen::Vector3d position(int node) const;
   /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
   bool is_joint(int facet) const { return shown_.is_joint(facet); }
   bool holds(int tool) const;  ///< its jaws hold something of this organ

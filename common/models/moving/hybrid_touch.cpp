@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/contact/patch/patch_parts.hpp"
+
 namespace palpate {
 namespace {
 
@@ -11,6 +13,16 @@ SurfaceMap quasi_static_surface(const Archive& archive) {
   SurfaceMap map = archive.surface;
   map.triangles.resize(archive.hybrid->quasi_static_triangles);
   return map;
+}
+
+// Of parts that press by a patch.
+ToolContacts::Options beside_patches(const StepSettings& settings) {
+  ToolContacts::Options options;
+  if (settings.contact.rule == "patch")
+    options.elsewhere = [parts = patch_parts(settings.tools, false)](int tool, int part, int) {
+      return std::ranges::any_of(parts, [&](const PatchPart& p) { return p.tool == tool && p.part == part; });
+    };
+  return options;
 }
 
 double bucket_size(const ContactSpec& contact, const SurfaceMap& map) {
@@ -24,7 +36,7 @@ HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, b
       map_(quasi_static_surface(archive)),
       part_(archive, settings.contact.friction, single),
       surface_(map_, bucket_size(settings.contact, map_)),
-      contacts_(surface_, part_.law(), parts_of(settings.tools)),
+      contacts_(surface_, part_.law(), parts_of(settings.tools), beside_patches(settings)),
       moved_(map_.size(), Eigen::Vector3f::Zero()) {
   part_.couple(model);
   displacement_.reserve(3 * map_.size());

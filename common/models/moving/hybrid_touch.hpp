@@ -31,6 +31,7 @@ class HybridTouch {
   /// After the last step of a tick.
   void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
 
+  HybridPart& part() { return part_; }
   const HybridPart& part() const { return part_; }
   const TouchSurface& surface() const { return surface_; }
   std::span<const TouchContact> contacts() const { return part_.law().contacts(); }

@@ -15,11 +15,10 @@ void InertialResponse::follow(double dt) {
   typical_ = count ? sum / count : 1.0;
 }
 
-Eigen::Vector3d InertialResponse::of_node(int node) const {
-  const double m = model_.mass(node);
-  if (!(m > 0)) return Eigen::Vector3d::Zero();
+Eigen::Vector3d InertialResponse::of_mass(int node, double mass) const {
+  if (!(mass > 0)) return Eigen::Vector3d::Zero();
   const auto& fixed = mesh_.fixed[node];
-  const double free = squared_dt_ / m;
+  const double free = squared_dt_ / mass;
   return {fixed[0] ? 0 : free, fixed[1] ? 0 : free, fixed[2] ? 0 : free};
 }
 

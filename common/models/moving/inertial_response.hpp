@@ -19,7 +19,9 @@ class InertialResponse : public Response {
   double typical() const override { return typical_; }
 
   /// [m/N] of a node, per axis; zero along fixed axes and for nodes that have left.
-  Eigen::Vector3d of_node(int node) const;
+  Eigen::Vector3d of_node(int node) const { return of_mass(node, model_.mass(node)); }
+  /// The same if it had this mass [kg].
+  Eigen::Vector3d of_mass(int node, double mass) const;
 
  private:
   const ElasticMesh& mesh_;

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "common/dynamics/elastic_mesh.hpp"
 #include "common/fem/condensation.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -20,29 +19,6 @@ std::vector<int> index_of_nodes(const SurfaceMap& surface, std::size_t nodes) {
   std::vector<int> index(nodes, -1);
   for (int i = 0; i < surface.size(); ++i) index[surface.node_number[i]] = i;
   return index;
-}
-
-// What the patches of tips meet when the tissue is at rest.
-void add_moving_compliance(Archive& archive, const Progress& progress) {
-  Stopwatch watch(progress);
-  const ElasticMesh moving = elastic_mesh(archive);
-  const TetMesh mesh{.nodes = moving.rest, .tetrahedra = moving.tetrahedra, .groups = {}};
-  DofMap dofs(mesh);
-  for (int node = 0; node < moving.nodes(); ++node)
-    for (int axis = 0; axis < 3; ++axis)
-      if (moving.fixed[node][axis] && dofs.index(node, axis) != DofMap::kUnused) dofs.fix(node, axis);
-  dofs.number();
-  std::vector<int> touchable;
-  for (int node = 0; node < archive.surface.touchable; ++node)
-    for (int axis = 0; axis < 3; ++axis)
-      if (dofs.is_free(node, axis)) {
-        if (touchable.empty() || touchable.back() != node) touchable.push_back(node);
-        archive.moving_dofs.push_back({node, axis});
-      }
-  const MaterialField materials{moving.materials, moving.material_of};
-  if (touchable.empty()) return;
-  archive.moving_compliance = surface_compliance(mesh, materials, dofs, touchable, {}, progress).touchable;
-  watch.lap("compliance of what moves");
 }
 
 }  // namespace
@@ -70,6 +46,16 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
   return index;
 }
 
+void add_compliance_at_rest(const TetMesh& mesh, const DofMap& dofs, const MaterialField& materials,
+                            const Progress& progress, Archive& archive) {
+  Stopwatch watch(progress);
+  const SurfaceMap& surface = archive.surface;
+  const std::vector<int> touchable(surface.node_number.begin(), surface.node_number.begin() + surface.touchable);
+  archive.moving_dofs = free_dofs(surface, 0, surface.touchable);
+  archive.moving_compliance = surface_compliance(mesh, materials, dofs, touchable, {}, progress).touchable;
+  watch.lap("compliance at rest");
+}
+
 Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,
                           const Progress& progress) try {
   Stopwatch watch(progress);
@@ -80,7 +66,7 @@ Archive precompute_moving(const MovingSpec& body, std::string_view kind, const T
   std::iota(all.begin(), all.end(), 0);
   add_moving_part(body, mesh, dofs, materials, all, archive);
   watch.lap("surface");
-  add_moving_compliance(archive, progress);
+  add_compliance_at_rest(mesh, dofs, materials, progress, archive);
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));

@@ -19,6 +19,10 @@ MaterialField materials_of(const MaterialField& whole, const std::vector<int>& e
 std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,
                                  const MaterialField& materials, const std::vector<int>& elements, Archive& archive);
 
+/// Fills in the compliance of the whole body at rest among its touchable nodes: what the patches of tips meet.
+void add_compliance_at_rest(const TetMesh& mesh, const DofMap& dofs, const MaterialField& materials,
+                            const Progress& progress, Archive& archive);
+
 /// The archive of a body of the kind `kind` that moves with inertia as a whole: rest shape, tetrahedra, materials and
 /// boundary conditions. Throws std::runtime_error on an unfixed body, empty selections, or too little memory.
 Archive precompute_moving(const MovingSpec& body, std::string_view kind, const TetMesh& mesh,

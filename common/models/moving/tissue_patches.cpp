@@ -47,19 +47,18 @@ HalfSpace material_of(const Archive& archive) {
 }  // namespace
 
 TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology,
-                             const CutSurface& surface, DynamicModel& model, const InertialResponse& response,
-                             const StepSettings& settings)
+                             const CutSurface& surface, DynamicModel& model, HybridTouch* still,
+                             const InertialResponse& response, const StepSettings& settings)
     : mesh_(mesh),
-      cut_surface_(surface),
-      model_(model),
-      response_(response),
       friction_(settings.contact.friction),
       map_(archive.surface),
       surface_(map_),
       longest_edge_(std::ranges::max(longest_edges(map_))),
       triangle_of_facet_(4 * topology.size(), -1),
       facet_of_triangle_(map_.triangles.size(), -1),
-      grids_(material_of(archive)) {
+      grids_(material_of(archive)),
+      ground_of_node_(mesh.rest.size(), 0),
+      position_(mesh.rest) {
   std::map<std::array<int, 3>, int> facets;
   for (const int facet : topology.visible()) facets[ascending(topology.facet(facet))] = facet;
   for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t) {
@@ -68,34 +67,52 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     facet_of_triangle_[t] = found->second;
     triangle_of_facet_[found->second] = t;
   }
+  grounds_.push_back({surface, triangle_of_facet_});
   double largest = 0;
   for (const PatchPart& part : patch_parts(settings.tools, false)) {
     tips_.push_back({.tool = part.tool, .patch = Patch(grids_.of(part.radius)), .radius = part.radius});
     largest = std::max(largest, part.radius);
   }
+  constexpr int pairs = Patch::kMaxNodes * (Patch::kMaxNodes + 1) / 2;
   for (Tip& tip : tips_) {
-    tip.nodes.reserve(Patch::kMaxNodes);
-    tip.give.reserve(Patch::kMaxNodes);
+    for (std::vector<int>* nodes : {&tip.nodes, &tip.known}) nodes->reserve(Patch::kMaxNodes);
+    for (std::vector<NodeGive>* give : {&tip.world_give, &tip.give}) give->reserve(still ? pairs : Patch::kMaxNodes);
     tip.last.reserve(Patch::kMaxNodes);
   }
   moved_.reserve(Patch::kMaxNodes);
   went_.reserve(Patch::kMaxNodes);
+  forces_.reserve(Patch::kMaxNodes);
+  if (still) {
+    nodes_ = std::make_unique<HybridNodes>(model, response, still->part(), static_cast<int>(tips_.size()));
+    grounds_.push_back({still->surface(), {}});
+    for (int t = 0; t < still->surface().triangle_count(); ++t) grounds_.back().triangle.push_back(t);
+    for (int node = 0; node < mesh.nodes(); ++node) ground_of_node_[node] = still->part().owns(node);
+  } else {
+    nodes_ = std::make_unique<TissueNodes>(model, response);
+  }
   if (tips_.empty()) return;
-  const auto compliance = Compliance<double>::of_moving_part(archive);
+  const auto compliance = Compliance<double>::at_rest(archive);
   near_field_ = std::make_unique<NearField>(surface_, compliance, material_of(archive), largest, kResolved);
   near_field_->subtract(compliance);
   follow_cut(topology, {});
 }
 
 void TissuePatches::follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave) {
-  for (const Tip& tip : tips_) {
-    if (tip.contact.touch == Touch::open || cut_surface_.facet_of(tip.contact.anchor.nodes) >= 0) continue;
-    leave(tip.contact);
+  const auto has_gone = [&](std::size_t triangle) {
+    return facet_of_triangle_[triangle] >= 0 && !topology.is_visible(facet_of_triangle_[triangle]);
+  };
+  for (Tip& tip : tips_) {
+    const auto under = std::ranges::find(map_.triangles, tip.contact.anchor.nodes);
+    if (tip.contact.touch != Touch::open && (under == map_.triangles.end() || has_gone(under - map_.triangles.begin())))
+      leave(tip.contact);
   }
-  for (std::size_t t = 0; t < facet_of_triangle_.size(); ++t) {
-    const int facet = facet_of_triangle_[t];
-    if (facet < 0 || !topology.is_visible(facet)) surface_.leave_out(static_cast<int>(t));
-  }
+  for (std::size_t t = 0; t < facet_of_triangle_.size(); ++t)
+    if (has_gone(t)) surface_.leave_out(static_cast<int>(t));
+  follow_response();
+}
+
+void TissuePatches::follow_response() {
+  for (Tip& tip : tips_) tip.known.clear();
 }
 
 bool TissuePatches::has(int tool, int part) const {
@@ -126,23 +143,42 @@ bool TissuePatches::find_place(const Tip& tip, const MovingTool& tool, Vector3d&
   const Vector3d middle = tool.axis(kTip).start;
   double least = std::pow((1 + kAbove) * tip.radius, 2);
   bool found = false;
-  for (const int facet : cut_surface_.find(tool.axis_before(kTip).start, middle, std::sqrt(least))) {
-    const int t = triangle_of_facet_[facet];
-    if (t < 0) continue;
-    const ClosestPoint p = closest_point(middle, cut_surface_.corners(facet));
-    if (p.squared_distance >= least) continue;
-    least = p.squared_distance;
-    place = anchor_position({cut_surface_.triangle(facet), p.weights}, map_.position);
-    found = true;
-  }
+  for (const Ground& ground : grounds_)
+    for (const int t : ground.surface.find(tool.axis_before(kTip).start, middle, std::sqrt(least))) {
+      if (ground.triangle[t] < 0) continue;
+      const ClosestPoint p = closest_point(middle, ground.surface.corners(t));
+      if (p.squared_distance >= least) continue;
+      least = p.squared_distance;
+      place = anchor_position({ground.surface.triangle(t), p.weights}, map_.position);
+      found = true;
+    }
   return found;
+}
+
+// Of the tissue, from rest.
+Eigen::Isometry3d TissuePatches::motion_about(const Vector3d& place, double within) {
+  for (const int t : surface_.near(place, within))
+    for (const int node : map_.triangles[t])
+      position_[node] = grounds_[ground_of_node_[node]].surface.positions()[node];
+  return local_motion(surface_, place, within, position_);
+}
+
+// From one tick to the next the nodes are mostly the same.
+void TissuePatches::find_give(Tip& tip) {
+  if (tip.known != tip.nodes) {
+    tip.known = tip.nodes;
+    tip.world_give.clear();
+    nodes_->add_give(tip.nodes, tip.world_give);
+  }
+  const Matrix3d turn = tip.motion.linear();
+  tip.give = tip.world_give;
+  for (NodeGive& give : tip.give) give.block = turn.transpose() * give.block * turn;
 }
 
 void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
   Vector3d place;
   if (!find_place(tip, tool, place)) return lift(tip);
-  const Eigen::Isometry3d motion =
-      local_motion(surface_, place, kAbout * std::max(tip.radius, longest_edge_), cut_surface_.positions());
+  const Eigen::Isometry3d motion = motion_about(place, kAbout * std::max(tip.radius, longest_edge_));
   tip.motion = tip.patch.touches() ? followed(tip.motion, motion, place, kSlackWay * tip.radius) : motion;
   const Eigen::Isometry3d to_rest = tip.motion.inverse();
   const Vector3d middle = tool.axis(kTip).start;
@@ -153,17 +189,14 @@ void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
                     {to_rest * middle, to_rest * middle}, kAbove * tip.radius);
   if (nodes.empty()) return lift(tip);
   tip.nodes.assign(nodes.begin(), nodes.end());
-  tip.give.clear();
+  find_give(tip);
   tip.last.clear();
-  const Matrix3d turn = tip.motion.linear();
-  for (const int node : nodes) {
-    tip.give.push_back(turn.transpose() * response_.of_node(node).asDiagonal() * turn);
-    tip.last.push_back(displacement(node));
-  }
+  for (const int node : nodes) tip.last.push_back(nodes_->displacement(node));
   tip.patch.meet({surface_, *near_field_, friction_}, tip.give);
 }
 
 void TissuePatches::lift(Tip& tip) {
+  nodes_->release(number(tip));
   tip.patch.lift();
   tip.nodes.clear();
   tip.ease = 0;
@@ -177,10 +210,11 @@ void TissuePatches::step(std::span<const MovingTool> tools, double dt) {
 
 void TissuePatches::press(Tip& tip, const MovingTool& tool, double dt) {
   const Eigen::Isometry3d to_rest = tip.motion.inverse();
+  nodes_->release(number(tip));
   moved_.clear();
   went_.clear();
   for (std::size_t i = 0; i < tip.nodes.size(); ++i) {
-    const Vector3d u = displacement(tip.nodes[i]), &rest = mesh_.rest[tip.nodes[i]];
+    const Vector3d u = nodes_->displacement(tip.nodes[i]), &rest = mesh_.rest[tip.nodes[i]];
     moved_.push_back(to_rest * (rest + u) - rest);
     went_.push_back(to_rest.linear() * (u - tip.last[i]));
   }
@@ -198,13 +232,16 @@ void TissuePatches::press(Tip& tip, const MovingTool& tool, double dt) {
   step.ease = tip.ease;
   tip.ease = std::max(tip.ease - kWayOut * dt, 0.0);
   tip.patch.step({surface_, *near_field_, friction_}, step);
-  const Matrix3d turn = tip.motion.linear();
-  for (const PatchForce& f : tip.patch.forces()) {
-    const Vector3d moved = response_.of_node(f.node).cwiseProduct(turn * f.force);
-    model_.set_motion(f.node, displacement(f.node) + moved, model_.velocity(f.node) + moved / dt);
-  }
-  for (std::size_t i = 0; i < tip.nodes.size(); ++i) tip.last[i] = displacement(tip.nodes[i]);
-  tip.impulse += dt * (turn * tip.patch.force());
+  nodes_->push(number(tip), seen_from_world(tip), dt);
+  for (std::size_t i = 0; i < tip.nodes.size(); ++i) tip.last[i] = nodes_->displacement(tip.nodes[i]);
+  tip.impulse += dt * (tip.motion.linear() * tip.patch.force());
+}
+
+// [N] on the nodes under it.
+std::span<const PatchForce> TissuePatches::seen_from_world(const Tip& tip) {
+  forces_.assign(tip.patch.forces().begin(), tip.patch.forces().end());
+  for (PatchForce& f : forces_) f.force = tip.motion.linear() * f.force;
+  return forces_;
 }
 
 void TissuePatches::end_tick(std::span<const MovingTool> tools, double dt) {
@@ -251,6 +288,7 @@ void TissuePatches::state(State& s) {
     s.value(tip.contact.anchor.weights);
     for (Vector3d* v : {&tip.contact.normal, &tip.contact.force, &tip.contact.at}) s.value(*v);
     s.value(tip.contact.give);
+    if (s.restoring()) nodes_->resume(number(tip), seen_from_world(tip));
   }
 }
 

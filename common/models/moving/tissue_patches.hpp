@@ -9,9 +9,10 @@
 #include "common/contact/cut_surface.hpp"
 #include "common/contact/patch/patch.hpp"
 #include "common/contact/step_settings.hpp"
-#include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/inertial_response.hpp"
+#include "common/models/moving/tissue_nodes.hpp"
 #include "common/tool/moving_tool.hpp"
 
 namespace palpate {
@@ -19,18 +20,21 @@ namespace palpate {
 /// The patches of probes' tips on moving tissue. Once a tick each is laid on the tissue's rest shape, seen from the
 /// rigid motion that the tissue has made there; in each step of the tissue its pressures and its shear are solved for
 /// the step's end, where
-///   (L + dt^2 Phi M^-1 Phi^T) p = gap of the step without them,   p >= 0, one of them an equality,
+///   (L + Phi D Phi^T) p = gap of the step without them,   p >= 0, one of them an equality,
 ///   L = G + Phi (K - C) Phi^T,
-/// K being what the tissue has at rest beyond the half-space G (NearField) and C its nodes' own compliance: at rest
-/// that is the answer of the patch on tissue without inertia. What has been cut open is left to contacts by nodes.
+/// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
+/// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
+/// patch lies on both parts of a hybrid alike. What has been cut open is left to contacts by nodes.
 class TissuePatches {
  public:
   /// [m/s] At which tissue that is found deep within a tool is led out of it.
   static constexpr double kWayOut = 0.02;
 
-  /// `archive`: read with ArchivePart::surface. `settings` is looked at here alone; all else outlives this object.
+  /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
+  /// null for others. All else outlives this object.
   TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, const CutSurface& surface,
-                DynamicModel& model, const InertialResponse& response, const StepSettings& settings);
+                DynamicModel& model, HybridTouch* still, const InertialResponse& response,
+                const StepSettings& settings);
 
   /// Once a tick: lays the patches of what is near; none of a tool whose jaws hold the tissue.
   void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds);
@@ -50,6 +54,8 @@ class TissuePatches {
   void add_contacts(std::vector<TouchContact>& contacts) const;
 
   void forget_factor();
+  /// Steps are of another length from now on.
+  void follow_response();
   void drop_tool(int tool);
   /// After a cut. `leave`: what becomes of the contact of a patch whose triangle has gone.
   void follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave);
@@ -62,7 +68,8 @@ class TissuePatches {
     double radius;                                             ///< [m]
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< of the tissue from rest
     std::vector<int> nodes;                                    ///< under it; empty: it is not laid
-    std::vector<Eigen::Matrix3d> give;                         ///< [m/N] of those
+    std::vector<int> known;                                    ///< those that `world_give` is of
+    std::vector<NodeGive> world_give, give;                    ///< as they are, and seen from rest
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
     double ease = 0;                                           ///< [m] that it stands too deep, and is led out of
     bool met = false;                                          ///< it has been so since before this tick
@@ -71,26 +78,37 @@ class TissuePatches {
     TouchContact contact;                                      ///< of the last tick
   };
 
+  /// A surface that tools meet, and of its triangles those of map_.
+  struct Ground {
+    const ContactSurface& surface;
+    std::vector<int> triangle;  ///< per triangle of it; -1: none
+  };
+
   bool find_place(const Tip& tip, const MovingTool& tool, Eigen::Vector3d& place) const;
+  Eigen::Isometry3d motion_about(const Eigen::Vector3d& place, double within);
+  void find_give(Tip& tip);
   void lay(Tip& tip, const MovingTool& tool);
   void lift(Tip& tip);
   void press(Tip& tip, const MovingTool& tool, double dt);
-  Eigen::Vector3d displacement(int node) const { return model_.displacement(node); }
+  std::span<const PatchForce> seen_from_world(const Tip& tip);
+  int number(const Tip& tip) const { return static_cast<int>(&tip - tips_.data()); }
 
   const ElasticMesh& mesh_;
-  const CutSurface& cut_surface_;
-  DynamicModel& model_;
-  const InertialResponse& response_;
   double friction_;
   SurfaceMap map_;
   SmoothSurface surface_;
   double longest_edge_;                 ///< [m]
   std::vector<int> triangle_of_facet_;  ///< of map_, per facet of the CutMesh; -1: none
-  std::vector<int> facet_of_triangle_;
+  std::vector<int> facet_of_triangle_;  ///< -1: nothing cuts it
+  std::vector<Ground> grounds_;
+  std::unique_ptr<TissueNodes> nodes_;
   std::unique_ptr<NearField> near_field_;
   PatchGrids grids_;
   std::vector<Tip> tips_;
   std::vector<Eigen::Vector3d> moved_, went_;
+  std::vector<PatchForce> forces_;
+  std::vector<int> ground_of_node_;        ///< per node: the one that knows where it is
+  std::vector<Eigen::Vector3d> position_;  ///< [m] per node, of those near a tip
 };
 
 }  // namespace palpate

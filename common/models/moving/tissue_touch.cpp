@@ -26,26 +26,27 @@ void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
 }  // namespace
 
 TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
-                         DynamicModel& model, const StepSettings& settings)
+                         DynamicModel& model, HybridTouch* still, const StepSettings& settings)
     : mesh_(mesh),
+      still_(still),
       model_(model),
       surface_(surface),
       free_(mesh.rest),
       response_(mesh, model),
       law_({response_, free_}, ContactLaw::Rule::barycentric, settings.contact.friction, kMaxContacts),
-      patches_(settings.contact.rule == "patch" && !archive.hybrid
-                   ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, response_, settings)
-                   : nullptr),
+      patches_(settings.contact.rule == "patch" ? std::make_unique<TissuePatches>(archive, mesh, topology, surface,
+                                                                                  model, still, response_, settings)
+                                                : nullptr),
       contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
   aimed_.reserve(kMaxContacts);
   all_.reserve(kMaxContacts + settings.tools.size());
 }
 
-void TissueTouch::find(std::span<const MovingTool> tools, double dt) {
+void TissueTouch::find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds) {
   if (dt != dt_) follow_response(dt);
   contacts_.look(tools);
   contacts_.collide(tools);
-  if (patches_) patches_->find(tools, [this](int tool) { return grasping(tool); });
+  if (patches_) patches_->find(tools, holds);
 }
 
 void TissueTouch::drop_tool(int tool) {
@@ -87,9 +88,10 @@ void TissueTouch::leave(TouchContact c, std::span<const MovingTool> tools, const
 }
 
 void TissueTouch::follow_cut(const CutMesh& topology, std::span<const MovingTool> tools) {
+  const auto is_there = [&](int node) { return topology.has_node(node) || (still_ && still_->part().owns(node)); };
   const auto node_gone = [&](const TouchContact& c) {
     for (int v = 0; v < 3; ++v)
-      if (c.anchor.weights[v] != 0 && !topology.has_node(c.anchor.nodes[v])) return true;
+      if (c.anchor.weights[v] != 0 && !is_there(c.anchor.nodes[v])) return true;
     return false;
   };
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
@@ -108,6 +110,7 @@ void TissueTouch::follow_response(double dt) {
   dt_ = dt;
   response_.follow(dt);
   law_.follow_response();
+  if (patches_) patches_->follow_response();
 }
 
 void TissueTouch::solve(std::span<const MovingTool> tools) {

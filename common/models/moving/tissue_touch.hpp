@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,10 +23,10 @@ class TissueTouch {
  public:
   static constexpr int kMaxContacts = 32;
 
-  /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. All else outlives this
-  /// object.
+  /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
+  /// null for others. All else outlives this object.
   TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
-              DynamicModel& model, const StepSettings& settings);
+              DynamicModel& model, HybridTouch* still, const StepSettings& settings);
 
   /// Of the last tick: all that pressed in it, those that have let go as well, with the tick's mean normal.
   std::span<const TouchContact> contacts() const { return all_; }
@@ -33,7 +34,8 @@ class TissueTouch {
   bool touched() const { return !law_.contacts().empty() || (patches_ && patches_->laid()); }
 
   /// Once a tick of steps of `dt` [s]: which points the tools' parts touch. Contacts that go on keep where they stick.
-  void find(std::span<const MovingTool> tools, double dt);
+  /// `holds`: whether a tool's jaws hold the body.
+  void find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds);
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
@@ -59,6 +61,7 @@ class TissueTouch {
   void put_right(double dt);
 
   const ElasticMesh& mesh_;
+  const HybridTouch* still_;
   DynamicModel& model_;
   CutSurface& surface_;
   std::vector<Eigen::Vector3d> free_;   ///< [m] per node: where it is at a step's end without contacts
