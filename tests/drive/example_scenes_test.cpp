@@ -50,7 +50,7 @@ const std::vector<Example> kExamples{
      {"body.cylinder.pieces==1", "tool.probe.touching>1.5", "body.cylinder.displacement.max>0.01"}},
     {"block_partial",
      5,
-     {"tool.probe.force.max>0.1", "tool.probe.touching>1", "body.block.displacement.max>0.003"},
+     {"tool.probe.force.max>0.04", "tool.probe.touching>1", "body.block.displacement.max>0.0015"},
      false,
      {"body.block.displacement.end<0.0009"}},
     {"hepatectomy",

@@ -218,7 +218,7 @@ TEST_F(Hostile, ASecondHapticAndASecondDeformNodeAreNotFollowedNorWhenTheOwnerSt
     system().watch(1ms);
   }
   EXPECT_LT(hand().max_force(), 0.1);
-  EXPECT_TRUE(system().pictures_go_on(1s));
+  EXPECT_TRUE(system().pictures_go_on(3s));
 }
 
 TEST_F(Hostile, ANodeWithoutASceneIsNoneOfThisScene) {

@@ -113,6 +113,9 @@ TEST(Archive, TouchablePartDoesNotReadTheOtherRows) {
             std::string::npos);
 }
 
+constexpr fs::perms kNoWriting =
+    fs::perms::owner_read | fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+
 TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) {
   const TemporaryFolder folder;
   const auto mesh = folder / "liver.msh", beside = folder / ".palpate" / "liver-abc.h5";
@@ -121,7 +124,7 @@ TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) 
   EXPECT_EQ(place(), beside);
 
   const uid_t user = geteuid(), other = user == 0 ? 65534 : user;  // permissions do not hold before root
-  fs::permissions(folder / ".", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  fs::permissions(folder / ".", kNoWriting);
   ASSERT_EQ(seteuid(other), 0);
   setenv("XDG_CACHE_HOME", "/caches", 1);
   EXPECT_EQ(place(), "/caches/palpate/liver-abc.h5");
@@ -138,10 +141,10 @@ TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) 
   ASSERT_EQ(seteuid(user), 0);
 
   // What came with the mesh is used, though nothing can be added.
-  fs::permissions(folder / ".", fs::perms::owner_all | fs::perms::others_exec);
+  fs::permissions(folder / ".", kNoWriting | fs::perms::owner_write);
   fs::create_directory(folder / ".palpate");
   testing::write_bytes(beside, std::vector<char>{'a'}, 1);
-  fs::permissions(folder / ".palpate", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  fs::permissions(folder / ".palpate", kNoWriting);
   ASSERT_EQ(seteuid(other), 0);
   EXPECT_EQ(place(), beside);
   ASSERT_EQ(seteuid(user), 0);

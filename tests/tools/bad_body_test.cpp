@@ -112,7 +112,7 @@ TEST_F(ToolsBadBody, AHoldThatCannotBeIsRefused) {
   refused("0:0,0,0.001", {"node 0 cannot be held", "it is fixed"});
   refused("400:0,high,0", {"400:0,high,0", "'high' is not a number"});
   refused("400:0,0,nan", {"400:0,0,nan", "'nan'"});
-  refused("some:0,0,0", {"some:0,0,0"});
+  refused("some:0,0,0", {"--hold", "the mesh has no group 'some'"});
   refused("400", {"400"});
   refused("400:,,", {"400:,,"});
   refused("405:0,0,0.001", {"node 405 is not in the mesh", "405 nodes"});
