@@ -3,12 +3,12 @@
 # undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
 # out/mcap_reader), python (the module and its examples; installs pybind11-dev and python3-dev), papers (docs/papers.md in
-# full, into out/papers_docs). All of them where none is named.
+# full, into out/papers_docs), packages (made, and tried in a bare Debian 12; needs root). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long address thread tidy stability mcap python papers
+[ $# -gt 0 ] || set -- long address thread tidy stability mcap python papers packages
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -30,6 +30,10 @@ for stage in "$@"; do
     papers)
       ./scripts/build.sh release
       python3 scripts/papers.py build/release/bin out/papers_docs ;;
+    packages)
+      ./scripts/install.sh debootstrap
+      ./scripts/package.sh
+      ./scripts/bare_host.sh ;;
     address|thread)
       ./scripts/build.sh "$stage"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
