@@ -4,6 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(mktemp -d /tmp/palpate-bare-XXXXXX)
+chmod 755 "$root"  # it is the / of those within
 mirror=${1:-http://deb.debian.org/debian}
 leave() {
   umount "$root/proc" "$root/dev" 2>/dev/null || true

@@ -22,7 +22,7 @@ def draw_brain(curves, file, pressed):
         force.plot([1e3 * v for v in x], f, color=colour, label=f"{speed} mm/min")
     x, wider = read(curves / "brain_radial.csv")
     linear = [POISSON * RADIUS * v / HEIGHT for v in x]
-    radial.plot([1e3 * v for v in x], [1e3 * v for v in wider], color="tab:blue", label="measured")
+    radial.plot([1e3 * v for v in x], [1e3 * v for v in wider], color="tab:blue", label="law of the experiment")
     radial.plot([1e3 * v for v in x], [1e3 * v for v in linear], color="grey", linestyle="--", label="linear, ν r x / h")
     law.plot([1e3 * v for v in linear], [1e3 * v for v in wider], color="tab:blue", label="P")
     law.plot([1e3 * v for v in linear], [1e3 * v for v in linear], color="grey", linestyle="--", label="linear")
