@@ -182,6 +182,8 @@ TEST(HybridPatch, GoesOnBitForBitFromAKeyframe) {
   for (int i = 0; i < keyframe; ++i) move(first, i);
   ASSERT_FALSE(first.organ().contacts().empty());
   second.tissue().restore(first.tissue().save());
+  for (int node = 0; node < first.archives()[0].surface.size(); ++node)
+    ASSERT_EQ(first.organ().position(node), second.organ().position(node)) << "as it is shown at once, node " << node;
   for (int i = keyframe; i < 2 * keyframe; ++i) {
     move(first, i);
     move(second, i);
