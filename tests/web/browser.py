@@ -120,8 +120,7 @@ def hostile(options):
     print(f"{web['thrown_out']} pages thrown out, {web['refused_requests']} requests refused, haptic loop at "
           f"{haptic['rate_hz']:.1f} Hz, {good.frames} frames to the one that behaves")
     expect(web["thrown_out"] > 10 and web["refused_requests"] > 10, web)
-    # A virtual machine's host takes its share now and then: what it leaves is judged closely where there is time.
-    expect(haptic["rate_hz"] > (970 if "PALPATE_LONG_TESTS" in os.environ else 800), haptic["rate_hz"])
+    pathlib.Path(options.ticks).write_text(f"{haptic['rate_hz'] * haptic['seconds']} {haptic['seconds']}")
     expect(good.frames > 100, good.frames)
 
 
@@ -146,6 +145,7 @@ def main():
     parser.add_argument("case", choices=["press", "share", "cut", "hostile"])
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
     options = parser.parse_args()
     if options.case != "hostile":
         need_browser()

@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
+#include "common/realtime/clock.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/realtime/host_watch.hpp"
 
 namespace palpate {
 namespace {
@@ -13,7 +18,7 @@ namespace {
 constexpr int kNoBrowser = 77;
 
 /// Runs one case of browser.py, which says what it saw.
-void run(const char* name) {
+void run(const std::string& name) {
   const std::string command = fmt::format(
       "/usr/bin/python3 {0}/tests/web/browser.py {1} --bin {2} --source {0} --domain {3} --cache {4}/web_cache",
       PALPATE_SOURCE, name, PALPATE_BIN, testing::own_domain(), PALPATE_BUILD);
@@ -37,7 +42,18 @@ TEST(WebBrowser, ACutAppears) {
 }
 
 TEST(WebHostile, PagesThatMisbehaveAreThrownOutAndTheForceKeepsItsRate) {
-  run("hostile");
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("palpate-ticks-{}", getpid());
+  const testing::HostWatch host;
+  run("hostile --ticks " + file.string());
+  const std::int64_t end = now_ns();
+  if (IsSkipped()) return;
+  double ticks = 0, seconds = 0;
+  std::ifstream(file) >> ticks >> seconds;
+  std::filesystem::remove(file);
+  ASSERT_GT(seconds, 0);
+  // The loop has ended within the last half second.
+  const auto begin = end - static_cast<std::int64_t>(1e9 * (seconds + 0.5));
+  EXPECT_GT(ticks / (seconds - host.stood_still(begin, end)), 970);
 }
 
 }  // namespace
