@@ -1,7 +1,6 @@
 #include "deform_node/deform_loop.hpp"
 
-#include <spdlog/spdlog.h>
-
+#include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
 
@@ -32,13 +31,13 @@ void DeformLoop::publish(bool all) {
                         {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
   if (all)
-    for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
+    for (const std::string& said : range_.look(deformer_)) log_warning(said);
 }
 
 // Peers, the death of the haptic node and the status: what is not for every frame.
 void DeformLoop::keep_house(std::int64_t now) {
-  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
-  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  for (const std::string& said : presence_.watch()) log_info(said);
+  for (const std::string& said : link_.look(presence_, now)) log_warning(said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < 1'000'000'000) return;
   const double rate = last_status_ns_ == 0 ? 0

@@ -1,7 +1,8 @@
 #include "deform_node/dynamic_loop.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
+#include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -56,13 +57,13 @@ void DynamicLoop::take_tools() {
 
 void DynamicLoop::take_earlier_cuts() {
   if (!earlier_.in_time())
-    spdlog::warn("not every node has told what had been cut before: what those know that have is taken");
+    log_warning("not every node has told what had been cut before: what those know that have is taken");
   for (int i = 0; i < world_.organs(); ++i) {
     const int body = world_.bodies()[i];
     const HeldTopology* held = whole_ ? nullptr : earlier_.of(body);
     if (held && world_.organ(i).begin_without(held->removed))
-      spdlog::info("body '{}': {} tetrahedra had gone before, by {}", names_[body], world_.organ(i).removed().size(),
-                   held->node);
+      log_info(fmt::format("body '{}': {} tetrahedra had gone before, by {}", names_[body],
+                           world_.organ(i).removed().size(), held->node));
   }
 }
 
@@ -71,8 +72,7 @@ void DynamicLoop::begin_tissue(std::int64_t now) {
   presence_.claim("the moving tissue of this scene");
   take_earlier_cuts();
   phase_ = late_ || earlier_.another_had_them() ? Phase::settling : Phase::moving;
-  if (phase_ == Phase::settling)
-    spdlog::info("the tools are there already: the tissue comes to rest around them first");
+  if (phase_ == Phase::settling) log_info("the tools are there already: the tissue comes to rest around them first");
   if (phase_ == Phase::moving) tell_begin();
 }
 
@@ -176,16 +176,16 @@ void DynamicLoop::publish_frames() {
     surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
   }
   ++report_.frames;
-  for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
+  for (const std::string& said : range_.look(deformer_)) log_warning(said);
   if (newest.sense_ns != shown_sense_ns_)
     report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
   shown_sense_ns_ = newest.sense_ns;
 }
 
 void DynamicLoop::keep_house(std::int64_t now) {
-  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : presence_.watch()) log_info(said);
   if (const std::string lost = presence_.lost_claim(); !lost.empty()) throw std::runtime_error(lost);
-  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) log_warning(said);
   feed_.watch_haptic();
   if (now - last_status_ns_ < kNsPerS) return;
   const double rate = last_status_ns_ == 0 ? 0
@@ -193,7 +193,7 @@ void DynamicLoop::keep_house(std::int64_t now) {
                                                  static_cast<double>(now - last_status_ns_);
   const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
   pace_.look(report_.ticks, report_.period.skipped);
-  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  if (!pace_.news().empty()) log_warning(pace_.news());
   const std::string silence = link_.silence("haptic", now), warning = silence.empty() ? pace_.status() : silence;
   presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99),
                      warning.empty() ? range_.warning() : warning);
@@ -202,7 +202,7 @@ void DynamicLoop::keep_house(std::int64_t now) {
 }
 
 const DynamicReport& DynamicLoop::run(double seconds) {
-  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) spdlog::info("{}", said);
+  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) log_info(said);
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
   PeriodicTimer timer(1 / world_.dt(), 0);

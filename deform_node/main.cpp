@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
+#include "common/log/log.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -32,8 +32,8 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
   DeformLoop loop(loaded.scene, deformer, *bus, presence);
   say_ready(o);
   const DeformReport& r = loop.run(o.seconds);
-  spdlog::info("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames,
-               rate(r.frames, r.seconds), us(r.latency, 0.5), us(r.latency, 0.99));
+  log_info(fmt::format("{} frames, {:.1f} Hz, sense to surface p50 {:.0f} us, p99 {:.0f} us", r.frames,
+                       rate(r.frames, r.seconds), us(r.latency, 0.5), us(r.latency, 0.99)));
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},
@@ -54,18 +54,18 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   Presence presence(*bus, "deform", run, loaded.scene_hash, loaded.archive_hash);
   catch_shutdown_signals();
   for (int i = 0; i < world.organs(); ++i)
-    spdlog::info("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each",
-                 name_of(loaded.scene.bodies[world.bodies()[i]]), world.organ(i).topology().alive_count(),
-                 world.organ(i).steps_in(world.dt()), world.organ(i).max_step());
+    log_info(fmt::format("body '{}': {} tetrahedra move in {} steps a tick, at most {:.3g} s each",
+                         name_of(loaded.scene.bodies[world.bodies()[i]]), world.organ(i).topology().alive_count(),
+                         world.organ(i).steps_in(world.dt()), world.organ(i).max_step()));
   DynamicLoop loop(world, local_models, deformer, *bus, presence, loaded.scene, run, code_path());
   if (whole) loop.forget_earlier_cuts();
   say_ready(o);
   const DynamicReport& r = loop.run(o.seconds);
-  spdlog::info(
+  log_info(fmt::format(
       "{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} "
       "fallen away",
       rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped, r.cut, r.torn,
-      r.fallen);
+      r.fallen));
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},

@@ -1,11 +1,10 @@
 #include "haptic_node/haptic_loop.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <thread>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -62,7 +61,7 @@ const LoopReport& HapticLoop::run(double seconds) {
       }
     });
   prefault_stack();
-  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) spdlog::info("{}", said);
+  for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) log_info(said);
 
   const std::int64_t begin = now_ns();
   PeriodicTimer timer(1 / haptic_.dt());
@@ -174,7 +173,7 @@ void HapticLoop::drain() {
 void HapticLoop::report_status(std::int64_t now) {
   check_peers();
   if (now - last_status_ns_ < 1'000'000'000) return;
-  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  for (const std::string& said : link_.look(presence_, now)) log_warning(said);
   const std::uint64_t ticks = shown_ticks_.load(std::memory_order_relaxed);
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(ticks - last_status_ticks_) /
@@ -182,7 +181,7 @@ void HapticLoop::report_status(std::int64_t now) {
   const std::uint64_t missed = shown_missed_.load(std::memory_order_relaxed);
   say_interventions();
   pace_.look(ticks, missed);
-  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  if (!pace_.news().empty()) log_warning(pace_.news());
   presence_.announce(rate, ticks, missed, 0, 0, told_.status().empty() ? pace_.status() : told_.status());
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
@@ -194,7 +193,7 @@ void HapticLoop::say_interventions() {
               .followed = shown_followed_.load(std::memory_order_relaxed),
               .refused_models = local_feed_.refused(),
               .implausible_models = local_feed_.implausible()});
-  for (const std::string& said : told_.news()) spdlog::warn("{}", said);
+  for (const std::string& said : told_.news()) log_warning(said);
 }
 
 std::uint64_t HapticLoop::refused_samples() const {
@@ -202,7 +201,7 @@ std::uint64_t HapticLoop::refused_samples() const {
 }
 
 void HapticLoop::check_peers() {
-  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
+  for (const std::string& said : presence_.watch()) log_info(said);
   if (lost_claim_.empty() && !(lost_claim_ = presence_.lost_claim()).empty())
     gives_way_.store(true, std::memory_order_relaxed);
   if (const Presence::Peer* deform = presence_.holder("deform")) local_feed_.follow(deform->status.run);

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "common/kernels/code_path.hpp"
+#include "common/log/log.hpp"
 #include "common/node/handling_summary.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -25,7 +25,7 @@ void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
   const auto all_ready = [&] {
     return std::all_of(devices.begin(), devices.end(), [](const auto& d) { return d->ready(); });
   };
-  if (!all_ready()) spdlog::info("waiting for a driver on topic {}", topics::device_state.name);
+  if (!all_ready()) log_info(fmt::format("waiting for a driver on topic {}", topics::device_state.name));
   while (!all_ready() && !shutdown_requested()) {
     std::this_thread::sleep_for(250us);
     drivers.take();
@@ -42,14 +42,14 @@ std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& 
   std::vector<ContactState> kept;
   const auto limit = std::chrono::steady_clock::now() + 1s;
   while (kept.empty() && std::chrono::steady_clock::now() < limit) {
-    for (const std::string& said : presence.watch()) spdlog::info("{}", said);
+    for (const std::string& said : presence.watch()) log_info(said);
     // What comes before its sender is known waits in the reader.
     const bool known = presence.matched("deform") || presence.matched("render");
     while (auto contacts = known ? reader->take() : std::nullopt) {
       if (fit(haptic, *contacts))
         kept.push_back(std::move(*contacts));
       else
-        spdlog::warn("a peer keeps contacts that cannot be of this scene; they are left");
+        log_warning("a peer keeps contacts that cannot be of this scene; they are left");
     }
     bus.wait(20ms);
   }
@@ -67,7 +67,7 @@ void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bu
     haptic.start(dofs, true);
     for (const ContactState& c : kept)
       for (const HeldContact& held : c.contacts) haptic.adopt(c.tool, held);
-    spdlog::info("took up the contacts that a peer kept");
+    log_info("took up the contacts that a peer kept");
   }
 }
 
@@ -77,12 +77,12 @@ nlohmann::json tasks_of(const HapticStep& haptic, const Scene& scene) {
   for (const TaskRecord& task : task_records(haptic)) {
     const std::string& body = name_of(scene.bodies[task.body]);
     tasks.push_back(task_summary(body, task));
-    spdlog::info(
+    log_info(fmt::format(
         "task of '{}': {:.1f} mm inserted ({:.1f} mm at the deepest, {:.1f} s after it went in), largest force {:.2f} "
         "N, {} wall contacts, "
         "{} grasps, {} drops, held for {:.1f} s",
         body, 1e3 * task.inserted, 1e3 * task.deepest, task.inserting_s, task.max_force, task.wall_contacts,
-        task.grasps, task.drops, task.held_s);
+        task.grasps, task.drops, task.held_s));
   }
   return tasks;
 }
@@ -149,14 +149,14 @@ void run(const NodeOptions& o) {
   // Peers need a moment to match; what is sent before is lost to them.
   const auto matched = std::chrono::steady_clock::now() + 500ms;
   while (std::chrono::steady_clock::now() < matched && !shutdown_requested()) {
-    for (const std::string& said : presence.watch()) spdlog::info("{}", said);
+    for (const std::string& said : presence.watch()) log_info(said);
     bus->wait(20ms);
   }
   presence.claim("the tools of this scene");
-  spdlog::info("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path());
+  log_info(fmt::format("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path()));
   for (const HapticStep::Entry& entry : haptic.entries())
     if (const std::string said = entry.part->introduction(); !said.empty())
-      spdlog::info("body '{}': {}", name_of(scene.bodies[entry.body]), said);
+      log_info(fmt::format("body '{}': {}", name_of(scene.bodies[entry.body]), said));
   HapticLoop loop(haptic, devices, *bus, presence, run_id, code_path());
   if (topology) loop.set_topology(&*topology);
   const LoopReport& report = loop.run(o.seconds);
@@ -165,12 +165,14 @@ void run(const NodeOptions& o) {
   for (std::size_t t = 0; t < scene.tools.size(); ++t)
     summary["tools"].push_back(handling_summary(scene.tools[t].name, loop.handling(static_cast<int>(t))));
   if (report.damped > 0)
-    spdlog::info("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
-                 report.damped, -1e3 * report.min_energy);
+    log_info(
+        fmt::format("{} steps were damped, as the tools took out more energy than they had put in: {:.1f} mJ at most",
+                    report.damped, -1e3 * report.min_energy));
   if (o.supervised) fmt::print("{}\n", summary.dump());
-  spdlog::info("{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
-               summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(),
-               summary["step_us_p999"].get<double>(), report.period.skipped, report.max_force);
+  log_info(fmt::format(
+      "{:.1f} Hz over {:.1f} s, step p50 {:.1f} us, p99.9 {:.1f} us, missed {} ticks, largest force {:.2f} N",
+      summary["rate_hz"].get<double>(), report.seconds, summary["step_us_p50"].get<double>(),
+      summary["step_us_p999"].get<double>(), report.period.skipped, report.max_force));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "common/log/log.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -46,9 +46,9 @@ void summarise(const RenderReport& r, const Film* film, const RangeMonitor* rang
                          {"film_frames", film ? film->frames() : 0}};
   if (range) summary["range"] = range_summary(*range);
   if (supervised) fmt::print("{}\n", summary.dump());
-  spdlog::info("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms", r.frames,
-               summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
-               1e-3 * us(r.latency, 0.99));
+  log_info(fmt::format("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms",
+                       r.frames, summary["rate_hz"].get<double>(), 1e-3 * us(r.draw, 0.5), 1e-3 * us(r.latency, 0.5),
+                       1e-3 * us(r.latency, 0.99)));
 }
 
 void run(const NodeOptions& o) {

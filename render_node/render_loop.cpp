@@ -1,10 +1,10 @@
 #include "render_node/render_loop.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
+#include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -55,14 +55,14 @@ void RenderLoop::add_to_film(std::int64_t since_begin) {
 }
 
 void RenderLoop::keep_house(std::int64_t now) {
-  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
-  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  for (const std::string& said : presence_.watch()) log_info(said);
+  for (const std::string& said : link_.look(presence_, now)) log_warning(said);
   if (now - last_status_ns_ < kNsPerS) return;
   rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   shown_latency_ = percentiles_us(recent_latency_);
   shown_steps_ = recent_latency_.count();
   pace_.look(passes_, report_.missed);
-  if (!pace_.news().empty()) spdlog::warn("{}", pace_.news());
+  if (!pace_.news().empty()) log_warning(pace_.news());
   const std::string silence = link_.silence("haptic", now), warning = silence.empty() ? pace_.status() : silence;
   presence_.announce(rate_hz_, report_.frames, report_.missed, shown_latency_.p50, shown_latency_.p99,
                      warning.empty() && source_.range() ? source_.range()->warning() : warning);

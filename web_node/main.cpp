@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 
+#include "common/log/log.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/clock.hpp"
@@ -91,8 +91,9 @@ void summarise(const web::WebReport& r, const web::Server::Seen& seen, bool supe
                                {"thrown_out", seen.malformed},
                                {"skipped_frames", seen.skipped}};
   if (supervised) fmt::print("{}\n", summary.dump());
-  spdlog::info("{} frames, {:.1f} Hz; {} requests refused, {} pages thrown out, {} frames left out for slow ones",
-               r.frames, summary["rate_hz"].get<double>(), seen.refused, seen.malformed, seen.skipped);
+  log_info(
+      fmt::format("{} frames, {:.1f} Hz; {} requests refused, {} pages thrown out, {} frames left out for slow ones",
+                  r.frames, summary["rate_hz"].get<double>(), seen.refused, seen.malformed, seen.skipped));
 }
 
 void run(const NodeOptions& o) {

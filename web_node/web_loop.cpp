@@ -1,9 +1,8 @@
 #include "web_node/web_loop.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
+#include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -136,8 +135,8 @@ void WebLoop::send_frame() {
 }
 
 void WebLoop::keep_house(std::int64_t now) {
-  for (const std::string& said : presence_.watch()) spdlog::info("{}", said);
-  for (const std::string& said : link_.look(presence_, now)) spdlog::warn("{}", said);
+  for (const std::string& said : presence_.watch()) log_info(said);
+  for (const std::string& said : link_.look(presence_, now)) log_warning(said);
   if (now - last_status_ns_ < kNsPerS / 2) return;
   rate_hz_ = 1e9 * static_cast<double>(report_.frames - last_frames_) / static_cast<double>(now - last_status_ns_);
   const Percentiles latency = percentiles_us(recent_latency_);

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <map>
 #include <stdexcept>
+
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -156,8 +156,8 @@ SurfaceSolution solve_tensors(const Archive& archive, const std::vector<Constrai
           compliance(a, b) += left.value * touchable_entry(archive, left.row, right.row) * right.value;
       compliance(b, a) = compliance(a, b);
     }
-  const Eigen::LLT<MatrixXd> factor(compliance);
-  if (count > 0 && (factor.info() != Eigen::Success || !(factor.rcond() > 1e-12)))
+  const DenseCholesky factor(compliance);
+  if (count > 0 && !factor.well_conditioned())
     throw std::runtime_error("the held points repeat or contradict one another");
   const VectorXd multiplier = factor.solve(value);
   for (Index c = 0; c < count; ++c)
@@ -174,12 +174,12 @@ SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Cons
   for (std::size_t k = 0; k + 1 < held.begin.size(); ++k) {
     const std::vector<int> own(held.row.begin() + held.begin[k], held.row.begin() + held.begin[k + 1]);
     const auto extent = static_cast<Index>(own.size());
-    force_tensor.block(held.begin[k], held.begin[k], extent, extent) = block(archive, own, own).inverse();
+    force_tensor.block(held.begin[k], held.begin[k], extent, extent) = invert_general(block(archive, own, own));
   }
   VectorXd displacement = held.value;  // u~
   if (how == Superposition::corrected) {
     const MatrixXd m = block(archive, held.row, held.row) * force_tensor;  // T^u_lk = C_lk C_kk^-1
-    displacement = m.partialPivLu().solve(held.value);                     // eq. 8
+    displacement = solve_general(m, held.value);                           // eq. 8
   }
   const VectorXd force = force_tensor * displacement;  // eq. 10
   std::vector<Entry> forces;

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <stdexcept>
+
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -60,8 +61,8 @@ void impose_conditions(const Reduced& reduced, const Factorisation& factor, std:
   }
   const MatrixXd response = factor.solve(rows);
   const MatrixXd compliance = rows.transpose() * response;
-  const Eigen::LLT<MatrixXd> schur(compliance);
-  if (schur.info() != Eigen::Success || !(schur.rcond() > 1e-12))
+  const DenseCholesky schur(compliance);
+  if (!schur.well_conditioned())
     throw std::runtime_error("the held points repeat or contradict one another, or act on fixed nodes alone");
   scatter_add(reduced.dofs, response * schur.solve(gap), displacement);
 }

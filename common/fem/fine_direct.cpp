@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <stdexcept>
 
 #include "common/fem/fine_problem.hpp"
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -81,8 +81,8 @@ StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constr
   VectorXd moved = VectorXd::Zero(problem.dofs.size());  // by the given loads alone
   if (!given.empty()) moved = factor.solve_corrected(gather(problem.dofs, spread_loads(problem, load)));
   const MatrixXd compliance = loads.transpose() * response;
-  const Eigen::LLT<MatrixXd> schur(compliance);
-  if (count > 0 && (schur.info() != Eigen::Success || !(schur.rcond() > 1e-12)))
+  const DenseCholesky schur(compliance);
+  if (count > 0 && !schur.well_conditioned())
     throw std::runtime_error("the held points repeat or contradict one another");
   VectorXd value(count);
   for (Index c = 0; c < count; ++c) value[c] = constraints[c].value;

@@ -1,11 +1,11 @@
 #include "common/fem/linear_contact.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
 
 #include "common/fem/dense.hpp"
 #include "common/fem/ordering.hpp"
+#include "common/geometry/dense_solvers.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
@@ -84,7 +84,7 @@ Eigen::VectorXd LinearContact::solve_normal_forces(const Sphere& ball, const Can
     const Eigen::MatrixXd among = along(held, held);
     const Eigen::VectorXd to_meet = wanted(held);
     if (!held.empty()) {
-      const Eigen::VectorXd found = among.ldlt().solve(to_meet);
+      const Eigen::VectorXd found = solve_semidefinite(among, to_meet);
       for (std::size_t i = 0; i < held.size(); ++i) force[held[i]] = found[static_cast<Eigen::Index>(i)];
     }
     const Eigen::VectorXd open = along * force - wanted;

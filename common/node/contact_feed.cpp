@@ -1,8 +1,9 @@
 #include "common/node/contact_feed.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "common/bus/topic_of.hpp"
+#include "common/log/log.hpp"
 
 namespace palpate {
 
@@ -34,7 +35,7 @@ void ContactFeed::watch_haptic() {
     int kept = 0;
     for (const auto& [tool, contacts] : deformer_.contacts())
       if (!contacts.contacts.empty()) kept += held_->write(contacts);
-    spdlog::warn("the haptic node is gone; keeping the contacts of {} tools for its return", kept);
+    log_warning(fmt::format("the haptic node is gone; keeping the contacts of {} tools for its return", kept));
   }
   haptic_alive_ = alive;
 }

@@ -1,11 +1,9 @@
 #include "common/node/node_setup.hpp"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <cstdio>
 #include <random>
 
+#include "common/log/log.hpp"
 #include "common/scene/find_archive.hpp"
 
 namespace palpate {
@@ -61,8 +59,7 @@ void say_ready(const NodeOptions& options) {
 int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
               const NodeOptions& options) {
   if (const auto status = app.read(argc, argv)) return *status;
-  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
-  spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+  open_log(name);
   try {
     body(options);
   } catch (const std::exception& error) {

@@ -1,7 +1,6 @@
 #include "common/node/surface_source.hpp"
 
-#include <spdlog/spdlog.h>
-
+#include "common/log/log.hpp"
 #include "common/node/contact_feed.hpp"
 
 namespace palpate {
@@ -72,7 +71,7 @@ class OwnSurfaces : public SurfaceSource {
     const bool news = feed_.take();
     if (news) {
       deformer_.deform();
-      for (const std::string& said : range_.look(deformer_)) spdlog::warn("{}", said);
+      for (const std::string& said : range_.look(deformer_)) log_warning(said);
     }
     feed_.watch_haptic();
     return news;

@@ -1,10 +1,10 @@
 #include "common/shell/full_newmark.hpp"
 
-#include <Eigen/Cholesky>
 #include <memory>
 #include <stdexcept>
 
 #include "common/fem/factorisation.hpp"
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -58,8 +58,8 @@ FullNewmark::FullNewmark(const MatrixXd& condensed, VectorXd mass, double dampin
     : mass_(std::move(mass)), damping_(damping), step_(step) {
   MatrixXd modified = condensed;
   modified.diagonal() += mass_share(damping, step) * mass_;
-  const auto factor = std::make_shared<Eigen::LLT<MatrixXd>>(modified);
-  if (factor->info() != Eigen::Success) throw std::runtime_error("the stiffness matrix is not positive definite");
+  const auto factor = std::make_shared<DenseCholesky>(modified);
+  if (!factor->positive_definite()) throw std::runtime_error("the stiffness matrix is not positive definite");
   stiffness_times_ = [condensed](const VectorXd& u) -> VectorXd { return condensed * u; };
   solve_ = [factor](const VectorXd& f) -> VectorXd { return factor->solve(f); };
 }

@@ -3,14 +3,13 @@
 #include <Spectra/SymEigsSolver.h>
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 
 #include "common/fem/factorisation.hpp"
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -38,24 +37,17 @@ SparseMatrix shifted(const SparseMatrix& stiffness, const VectorXd& mass, double
 /// the rotations.
 class InverseOperator {
  public:
-  using Scalar = double;  // asked for by Spectra
-
   InverseOperator(const SparseMatrix& shifted_stiffness, const VectorXd& mass)
       : root_mass_(mass.cwiseSqrt()), size_(shifted_stiffness.rows()), factor_(shifted_stiffness) {
     factor_.factorise(shifted_stiffness);
   }
 
   Index rows() const { return root_mass_.size(); }
-  Index cols() const { return rows(); }
 
   MatrixXd times(const MatrixXd& x) const {
     MatrixXd load = MatrixXd::Zero(size_, x.cols());
     load.topRows(rows()) = root_mass_.asDiagonal() * x;
     return root_mass_.asDiagonal() * factor_.solve(load).topRows(rows());
-  }
-
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<VectorXd>(out, rows()) = times(Eigen::Map<const VectorXd>(in, rows()));
   }
 
  private:
@@ -64,10 +56,10 @@ class InverseOperator {
   Factorisation factor_;
 };
 
-/// The operator on the complement of the columns of `known`, which are orthonormal.
+/// The operator on the complement of the columns of `known`, which are orthonormal; of all of it where there are none.
 class DeflatedOperator {
  public:
-  using Scalar = double;
+  using Scalar = double;  // asked for by Spectra
 
   DeflatedOperator(const InverseOperator& whole, const MatrixXd& known) : whole_(whole), known_(known) {}
   Index rows() const { return whole_.rows(); }
@@ -98,10 +90,9 @@ VectorXd start_vector(Index size) {
   return start;
 }
 
-template <class Operator>
-Eigenpairs lanczos(Operator& op, const VectorXd& start, Index count, double tolerance) {
+Eigenpairs lanczos(DeflatedOperator& op, const VectorXd& start, Index count, double tolerance) {
   const Index basis = std::min(op.rows(), std::max<Index>(2 * count, count + 24));
-  Spectra::SymEigsSolver<Operator> solver(op, count, basis);
+  Spectra::SymEigsSolver<DeflatedOperator> solver(op, count, basis);
   solver.init(start.data());
   solver.compute(Spectra::SortRule::LargestAlge, 1000, tolerance, Spectra::SortRule::LargestAlge);
   if (solver.info() != Spectra::CompInfo::Successful)
@@ -111,11 +102,10 @@ Eigenpairs lanczos(Operator& op, const VectorXd& start, Index count, double tole
 
 /// Rayleigh-Ritz on the span of A V: a step of subspace iteration, which also restores orthonormality.
 Eigenpairs refined(const InverseOperator& op, const MatrixXd& vectors) {
-  const Eigen::HouseholderQR<MatrixXd> qr(op.times(vectors));
-  const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(vectors.rows(), vectors.cols());
+  const MatrixXd basis = orthonormal_basis(op.times(vectors));
   const MatrixXd projected = basis.transpose() * op.times(basis);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (projected + projected.transpose()));
-  return {solver.eigenvalues().reverse(), basis * solver.eigenvectors().rowwise().reverse()};
+  const SymmetricEigen pairs = symmetric_eigen(0.5 * (projected + projected.transpose()));
+  return {pairs.value.reverse(), basis * pairs.vector.rowwise().reverse()};
 }
 
 void shorten(Eigenpairs& pairs, Index count) {
@@ -138,7 +128,9 @@ bool add_missed(InverseOperator& op, const VectorXd& start, Eigenpairs& pairs) {
 Eigenpairs max_pairs(InverseOperator& op, Index count) {
   const VectorXd start = start_vector(op.rows());
   const Index enough = count + kGuard;
-  auto pairs = refined(op, lanczos(op, start, enough, kTolerance).vector);
+  const MatrixXd none(op.rows(), 0);
+  DeflatedOperator whole(op, none);
+  auto pairs = refined(op, lanczos(whole, start, enough, kTolerance).vector);
   while (add_missed(op, start, pairs)) shorten(pairs, enough);
   shorten(pairs, count);
   return pairs;
@@ -154,8 +146,8 @@ Eigenpairs all_pairs(const InverseOperator& op) {
     for (Index c = 0; c < count; ++c) unit(begin + c, c) = 1;
     dense.middleCols(begin, count) = op.times(unit);
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (dense + dense.transpose()));
-  return {solver.eigenvalues().reverse(), solver.eigenvectors().rowwise().reverse()};
+  const SymmetricEigen pairs = symmetric_eigen(0.5 * (dense + dense.transpose()));
+  return {pairs.value.reverse(), pairs.vector.rowwise().reverse()};
 }
 
 /// Largest K_ii / m_i [1/s^2]: the size of the highest omega^2.

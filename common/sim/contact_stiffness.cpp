@@ -1,6 +1,6 @@
 #include "common/sim/contact_stiffness.hpp"
 
-#include <Eigen/Cholesky>
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -58,7 +58,7 @@ std::vector<Eigen::Matrix3d> contact_stiffness(const LocalStiffness::Answer& kno
   const double typical = rows > 0 ? a.trace() / rows : 0;
   if (!(typical > 0)) return stiffness;
   a.diagonal().array() += kSoftening * typical;
-  const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(rows, rows));
+  const Eigen::MatrixXd inverse = invert_semidefinite(a);
   for (const Rows& p : all)
     for (const Rows& q : all) {
       if (!contacts[p.contact].is_by(contacts[q.contact].tool_point().tool)) continue;

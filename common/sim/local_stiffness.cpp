@@ -1,6 +1,6 @@
 #include "common/sim/local_stiffness.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -10,6 +10,7 @@
 #include "common/fem/assembly.hpp"
 #include "common/fem/boundary_conditions.hpp"
 #include "common/fem/factorisation.hpp"
+#include "common/log/log.hpp"
 #include "common/realtime/settings.hpp"
 
 namespace palpate {
@@ -107,7 +108,7 @@ std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& que
   try {
     return solve(question);
   } catch (const std::exception& error) {
-    spdlog::warn("stiffness near the tools: {}", error.what());
+    log_warning(fmt::format("stiffness near the tools: {}", error.what()));
     return std::nullopt;
   }
 }

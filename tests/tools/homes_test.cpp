@@ -41,6 +41,7 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"((.*/)?cholmod.*\.h)", {"common/fem"}},
       {R"((.*/)?(cblas|lapacke?|openblas.*)\.h)", {"common/fem"}},
       {R"(CLI/.*)", {"common/cli"}},
+      {R"(spdlog/.*)", {"common/log"}},
       {R"(Spectra/.*)", {"common/shell"}},
       {R"((.*/)?(hdf5|H5.*)\.h)", {"common/archive"}},
       {R"((.*/)?toml(\+\+)?/.*|toml\.hpp)", {"common/scene"}},

@@ -1,12 +1,12 @@
 #include "common/models/hybrid/hybrid_condensation.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -83,8 +83,7 @@ double largest_eigenvalue(const MatrixXd& connection, const std::vector<Dof>& co
   const MatrixXd scaled = scale.asDiagonal() * connection * scale.asDiagonal();
   if (scaled.size() == 0) return 0;
   constexpr double kRounding = 1e-9;
-  return (1 + kRounding) *
-         Eigen::SelfAdjointEigenSolver<MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  return (1 + kRounding) * max_eigenvalue(scaled);
 }
 
 }  // namespace

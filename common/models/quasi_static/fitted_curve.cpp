@@ -1,10 +1,12 @@
 #include "common/models/quasi_static/fitted_curve.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -31,7 +33,7 @@ FittedCurve::FittedCurve(const std::vector<double>& s, const std::vector<double>
   Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(y.data(), points);
   if (error == Error::relative)
     for (Eigen::Index i = 0; i < points; ++i) right[i] *= end_ / s[i];
-  const Eigen::VectorXd solution = basis.colPivHouseholderQr().solve(right) / end_;
+  const Eigen::VectorXd solution = least_squares(basis, right) / end_;
   std::copy_n(solution.data(), degree, coefficient_.begin());
   end_ratio_ = ratio(end_);
   end_slope_ = slope(end_);
