@@ -1,9 +1,9 @@
 #include "common/dynamics/spring_mass.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "common/fem/elasticity.hpp"
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -42,8 +42,7 @@ double bound_of(const std::array<double, 6>& stiffness, double corner_mass) {
     laplacian(a, a) += stiffness[e], laplacian(b, b) += stiffness[e];
     laplacian(a, b) -= stiffness[e], laplacian(b, a) -= stiffness[e];
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(laplacian, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[3] / corner_mass * (1 + 1e-12);
+  return symmetric_eigenvalues(laplacian)[3] / corner_mass * (1 + 1e-12);
 }
 
 }  // namespace

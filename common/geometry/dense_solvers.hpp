@@ -23,7 +23,7 @@ struct SymmetricEigen {
   Eigen::MatrixXd vector;  ///< a column each, of length 1
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
-double max_eigenvalue(const Eigen::MatrixXd& symmetric);
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);  ///< ascending
 
 /// By L D L^T with pivots, for matrices that may be nearly singular.
 Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);

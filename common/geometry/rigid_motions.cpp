@@ -1,8 +1,9 @@
 #include "common/geometry/rigid_motions.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 
@@ -23,9 +24,8 @@ void RigidMotions::hold_rotation(int axis) {
 }
 
 int RigidMotions::free() const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(gram_, Eigen::EigenvaluesOnly);
-  const double largest = eigen.eigenvalues().maxCoeff();
-  return static_cast<int>((eigen.eigenvalues().array() <= 1e-10 * largest).count());  // they are squares
+  const Eigen::VectorXd values = symmetric_eigenvalues(gram_);
+  return static_cast<int>((values.array() <= 1e-10 * values.maxCoeff()).count());  // they are squares
 }
 
 }  // namespace palpate

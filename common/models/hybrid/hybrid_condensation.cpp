@@ -83,7 +83,7 @@ double largest_eigenvalue(const MatrixXd& connection, const std::vector<Dof>& co
   const MatrixXd scaled = scale.asDiagonal() * connection * scale.asDiagonal();
   if (scaled.size() == 0) return 0;
   constexpr double kRounding = 1e-9;
-  return (1 + kRounding) * max_eigenvalue(scaled);
+  return (1 + kRounding) * symmetric_eigenvalues(scaled).maxCoeff();
 }
 
 }  // namespace
