@@ -9,4 +9,5 @@ targets=("${@:2}")
 launcher=()
 command -v ccache >/dev/null && launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" "${launcher[@]}"
-cmake --build --preset "$preset" ${targets[@]+--target "${targets[@]}"}
+# Ninja runs two more compilers than there are cores, which then wait for the memory: a tenth more time.
+cmake --build --preset "$preset" --parallel "$(nproc)" ${targets[@]+--target "${targets[@]}"}
