@@ -268,5 +268,42 @@ TEST(HybridContact, StiffnessOfANodeIsTheForceForItsDisplacement) {
   EXPECT_THROW(run.part.set_force(run.part.connection()[0], motion), std::runtime_error);
 }
 
+// A force goes through the part itself, and draws the connection nodes along, which take the part with them.
+TEST(HybridContact, ANodeGivesWayUnderAnotherByThePartAndByTheConnectionNodes) {
+  const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
+  const auto archive = precompute(hybrid_body(random_part(mesh, 5)), mesh);
+  HybridPart part(archive, 0, false);
+  part.expect_patches(1);
+  VectorXd inertia(3 * static_cast<Eigen::Index>(part.connection().size())), drawn(inertia.size());
+  for (Eigen::Index k = 0; k < inertia.size(); ++k) inertia[k] = 1e-3 * (1 + 0.1 * static_cast<double>(k % 7));
+  std::vector<int> nodes(part.connection().begin(), part.connection().begin() + 3);
+  for (int node = 0; node < archive.surface.size() && nodes.size() < 7; ++node)
+    if (part.owns(node) && part.stiffness(node).norm() > 0) nodes.push_back(node);
+  const Vector3d force(0.3, -0.2, 0.5);
+  int across = 0;
+  for (const int under : nodes) {
+    const std::array one{PatchForce{under, force}};
+    part.push(0, one);
+    part.draw(0, {drawn.data(), static_cast<std::size_t>(drawn.size())});
+    const VectorXd along = inertia.cwiseProduct(drawn);
+    for (const int node : nodes) {
+      Vector3d moved = part.compliance(node, under) * force;
+      const auto at = std::ranges::find(part.connection(), node) - part.connection().begin();
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!part.owns(node)) {
+          moved[axis] += along[3 * at + axis];
+          continue;
+        }
+        const auto follow = part.follow(node, axis);
+        moved[axis] += Eigen::Map<const VectorXd>(follow.data(), along.size()).dot(along);
+      }
+      const Eigen::Matrix3d give = part.give(node, under, {inertia.data(), static_cast<std::size_t>(inertia.size())});
+      EXPECT_LE((give * force - moved).norm(), 1e-9 * moved.norm()) << node << " under " << under;
+      across += part.owns(node) != part.owns(under) && moved.norm() > 1e-3 * inertia[0] * force.norm();
+    }
+  }
+  EXPECT_GT(across, 4) << "pairs of a node of the part and a connection node";
+}
+
 }  // namespace
 }  // namespace palpate
