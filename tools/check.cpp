@@ -139,22 +139,27 @@ void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
   if (!has_moving_tissue(scene)) fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
 }
 
-void print_warnings(const Scene& scene, std::span<const CheckReport> bodies) {
-  std::vector<std::string> warnings;
-  for (const CheckReport& body : bodies) warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
-  for (const std::vector<std::string>& of_tools : {tool_warnings(scene), reach_warnings(scene, bodies)})
-    warnings.insert(warnings.end(), of_tools.begin(), of_tools.end());
+void print_warnings(std::span<const std::string> warnings) {
   for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);
+}
+
+void check_tools(const Scene& scene, std::span<const CheckReport> bodies) try {
+  for (const Tool& tool : scene.tools) check_tool(scene, tool, bodies);
+} catch (const std::exception&) {
+  for (const CheckReport& body : bodies) print_warnings(body.warnings);  // they may say why
+  throw;
 }
 
 void check_scene(const Scene& scene) {
   fmt::print("{}{}scene {}\n", scene.title, scene.title.empty() ? "" : "\n", scene.file.string());
   std::vector<CheckReport> bodies;
   for (const Body& body : scene.bodies) bodies.push_back(check_body(scene, body));
-  for (const Tool& tool : scene.tools) check_tool(scene, tool, bodies);
+  check_tools(scene, bodies);
   print_sections(scene);
   print_left_out(scene, bodies);
-  print_warnings(scene, bodies);
+  for (const CheckReport& body : bodies) print_warnings(body.warnings);
+  print_warnings(tool_warnings(scene));
+  print_warnings(reach_warnings(scene, bodies));
   fmt::print("hash {}\n", scene_hash(scene));
 }
 

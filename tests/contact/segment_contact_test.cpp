@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "common/geometry/dense_solvers.hpp"
 #include "common/kernels/kernels.hpp"
 #include "tests/contact/patch_touch.hpp"
 #include "tests/tool/count_allocations.hpp"
@@ -121,7 +122,7 @@ TEST(SegmentContact, OnAPlateOfLargeTrianglesSeveralPlacesCarryAndTheTorqueIsThe
     }
     gap[i] = held[i].plane - held[i].normal.dot(anchor_position(held[i].anchor, touch.archive().surface.position));
   }
-  const VectorXd pressing = a.llt().solve(gap);
+  const VectorXd pressing = DenseCholesky(a).solve(gap);
   Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
   for (int i = 0; i < n; ++i) {
     EXPECT_GT(pressing[i], 0);

@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <random>
+
+#include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
 namespace {
@@ -63,9 +64,9 @@ TEST_F(Elasticity, InfinitesimalRotationStoresNoEnergy) {
 }
 
 TEST_F(Elasticity, StiffnessIsPositiveSemidefiniteWithSixZeroModes) {
-  const Eigen::SelfAdjointEigenSolver<Stiffness> eigen(k);
-  for (int i = 0; i < 6; ++i) EXPECT_LT(std::abs(eigen.eigenvalues()[i]), 1e-13 * k.norm());
-  for (int i = 6; i < 12; ++i) EXPECT_GT(eigen.eigenvalues()[i], 1e-3 * k.norm());
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(k);
+  for (int i = 0; i < 6; ++i) EXPECT_LT(std::abs(eigenvalues[i]), 1e-13 * k.norm());
+  for (int i = 6; i < 12; ++i) EXPECT_GT(eigenvalues[i], 1e-3 * k.norm());
 }
 
 TEST_F(Elasticity, TheOrderPrintedInTheReportHasNegativeEigenvalues) {
@@ -77,8 +78,8 @@ TEST_F(Elasticity, TheOrderPrintedInTheReportHasNegativeEigenvalues) {
           tet.volume * (constants.lambda * gj * gi.transpose() + constants.mu * gi * gj.transpose() +
                         constants.mu * gi.dot(gj) * Eigen::Matrix3d::Identity());
     }
-  const Eigen::SelfAdjointEigenSolver<Stiffness> eigen(printed);
-  EXPECT_LT(eigen.eigenvalues()[0], -1e-3 * printed.norm());
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(printed);
+  EXPECT_LT(eigenvalues[0], -1e-3 * printed.norm());
 }
 
 TEST_F(Elasticity, StiffnessIsTheSecondDerivativeOfTheEnergy) {

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
 #include "common/fem/factorisation.hpp"
+#include "common/geometry/dense_solvers.hpp"
 #include "tests/shell/irregular_shells.hpp"
 
 namespace palpate {
@@ -33,7 +32,8 @@ double disagreement(const SparseMatrix& lower, int translations) {
   std::uniform_real_distribution<double> force(-1, 1);
   for (int i = 0; i < translations; ++i) load[i] = force(random);
   const Eigen::VectorXd full = factor.solve(load).col(0).head(translations);
-  const Eigen::VectorXd condensed = condense_rotations(lower, translations).llt().solve(load.head(translations));
+  const Eigen::VectorXd condensed =
+      DenseCholesky(condense_rotations(lower, translations)).solve(load.head(translations));
   return (condensed - full).cwiseAbs().maxCoeff() / full.cwiseAbs().maxCoeff();
 }
 

@@ -61,6 +61,15 @@ TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {
   expect_warning("is 2.83 m across: is its scale right?");
 }
 
+TEST_F(ToolsScene, ATipInMillimetresIsWarnedOf) {
+  change("block.toml", "\nradius = 0.00", "\nradius = ");
+  const auto result = checked();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("starts in contact"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("of body 'kidney': it presses as a flat plate; is it in metres?"), std::string::npos)
+      << result.out;
+}
+
 TEST_F(ToolsScene, AModulusOfNoTissueIsWarnedOf) {
   change("block.toml", "young = 10000 ", "young = 6 ");
   expect_warning("young = 6 Pa, and tissue has");

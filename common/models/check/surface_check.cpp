@@ -106,38 +106,29 @@ void add_near_field(const char* owner, const CheckSettings& settings, const Surf
 }
 
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
-                                       const SurfaceMap& surface) {
+                                       const SurfaceMap& surface, bool patches) {
   std::vector<std::string> warnings;
-  const double h = mean_edge(surface);
+  Eigen::Vector3d low = surface.position[0], high = low;
+  for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double h = mean_edge(surface), across = (high - low).norm();
   for (const Tool& tool : settings.tools) {
     const EndAbilities end = abilities_of(tool);
     const double radius = end.radius;
-    const auto warn = [&](const char* than, const char* so) {
-      warnings.push_back(
-          fmt::format("tool '{}' has {} of {:.3g} m, less than {}the mean edge {:.3g} m of body '{}': {}", tool.name,
-                      end.radius_of, radius, than, h, body, so));
+    const auto warn = [&](const std::string& than, const char* so) {
+      warnings.push_back(fmt::format("tool '{}' has {} of {:.3g} m, {} of body '{}': {}", tool.name, end.radius_of,
+                                     radius, than, body, so));
     };
-    if (radius < h)
-      warn("", "the force is the mesh's, not the tissue's");
-    else if (radius < 2 * h)
-      warn("twice ", "the force still depends on the mesh");
+    const bool by_mesh = !patches || settings.contact.rule != "patch" || !end.ball;
+    if (radius > across)
+      warn(fmt::format("more than the {:.3g} m across", across), "it presses as a flat plate; is it in metres?");
+    else if (by_mesh && radius < h)
+      warn(fmt::format("less than the mean edge {:.3g} m", h), "the force is the mesh's, not the tissue's");
+    else if (by_mesh && radius < 2 * h)
+      warn(fmt::format("less than twice the mean edge {:.3g} m", h), "the force still depends on the mesh");
   }
-  Eigen::Vector3d low = surface.position[0], high = low;
-  for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double across = (high - low).norm();
   if (across > kLargestBody || across < kSmallestBody)
     warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body, across));
   return warnings;
-}
-
-std::vector<std::string> size_warnings_by_mesh(const CheckSettings& settings, const std::string& body,
-                                               const SurfaceMap& surface) {
-  std::vector<Tool> by_mesh;
-  for (const Tool& tool : settings.tools)
-    if (settings.contact.rule != "patch" || !abilities_of(tool).ball) by_mesh.push_back(tool);
-  CheckSettings of_mesh = settings;
-  of_mesh.tools = by_mesh;
-  return size_warnings(of_mesh, body, surface);
 }
 
 std::function<bool(const Segment&, double)> meets_surface(const SurfaceMap& map, bool solid, double thickness) {

@@ -26,16 +26,13 @@ void say_patches(const CheckSettings& settings, const std::string& body, bool sh
 /// What `owner` computes for those patches when it starts; nothing where there are none.
 void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, bool shafts,
                     CheckReport& report);
-/// size_warnings() of the tools that press by no patch: the others press with a size of their own, not the mesh's.
-std::vector<std::string> size_warnings_by_mesh(const CheckSettings& settings, const std::string& body,
-                                               const SurfaceMap& surface);
-
 /// [m] across: what an organ on a table has.
 inline constexpr double kLargestBody = 1, kSmallestBody = 1e-3;
 
-/// A tool smaller than the elements, a scale that is off. `body`: its name.
+/// A tool smaller than the elements or larger than the body, a scale that is off. `body`: its name. `patches`: balls
+/// press it by patches where the scene's rule says so, with a size of their own, not the mesh's.
 std::vector<std::string> size_warnings(const CheckSettings& settings, const std::string& body,
-                                       const SurfaceMap& surface);
+                                       const SurfaceMap& surface, bool patches);
 
 /// CheckReport::meets of a surface: `solid` bodies hold what is inside them, walls have a thickness [m].
 std::function<bool(const Segment&, double)> meets_surface(const SurfaceMap& surface, bool solid, double thickness = 0);

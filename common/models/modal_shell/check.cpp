@@ -85,7 +85,7 @@ void check(const ModalShellSpec& body, const CheckSettings& settings, CheckRepor
   say_modes(body.shell, dofs.translations(), settings.stored(ArchivePart::header), report);
   report.memory = memory(body.shell, settings, surface);
   report.left_out.emplace_back("one material, nothing per element");
-  report.warnings = size_warnings(settings, body.name, surface);
+  report.warnings = size_warnings(settings, body.name, surface, false);
   if (const double edge = mean_edge(surface); body.shell.thickness > edge)
     report.warnings.push_back(
         fmt::format("body '{}' has a wall of {:.3g} m, thicker than the mean edge {:.3g} m of its mesh: "

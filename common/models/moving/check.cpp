@@ -128,7 +128,6 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
                          d.corotational ? ", corotational" : ""));
   say_step(body, kind, archive, report);
   say_patches(settings, body.name, false, report);
-  report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   const std::vector<std::string> of_material = material_warnings(body);
   report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
   if (body.tearing)

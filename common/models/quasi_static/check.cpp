@@ -114,7 +114,6 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
   add_near_field("haptic_node", settings, solid.surface, !body.relaxation, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
-  report.warnings = size_warnings_by_mesh(settings, body.name, solid.surface);
   QuasiStaticSpec chosen = body;
   chosen.offline = offline_of(body, solid.surface.size());
   std::ranges::copy(locking_warnings(chosen), std::back_inserter(report.warnings));

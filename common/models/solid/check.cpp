@@ -67,7 +67,7 @@ void check_solid(const SolidSpec& body, std::string_view kind, const CheckedSoli
   say_boundary_conditions(body, solid.mesh, report);
   say_material(body, report);
   if (body.materials.empty()) report.left_out.emplace_back("one material, nothing per element");
-  report.warnings = size_warnings(settings, body.name, surface);
+  report.warnings = size_warnings(settings, body.name, surface, true);
   report.meets = meets_surface(surface, true);
 }
 
