@@ -143,7 +143,7 @@ class LogWriter::Impl {
       return;
     }
     lcm_eventlog_event_t out{};
-    out.timestamp = (event.receive_ns + wall_offset_) / 1000;
+    out.timestamp = event.receive_ns / 1000 + wall_offset_ / 1000;  // a damaged log may say any time
     out.channel = const_cast<char*>(event.channel.data());
     out.channellen = static_cast<std::int32_t>(event.channel.size());
     out.data = const_cast<std::uint8_t*>(event.data.data());

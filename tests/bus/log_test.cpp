@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -119,6 +120,19 @@ TEST_F(Log, OtherProgramsReadItWithTheLcmLibrary) {
   }
   lcm_eventlog_destroy(log);
   EXPECT_EQ(events, 1 + 50 + 5 + 1);
+}
+
+// A damaged log that is written anew may say any time.
+TEST_F(Log, ATimeBeyondAllYearsDoesNotTurnOver) {
+  LogWriter writer(file_);
+  writer.write(kHeaderChannel, std::numeric_limits<std::int64_t>::max(), header());
+  writer.finish();
+  lcm_eventlog_t* log = lcm_eventlog_create(file_.c_str(), "r");
+  lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(log);
+  ASSERT_TRUE(event);
+  EXPECT_GT(event->timestamp, 0);
+  lcm_eventlog_free_event(event);
+  lcm_eventlog_destroy(log);
 }
 
 TEST_F(Log, ReadsUpToWhereItWasCutOff) {
