@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "bench/report.hpp"
+#include "common/geometry/direction.hpp"
 #include "common/mesh/normals.hpp"
 #include "render_node/renderer.hpp"
 
@@ -65,8 +66,7 @@ Frame make_frame(const Shape& organ, const Shape& wall) {
                           .moving = false});
   InstrumentView tool;
   tool.tip.translation() = Eigen::Vector3d(0.02, -0.01, 0.034);
-  tool.tip.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.5, 0.2, -0.8)).toRotationMatrix();
+  tool.tip.linear() = turn_between(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.5, 0.2, -0.8)).toRotationMatrix();
   frame.instruments.push_back(tool);
   frame.overlay =
       Overlay{{"haptic 1000 Hz   visual 60 Hz", "tool to picture 9.1 ms (p99 12.3)", "probe  1.83 N"}, Gauge{1.83, 5}};

@@ -1,19 +1,10 @@
 #include "common/dynamics/corotational.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
 #include "common/dynamics/stability.hpp"
 #include "common/fem/elasticity.hpp"
+#include "common/geometry/nearest_rotation.hpp"
 
 namespace palpate {
-
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& f) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
-}
 
 template <class Scalar>
 Corotational<Scalar>::Corotational(const ElasticMesh& mesh, Integrator integrator, double damping)
@@ -73,7 +64,7 @@ double Corotational<Scalar>::elastic_energy() const {
       const auto& g = quad.gradient[j - 1];
       f += change * Eigen::RowVector3d(g[0][lane], g[1][lane], g[2][lane]);
     }
-    const Eigen::Matrix3d r = nearest_rotation(f);
+    const Eigen::Matrix3d r = nearest_rotation(f).rotation;
     const double dilation = (r.transpose() * f).trace() - 3;
     sum += 0.5 * quad.shear[lane] * (f - r).squaredNorm() + 0.5 * quad.volume[lane] * dilation * dilation;
   }

@@ -31,7 +31,4 @@ class Corotational final : public Staged<Scalar> {
 extern template class Corotational<float>;
 extern template class Corotational<double>;
 
-/// The rotation R that maximises tr(R^T F), for any F.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& f);
-
 }  // namespace palpate

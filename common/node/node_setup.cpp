@@ -4,6 +4,7 @@
 #include <random>
 
 #include "common/log/log.hpp"
+#include "common/realtime/settings.hpp"
 #include "common/scene/find_archive.hpp"
 
 namespace palpate {
@@ -59,6 +60,7 @@ void say_ready(const NodeOptions& options) {
 int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
               const NodeOptions& options) {
   if (const auto status = app.read(argc, argv)) return *status;
+  use_small_stacks();
   open_log(name);
   try {
     body(options);

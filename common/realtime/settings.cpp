@@ -58,6 +58,14 @@ void leave_realtime() {
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameter);
 }
 
+void use_small_stacks() {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, 1 << 20);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
 void prefault_stack() {
   volatile unsigned char page[256 * 1024];
   for (std::size_t i = 0; i < sizeof page; i += 4096) page[i] = 0;

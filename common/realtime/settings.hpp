@@ -23,6 +23,10 @@ RealtimeGrant request_realtime(const RealtimeSettings& settings);
 /// Back to the normal scheduler: for threads that a realtime thread starts, which would inherit its priority.
 void leave_realtime();
 
+/// Threads that the process starts from here on have stacks of 1 MiB in place of 8: where memory is locked, all of a
+/// stack is resident. Call before there are threads.
+void use_small_stacks();
+
 /// Touches 256 KiB of the calling thread's stack, so that the first steps meet no page fault. Call before the
 /// loop.
 void prefault_stack();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/contact/tool_contacts.hpp"
+#include "common/geometry/direction.hpp"
 #include "common/tool/forceps.hpp"
 #include "tests/haptic/synthetic_body.hpp"
 
@@ -137,8 +138,7 @@ class HandledTool {
   void move_to(const Eigen::Vector3d& at, const Eigen::Vector3d& along, double roll = 0) {
     pose_before_ = pose_;
     before_ = now_;
-    pose_.linear() = (Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along) *
-                      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()))
+    pose_.linear() = (turn_between(Eigen::Vector3d::UnitZ(), along) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()))
                          .toRotationMatrix();
     pose_.translation() = at;
   }

@@ -55,15 +55,33 @@ struct Ways {
   Vector from[3], change[3];
 };
 
+/// On which side of the triangle's plane the point is: by a cubic of the time.
+class Side {
+ public:
+  explicit Side(const Ways<double>& ways) {
+    const Vector3d u[] = {ways.from[0], ways.change[0]};
+    const Vector3d v[] = {ways.from[1] - u[0], ways.change[1] - u[1]},
+                   w[] = {ways.from[2] - u[0], ways.change[2] - u[1]};
+    for (int i = 0; i < 8; ++i)
+      of_power_[(i & 1) + (i >> 1 & 1) + (i >> 2)] -= u[i & 1].dot(v[i >> 1 & 1].cross(w[i >> 2]));
+  }
+  bool outside(double t) const {
+    return of_power_[0] + t * (of_power_[1] + t * (of_power_[2] + t * of_power_[3])) >= 0;
+  }
+
+ private:
+  double of_power_[4] = {};
+};
+
 /// The path cut into many short parts, halving where the side changes, in higher precision. What would come after
 /// `until` is not looked for.
 Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, int parts,
                double until = 1) {
-  const Ways<double> ways(p0, p1, a, b);
-  bool start = ways.outside(0);
+  const Side side(Ways<double>(p0, p1, a, b));
+  bool start = side.outside(0);
   for (int part = 0; part < parts && part <= until * parts; ++part) {
     const double end = (part + 1.0) / parts;
-    const bool before = std::exchange(start, ways.outside(end));
+    const bool before = std::exchange(start, side.outside(end));
     if (before == start) continue;
     const Ways<long double> exact(p0, p1, a, b);
     long double low = static_cast<double>(part) / parts, high = end;

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "common/geometry/nearest_rotation.hpp"
 #include "tests/dynamics/model_checks.hpp"
 #include "tests/tool/count_allocations.hpp"
 
@@ -77,7 +78,7 @@ TEST(Corotational, AnyDeformationHasAFiniteForce) {
     kernels::use(table->name);
     for (const Matrix3d& a : maps) {
       // Every element's P is known from the rotation found by singular values.
-      const Matrix3d r = nearest_rotation(a);
+      const Matrix3d r = nearest_rotation(a).rotation;
       EXPECT_NEAR(r.determinant(), 1, 1e-12);
       set_field(model, affine_field(mesh, a));
       set_field(single, affine_field(mesh, a));
@@ -96,7 +97,7 @@ TEST(Corotational, AnyDeformationHasAFiniteForce) {
 
 /// Forces of a homogeneous F by the definition, with the rotation from singular values.
 std::vector<Vector3d> homogeneous_forces(const ElasticMesh& mesh, const Matrix3d& f) {
-  const Matrix3d r = nearest_rotation(f);
+  const Matrix3d r = nearest_rotation(f).rotation;
   const Lame c = lame(mesh.materials[0]);
   const Matrix3d p = 2 * c.mu * (f - r) + c.lambda * ((r.transpose() * f).trace() - 3) * r;
   std::vector<Vector3d> force(mesh.rest.size(), Vector3d::Zero());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "common/geometry/direction.hpp"
 #include "tests/render/scenery.hpp"
 
 namespace palpate {
@@ -81,8 +82,7 @@ TEST(Renderer, NearerThingsHideFartherOnes) {
 InstrumentView instrument_at(const Eigen::Vector3d& tip) {
   InstrumentView tool;
   tool.tip.translation() = tip;
-  tool.tip.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.8, 0, -0.6)).toRotationMatrix();
+  tool.tip.linear() = turn_between(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.8, 0, -0.6)).toRotationMatrix();
   return tool;
 }
 

@@ -39,7 +39,6 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   known_.reserve(kMaxNodes);
   near_field_.assign(kMaxNodes * kMaxNodes, Eigen::Matrix3d::Zero());
   k_.assign(kMaxNodes * kMaxNodes, 0.0);
-  k_phi_.assign(kMaxNodes * grid.feet(), 0.0);
   k_feet_.assign(grid.feet() * grid.feet(), 0.0);
 }
 
@@ -57,14 +56,14 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   fill_near_field(ground.near_field);
   fill_normal();
   lift_nodes(ground, {});
+  const Rise of_nodes = rise_of_nodes(moved);
   for (int p = 0; p < grid_.size(); ++p) {
-    const Foot& f = foot(p);
     wanted_[p] = cells_[p].gap - cells_[p].dent;
     if (!laid(p)) {
       active_[p] = 0;
       continue;
     }
-    for (int v = 0; v < 3; ++v) wanted_[p] -= f.weights[v] * (normal_.dot(moved[f.local[v]]) + lifted_[f.local[v]]);
+    wanted_[p] -= rise(foot(p), of_nodes);
     if (memory_) wanted_[p] -= memory_->dent(p);
   }
   settle_pressures();
@@ -137,26 +136,37 @@ void Patch::meet(const Ground& ground, std::span<const NodeGive> give) {
   lifted_.assign(nodes_.size(), 0.0);
 }
 
+Patch::Rise Patch::rise_of_nodes(std::span<const Vector3d> moved) const {
+  Rise rise;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) rise[i] = normal_.dot(moved[i]) + lifted_[i];
+  return rise;
+}
+
+double Patch::rise(const Foot& f, const Rise& of_nodes) const {
+  double rise = 0;
+  for (int v = 0; v < 3; ++v) rise += f.weights[v] * of_nodes[f.local[v]];
+  return rise;
+}
+
 // Within a tick the squares stay where they are on the tissue; the sphere goes on along the normal.
-double Patch::gap(int square, const Step& step) const {
-  const Foot& f = foot(square);
-  double gap = cells_[square].gap + normal_.dot(step.middle - laid_at_);
-  for (int v = 0; v < 3; ++v) gap -= f.weights[v] * (normal_.dot(step.moved[f.local[v]]) + lifted_[f.local[v]]);
-  return gap;
+double Patch::gap(int square, const Step& step, const Rise& of_nodes) const {
+  return cells_[square].gap + normal_.dot(step.middle - laid_at_) - rise(foot(square), of_nodes);
 }
 
 double Patch::depth(const Step& step) const {
+  const Rise of_nodes = rise_of_nodes(step.moved);
   double deepest = -std::numeric_limits<double>::infinity();
   for (int p = 0; p < grid_.size(); ++p)
-    if (laid(p)) deepest = std::max(deepest, gap(p, step));
+    if (laid(p)) deepest = std::max(deepest, gap(p, step, of_nodes));
   return deepest;
 }
 
 void Patch::step(const Ground& ground, const Step& step) {
   lift_nodes(ground, step.give);
+  const Rise of_nodes = rise_of_nodes(step.moved);
   for (int p = 0; p < grid_.size(); ++p) {
     if (!laid(p)) active_[p] = 0;
-    wanted_[p] = laid(p) ? gap(p, step) - step.ease : cells_[p].gap;
+    wanted_[p] = laid(p) ? gap(p, step, of_nodes) - step.ease : cells_[p].gap;
   }
   settle_pressures();
   sum_pressures();
@@ -228,6 +238,15 @@ bool Patch::solve_active() {
   return std::isfinite(right_[0]);
 }
 
+// [m/N] K between a force that the nodes share and what they all do, in such shares.
+Eigen::Matrix3d Patch::shared_near_field(std::span<const double> share) const {
+  Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < share.size(); ++i)
+    for (std::size_t j = 0; share[i] != 0 && j < share.size(); ++j)
+      if (share[j] != 0) k += share[i] * share[j] * near_field_[i * kMaxNodes + j];
+  return k;
+}
+
 // One shear force, spread as the pressures are. The tissue is bent along until Coulomb's bound is met; from there it
 // slips and stays bent as far as the bound allows, so that the shear never turns against the travel. Nodes that move by
 // themselves take a part of the travel, which is not bent any more at the next step.
@@ -250,12 +269,12 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
     plane << across_, up_;
     Eigen::Matrix2d c = Eigen::Matrix2d::Zero(), given = Eigen::Matrix2d::Zero();
     for (const int p : rows_)
-      for (const int q : rows_) c += pressure_force_[p] * pressure_force_[q] * kernel_.sheared(p, q);
+      for (const int q : rows_) {
+        if (q > p) break;
+        c += (q < p ? 2 : 1) * pressure_force_[p] * pressure_force_[q] * kernel_.sheared(p, q);
+      }
     c /= pressing_ * pressing_;
-    for (int i = 0; i < count; ++i)
-      for (int j = 0; j < count; ++j)
-        if (share[i] != 0 && share[j] != 0)
-          c += share[i] * share[j] * plane.transpose() * near_field_[i * kMaxNodes + j] * plane;
+    c += plane.transpose() * shared_near_field(std::span(share).first(count)) * plane;
     const Vector3d past = memory_ ? memory_->bent() : Vector3d::Zero();
     Vector2d bent = plane.transpose() * (bent_ + drag.travel - past);
     if (!resumed_.isZero(0)) bent = c * plane.transpose() * resumed_;

@@ -117,8 +117,9 @@ class Patch {
   struct Foot {
     std::array<int, 3> local{-1, -1, -1};  ///< of nodes_
     Eigen::Vector3d weights;
-    double depth =
-        0;  ///< [m] along the normal, of the rest surface below the patch's origin; infinite where there is none
+    /// [m] Along the normal, of the rest surface below the patch's origin; infinite where there is none.
+    double depth = 0;
+    bool stands() const { return local[0] >= 0; }  ///< on tissue, with all three corners
   };
   struct Cell {
     double gap = 0;    ///< [m] by which the part reaches below the rest surface here; -infinity where there is none
@@ -147,7 +148,11 @@ class Patch {
   int local(int node);
   const Foot& foot(int cell) const { return feet_[grid_.foot(cell)]; }
   bool laid(int cell) const { return std::isfinite(cells_[cell].gap); }
-  double gap(int square, const Step& step) const;
+  /// [m] Along the normal, per node of nodes_: by `moved` and by shear.
+  using Rise = std::array<double, kMaxNodes>;
+  Rise rise_of_nodes(std::span<const Eigen::Vector3d> moved) const;
+  double rise(const Foot& foot, const Rise& of_nodes) const;
+  double gap(int square, const Step& step, const Rise& of_nodes) const;
   bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);
   bool find_along(const Ground& ground, const Segment& axis);
   bool find_nearest(const Ground& ground, const Segment& axis);
@@ -174,10 +179,13 @@ class Patch {
   void list_laid();
   void find_more();
   void add_nodes_give(std::span<const NodeGive> give);
+  void fill_at_foot(const Foot& foot, const std::vector<double>& between_nodes);
+  double at_foot(const Foot& foot) const;
   void settle_pressures();
   bool solve_active();
   void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
   void sum_pressures();
+  Eigen::Matrix3d shared_near_field(std::span<const double> share) const;
   void shear(const Ground& ground, const Drag& drag);
   void add_slip(const Eigen::Vector3d& bent_before);
 
@@ -210,7 +218,8 @@ class Patch {
   std::vector<int> rows_;
   std::vector<int> known_;                   ///< nodes that near_field_ is of
   std::vector<Eigen::Matrix3d> near_field_;  ///< K between nodes_, kMaxNodes a row
-  std::vector<double> k_, k_phi_;
+  std::vector<double> k_;                    ///< [m/N] K along the normal, likewise
+  std::array<double, kMaxNodes> at_nodes_;   ///< [m/N] along the normal, of a force on one foot
   std::array<PatchForce, kMaxNodes> forces_;
   int loaded_ = 0;              ///< how many of them
   std::vector<double> k_feet_;  ///< [m/N] K between feet, along the normal

@@ -33,27 +33,20 @@ void Patch::fill_normal() {
   for (int i = 0; i < count; ++i)
     for (int j = 0; j <= i; ++j)
       k_[i * kMaxNodes + j] = k_[j * kMaxNodes + i] = normal_.dot(near_field_[i * kMaxNodes + j] * normal_);
-  for (int a = 0; a < grid_.feet(); ++a)
-    for (int i = 0; i < count; ++i) {
-      double sum = 0;
-      for (int v = 0; v < 3 && feet_[a].local[v] >= 0; ++v)
-        sum += feet_[a].weights[v] * k_[i * kMaxNodes + feet_[a].local[v]];
-      k_phi_[a * kMaxNodes + i] = sum;
-    }
-  for (int a = 0; a < grid_.feet(); ++a)
-    for (int b = 0; b <= a; ++b) {
-      double sum = 0;
-      for (int v = 0; v < 3 && feet_[b].local[v] >= 0; ++v)
-        sum += feet_[b].weights[v] * k_phi_[a * kMaxNodes + feet_[b].local[v]];
-      k_feet_[a * grid_.feet() + b] = k_feet_[b * grid_.feet() + a] = sum;
-    }
+  for (int a = 0; a < grid_.feet(); ++a) {
+    if (!feet_[a].stands()) continue;
+    fill_at_foot(feet_[a], k_);
+    for (int b = 0; b <= a; ++b)
+      if (feet_[b].stands()) k_feet_[a * grid_.feet() + b] = k_feet_[b * grid_.feet() + a] = at_foot(feet_[b]);
+  }
   list_laid();
-  for (const int p : rows_)
+  for (const int p : rows_) {
+    const double* const at_feet = &k_feet_[grid_.foot(p) * grid_.feet()];
     for (const int q : rows_) {
       if (q > p) break;
-      const double sum = kernel_.pressed(p, q) + k_feet_[grid_.foot(p) * grid_.feet() + grid_.foot(q)];
-      compliance_[p * n + q] = compliance_[q * n + p] = sum;
+      compliance_[p * n + q] = compliance_[q * n + p] = kernel_.pressed(p, q) + at_feet[grid_.foot(q)];
     }
+  }
   // A cell of which little lies over tissue gives little force: at an edge it comes and goes by and by.
   for (const int p : rows_) compliance_[p * n + p] += (1 / cells_[p].cover - 1) * kernel_.own();
 }
@@ -114,12 +107,28 @@ void Patch::add_nodes_give(std::span<const NodeGive> give) {
   for (const auto& [i, j, block] : give)
     nodes_give_[i * kMaxNodes + j] = nodes_give_[j * kMaxNodes + i] = normal_.dot(block * normal_);
   const int n = grid_.size();
-  for (const int p : rows_)
-    for (const int q : rows_)
-      for (int v = 0; v < 3; ++v)
-        for (int w = 0; w < 3; ++w)
-          compliance_[p * n + q] +=
-              foot(p).weights[v] * foot(q).weights[w] * nodes_give_[foot(p).local[v] * kMaxNodes + foot(q).local[w]];
+  for (const int p : rows_) {
+    fill_at_foot(foot(p), nodes_give_);
+    for (const int q : rows_) {
+      if (q > p) break;
+      const double sum = at_foot(foot(q));
+      compliance_[p * n + q] += sum;
+      if (q < p) compliance_[q * n + p] += sum;
+    }
+  }
+}
+
+// What a force on a foot does to each node, by what it does from node to node.
+void Patch::fill_at_foot(const Foot& f, const std::vector<double>& between_nodes) {
+  const double* const row[] = {&between_nodes[f.local[0] * kMaxNodes], &between_nodes[f.local[1] * kMaxNodes],
+                               &between_nodes[f.local[2] * kMaxNodes]};
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    at_nodes_[i] = f.weights[0] * row[0][i] + f.weights[1] * row[1][i] + f.weights[2] * row[2][i];
+}
+
+double Patch::at_foot(const Foot& f) const {
+  return f.weights[0] * at_nodes_[f.local[0]] + f.weights[1] * at_nodes_[f.local[1]] +
+         f.weights[2] * at_nodes_[f.local[2]];
 }
 
 }  // namespace palpate

@@ -31,6 +31,8 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
       cells_.push_back({i, j});
       rise_.push_back(std::sqrt(radius * radius - beside * beside));
     }
+  for (const Cell& p : cells_)
+    for (const Cell& q : cells_) ways_.push_back(std::abs(p.column - q.column) * rows_ + std::abs(p.row - q.row));
 }
 
 PatchKernel::PatchKernel(const PatchGrid& grid)
@@ -62,7 +64,7 @@ void PatchKernel::lay(double length) {
 }
 
 Eigen::Matrix2d PatchKernel::sheared(int p, int q) const {
-  Eigen::Matrix2d k = sheared_[at(p, q)];
+  Eigen::Matrix2d k = sheared_[grid_.ways_from(p)[q]];
   if ((grid_.column(p) < grid_.column(q)) != (grid_.row(p) < grid_.row(q))) k(0, 1) = k(1, 0) = -k(0, 1);
   return k;
 }

@@ -35,6 +35,8 @@ class PatchGrid {
   /// for a column of rectangles.
   int feet() const { return strip() ? columns_ : size(); }
   int foot(int p) const { return strip() ? column(p) : p; }
+  /// Of cell p, for each cell q: which of columns() * rows() ways lies between them, whatever its sign.
+  const int* ways_from(int p) const { return &ways_[p * cells_.size()]; }
 
  private:
   struct Cell {
@@ -46,6 +48,7 @@ class PatchGrid {
   int columns_, rows_;
   std::vector<Cell> cells_;
   std::vector<double> rise_;
+  std::vector<int> ways_;
 };
 
 /// What the half-space makes of forces on a grid's cells.
@@ -55,19 +58,15 @@ class PatchKernel {
 
   /// For cells of a length [m].
   void lay(double length);
-  double own() const { return pressed_[0]; }                         ///< [m/N] of a cell by itself
-  double pressed(int p, int q) const { return pressed_[at(p, q)]; }  ///< [m/N]
-  Eigen::Matrix2d sheared(int p, int q) const;                       ///< [m/N]
+  double own() const { return pressed_[0]; }                                      ///< [m/N] of a cell by itself
+  double pressed(int p, int q) const { return pressed_[grid_.ways_from(p)[q]]; }  ///< [m/N]
+  Eigen::Matrix2d sheared(int p, int q) const;                                    ///< [m/N]
 
  private:
-  int at(int p, int q) const {
-    return std::abs(grid_.column(p) - grid_.column(q)) * grid_.rows() + std::abs(grid_.row(p) - grid_.row(q));
-  }
-
   const PatchGrid& grid_;
   double length_ = 0;
   std::vector<HalfSpace::Corner> corners_;
-  std::vector<double> pressed_;           ///< by how many columns and rows lie between
+  std::vector<double> pressed_;           ///< by the way between them
   std::vector<Eigen::Matrix2d> sheared_;  ///< likewise
 };
 

@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kLookAround = 1.5;  // radii about the sphere's middle, and as much more as it is deep,
 constexpr double kDeepest = 4;       // up to so many radii
+constexpr double kOnEdge = 1e-6;     // radii, by which a foot may lie outside of a triangle's box
 constexpr double kFacing = 0.2;      // cosine between a facet's normal and the patch's, below which it lies aside
 
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
@@ -122,8 +123,12 @@ void Patch::lay_feet(const Ground& ground) {
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
     std::array<int, 3> corners{-2, -2, -2};
     if (grid_.strip() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0)) continue;
+    const Vector2d low = flat[0].cwiseMin(flat[1]).cwiseMin(flat[2]).head<2>().array() - kOnEdge * grid_.radius();
+    const Vector2d high = flat[0].cwiseMax(flat[1]).cwiseMax(flat[2]).head<2>().array() + kOnEdge * grid_.radius();
     for (int i = 0; i < grid_.feet(); ++i) {
-      const Vector2d d = foot_middle(i) - flat[0].head<2>();
+      const Vector2d middle = foot_middle(i);
+      if ((middle.array() < low.array()).any() || (middle.array() > high.array()).any()) continue;
+      const Vector2d d = middle - flat[0].head<2>();
       const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;
       if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
       const Vector3d w(1 - w1 - w2, w1, w2);

@@ -157,10 +157,11 @@ bool TissuePatches::find_place(const Tip& tip, const MovingTool& tool, Vector3d&
 
 // Of the tissue, from rest.
 Eigen::Isometry3d TissuePatches::motion_about(const Vector3d& place, double within) {
-  for (const int t : surface_.near(place, within))
+  const std::span<const int> near = surface_.near(place, within);
+  for (const int t : near)
     for (const int node : map_.triangles[t])
       position_[node] = grounds_[ground_of_node_[node]].surface.positions()[node];
-  return local_motion(surface_, place, within, position_);
+  return local_motion(surface_, near, place, within, position_);
 }
 
 // From one tick to the next the nodes are mostly the same.
