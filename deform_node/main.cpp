@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/fem/dense.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/log/log.hpp"
 #include "common/node/node_setup.hpp"
@@ -99,6 +100,7 @@ void run(const NodeOptions& o) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_one_blas_thread(argv);
   palpate::NodeOptions options;
   palpate::cli::CommandLine app{
       "deform_node: rebuilds the organs' shape from contact information and publishes the surface"};

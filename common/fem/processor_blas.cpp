@@ -10,7 +10,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kWord = "OPENBLAS_CORETYPE";
+constexpr const char* kCore = "OPENBLAS_CORETYPE";
+constexpr const char* kThreads = "OPENBLAS_NUM_THREADS";
 
 /// The newest kind of core that OpenBLAS 0.3.21 has code for and this processor can do; null: one that it knows.
 const char* core_type() {
@@ -21,17 +22,26 @@ const char* core_type() {
   return nullptr;
 }
 
+/// Does not return, or changes nothing.
+void start_anew(char** argv, const char* word, const char* value) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return;
+  setenv(word, value, 1);
+  execv(program.c_str(), argv);
+  unsetenv(word);
+}
+
 }  // namespace
 
 void use_blas_of_this_processor(char** argv) {
   const char* const core = core_type();
-  if (std::getenv(kWord) || !core || std::string_view(openblas_get_corename()) != "Prescott") return;
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return;
-  setenv(kWord, core, 1);
-  execv(program.c_str(), argv);
-  unsetenv(kWord);  // as it is, then
+  if (std::getenv(kCore) || !core || std::string_view(openblas_get_corename()) != "Prescott") return;
+  start_anew(argv, kCore, core);
+}
+
+void use_one_blas_thread(char** argv) {
+  if (!std::getenv(kThreads)) start_anew(argv, kThreads, "1");
 }
 
 }  // namespace palpate

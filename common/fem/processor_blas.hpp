@@ -7,4 +7,9 @@ namespace palpate {
 /// otherwise does nothing. To be called first in main().
 void use_blas_of_this_processor(char** argv);
 
+/// OpenBLAS starts a thread for each core before main(), with a stack and 32 MB of room, which a program that locks its
+/// memory keeps resident. Starts the program anew with one thread, unless the environment names a number. To be called
+/// first in main().
+void use_one_blas_thread(char** argv);
+
 }  // namespace palpate

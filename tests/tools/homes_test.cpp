@@ -98,6 +98,17 @@ TEST(ToolsHomes, OpenBlasIsTheProcessorsOwnUnlessTheEnvironmentSaysOtherwise) {
   EXPECT_EQ(core("OPENBLAS_CORETYPE=Prescott"), "Prescott");
 }
 
+TEST(ToolsHomes, TheDeformationNodeStartsAnewWithOneThreadOfOpenBlasUnlessTheEnvironmentSaysOtherwise) {
+  const auto starts = [](const std::string& environment) {
+    const std::string said =
+        run_program("env " + environment + " LD_DEBUG=libs " + program("deform_node") + " --version").err;
+    const std::regex start("initialize program: \\S*deform_node");
+    return std::distance(std::sregex_iterator(said.begin(), said.end(), start), std::sregex_iterator());
+  };
+  EXPECT_EQ(starts("-u OPENBLAS_NUM_THREADS"), 2);
+  EXPECT_EQ(starts("OPENBLAS_NUM_THREADS=3"), 1);
+}
+
 TEST(ToolsHomes, GmshIsLoadedOnlyWhereAMeshIsRead) {
   const auto loads_gmsh = [](const std::string& arguments) {
     const auto result = run_program("LD_DEBUG=files " + program("palpate") + " " + arguments);
