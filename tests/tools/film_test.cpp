@@ -39,6 +39,23 @@ class ToolsFilm : public ::testing::Test {
     return std::atoi(counted.out.c_str());
   }
 
+  /// Its grey values, one picture of the film.
+  static std::string picture(const std::string& name, int number) {
+    const auto raw = (*folder_ / "picture.gray").string();
+    run_program(
+        fmt::format("ffmpeg -v error -y -i {} -vf \"select=eq(n\\,{})\" -frames:v 1 -f rawvideo -pix_fmt gray {}",
+                    film(name).string(), number, raw));
+    return testing::text_of(raw);
+  }
+  /// How many grey values differ by more than what packing a film changes.
+  static int apart(const std::string& a, const std::string& b) {
+    EXPECT_EQ(a.size(), b.size());
+    int count = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      count += std::abs(static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i])) > 40;
+    return count;
+  }
+
   static std::unique_ptr<OwnFolder> folder_;
 };
 std::unique_ptr<OwnFolder> ToolsFilm::folder_;
@@ -57,6 +74,16 @@ TEST_F(ToolsFilm, ItIsAsSlowAndAsLongAsAskedFor) {
   const auto slow = draw("slow", "--from 0.1 --to 0.3 --speed 0.1");
   ASSERT_EQ(slow.status, 0) << slow.err;
   EXPECT_EQ(pictures("slow"), 61);
+}
+
+TEST_F(ToolsFilm, AStretchShowsWhatTheWholeFilmShowsThen) {
+  ASSERT_EQ(draw("whole").status, 0);
+  ASSERT_EQ(draw("stretch", "--from 0.5 --to 0.8").status, 0);
+  const std::string begin = picture("stretch", 0);
+  ASSERT_EQ(begin.size(), 160u * 120);
+  const int whole_way = apart(picture("whole", 0), picture("whole", 15));
+  EXPECT_GT(whole_way, 20);
+  EXPECT_LT(apart(begin, picture("whole", 15)), whole_way / 4) << whole_way;
 }
 
 TEST_F(ToolsFilm, WhatIsNotThereIsRefused) {

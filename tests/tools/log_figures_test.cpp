@@ -1,0 +1,65 @@
+// What a log's events come to, made by hand.
+#include "tools/film/log_figures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "idl/topics.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+class Figures : public ::testing::Test {
+ protected:
+  template <class T, class M>
+  void tell(std::int64_t receive_ns, const T& topic, const M& message) {
+    LogEvent event{.channel = std::string(topic.name), .receive_ns = receive_ns};
+    encode(message, event.payload);
+    M again;
+    ASSERT_TRUE(event.read(topic, again));
+    figures_.look(event);
+  }
+  /// A step of a haptic node's run, with what it put on the hand.
+  void step(std::int64_t receive_ns, std::uint64_t run, std::int64_t sense_ns, double newton) {
+    tell(receive_ns, topics::force_state, ForceState{.run = run, .force = {newton, 0, 0}});
+    tell(receive_ns, topics::tool_state, ToolState{.run = run, .sense_ns = sense_ns, .depth = 0.1});
+  }
+  double last_time() const { return figures_.course().back().time; }
+
+  Scene scene_ = load_scene(PALPATE_SOURCE "/scenes/plate_cut.toml");
+  LogFigures figures_{scene_};
+};
+
+TEST_F(Figures, ACourseHasTheLargestForceOfEachStretch) {
+  for (int ms = 0; ms < 25; ++ms) step(ms * kMs, 1, ms * kMs, ms == 13 ? 2.0 : 0.5);
+  ASSERT_EQ(figures_.course().size(), 3u);
+  EXPECT_EQ(figures_.course()[0].force, 0.5);
+  EXPECT_EQ(figures_.course()[1].force, 2);
+  EXPECT_EQ(figures_.course()[2].force, 0.5);
+}
+
+// A haptic node that comes back may be on another host, whose clock began at another time.
+TEST_F(Figures, EachRunOfTheHapticNodeBeginsWhereTheLogHasIt) {
+  for (int ms = 0; ms < 20; ++ms) step(ms * kMs, 1, (7000 + ms) * kMs, 0.5);
+  EXPECT_NEAR(last_time(), 0.01, 1e-9);
+  for (int ms = 300; ms < 320; ++ms) step(ms * kMs, 2, (90 + ms) * kMs, 0.5);
+  EXPECT_NEAR(last_time(), 0.31, 1e-9);
+  step(500 * kMs, 2, (90 + 330) * kMs, 0.5);  // late in the log: the node's own clock knows when it was
+  EXPECT_NEAR(last_time(), 0.33, 1e-9);
+}
+
+TEST_F(Figures, WhatTissueHasLostAddsUpByItsCause) {
+  tell(1 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 1, .cause = cut, .removed = {1, 2, 3}});
+  tell(2 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 2, .cause = cut, .removed = {7, 8}});
+  tell(3 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 3, .cause = fell_away, .removed = {9}});
+  const auto lost = figures_.json()["tissue"][0];
+  EXPECT_EQ(lost["cut"], 5);
+  EXPECT_EQ(lost["torn"], 0);
+  EXPECT_EQ(lost["fallen"], 1);
+}
+
+}  // namespace
+}  // namespace palpate
