@@ -1,10 +1,12 @@
-# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME or ALONE, or ALL, as such.
+# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME or ALONE, or ALL, as such. CACHE: the user's, for them.
 cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 get_filename_component(name ${PROGRAM} NAME)
 string(REPLACE "\n" ";" lines "${listing}")
 # Tests run side by side: threads of OpenBLAS and OpenMP that wait for one another would take the time of the others.
 set(environment OPENBLAS_NUM_THREADS=1 OMP_WAIT_POLICY=passive)
+# What programs keep for the user is kept for all tests together, in the build folder.
+list(APPEND environment XDG_CACHE_HOME=${CACHE})
 # Debian 12's OpenBLAS takes processors that are newer than it for ones of 2004 (docs/offline.md).
 file(STRINGS /proc/cpuinfo flags REGEX "^flags" LIMIT_COUNT 1)
 if(flags MATCHES " avx512f " AND flags MATCHES " avx512dq " AND flags MATCHES " avx512bw " AND flags MATCHES " avx512vl ")

@@ -11,6 +11,7 @@ function(palpate_test_suites target)
   set(include_list ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${suites_PROPERTIES}"
+            -D CACHE=${PROJECT_BINARY_DIR}/cache
             -D "ON_TIME=${suites_ON_TIME}" -D "ALONE=${suites_ALONE}"
             -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
     BYPRODUCTS ${list})

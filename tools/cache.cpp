@@ -1,4 +1,4 @@
-// Archives of tensors: what is there, and away with it.
+// Archives of tensors and readings of mesh files: what is there, and away with it.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "common/archive/archive.hpp"
 #include "common/archive/archive_place.hpp"
+#include "common/mesh/kept_reading.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/commands.hpp"
@@ -34,25 +36,33 @@ struct Kept {
   fs::path file;
   std::uintmax_t bytes = 0;
   std::chrono::sys_seconds made;
-  std::string body, hash;
+  std::string body, hash;  ///< of an archive
 };
 
-/// An archive by its name, BODY-HASH.h5; nothing else in such a folder is looked at.
-bool is_archive(const fs::path& file, Kept& kept) {
-  const std::string name = file.stem().string();
-  if (file.extension() != ".h5" || name.size() < kHashDigits + 2) return false;
-  kept.file = file;
-  kept.body = name.substr(0, name.size() - kHashDigits - 1);
-  kept.hash = name.substr(name.size() - kHashDigits);
-  return name[kept.body.size()] == '-' && kept.hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+bool is_hash(std::string_view text) {
+  return text.size() == kHashDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-std::vector<Kept> archives_in(const fs::path& folder) {
+/// An archive by its name, BODY-HASH.h5; nothing else in such a folder is looked at.
+bool is_archive(Kept& kept) {
+  const std::string name = kept.file.stem().string();
+  if (kept.file.extension() != ".h5" || name.size() < kHashDigits + 2) return false;
+  kept.body = name.substr(0, name.size() - kHashDigits - 1);
+  kept.hash = name.substr(name.size() - kHashDigits);
+  return name[kept.body.size()] == '-' && is_hash(kept.hash);
+}
+
+bool is_reading(const Kept& kept) {
+  return is_hash(kept.file.filename().string());
+}
+
+template <class IsWanted>
+std::vector<Kept> files_in(const fs::path& folder, IsWanted&& is_wanted) {
   std::vector<Kept> all;
   if (!fs::is_directory(folder)) return all;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    Kept kept;
-    if (!entry.is_regular_file() || entry.is_symlink() || !is_archive(entry.path(), kept)) continue;
+    Kept kept{entry.path(), 0, {}, {}, {}};
+    if (!entry.is_regular_file() || entry.is_symlink() || !is_wanted(kept)) continue;
     kept.bytes = entry.file_size();
     kept.made = std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(entry.last_write_time()));
     all.push_back(std::move(kept));
@@ -71,47 +81,67 @@ std::set<fs::path> folders_of(const std::vector<std::string>& scenes) {
   return folders;
 }
 
-/// Why this version does not use it; empty: it does.
-std::string refusal(const Kept& kept) {
+bool archive_is_of_use(const Kept& kept) {
   try {
     read_archive(kept.file, ArchivePart::header, kept.hash);
-    return "";
-  } catch (const std::exception& error) {
-    return error.what();
+    return true;
+  } catch (const std::exception&) {
+    return false;
   }
+}
+
+bool reading_is_of_use(const Kept& kept) {
+  return kept_answer(kept.file).has_value();
+}
+
+std::uintmax_t bytes_of(const std::vector<Kept>& files) {
+  std::uintmax_t bytes = 0;
+  for (const Kept& kept : files) bytes += kept.bytes;
+  return bytes;
 }
 
 void list(const CacheOptions& o) {
   for (const fs::path& folder : folders_of(o.scenes)) {
-    std::uintmax_t all = 0;
-    const std::vector<Kept> archives = archives_in(folder);
-    for (const Kept& kept : archives) {
-      all += kept.bytes;
+    const std::vector<Kept> archives = files_in(folder, is_archive);
+    for (const Kept& kept : archives)
       fmt::print("  {:>10}  {:%Y-%m-%d}  {:<20}  {}{}\n", human_bytes(kept.bytes), kept.made, kept.body,
-                 kept.file.filename().string(), refusal(kept).empty() ? "" : "  (of no use to this version)");
-    }
-    fmt::print("{}: {} archives, {}\n", folder.string(), archives.size(), human_bytes(all));
+                 kept.file.filename().string(), archive_is_of_use(kept) ? "" : "  (of no use to this version)");
+    fmt::print("{}: {} archives, {}\n", folder.string(), archives.size(), human_bytes(bytes_of(archives)));
+    const fs::path below = readings_folder(folder);
+    if (const std::vector<Kept> readings = files_in(below, is_reading); !readings.empty())
+      fmt::print("{}: {} readings of mesh files, {}\n", below.string(), readings.size(),
+                 human_bytes(bytes_of(readings)));
   }
 }
 
-void clean(const CacheOptions& o) {
+/// Removes those that the options mean, and returns them.
+template <class IsOfUse>
+std::vector<Kept> remove(std::vector<Kept> files, const CacheOptions& o, IsOfUse&& is_of_use) {
   const auto now = std::chrono::system_clock::now();
+  std::erase_if(files, [&](const Kept& kept) {
+    return now - kept.made < std::chrono::days(o.days) || (o.old_formats && is_of_use(kept));
+  });
+  for (const Kept& kept : files) fs::remove(kept.file);
+  return files;
+}
+
+void clean(const CacheOptions& o) {
   for (const fs::path& folder : folders_of(o.scenes)) {
-    std::uintmax_t bytes = 0;
-    int removed = 0;
-    for (const Kept& kept : archives_in(folder)) {
-      if (now - kept.made < std::chrono::days(o.days) || (o.old_formats && refusal(kept).empty())) continue;
-      fs::remove(kept.file);
-      bytes += kept.bytes, ++removed;
-    }
-    fmt::print("{}: {} archives removed, {}\n", folder.string(), removed, human_bytes(bytes));
+    const std::vector<Kept> archives = remove(files_in(folder, is_archive), o, archive_is_of_use);
+    fmt::print("{}: {} archives removed, {}\n", folder.string(), archives.size(), human_bytes(bytes_of(archives)));
+    const fs::path below = readings_folder(folder);
+    const std::vector<Kept> readings = remove(files_in(below, is_reading), o, reading_is_of_use);
+    if (!readings.empty())
+      fmt::print("{}: {} readings of mesh files removed, {}\n", below.string(), readings.size(),
+                 human_bytes(bytes_of(readings)));
   }
 }
 
 }  // namespace
 
 void add_cache_command(cli::Command& app) {
-  cli::Command command = app.add_command("cache", "List or remove archives of tensors, which can be computed again");
+  cli::Command command = app.add_command(
+      "cache", "List or remove archives of tensors and readings of mesh files, which can be made again");
   auto o = std::make_shared<CacheOptions>();
   command.add_option("WORK", o->work, "list, or clean").required().one_of(std::vector<std::string>{"list", "clean"});
   command.add_option("SCENE", o->scenes, "Scenes beside whose meshes to look (default: the user's own folder)");

@@ -7,10 +7,10 @@
 #include "common/archive/archive_dynamic.hpp"
 #include "common/archive/archive_modal.hpp"
 #include "common/archive/archive_presses.hpp"
-#include "common/archive/atomic_file.hpp"
 #include "common/archive/fits.hpp"
 #include "common/archive/hdf5_file.hpp"
 #include "common/archive/rows.hpp"
+#include "common/files/atomic_file.hpp"
 
 namespace palpate {
 namespace {

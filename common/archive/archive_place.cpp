@@ -3,19 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <optional>
 #include <stdexcept>
+
+#include "common/files/user_cache.hpp"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<fs::path> variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value && *value ? std::optional<fs::path>(value) : std::nullopt;
-}
 
 /// It is there or can be made, and files can be made in it.
 bool can_hold_files(const fs::path& folder) {
@@ -27,15 +22,13 @@ bool can_hold_files(const fs::path& folder) {
 }  // namespace
 
 fs::path archive_cache() {
-  if (const auto cache = variable("PALPATE_CACHE")) return *cache;
-  if (const auto caches = variable("XDG_CACHE_HOME")) return *caches / "palpate";
-  if (const auto home = variable("HOME")) return *home / ".cache" / "palpate";
+  if (auto cache = user_cache()) return *std::move(cache);
   throw std::runtime_error("no folder for archives of tensors: set PALPATE_CACHE to one, or HOME");
 }
 
 fs::path archive_path(const fs::path& mesh_file, const std::string& body, const std::string& content_hash) {
   const std::string name = body + "-" + content_hash + ".h5";
-  if (const auto cache = variable("PALPATE_CACHE")) return *cache / name;
+  if (const auto cache = chosen_cache()) return *cache / name;
   const fs::path beside = fs::absolute(mesh_file).parent_path() / ".palpate";
   std::error_code error;
   return fs::exists(beside / name, error) || can_hold_files(beside) ? beside / name : archive_cache() / name;

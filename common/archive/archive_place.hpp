@@ -9,8 +9,7 @@ namespace palpate {
 std::filesystem::path archive_path(const std::filesystem::path& mesh_file, const std::string& body,
                                    const std::string& content_hash);
 
-/// The user's folder of archives: $PALPATE_CACHE, $XDG_CACHE_HOME/palpate or ~/.cache/palpate. Throws
-/// std::runtime_error where none of these variables nor $HOME is set.
+/// user_cache(). Throws std::runtime_error where there is none.
 std::filesystem::path archive_cache();
 
 }  // namespace palpate

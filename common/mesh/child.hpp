@@ -51,7 +51,9 @@ void put_all(std::string& bytes, const std::vector<T>& values) {
 
 template <class T>
 std::vector<T> take_all(const std::string& bytes, std::size_t& at) {
-  std::vector<T> values(take<std::size_t>(bytes, at));
+  const auto count = take<std::size_t>(bytes, at);
+  if ((bytes.size() - at) / sizeof(T) < count) throw std::runtime_error("the reader's answer is cut short");
+  std::vector<T> values(count);
   for (T& value : values) value = take<T>(bytes, at);
   return values;
 }

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "common/mesh/child.hpp"
 #include "common/mesh/gmsh_calls.hpp"
+#include "common/mesh/kept_reading.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
@@ -163,16 +165,16 @@ std::string in_child(const std::function<std::string(const LibraryCalls&)>& work
   return run_in_child([&work, &gmsh = calls()] { return work(gmsh); });
 }
 
-}  // namespace
-
-LibraryMesh read_with_library(const std::filesystem::path& file) {
-  const std::string answer = in_child([&](const LibraryCalls& gmsh) { return gmsh.read(file.string()); });
+/// What the library's `read` answered.
+LibraryMesh mesh_of(const std::string& answer) {
   LibraryMesh mesh;
   std::size_t at = 0;
   mesh.node_numbers = take_all<std::size_t>(answer, at);
   mesh.nodes = as_points(take_all<double>(answer, at));
   mesh.tetrahedra = in_groups_of<4>(take_all<std::size_t>(answer, at));
   mesh.triangles = in_groups_of<3>(take_all<std::size_t>(answer, at));
+  if (mesh.nodes.size() != mesh.node_numbers.size())
+    throw std::runtime_error("the reader's answer does not fit together");
   const auto groups = take<std::size_t>(answer, at);
   for (std::size_t g = 0; g < groups; ++g) {
     const int dimension = take<int>(answer, at), number = take<int>(answer, at);
@@ -180,6 +182,28 @@ LibraryMesh read_with_library(const std::filesystem::path& file) {
     if (!name.empty()) mesh.group_names[{dimension, number}] = name;
     for (int entity : take_all<int>(answer, at)) mesh.groups_of_entity[{dimension, entity}].push_back(number);
   }
+  return mesh;
+}
+
+/// None where nothing is kept that can be used.
+std::optional<LibraryMesh> kept_mesh(const std::filesystem::path& place) {
+  const auto answer = kept_answer(place);
+  if (!answer) return {};
+  try {
+    return mesh_of(*answer);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+LibraryMesh read_with_library(const std::filesystem::path& file) {
+  const auto place = reading_place(file);
+  if (auto kept = place ? kept_mesh(*place) : std::nullopt) return *std::move(kept);
+  const std::string answer = in_child([&](const LibraryCalls& gmsh) { return gmsh.read(file.string()); });
+  LibraryMesh mesh = mesh_of(answer);
+  if (place && place == reading_place(file)) keep_answer(*place, answer);  // unless the file changed meanwhile
   return mesh;
 }
 

@@ -22,8 +22,8 @@ struct LibraryMesh {
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;
 };
 
-/// Reads a file that the library knows by its extension. The library works in a child process (child.hpp).
-/// Throws std::runtime_error(reason).
+/// Reads a file that the library knows by its extension. The library works in a child process (child.hpp), unless its
+/// answer to a file of the same bytes is kept (kept_reading.hpp). Throws std::runtime_error(reason).
 LibraryMesh read_with_library(const std::filesystem::path& file);
 
 /// Writes tetrahedra, groups and nodes; see write_tet_mesh in mesh_file.hpp. Same process rule and errors.

@@ -12,7 +12,7 @@ namespace palpate {
 /// dimensions share is found as "point 1", "curve 1", "surface 1" or "volume 1" instead. Where every
 /// tetrahedron of a file is negatively oriented, the file follows the opposite convention and all are turned;
 /// a file where only some are is refused. Throws std::runtime_error("FILE: element N: reason") on anything
-/// that is not a mesh to compute with; the checks are those of quality.hpp. Forks a child process
+/// that is not a mesh to compute with; the checks are those of quality.hpp. May fork a child process
 /// (child.hpp): for set-up, not for a realtime loop.
 TetMesh load_tet_mesh(const std::filesystem::path& file, double scale);
 

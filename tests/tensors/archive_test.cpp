@@ -126,6 +126,7 @@ TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) 
   const uid_t user = geteuid(), other = user == 0 ? 65534 : user;  // permissions do not hold before root
   fs::permissions(folder / ".", kNoWriting);
   ASSERT_EQ(seteuid(other), 0);
+  const std::string caches = std::getenv("XDG_CACHE_HOME") ? std::getenv("XDG_CACHE_HOME") : "";
   setenv("XDG_CACHE_HOME", "/caches", 1);
   EXPECT_EQ(place(), "/caches/palpate/liver-abc.h5");
   unsetenv("XDG_CACHE_HOME");
@@ -138,6 +139,7 @@ TEST(Archive, LivesBesideTheMeshOrInTheUsersCacheWhereNothingMayBeWrittenThere) 
   EXPECT_EQ(place(), "/cache/liver-abc.h5");
   unsetenv("PALPATE_CACHE");
   if (!home.empty()) setenv("HOME", home.c_str(), 1);
+  if (!caches.empty()) setenv("XDG_CACHE_HOME", caches.c_str(), 1);
   ASSERT_EQ(seteuid(user), 0);
 
   // What came with the mesh is used, though nothing can be added.

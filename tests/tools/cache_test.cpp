@@ -1,6 +1,7 @@
-// Archives are listed and removed, and nothing else is.
+// Archives and readings are listed and removed, and nothing else is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -27,8 +28,9 @@ class ToolsCache : public ::testing::Test {
     return result.out;
   }
   void write(const std::string& name) const { std::ofstream(folder_ / "cache" / name) << "no archive"; }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_ / "cache"), fs::directory_iterator()));
+  std::size_t files(const std::string& folder = "cache") const {
+    const auto is_file = [](const fs::directory_entry& entry) { return !entry.is_directory(); };
+    return static_cast<std::size_t>(std::ranges::count_if(fs::directory_iterator(folder_ / folder), is_file));
   }
 
   OwnFolder folder_{"cache"};
@@ -56,6 +58,22 @@ TEST_F(ToolsCache, ListsWhatIsThereAndRemovesWhatIsOfNoUse) {
   EXPECT_EQ(files(), 4u);
   EXPECT_NE(cache("clean").find(" 1 archives removed"), std::string::npos);
   EXPECT_EQ(files(), 3u) << "what is no archive stays";
+}
+
+TEST_F(ToolsCache, ListsAndRemovesReadingsOfMeshFiles) {
+  const LoopbackScene scene("cache-readings", kLinear);
+  ASSERT_EQ(run_program(program("palpate") + " check " + scene.scene()).status, 0);
+  ASSERT_EQ(files("cache/readings"), 1u);
+  write("readings/" + std::string(32, 'a'));
+  write("readings/notes.txt");
+  const std::string listed = cache("list");
+  EXPECT_NE(listed.find("cache/readings: 2 readings of mesh files, "), std::string::npos) << listed;
+
+  EXPECT_EQ(cache("clean --days 1").find("readings"), std::string::npos) << "all are new";
+  EXPECT_NE(cache("clean --unusable").find("cache/readings: 1 readings of mesh files removed, "), std::string::npos);
+  EXPECT_NE(cache("clean").find("cache/readings: 1 readings of mesh files removed, "), std::string::npos);
+  EXPECT_EQ(files("cache/readings"), 1u) << "what is no reading stays";
+  EXPECT_EQ(cache("list").find("readings"), std::string::npos);
 }
 
 }  // namespace

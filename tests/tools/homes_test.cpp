@@ -109,14 +109,17 @@ TEST(ToolsHomes, TheDeformationNodeStartsAnewWithOneThreadOfOpenBlasUnlessTheEnv
   EXPECT_EQ(starts("OPENBLAS_NUM_THREADS=3"), 1);
 }
 
-TEST(ToolsHomes, GmshIsLoadedOnlyWhereAMeshIsRead) {
-  const auto loads_gmsh = [](const std::string& arguments) {
-    const auto result = run_program("LD_DEBUG=files " + program("palpate") + " " + arguments);
+TEST(ToolsHomes, GmshIsLoadedOnlyWhereAMeshIsReadForTheFirstTime) {
+  const OwnFolder cache("readings");
+  const auto loads_gmsh = [&](const std::string& arguments) {
+    const auto result = run_program(
+        fmt::format("LD_DEBUG=files PALPATE_CACHE={} {} {}", cache.path().string(), program("palpate"), arguments));
     EXPECT_EQ(result.status, 0) << arguments;
     return result.err.find("libgmsh") != std::string::npos;
   };
   EXPECT_FALSE(loads_gmsh("--help"));
   EXPECT_TRUE(loads_gmsh("check " PALPATE_SOURCE "/scenes/plate.toml"));
+  EXPECT_FALSE(loads_gmsh("check " PALPATE_SOURCE "/scenes/plate.toml"));
 }
 
 }  // namespace

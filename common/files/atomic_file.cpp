@@ -1,4 +1,4 @@
-#include "common/archive/atomic_file.hpp"
+#include "common/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
