@@ -2,11 +2,11 @@
 // docs/modes.md of these rows.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "bench/report.hpp"
 #include "bench/shell_bodies.hpp"
+#include "common/geometry/principal_axes.hpp"
 #include "common/shell/modes.hpp"
 
 namespace palpate::bench {
@@ -59,7 +59,7 @@ double cylinder_frequency(int m, int n) {
            (1 - nu) / 2 * e[2].transpose() * e[2];
   };
   const Eigen::Matrix3d k = stretch * (energy(strain) + std::pow(kCylinder.thickness, 2) / 12 * energy(bend));
-  const double square = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(k).eigenvalues()[0];
+  const double square = principal_values(k)[0];
   return std::sqrt(square / (kCylinder.density * kCylinder.thickness)) / (2 * pi);
 }
 

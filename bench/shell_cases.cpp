@@ -3,10 +3,10 @@
 // all mesh sizes: scripts/shell_plots.py makes docs/shell.md's table and picture of it.
 #include "bench/shell_cases.hpp"
 
-#include <Eigen/Cholesky>
 #include <fstream>
 
 #include "bench/report.hpp"
+#include "common/geometry/dense_solvers.hpp"
 #include "common/shell/condensation.hpp"
 
 namespace palpate::bench {
@@ -84,12 +84,12 @@ void condensation(int n, int count) {
   Samples condensing;
   Eigen::MatrixXd condensed;
   condensing.measure(0, 3, [&](int) { condensed = condense_rotations(lower, translations); });
-  const Eigen::LLT<Eigen::MatrixXd> full(Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>()), small(condensed);
+  const DenseCholesky full{Eigen::MatrixXd(lower)}, small{condensed};
   const Eigen::VectorXd reference = sparse.solve(load).col(0).head(translations);
   const double difference = (small.solve(forces) - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 
-  const double full_time = solution_time(count, [&] { return full.solve(load).eval(); });
-  const double small_time = solution_time(count, [&] { return small.solve(forces).eval(); });
+  const double full_time = solution_time(count, [&] { return full.solve(load); });
+  const double small_time = solution_time(count, [&] { return small.solve(forces); });
   const double sparse_time = solution_time(count, [&] { return sparse.solve(load); });
   const std::string name = fmt::format("condensed_{}", translations);
   report("shell_cases", name, "difference", difference, "1");

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
 #include "common/dynamics/tensor_mass.hpp"
+#include "common/geometry/dense_solvers.hpp"
 #include "tests/dynamics/dynamic_meshes.hpp"
 
 namespace palpate {
@@ -21,14 +21,14 @@ struct Modes {
     const Eigen::MatrixXd lower = assemble_stiffness(body.problem.mesh, body.problem.materials, dofs);
     Eigen::VectorXd mass(dofs.size());
     for (int i = 0; i < dofs.size(); ++i) mass[i] = lumped.mass(dofs.dof(i) / 3);
-    const Eigen::MatrixXd stiffness = lower.selfadjointView<Eigen::Lower>();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness,
-                                                                           Eigen::MatrixXd(mass.asDiagonal()));
-    frequency = solver.eigenvalues().cwiseSqrt();
+    // K x = w^2 M x by the eigenvectors y = M^1/2 x of M^-1/2 K M^-1/2.
+    const Eigen::VectorXd to_shape = mass.cwiseSqrt().cwiseInverse();
+    const auto [square, vector] = symmetric_eigen(to_shape.asDiagonal() * lower * to_shape.asDiagonal());
+    frequency = square.cwiseSqrt();
     for (int k : {0, 1, 2, 3, 4}) {
       shape.emplace_back(body.mesh.rest.size(), Vector3d::Zero());
       for (int i = 0; i < dofs.size(); ++i)
-        shape[k][dofs.dof(i) / 3][dofs.dof(i) % 3] = 1e-4 * solver.eigenvectors()(i, k);
+        shape[k][dofs.dof(i) / 3][dofs.dof(i) % 3] = 1e-4 * to_shape[i] * vector(i, k);
     }
   }
   double highest() const { return frequency[frequency.size() - 1]; }

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseLU>
 
+#include "common/geometry/dense_solvers.hpp"
 #include "common/mesh/surface.hpp"
 #include "tests/fem/meshes_for_tests.hpp"
 
@@ -26,24 +26,19 @@ StaticSolution solve_augmented(const StaticProblem& problem, const std::vector<C
   const int n = all.size(), m = static_cast<int>(rows.size());
   // Multipliers are scaled to the size of the stiffness, so that the pivots are comparable.
   const double scale = stiffness.coeffs().abs().maxCoeff();
-  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
   for (int c = 0; c < n; ++c)
-    for (SparseMatrix::InnerIterator it(stiffness, c); it; ++it) {
-      entries.emplace_back(it.row(), c, it.value());
-      if (it.row() != c) entries.emplace_back(c, it.row(), it.value());
-    }
+    for (SparseMatrix::InnerIterator it(stiffness, c); it; ++it) matrix(it.row(), c) = matrix(c, it.row()) = it.value();
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m);
   for (int r = 0; r < m; ++r) {
     right[n + r] = scale * rows[r].value;
     for (const auto& [node, axis, weight] : rows[r].terms) {
-      entries.emplace_back(n + r, all.index(node, axis), scale * weight);
-      entries.emplace_back(all.index(node, axis), n + r, scale * weight);
+      const int dof = all.index(node, axis);
+      matrix(n + r, dof) += scale * weight;
+      matrix(dof, n + r) += scale * weight;
     }
   }
-  Eigen::SparseMatrix<double> matrix(n + m, n + m);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(matrix);
-  const Eigen::VectorXd x = factor.solve(right);
+  const Eigen::VectorXd x = solve_general(matrix, right);
 
   StaticSolution solution{std::vector<Vector3d>(problem.mesh.nodes.size(), Vector3d::Zero()),
                           std::vector<Vector3d>(problem.mesh.nodes.size(), Vector3d::Zero())};
