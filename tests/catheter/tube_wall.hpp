@@ -77,12 +77,14 @@ class TubeWall : public CatheterWall {
     surface_.begin_update();
     for (int n = 0; n < map_.size(); ++n) surface_.mark_node(n);
     std::vector<double> u;
-    for (const int n : surface_.marked())
+    const auto coordinates = Eigen::Map<const Eigen::VectorXd>(coordinate_.data(), shape_.modes);
+    for (const int n : surface_.marked()) {
+      const Eigen::Vector3d by_hand = given ? given(map_.position[n]) : Eigen::Vector3d::Zero();
       for (int axis = 0; axis < 3; ++axis) {
-        double value = given ? given(map_.position[n])[axis] : 0.0;
-        for (int m = 0; m < shape_.modes; ++m) value += mode_[(3 * n + axis) * shape_.modes + m] * coordinate_[m];
-        u.push_back(value);
+        const double* row = mode_.data() + (3 * n + axis) * static_cast<std::size_t>(shape_.modes);
+        u.push_back(by_hand[axis] + Eigen::Map<const Eigen::VectorXd>(row, shape_.modes).dot(coordinates));
       }
+    }
     surface_.move_marked(u);
   }
 

@@ -73,13 +73,18 @@ class Side {
   double of_power_[4] = {};
 };
 
-/// The path cut into many short parts, halving where the side changes, in higher precision. What would come after
-/// `until` is not looked for.
+struct Interval {
+  double from, until;  ///< [1] of the path
+};
+
+/// The path cut into many short parts, halving where the side changes, in higher precision. What would come before or
+/// after `when` is not looked for.
 Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const Triangle& b, int parts,
-               double until = 1) {
+               const Interval& when = {0, 1}) {
   const Side side(Ways<double>(p0, p1, a, b));
-  bool start = side.outside(0);
-  for (int part = 0; part < parts && part <= until * parts; ++part) {
+  const int first = static_cast<int>(when.from * parts);
+  bool start = side.outside(static_cast<double>(first) / parts);
+  for (int part = first; part < parts && part <= when.until * parts; ++part) {
     const double end = (part + 1.0) / parts;
     const bool before = std::exchange(start, side.outside(end));
     if (before == start) continue;
@@ -94,13 +99,28 @@ Found by_force(const Vector3d& p0, const Vector3d& p1, const Triangle& a, const 
   return {};
 }
 
+/// When the path is in a box; from > until where it never is.
+Interval within(const std::array<Vector3d, 2>& box, const Vector3d& p0, const Vector3d& p1) {
+  constexpr double room = 1e-6;  // for rounding
+  Interval in{0, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = p1[axis] - p0[axis];
+    const auto [enters, leaves] = std::minmax({(box[0][axis] - p0[axis]) / way, (box[1][axis] - p0[axis]) / way});
+    in.from = std::max(in.from, enters - room);
+    in.until = std::min(in.until, leaves + room);
+  }
+  return in;
+}
+
 /// The same for all triangles, in their boxes, that the path meets.
 Found by_force(const MovingSurface& surface, std::span<const std::array<Vector3d, 2>> boxes, const Vector3d& p0,
                const Vector3d& p1) {
   Found first;
   for (int t = 0; t < surface.size(); ++t) {
-    if (!meet(boxes[t], {p0.cwiseMin(p1), p0.cwiseMax(p1)})) continue;
-    const Found found = by_force(p0, p1, surface.before(t), surface.after(t), 24, std::min(first.time, 1.0));
+    Interval when = within(boxes[t], p0, p1);
+    when.until = std::min(when.until, first.time);
+    if (when.from > when.until) continue;
+    const Found found = by_force(p0, p1, surface.before(t), surface.after(t), 24, when);
     if (found.time < first.time) first = {found.time, t, found.from_outside};
   }
   return first;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <set>
 
 #include "common/archive/compliance.hpp"
 #include "common/dynamics/stability.hpp"
@@ -40,6 +41,7 @@ class TouchedBlock {
       for (int v = 0; v < 3; ++v) nodes[v] = archive.surface.node_number[t[v]];
       triangles_.push_back(nodes);
     }
+    for (const auto& nodes : triangles_) surface_nodes_.insert(nodes.begin(), nodes.end());
     mesh_.rest.assign(mesh.nodes.begin(), mesh.nodes.end());
     mesh_.tetrahedra.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
     for (const Eigen::Vector3d& x : mesh_.rest) {
@@ -83,11 +85,13 @@ class TouchedBlock {
       m.contacts.push_back({0, 0, copy3(position(held_)), copy3(normal_), copy3(force_), copy9(stiffer * k)});
     }
     std::vector<int> of_node(mesh_.nodes(), -1);
+    std::vector<Eigen::Vector3d> at_node(mesh_.nodes());
+    for (const int node : surface_nodes_) at_node[node] = position(node);
     for (const auto& nodes : triangles_) {
-      const Triangle corners{position(nodes[0]), position(nodes[1]), position(nodes[2])};
+      const Triangle corners{at_node[nodes[0]], at_node[nodes[1]], at_node[nodes[2]]};
       const double longest = std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm());
-      if ((position(held_) - corners[0]).norm() > longest + 0.02) continue;  // at once, without its nearest point
-      if (closest_point(position(held_), corners).squared_distance > 0.02 * 0.02) continue;
+      if ((at_node[held_] - corners[0]).norm() > longest + 0.02) continue;  // at once, without its nearest point
+      if (closest_point(at_node[held_], corners).squared_distance > 0.02 * 0.02) continue;
       std::uint32_t at[3];
       for (int v = 0; v < 3; ++v) {
         int& place = of_node[nodes[v]];
@@ -96,7 +100,7 @@ class TouchedBlock {
           Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
           for (const auto& [node, stiffness] : stiffness_)
             if (node == nodes[v]) k = stiffer * stiffness;
-          m.nodes.push_back({0, static_cast<std::uint32_t>(nodes[v]), copy3(position(nodes[v])),
+          m.nodes.push_back({0, static_cast<std::uint32_t>(nodes[v]), copy3(at_node[nodes[v]]),
                              copy3(model_->velocity(nodes[v])), copy9(k)});
         }
         at[v] = static_cast<std::uint32_t>(place);
@@ -116,6 +120,7 @@ class TouchedBlock {
   Eigen::Matrix3d compliance_ = Eigen::Matrix3d::Zero();
   std::vector<std::pair<int, Eigen::Matrix3d>> stiffness_;
   std::vector<std::array<int, 3>> triangles_;
+  std::set<int> surface_nodes_;
   const Eigen::Vector3d normal_ = -Eigen::Vector3d::UnitZ();
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };

@@ -1,6 +1,7 @@
 #include "common/contact/patch/hat_kernel.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace palpate {
 namespace {
@@ -57,20 +58,24 @@ void HatKernel::integrate() {
   for_each_near_pair(middle, reach, [&](int s, int t) {
     const auto &of_s = map.triangles[s], &of_t = map.triangles[t];
     const Vector3d &n_s = surface_.facet_normal(s), &n_t = surface_.facet_normal(t);
-    const auto wanted = [&](int i) {
-      return std::ranges::any_of(of_t, [&](int j) { return near_.find(std::max(i, j), std::min(i, j)); });
-    };
-    if (n_s.dot(n_t) <= 0 || std::ranges::none_of(of_s, wanted)) return;
+    if (n_s.dot(n_t) <= 0) return;
+    std::array<std::array<Matrix3d*, 3>, 3> blocks;  // of the corners' pairs, null where they are not near
+    bool wanted = false;
+    for (int p = 0; p < 3; ++p)
+      for (int q = 0; q < 3; ++q) {
+        blocks[p][q] = near_.find(std::max(of_s[p], of_t[q]), std::min(of_s[p], of_t[q]));
+        wanted = wanted || blocks[p][q];
+      }
+    if (!wanted) return;
     const Moments moments =
         of_duals(kernel_moments(half_space_, surface_.corners(s), surface_.corners(t), (n_s + n_t).normalized()));
     for (int p = 0; p < 3; ++p)
       for (int q = 0; q < 3; ++q) {
         const int i = of_s[p], j = of_t[q];
-        Matrix3d* block = near_.find(std::max(i, j), std::min(i, j));
-        if (!block || (s == t && i < j)) continue;
+        if (!blocks[p][q] || (s == t && i < j)) continue;
         Matrix3d sum = moments[p][q] / (surface_.weight(i) * surface_.weight(j));
         if (i == j && s != t) sum += sum.transpose().eval();  // (t, s), the kernel being even
-        *block += i >= j ? sum : Matrix3d(sum.transpose());
+        *blocks[p][q] += i >= j ? sum : Matrix3d(sum.transpose());
       }
   });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -70,6 +71,14 @@ std::vector<bool> nodes_of(const Averages& averages) {
   return nodes;
 }
 
+/// Per node those whose average it is in, with its weight there.
+Averages transposed(const Averages& averages) {
+  Averages result(averages.size());
+  for (std::size_t n = 0; n < averages.size(); ++n)
+    for (const Share& s : averages[n]) result[s.node].push_back({static_cast<int>(n), s.weight});
+  return result;
+}
+
 /// [m/N] Adds C between two nodes; zero beyond those that can be touched.
 void add_compliance(const Compliance<double>& c, int i, int j, Matrix3d& to) {
   if (i >= c.row_nodes() || j >= c.column_nodes()) return;
@@ -101,25 +110,28 @@ NearField::NearField(const SmoothSurface& surface, const Compliance<double>& com
       compliance_(&compliance),
       half_space_(half_space),
       pairs_(surface.map().position, reach_of_patches(surface.map(), radius)) {
-  const SurfaceMap& map = surface.map();
+  const int count = surface.map().size();
   const Averages averages = averages_of(surface, radius, resolved);
+  const Averages averaged_by = transposed(averages);
   const Beyond beyond(surface, compliance, half_space, nodes_of(averages));
-  std::vector<Matrix3d> column(map.size());  // (C - W^T G W) S^T
-  std::vector<int> filled(map.size(), -1);   // of which node
-  for (int i = 0; i < map.size(); ++i) {
-    const std::span<const int> near = pairs_.lower(i);
-    const std::span<Matrix3d> blocks = pairs_.lower_blocks(i);
-    for (std::size_t n = 0; n < near.size(); ++n)
-      for (const Share& to : averages[near[n]]) {
-        Matrix3d& of_node = column[to.node];
-        if (filled[to.node] != i) {
-          filled[to.node] = i;
-          of_node.setZero();
-          for (const Share& from : averages[i]) of_node += from.weight * beyond(from.node, to.node);
-        }
-        blocks[n] += to.weight * of_node;
-      }
-  }
+  // Of node `to`, once each: C - W^T G W, and S (C - W^T G W), with the node that they were last worked out for.
+  std::vector<Matrix3d> plain(count), averaged(count);
+  std::vector<int> plain_for(count, -1), averaged_for(count, -1);
+  const auto average = [&](int i, int to) -> const Matrix3d& {
+    if (std::exchange(averaged_for[i], to) == to) return averaged[i];
+    averaged[i].setZero();
+    for (const Share& from : averages[i]) {
+      if (std::exchange(plain_for[from.node], to) != to) plain[from.node] = beyond(from.node, to);
+      averaged[i] += from.weight * plain[from.node];
+    }
+    return averaged[i];
+  };
+  for (int to = 0; to < count; ++to)
+    for (const Share& by : averaged_by[to]) {
+      const std::span<const int> near = pairs_.lower(by.node);
+      const std::span<Matrix3d> blocks = pairs_.lower_blocks(by.node);
+      for (std::size_t n = 0; n < near.size(); ++n) blocks[n] += by.weight * average(near[n], to).transpose();
+    }
 }
 
 void NearField::subtract(const Compliance<double>& compliance) {
