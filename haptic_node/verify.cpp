@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 
@@ -84,7 +86,8 @@ TaskRecord numbered_like(const TaskRecord& other, TaskRecord record) {
 }
 
 bool same_bits(const Eigen::Vector3d& a, const std::array<double, 3>& b) {
-  return std::memcmp(a.data(), b.data(), sizeof b) == 0;
+  using Bits = std::array<std::uint64_t, 3>;
+  return std::bit_cast<Bits>(std::array{a[0], a[1], a[2]}) == std::bit_cast<Bits>(b);
 }
 
 /// Takes up the code path that a keyframe names; the software must be this one.

@@ -5,11 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstring>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -64,16 +64,15 @@ int sync_to_disk(const fs::path& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path target, std::size_t expected_bytes) : target_(std::move(target)) {
-  static std::atomic<int> count{0};
   std::error_code error;
   fs::create_directories(target_.parent_path(), error);
   if (error) fail(target_, error.value());
   remove_abandoned(target_.parent_path());
-  const auto path = fmt::format("{}{}{}-{}", target_.string(), kMark, getpid(), count++);
-  const int reserved = reserve(path, expected_bytes);
-  temporary_ = path;
+  std::random_device random;
+  temporary_ = fmt::format("{}{}{}-{:08x}{:08x}", target_.string(), kMark, getpid(), random(), random());
+  const int reserved = reserve(temporary_, expected_bytes);
   if (reserved == 0) return;
-  fs::remove(temporary_, error);
+  if (reserved != EEXIST) fs::remove(temporary_, error);  // else it is another's
   fail(target_, reserved);
 }
 

@@ -197,8 +197,7 @@ void add_drive_command(cli::Command& app) {
   command.examples(
       {"palpate drive scenes/liver.toml --expect \"tool.force.max<3\" --expect finite==1",
        "palpate drive scenes/liver.toml --set body.young=8000 --course out/stiff.csv",
-       "palpate drive scenes/liver.toml --sweep body.young=4000,6000,8000 --sweep contact.friction=0.1,0.5 -o "
-       "out/table.csv",
+       "palpate drive scenes/liver.toml --sweep body.young=4000,8000 --sweep contact.friction=0.1,0.5 -o out/table.csv",
        "palpate drive scenes/liver.toml --sweep body.young=4000,8000 --tasks | parallel > out/results.jsonl",
        "palpate drive --merge out/results.jsonl -o out/table.csv"});
   command.does([o] { run(*o); });

@@ -179,7 +179,7 @@ fs::path LoggedScene::place_of(const LogFile& file) {
   if (hash_of(file.content) != file.hash)
     throw std::runtime_error(
         fmt::format("{}: what the log holds of {} is not what its hash {} says", log_.string(), file.path, file.hash));
-  const fs::path place = fs::absolute(folder() / name_of(file));
+  fs::path place = fs::absolute(folder() / name_of(file));
   std::ofstream out(place, std::ios::binary);
   out.write(reinterpret_cast<const char*>(file.content.data()), static_cast<std::streamsize>(file.content.size()));
   if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", place.string()));

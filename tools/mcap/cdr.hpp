@@ -92,7 +92,7 @@ template <class M>
 void add_struct(std::string& idl) {
   std::string text;
   const auto add = [&]<class T>(const char* name, const T&) {
-    using Element = decltype([] {
+    using Element = typename decltype([] {
       if constexpr (is_vector<T> || is_array<T>)
         return std::type_identity<typename T::value_type>();
       else

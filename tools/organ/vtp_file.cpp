@@ -90,7 +90,7 @@ std::size_t whole_number(const std::string& bytes, std::size_t place, const Enco
 std::string take_bytes(std::string_view& text, std::size_t count, bool base64) {
   if (base64) return take_base64(text, count);
   if (text.size() < count) throw std::runtime_error("an array ends too early");
-  const std::string bytes(text.substr(0, count));
+  std::string bytes(text.substr(0, count));
   text.remove_prefix(count);
   return bytes;
 }

@@ -78,7 +78,8 @@ std::vector<SurfacePlace> places_in(const SurfaceMap& map, int triangle) {
 SurfacePath surface_path(const SurfaceMap& map, const SurfacePlace& middle, const PathPlan& plan) {
   const SmoothSurface surface(map);
   const Triangle corners = surface.corners(middle.triangle);
-  const Vector3d normal = surface.facet_normal(middle.triangle), edge = (corners[1] - corners[0]).normalized();
+  const Vector3d& normal = surface.facet_normal(middle.triangle);
+  const Vector3d edge = (corners[1] - corners[0]).normalized();
   const Vector3d ahead = 2 * edge + normal.cross(edge);
   const int run_up = static_cast<int>(plan.run_up / plan.step), wanted = static_cast<int>(plan.length / plan.step);
   const int half = (run_up + wanted) / 2;

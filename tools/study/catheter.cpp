@@ -124,7 +124,7 @@ class CatheterMethod : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change) {
+    const auto add = [&](const std::string& knob, const std::string& value, const std::function<void(Scene&)>& change) {
       all.push_back({name_, knob, value, change, true});
     };
     add("scene", "as it is", [](Scene&) {});

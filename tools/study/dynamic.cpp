@@ -40,7 +40,7 @@ class Dynamic : public Method {
     const palpate::Dynamic* moves = find_motion(solid_->body());
     const palpate::Dynamic motion = moves ? *moves : palpate::Dynamic{};
     const auto add = [&](const std::string& knob, const std::string& value, bool serves,
-                         std::function<void(Body&)> change) {
+                         const std::function<void(Body&)>& change) {
       all.push_back({name_, knob, value,
                      [=, this](Scene& scene) {
                        Body& body = scene.bodies[solid_->index()];

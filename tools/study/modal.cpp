@@ -69,7 +69,7 @@ class Modal : public Method {
 
   std::vector<Point> points() const override {
     std::vector<Point> all;
-    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Shell&)> change) {
+    const auto add = [&](const std::string& knob, const std::string& value, const std::function<void(Shell&)>& change) {
       all.push_back({name_, knob, value,
                      [b = body_, change](Scene& scene) { change(std::get<ModalShellSpec>(scene.bodies[b]).shell); },
                      true});

@@ -52,7 +52,7 @@ class QuasiStatic : public Method {
     const int b = solid_->index();
     const QuasiStaticSpec own = as_kind<QuasiStaticSpec>(solid_->body());
     // `open`: the scene leaves it open, so that a budget may choose it.
-    const auto add = [&](const std::string& knob, const std::string& value, std::function<void(Scene&)> change,
+    const auto add = [&](const std::string& knob, const std::string& value, const std::function<void(Scene&)>& change,
                          bool open = true) {
       all.push_back({name_, knob, value,
                      [=](Scene& scene) {
@@ -83,8 +83,8 @@ class QuasiStatic : public Method {
     for (const auto& [value, offline] : better) {
       if (solid_->quick() && value != "p1") continue;
       add(
-          "offline", value, [b, offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; },
-          !own.offline);
+          "offline", value,
+          [b, offline = offline](Scene& scene) { as_quasi_static(scene.bodies[b]).offline = offline; }, !own.offline);
     }
     if (own.nonlinear)
       add(
