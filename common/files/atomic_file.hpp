@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// A file that appears whole or not at all: it is written under a temporary name that nobody can foresee in the
-/// target's folder, synced to disk, and renamed. Without commit() the temporary file is removed again.
+/// A file that appears whole or not at all: it is written in the target's folder, under a temporary name that nobody
+/// can foresee, synced to disk, and renamed. Without commit() the temporary file is removed again.
 class AtomicFile {
  public:
   /// Makes the folder if needed, removes temporary files whose writers were killed, and reserves
