@@ -23,19 +23,31 @@ inline V root(V x) {
 #endif
 }
 
-struct Point {
-  double x, y, z;
+template <class T>
+struct PointOf {
+  T x, y, z;
 };
-inline Point operator-(const Point& a, const Point& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
+using Point = PointOf<double>;
+using Points = PointOf<V>;
+
+template <class A, class B>
+inline auto operator-(const PointOf<A>& a, const PointOf<B>& b) {
+  return PointOf<decltype(a.x - b.x)>{a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline Point operator*(double s, const Point& a) {
-  return {s * a.x, s * a.y, s * a.z};
+template <class A, class B>
+inline auto operator+(const PointOf<A>& a, const PointOf<B>& b) {
+  return PointOf<decltype(a.x + b.x)>{a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline double dot(const Point& a, const Point& b) {
+template <class A, class B>
+inline auto operator*(const A& s, const PointOf<B>& a) {
+  return PointOf<decltype(s * a.x)>{s * a.x, s * a.y, s * a.z};
+}
+template <class A, class B>
+inline auto dot(const PointOf<A>& a, const PointOf<B>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Point cross(const Point& a, const Point& b) {
+template <class T>
+inline PointOf<T> cross(const PointOf<T>& a, const PointOf<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline double length(const Point& a) {
@@ -53,36 +65,30 @@ alignas(64) constexpr double kAt[3][8] = {{kThird, 1 - 2 * kA, kA, kA, 1 - 2 * k
                                           {kThird, kA, kA, 1 - 2 * kA, kB, kB, 1 - 2 * kB, kThird}};
 alignas(64) constexpr double kWeight[8] = {9.0 / 40, kOfA, kOfA, kOfA, kOfB, kOfB, kOfB, 0};
 
-// Gauss-Legendre of four points on [0, 1], as the square of (along an edge, out to it) has it.
-constexpr int kGauss = 4, kPolar = kGauss * kGauss;
+// Gauss-Legendre of four points on [0, 1].
+constexpr int kGauss = 4;
 constexpr double kNode[kGauss] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
 constexpr double kNodeWeight[kGauss] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                         0.17392742256872693};
-
-#define PALPATE_FOUR_TIMES(a) \
-  { a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3] }
-alignas(64) constexpr double kOut[kPolar] = PALPATE_FOUR_TIMES(kNode);
-alignas(64) constexpr double kOutWeight[kPolar] = PALPATE_FOUR_TIMES(kNodeWeight);
 
 struct Surface {
   Point normal;
   double poisson;
 };
 
-/// Sums over points of t: barycentric coordinate, part of the kernel.
+/// Of the points of s, over points of t: by barycentric coordinate and part of the kernel.
 struct Sums {
   V at[3][kKernel] = {};
 
-  /// The points' kernel at the distances (dx, dy, dz), by `weight` and coordinate.
-  inline void add(const Surface& of, V dx, V dy, V dz, const V (&weight)[3]) {
-    const V over_r = 1 / root(dx * dx + dy * dy + dz * dz);
-    const V stretch = of.poisson * over_r * over_r * over_r;
-    const V up = dx * of.normal.x + dy * of.normal.y + dz * of.normal.z;
-    const V x = dx - up * of.normal.x, y = dy - up * of.normal.y, z = dz - up * of.normal.z;
-    const V bx = stretch * x, by = stretch * y;
-    const V k[kKernel] = {(1 - of.poisson) * over_r, x * bx, y * by, z * (stretch * z), x * by, z * bx, z * by};
+  /// The kernel at the distances d, r long, by `share`, which is a weight over r, by coordinate.
+  inline void add(const Surface& of, const Points& d, V over_r, const V (&share)[3]) {
+    const V stretch = of.poisson * over_r * over_r;
+    const Points h = d - dot(d, of.normal) * of.normal;
+    const V bx = stretch * h.x, by = stretch * h.y;
+    const V k[kKernel] = {
+        V{} + (1 - of.poisson), h.x * bx, h.y * by, h.z * (stretch * h.z), h.x * by, h.z * bx, h.z * by};
     for (int c = 0; c < 3; ++c)
-      for (int i = 0; i < kKernel; ++i) at[c][i] += weight[c] * k[i];
+      for (int i = 0; i < kKernel; ++i) at[c][i] += share[c] * k[i];
   }
 };
 
@@ -101,80 +107,120 @@ struct Corners {
     }
     return farthest;
   }
-  Point place(double a, double b, double c) const {
+  template <class T>
+  PointOf<T> place(T a, T b, T c) const {
     return {a * at[0].x + b * at[1].x + c * at[2].x, a * at[0].y + b * at[1].y + c * at[2].y,
             a * at[0].z + b * at[1].z + c * at[2].z};
   }
 };
 
-/// What an edge of t gives to the integral over t of L_b(y) K(x - y), with the triangle between the edge and the foot
-/// of x: y = foot + s (edge point - foot). r = |x - y| in place of s, and asinh of the way along the edge over the
-/// foot's distance from it, leave no singularity, on the plane of t or off it.
-struct Fan {
-  double along[kPolar], out[kPolar], weight[kPolar];  ///< along the edge, s; of which the last is an area
+/// `f` of each.
+template <class F>
+inline V each(V x, F f) {
+  for (int i = 0; i < kWidth; ++i) x[i] = f(x[i]);
+  return x;
+}
 
-  /// `distance` of the foot from the edge, which goes from `begin` to `end` along itself as seen from there; `height`
-  /// of x.
-  Fan(double distance, double begin, double end, double height) {
-    const double first = __builtin_asinh(begin / distance), whole = __builtin_asinh(end / distance) - first;
-    double far[kPolar];  // of the edge's point from the foot
-    for (int i = 0; i < kGauss; ++i) {
-      const double grown = __builtin_exp(first + kNode[i] * whole), less = 1 / grown;
-      const double at = 0.5 * distance * (grown - less), rho = 0.5 * distance * (grown + less);
-      const double u = (at - begin) / (end - begin), share = kNodeWeight[i] * whole * distance / rho;
-      for (int j = kGauss * i; j < kGauss * (i + 1); ++j) along[j] = u, far[j] = rho, weight[j] = share;
-    }
-    for (int i = 0; i < kPolar; i += kWidth) {
-      const V rho = load(far + i), range = root(rho * rho + height * height) - height;
-      const V beyond = load(kOut + i) * range, r = height + beyond;
-      store(out + i, root(beyond * (r + height)) / rho);
-      store(weight + i, load(weight + i) * load(kOutWeight + i) * range * r);
-    }
-  }
-};
+/// exp(asinh(x)).
+inline V exp_asinh(V x) {
+  const V far = x < 0 ? -x : x, grown = far + root(far * far + 1);
+  return x < 0 ? 1 / grown : grown;
+}
 
-/// The integral over t of L_b(y) K(x - y), for x on it or near it: t is the signed sum of three triangles with a corner
-/// below x.
-inline void near_integral(const Surface& of, const Point& x, const Corners& t, Sums& sums) {
+/// The integral over t of L_b(y) K(x - y), for each x on it or near it: t is the signed sum of three triangles with a
+/// corner below x, y = foot + s (edge point - foot) in each. r = |x - y| in place of s, and asinh of the way along the
+/// edge over the foot's distance from it, leave no singularity, on the plane of t or off it.
+inline void near_integral(const Surface& of, const Points& x, const Corners& t, Sums& sums) {
   const Point up = 1 / (2 * t.area) * cross(t.at[1] - t.at[0], t.at[2] - t.at[0]);
-  const double height = dot(up, x - t.at[0]);
-  const Point above = height * up, foot = x - above;
-  Point out[3];
-  for (int c = 0; c < 3; ++c) out[c] = t.at[c] - foot;
-  double twice[3], of_foot[3];
+  const V signed_height = dot(x - t.at[0], up), height = signed_height < 0 ? -signed_height : signed_height;
+  const Points above = signed_height * up, foot = x - above;
+  const Points out[3] = {t.at[0] - foot, t.at[1] - foot, t.at[2] - foot};
+  V twice[3], of_foot[3];
   for (int e = 0; e < 3; ++e) {
-    twice[e] = dot(up, cross(out[e], out[(e + 1) % 3]));
+    twice[e] = dot(cross(out[e], out[(e + 1) % 3]), up);
     of_foot[(e + 2) % 3] = twice[e] / (2 * t.area);
   }
   for (int e = 0; e < 3; ++e) {
     const int next = (e + 1) % 3, other = (e + 2) % 3;
-    const Point edge = out[next] - out[e];
-    const double length_of_edge = length(edge), distance = __builtin_fabs(twice[e]) / length_of_edge;
-    if (distance < 1e-9 * length_of_edge) continue;
-    const Fan fan(distance, dot(out[e], edge) / length_of_edge, dot(out[next], edge) / length_of_edge,
-                  __builtin_fabs(height));
-    for (int i = 0; i < kPolar; i += kWidth) {
-      const V u = load(fan.along + i), s = load(fan.out + i);
-      const V share = twice[e] < 0 ? -load(fan.weight + i) : load(fan.weight + i);
-      V weight[3];
-      weight[e] = share * (of_foot[e] + s * (1 - u - of_foot[e]));
-      weight[next] = share * (of_foot[next] + s * (u - of_foot[next]));
-      weight[other] = share * (of_foot[other] - s * of_foot[other]);
-      sums.add(of, above.x - s * (out[e].x + u * edge.x), above.y - s * (out[e].y + u * edge.y),
-               above.z - s * (out[e].z + u * edge.z), weight);
+    const Point edge = t.at[next] - t.at[e];
+    const double along = length(edge);
+    const V signed_distance = twice[e] / along, far = signed_distance < 0 ? -signed_distance : signed_distance;
+    const V distance = far < 1e-9 * along ? along + 0 * far : far;  // of the foot; on the edge it gives nothing
+    const V sign = far < 1e-9 * along ? 0 * far : signed_distance / far;
+    const V begin = dot(out[e], edge) / along;
+    const V first = exp_asinh(begin / distance), last = exp_asinh((begin + along) / distance);
+    const V whole = each(last / first, [](double ratio) { return __builtin_log(ratio); }), middle = root(first * last);
+    for (int i = 0; i < kGauss; ++i) {
+      const V grown = middle * each((kNode[i] - 0.5) * whole, [](double way) { return __builtin_exp(way); });
+      const V at = 0.5 * distance * (grown - 1 / grown), rho = 0.5 * distance * (grown + 1 / grown);
+      const V u = (at - begin) / along, range = root(rho * rho + height * height) - height, over_rho = 1 / rho;
+      const V area = sign * kNodeWeight[i] * whole * distance * over_rho * range;  // over r
+      const Points reach = out[e] + u * edge;
+      for (int j = 0; j < kGauss; ++j) {
+        const V beyond = kNode[j] * range, r = height + beyond, s = root(beyond * (r + height)) * over_rho;
+        const V by = kNodeWeight[j] * area;
+        V share[3];
+        share[e] = by * (of_foot[e] + s * (1 - u - of_foot[e]));
+        share[next] = by * (of_foot[next] + s * (u - of_foot[next]));
+        share[other] = by * (of_foot[other] - s * of_foot[other]);
+        sums.add(of, above - s * reach, 1 / r, share);
+      }
     }
   }
 }
 
-inline void far_integral(const Surface& of, const Point& x, const Corners& t, Sums& sums) {
-  for (int i = 0; i < kPoints; i += kWidth) {
-    const V a = load(kAt[0] + i), b = load(kAt[1] + i), c = load(kAt[2] + i), w = load(kWeight + i) * t.area;
-    const V weight[3] = {w * a, w * b, w * c};
-    sums.add(of, x.x - (a * t.at[0].x + b * t.at[1].x + c * t.at[2].x),
-             x.y - (a * t.at[0].y + b * t.at[1].y + c * t.at[2].y),
-             x.z - (a * t.at[0].z + b * t.at[1].z + c * t.at[2].z), weight);
+inline void far_integral(const Surface& of, const Points& x, const Corners& t, Sums& sums) {
+  for (int i = 0; i < kPoints; ++i) {
+    const Points d = x - t.place(kAt[0][i], kAt[1][i], kAt[2][i]);
+    const V over_r = 1 / root(dot(d, d)), by = kWeight[i] * t.area * over_r;
+    sums.add(of, d, over_r, {kAt[0][i] * by, kAt[1][i] * by, kAt[2][i] * by});
   }
 }
+
+/// Points of s with what they weigh, their barycentric coordinates in all of s.
+struct Outer {
+  V at[3], weight;
+};
+
+/// Of the corners' pairs.
+struct Moments {
+  V at[3][3][kKernel] = {};
+
+  /// What points of s give.
+  template <bool Near>
+  inline void add(const Surface& of, const Corners& s, const Corners& t, const Outer& p) {
+    Sums sums;
+    const Points x = s.place(p.at[0], p.at[1], p.at[2]);
+    if (Near)
+      near_integral(of, x, t, sums);
+    else
+      far_integral(of, x, t, sums);
+    for (int b = 0; b < 3; ++b)
+      for (int i = 0; i < kKernel; ++i) {
+        const V inner = p.weight * s.area * sums.at[b][i];
+        for (int a = 0; a < 3; ++a) at[a][b][i] += p.at[a] * inner;
+      }
+  }
+
+  template <bool Near>
+  inline void add_whole(const Surface& of, const Corners& s, const Corners& t) {
+    for (int p = 0; p < 8; p += kWidth)
+      add<Near>(of, s, t, {{load(kAt[0] + p), load(kAt[1] + p), load(kAt[2] + p)}, load(kWeight + p)});
+  }
+
+  /// In the four triangles that the middles of the edges make: the inner integral has a steep end at a common edge.
+  inline void add_split(const Surface& of, const Corners& s, const Corners& t) {
+    for (int part = 0; part < 4; ++part)
+      for (int p = 0; p < 8; p += kWidth) {
+        Outer points{{}, 0.25 * load(kWeight + p)};
+        for (int c = 0; c < 3; ++c) {  // at a corner, or turned about in the middle
+          const V of_part = load(kAt[c] + p);
+          points.at[c] = part < 3 ? 0.5 * (of_part + (c == part ? 1.0 : 0.0)) : 0.5 * (1 - of_part);
+        }
+        add<true>(of, s, t, points);
+      }
+  }
+};
 
 inline double sum_of(V v) {
   double sum = v[0];
@@ -182,56 +228,22 @@ inline double sum_of(V v) {
   return sum;
 }
 
-/// Points of s with what they weigh, their barycentric coordinates in all of s.
-struct Outer {
-  double at[3], weight;
-};
-
-/// out += what one point gives.
-template <bool Near>
-inline void add_point(const Surface& of, const Corners& s, const Corners& t, const Outer& p, double* out) {
-  Sums sums;
-  const Point x = s.place(p.at[0], p.at[1], p.at[2]);
-  if (Near)
-    near_integral(of, x, t, sums);
-  else
-    far_integral(of, x, t, sums);
-  for (int b = 0; b < 3; ++b)
-    for (int i = 0; i < kKernel; ++i) {
-      const double inner = p.weight * s.area * sum_of(sums.at[b][i]);
-      for (int a = 0; a < 3; ++a) out[(3 * a + b) * kKernel + i] += p.at[a] * inner;
-    }
-}
-
-template <bool Near>
-inline void moments(const Surface& of, const Corners& s, const Corners& t, double* out) {
-  for (int p = 0; p < kPoints; ++p) add_point<Near>(of, s, t, {{kAt[0][p], kAt[1][p], kAt[2][p]}, kWeight[p]}, out);
-}
-
-/// In the four triangles that the middles of the edges make: the inner integral has a steep end at a common edge.
-inline void split_moments(const Surface& of, const Corners& s, const Corners& t, double* out) {
-  for (int part = 0; part < 4; ++part)
-    for (int p = 0; p < kPoints; ++p) {
-      Outer point{{}, 0.25 * kWeight[p]};
-      for (int c = 0; c < 3; ++c)  // at a corner, or turned about in the middle
-        point.at[c] = part < 3 ? 0.5 * (kAt[c][p] + (c == part)) : 0.5 * (1 - kAt[c][p]);
-      add_point<true>(of, s, t, point, out);
-    }
-}
-
 }  // namespace
 
 void kernel_moments(const double* s9, const double* t9, const double* normal, double poisson, double* out) {
   const Corners s(s9), t(t9);
   const Surface of{{normal[0], normal[1], normal[2]}, poisson};
-  for (int i = 0; i < 9 * kKernel; ++i) out[i] = 0;
   const double apart = length(s.middle() - t.middle()) / (s.radius() + t.radius());
+  Moments moments;
   if (apart > kFarAway)
-    moments<false>(of, s, t, out);
+    moments.add_whole<false>(of, s, t);
   else if (apart > kCommonEdge)
-    moments<true>(of, s, t, out);
+    moments.add_whole<true>(of, s, t);
   else
-    split_moments(of, s, t, out);
+    moments.add_split(of, s, t);
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      for (int i = 0; i < kKernel; ++i) out[(3 * a + b) * kKernel + i] = sum_of(moments.at[a][b][i]);
 }
 
 }  // namespace palpate::kernels::PALPATE_LEVEL

@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-using Eigen::Matrix3d;
+using Eigen::Matrix4d;
 using Eigen::Vector3d;
 
 constexpr double kLeastSpread = 1e-6;  // of the widest direction, below which the nodes lie on a line
@@ -16,9 +16,7 @@ constexpr double kLeastSpread = 1e-6;  // of the widest direction, below which t
 Eigen::Isometry3d local_motion(const SmoothSurface& surface, std::span<const int> near, const Vector3d& place,
                                double within, std::span<const Vector3d> positions) {
   const SurfaceMap& map = surface.map();
-  double sum = 0;
-  Vector3d rest = Vector3d::Zero(), now = Vector3d::Zero();  // from the place
-  Matrix3d covariance = Matrix3d::Zero();
+  Matrix4d moments = Matrix4d::Zero();  // of where the nodes are (rows) and rest (columns), from the place; last: of 1
   for (const int t : near)
     for (const int node : map.triangles[t]) {
       const Vector3d r = map.position[node] - place;
@@ -26,15 +24,13 @@ Eigen::Isometry3d local_motion(const SmoothSurface& surface, std::span<const int
       if (far >= 1) continue;
       const double weight = surface.area(t) * (1 - far) * (1 - far);
       const Vector3d x = r + (positions[node] - map.position[node]);
-      sum += weight;
-      rest += weight * r;
-      now += weight * x;
-      covariance += weight * x * r.transpose();
+      moments.noalias() += (weight * x.homogeneous()) * r.homogeneous().transpose();
     }
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  const double sum = moments(3, 3);
   if (!(sum > 0)) return motion;
-  covariance -= now * rest.transpose() / sum;
-  const NearestRotation nearest = nearest_rotation(covariance);
+  const Vector3d rest = moments.row(3).head<3>(), now = moments.col(3).head<3>();
+  const NearestRotation nearest = nearest_rotation(moments.topLeftCorner<3, 3>() - now * rest.transpose() / sum);
   if (nearest.singular_values[1] > kLeastSpread * nearest.singular_values[0]) motion.linear() = nearest.rotation;
   motion.translation() = place + now / sum - motion.linear() * (place + rest / sum);
   return motion;
