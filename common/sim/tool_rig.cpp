@@ -29,7 +29,8 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
           tool.end)),
       safety_(tool.max_force, tool.max_force_rate, dt),
       fade_step_(dt / kFade),
-      return_step_(dt / kReturn) {}
+      return_step_(dt / kReturn),
+      slide_step_(dt / kSlideOut) {}
 
 bool ToolRig::start(const ToolDofs& dofs) {
   if (!sense(dofs)) return false;
@@ -54,6 +55,12 @@ bool ToolRig::can_hold(int part, const Eigen::Vector3d& at) const {
   return (at - nearest_point(axis, at)).norm() <= std::max(kSkin * p.radius, 2 * jaw_length_);
 }
 
+void ToolRig::work(BodyParts bodies) {
+  const bool held = end_->holding();
+  end_->work(dofs_.grip, before_, bodies);
+  lets_go_ = held && !end_->holding();
+}
+
 void ToolRig::count_motion() {
   const double handle = end_->handle();
   port_.motion = motion_between(before_, now_, handle - handle_);
@@ -62,8 +69,21 @@ void ToolRig::count_motion() {
 
 void ToolRig::ask(const ToolLoad& load) {
   port_.asked = {load.force, load.torque, end_->torque()};
+  slide_out(port_.asked);
   output_ = {.press = load.press, .flags = load.flags};
   output_.flags |= safety_.limit(port_.asked.force, port_.asked.torque);
+}
+
+void ToolRig::slide_out(PortForce& wanted) {
+  if (lets_go_) {
+    let_go_ = {wanted_.force - wanted.force, wanted_.torque - wanted.torque, wanted_.grip - wanted.grip};
+    sliding_ = 1;
+  }
+  sliding_ = std::max(sliding_ - slide_step_, 0.0);
+  wanted.force += sliding_ * let_go_.force;
+  wanted.torque += sliding_ * let_go_.torque;
+  wanted.grip += sliding_ * let_go_.grip;
+  wanted_ = wanted;
 }
 
 void ToolRig::give(bool healthy) {
@@ -95,6 +115,12 @@ void ToolRig::state(State& s) {
   end_->state(s);
   s.value(handle_);
   s.value(held_);
+  for (PortForce* f : {&wanted_, &let_go_}) {
+    s.value(f->force);
+    s.value(f->torque);
+    s.value(f->grip);
+  }
+  s.value(sliding_);
 }
 
 }  // namespace palpate

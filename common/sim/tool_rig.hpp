@@ -41,7 +41,7 @@ class ToolRig {
   /// A pose that is not a number is a fault: the tool is taken to stand still, and false comes back.
   bool sense(const ToolDofs& dofs);
   /// Its jaws follow the handle.
-  void work(BodyParts bodies) { end_->work(dofs_.grip, before_, bodies); }
+  void work(BodyParts bodies);
 
   /// What the watch over the energy sees; it comes between the next two, and between the two after them.
   Port& port() { return port_; }
@@ -54,6 +54,8 @@ class ToolRig {
   void give(bool healthy);
   /// A hand that has let go is given nothing any more, and one that is back gets its force by and by.
   static constexpr double kFade = 0.02, kReturn = 0.05;  ///< [s] from all to nothing, and back
+  /// What jaws let go slides out of them: its load does not leave the hand at once.
+  static constexpr double kSlideOut = 0.02;  ///< [s]
   void trip() { safety_.trip(); }
 
   void state(State& s);
@@ -67,12 +69,16 @@ class ToolRig {
   SafetyChain safety_;
   ToolDofs dofs_{};
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
-  double handle_ = 0;               ///< [rad] in the last step
-  double fade_step_, return_step_;  ///< of held_
-  double held_ = 1;                 ///< share of its force that the hand gets; below 1 once it has let go
+  double handle_ = 0;                ///< [rad] in the last step
+  double fade_step_, return_step_;   ///< of held_
+  double held_ = 1;                  ///< share of its force that the hand gets; below 1 once it has let go
+  PortForce wanted_, let_go_;        ///< in the last step; what it lost as the jaws let go
+  double sliding_ = 0, slide_step_;  ///< share of it that has not yet slid out
+  bool lets_go_ = false;             ///< in this step
   Port port_;
   Output output_;
 
+  void slide_out(PortForce& wanted);
   void fade(PortForce& given);
 };
 

@@ -59,7 +59,10 @@ const std::vector<Example> kExamples{
      false,
      // the 216 tetrahedra that the forceps carry weigh 0.0621 N
      {"tool.forceps.force.end>0.056", "tool.forceps.force.end<0.068"}},
-    {"duct_poke", 0, {"tool.forceps.force.max>0.2", "tool.forceps.grip.max>0.01", "body.duct.displacement.max>0.003"}},
+    {"duct_poke",
+     0,
+     {"tool.forceps.force.max>0.2", "tool.forceps.grip.max>0.01", "body.duct.displacement.max>0.003",
+      "tool.forceps.force.change<0.02"}},
     {"catheter_insertion",
      17.5,
      {"body.catheter.inserted>0.02", "body.catheter.grasps>0", "body.catheter.drops==0"},
