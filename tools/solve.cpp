@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -27,7 +29,7 @@ struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
   std::vector<std::string> holds, touches, forces;
   std::array<double, 3> gravity{};  // [m/s^2]
-  bool plain = false;
+  bool plain = false, json = false;
 };
 
 bool falls(const SolveArguments& arguments) {
@@ -130,10 +132,10 @@ std::vector<int> held_places(const Solved& solved) {
   return places;
 }
 
-/// [body.nonlinear], where the body has one.
-void correct(const Scene& scene, const Body& body, bool given_forces, Solved& solved) {
+/// [body.nonlinear], where the body has one. Returns how many times the linear forces the corrected ones are.
+std::optional<double> correct(const Scene& scene, const Body& body, bool given_forces, Solved& solved) {
   const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
-  if (!correction) return;
+  if (!correction) return {};
   if (given_forces)
     throw std::runtime_error(fmt::format(
         "--force, --gravity: body '{}' has [body.nonlinear], whose law is of tissue held at displacements: give --hold "
@@ -141,20 +143,42 @@ void correct(const Scene& scene, const Body& body, bool given_forces, Solved& so
         name_of(body)));
   ensure_archive(scene, body);  // it holds the press of the specimen
   const Archive archive = find_archive(scene, body, ArchivePart::header);
-  const double scale =
-      correction(archive, {held_places(solved), solved.table.position, solved.table.displacement, solved.table.force});
-  fmt::print("corrected by [body.nonlinear]: forces are {:.4g} times the linear ones\n", scale);
+  return correction(archive,
+                    {held_places(solved), solved.table.position, solved.table.displacement, solved.table.force});
 }
 
-void summarise(const SolutionTable& table, const SolveArguments& arguments) {
-  std::size_t furthest = 0;
-  double max_force = 0;
+struct Summary {
+  std::size_t furthest = 0;  ///< row of the table with the largest displacement
+  double displacement = 0;   ///< [m] its size
+  double force = 0;          ///< [N] the largest of a node's
+};
+
+Summary summarise(const SolutionTable& table) {
+  Summary summary;
   for (std::size_t i = 0; i < table.node.size(); ++i) {
-    if (table.displacement[i].norm() > table.displacement[furthest].norm()) furthest = i;
-    max_force = std::max(max_force, table.force[i].norm());
+    if (table.displacement[i].norm() > table.displacement[summary.furthest].norm()) summary.furthest = i;
+    summary.force = std::max(summary.force, table.force[i].norm());
   }
-  fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n", arguments.method,
-             table.node.size(), table.displacement[furthest].norm(), table.node[furthest], max_force);
+  summary.displacement = table.displacement[summary.furthest].norm();
+  return summary;
+}
+
+void print_summary(const SolutionTable& table, const std::string& method, std::optional<double> corrected) {
+  const Summary of = summarise(table);
+  if (corrected) fmt::print("corrected by [body.nonlinear]: forces are {:.4g} times the linear ones\n", *corrected);
+  fmt::print("{}: {} nodes, largest displacement {:.6g} m at node {}, largest nodal force {:.6g} N\n", method,
+             table.node.size(), of.displacement, table.node[of.furthest], of.force);
+}
+
+void print_json(const SolutionTable& table, const std::string& method, std::optional<double> corrected) {
+  const Summary of = summarise(table);
+  nlohmann::ordered_json figures{{"method", method},
+                                 {"nodes", table.node.size()},
+                                 {"max_displacement_m", of.displacement},
+                                 {"max_displacement_node", table.node[of.furthest]},
+                                 {"max_nodal_force_n", of.force}};
+  if (corrected) figures["correction"] = *corrected;
+  fmt::print("{}\n", figures.dump());
 }
 
 void require_numbers(const SolutionTable& table) {
@@ -182,12 +206,15 @@ void solve(const SolveArguments& arguments) {
   check_model(body);
   Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
-  correct(scene, body, !arguments.forces.empty() || falls(arguments), solved);
+  const auto corrected = correct(scene, body, !arguments.forces.empty() || falls(arguments), solved);
   const SolutionTable& table = solved.table;
   require_numbers(table);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
   if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
-  summarise(table, arguments);
+  if (arguments.json)
+    print_json(table, arguments.method, corrected);
+  else
+    print_summary(table, arguments.method, corrected);
 }
 
 }  // namespace
@@ -226,6 +253,7 @@ void add_solve_command(cli::Command& app) {
                   "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero")
       .output_file(".csv");
   command.add_option("--vtu", arguments->vtu, "Write a file for ParaView").output_file(".vtu");
+  command.add_flag("--json", arguments->json, "Print one line of JSON");
   command.examples({"palpate solve scenes/plate.toml --touch \"0,0,0.01:0,0,-0.004\" --vtu out/plate.vtu",
                     "palpate solve scenes/plate.toml --force \"12:0,0,-0.5\" --method direct --csv out/plate.csv"});
   command.does([arguments] { solve(*arguments); });

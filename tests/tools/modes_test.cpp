@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "common/mesh/generators.hpp"
@@ -55,6 +56,17 @@ TEST(ToolsModes, ABarSwingsAsItsClosedFormSays) {
     ASSERT_EQ(found.size(), 3u);
     for (int m = 0; m < 3; ++m) EXPECT_NEAR(found[m], (2 * m + 1) * first, 0.003 * (2 * m + 1) * first) << model;
   }
+}
+
+TEST(ToolsModes, AreTheSameInJson) {
+  const OwnFolder folder("modes");
+  const std::string arguments = bar(folder, "tensor_mass") + " --count 3";
+  const auto result = run_program(program("palpate") + " modes --json " + arguments);
+  const auto json = nlohmann::json::parse(result.out);
+  const auto table = frequencies(arguments);
+  EXPECT_EQ(json["body"], "bar");
+  ASSERT_EQ(json["frequency_hz"].size(), table.size());
+  for (std::size_t m = 0; m < table.size(); ++m) EXPECT_NEAR(json["frequency_hz"][m], table[m], 1e-5 * table[m]);
 }
 
 TEST(ToolsModes, AHybridSwingsAsTheWholeBody) {

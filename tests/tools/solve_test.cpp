@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
@@ -109,6 +110,20 @@ TEST_F(ToolsSolve, TensorsEqualDirectOnThePlateForOneNodeAndForSeveral) {
   expect_agreement(plate(), {first});
   expect_agreement(plate(), {first, hold(-0.02, 0.01, "0.0002,0,-0.002"), hold(0.02, 0, "0,-0.0003,-0.001"),
                              hold(0.01, -0.03, "0,0,0.0005")});
+}
+
+TEST_F(ToolsSolve, ItsFiguresInJsonAreThoseOfItsTable) {
+  const int node = nearest_node(plate_mesh(), {0, 0, 0.008});
+  const std::string hold = fmt::format("{}:0,0,-0.001", node);
+  const auto result =
+      run_program(fmt::format("{} solve {} --hold {} --json", testing::program("palpate"), plate().string(), hold));
+  const auto figures = nlohmann::json::parse(result.out);
+  const Table table = solve(plate(), "tensors", {hold});
+  EXPECT_EQ(figures["method"], "tensors");
+  EXPECT_EQ(figures["max_displacement_node"], node);
+  EXPECT_NEAR(figures["max_displacement_m"], 0.001, 1e-12);
+  EXPECT_NEAR(figures["max_nodal_force_n"], table.at(node).force.norm(), 1e-6 * table.at(node).force.norm());
+  EXPECT_FALSE(figures.contains("correction"));
 }
 
 TEST_F(ToolsSolve, AHoldWithAnEmptyComponentHoldsTheOtherAxesAlone) {
