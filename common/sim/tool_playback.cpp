@@ -6,7 +6,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kNothing = 1e-9;  // [m] or [rad]
+constexpr double kNothing = 1e-9;   // [m] or [rad]
+constexpr double kPaceTicks = 100;  // over which the steps of a tick are averaged
+constexpr double kTooSlow = 1.1;    // steps a tick from which on a tissue is too slow, as its warning says
 
 }  // namespace
 
@@ -27,8 +29,17 @@ ToolPlayback::Values ToolPlayback::place(double along) const {
   return at;
 }
 
+// What comes after a silence, or all at once, says nothing of the tissue's pace.
+double ToolPlayback::steps_in_tick(std::uint64_t arrived) {
+  const double counted = std::min(static_cast<double>(arrived), kMaxStepsPerTick);
+  steps_per_tick_ += (counted - steps_per_tick_) / kPaceTicks;
+  return steps_per_tick_ > kTooSlow ? steps_per_tick_ : 1;
+}
+
 void ToolPlayback::tick(const ToolState* arrived) {
-  along_ = std::min<double>(along_ + 1, kAhead);
+  const double steps_now = steps_in_tick(arrived && arrived->step > step_ ? arrived->step - step_ : 0);
+  const double ahead = std::max<double>(kAhead, steps_now);
+  along_ = std::min(along_ + steps_now, ahead);
   for (double& m : missed_) m = std::abs(m) < kNothing ? 0 : (1 - 1 / kMakeUpTicks) * m;
   if (arrived && arrived->step > step_) {
     const Values expected = place(along_), next = values(*arrived);
@@ -38,7 +49,7 @@ void ToolPlayback::tick(const ToolState* arrived) {
     step_ = arrived->step;
     pedal_ = arrived->pedal;
     along_ -= steps;
-    if (along_ < -kAhead) {
+    if (along_ < -ahead) {
       along_ = 0;
       for (std::size_t i = 0; i < next.size(); ++i) missed_[i] += expected[i] - next[i];
     }
@@ -69,6 +80,7 @@ void ToolPlayback::state(State& s) {
   s.value(now_);
   s.value(step_);
   s.value(along_);
+  s.value(steps_per_tick_);
   s.value(pedal_);
 }
 

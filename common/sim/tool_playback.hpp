@@ -10,12 +10,13 @@ namespace palpate {
 
 /// A tool's motion at an even pace, from states that come over a network unevenly: none in one tick, two in the next.
 /// Tissue that is stopped and pushed on by turns strikes back. While none comes the tool goes on as it moved last, for
-/// a few steps; what was missed for longer is made up for gradually. If one state comes each tick it is where that
-/// state says, in all bits.
+/// a few steps; what was missed for longer is made up for gradually. Of a tissue too slow for its ticks each is worth
+/// as many steps as come in one. If one state comes each tick it is where that state says, in all bits.
 class ToolPlayback {
  public:
   static constexpr int kAhead = 4;            ///< steps for which the motion goes on, or is taken back, without a state
   static constexpr double kMakeUpTicks = 50;  ///< in which all but 1/e of what was missed is made up for
+  static constexpr double kMaxStepsPerTick = 8;  ///< at which a tissue too slow for its ticks follows
 
   /// The tool stands where this state says.
   void begin(const ToolState& state);
@@ -33,12 +34,14 @@ class ToolPlayback {
   using Values = std::array<double, 6>;  ///< yaw, pitch, depth, roll, grip, opening
   static Values values(const ToolState& state);
   Values place(double along) const;
+  double steps_in_tick(std::uint64_t arrived);
 
   Values newest_{}, pace_{};  ///< of the newest state; change from one step to the next
   Values missed_{};           ///< by which the tool is still behind what the states say
   Values now_{};
-  std::uint64_t step_ = 0;  ///< of the newest state
-  double along_ = 0;        ///< steps from the newest state to what is played
+  std::uint64_t step_ = 0;     ///< of the newest state
+  double along_ = 0;           ///< steps from the newest state to what is played
+  double steps_per_tick_ = 1;  ///< that came in the ticks of late
   double pedal_ = 0;
 };
 

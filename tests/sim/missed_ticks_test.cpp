@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRadius = 0.008;         // [m] of the tip; the block's cells are 12.5 mm wide
 constexpr int kDown = 500, kAside = 800;  // ticks by which the tip is down, and has slid
+constexpr int kRest = 2000;               // ticks for which it stands before it goes down, where a test asks for it
 
 class MissedTicks : public ::testing::Test {
  protected:
@@ -54,6 +55,7 @@ class MissedTicks : public ::testing::Test {
     double with = 0;                        ///< [N] largest on the tool along its motion while it slides
     double changes = 0;                     ///< [N^2] sum of squares of changes in a tick
     double drift = 0;                       ///< [N] from a second after the motion's end to the next
+    int lost = 0;  ///< ticks in which the tissue did not follow the tool, and told nothing of it
   };
   /// The deformation node's part from tick `first` on. A tick is missed if `missed` says so; in tick k the tool's
   /// newest state is late(k) steps old.
@@ -63,16 +65,21 @@ class MissedTicks : public ::testing::Test {
     PressRig rig(scene_, archives_);
     Felt felt;
     double before = 0, settled = 0;
-    int taken = -1;
+    int taken = first - 1;
     for (int k = first; k < kAside + 2000; ++k) {
       if (k < kAside + 200 && missed(k)) continue;
       if (const int step = k - late(k); step > taken) {
         const ToolDofs d = tip_at(scene_.tools[0], tip(step));
-        rig.tissue().take(
-            {.tool = 0, .run = 1, .step = std::uint64_t(step), .yaw = d.yaw, .pitch = d.pitch, .depth = d.depth});
+        rig.tissue().take({.tool = 0,
+                           .run = 1,
+                           .step = std::uint64_t(step + kRest),
+                           .yaw = d.yaw,
+                           .pitch = d.pitch,
+                           .depth = d.depth});
         taken = step;
       }
       rig.tissue().tick();
+      felt.lost += k > 0 && !rig.tissue().tool(0).follows();
       felt.end = rig.force().norm();
       felt.largest = std::max(felt.largest, felt.end);
       felt.jump = std::max(felt.jump, std::abs(felt.end - before));
@@ -134,6 +141,15 @@ TEST_F(MissedTicks, StatesThatComeUnevenlyAreNotFelt) {
     expect_as(felt, undisturbed_);
     EXPECT_LT(felt.jump, 1.5 * undisturbed_.jump);
     EXPECT_LT(felt.changes, 1.5 * undisturbed_.changes);
+  }
+}
+
+TEST_F(MissedTicks, ATissueTooSlowForItsTicksIsFelt) {
+  for (const int of : {2, 3, 5}) {
+    SCOPED_TRACE(of);
+    const Felt felt = feel(-kRest, [of](int k) { return k % of != 0; });
+    expect_as(felt, undisturbed_);
+    EXPECT_EQ(felt.lost, 0);
   }
 }
 

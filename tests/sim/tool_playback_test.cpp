@@ -80,6 +80,36 @@ TEST(ToolPlayback, WhatWasMissedIsMadeUpForGradually) {
   EXPECT_NEAR(before, kPace * 639, 0.01 * kPace);
 }
 
+TEST(ToolPlayback, ATissueTooSlowForItsTicksStillFollowsTheHand) {
+  for (const double steps_per_tick : {1.3, 2.0, 3.6, 7.0}) {
+    SCOPED_TRACE(steps_per_tick);
+    ToolPlayback playback = begun();
+    double before = 0;
+    for (int k = 1; k < 1000; ++k) {
+      const ToolState state = on_the_way(static_cast<std::uint64_t>(std::floor(k * steps_per_tick)));
+      playback.tick(&state);
+      const double moved = playback.dofs().depth - std::exchange(before, playback.dofs().depth);
+      EXPECT_GE(moved, 0);
+      if (k < 700) continue;
+      EXPECT_NEAR(moved, steps_per_tick * kPace, 0.1 * steps_per_tick * kPace) << k;
+      EXPECT_NEAR(playback.dofs().depth, kPace * k * steps_per_tick, 4 * kPace) << k;
+      EXPECT_LT(playback.behind(), 0.02 * kPace) << k;
+    }
+  }
+}
+
+TEST(ToolPlayback, BurstsAreNoSlowTissue) {
+  ToolPlayback playback = begun();
+  double before = 0;
+  for (std::uint64_t k = 1; k < 2000; ++k) {
+    const ToolState state = on_the_way(k);
+    playback.tick(k % 4 == 0 ? &state : nullptr);  // four states every fourth tick
+    const double moved = playback.dofs().depth - std::exchange(before, playback.dofs().depth);
+    if (k < 100) continue;
+    EXPECT_NEAR(moved, kPace, 0.07 * kPace) << k;
+  }
+}
+
 TEST(ToolPlayback, HugeStatesStayNumbers) {
   ToolPlayback playback = begun();
   const double huge = std::numeric_limits<double>::max();
