@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "tests/sanitized.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {
@@ -72,11 +73,7 @@ const std::vector<Example> kExamples{
 class ExampleRun : public ::testing::TestWithParam<Example> {};
 
 // Sanitizers slow the tissue down too much for more than its beginning.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr double kLongest = 1;
-#else
-constexpr double kLongest = 0;
-#endif
+constexpr double kLongest = testing::kSanitized ? 1 : 0;
 
 std::string command_for(const Example& example, const std::string& log) {
   std::vector<std::string> expected{"finite==1", "tool.limited==0", "tool.fault==0"};

@@ -8,6 +8,7 @@
 #include "tests/hostile/attacked_system.hpp"
 #include "tests/hostile/learned.hpp"
 #include "tests/hostile/mutations.hpp"
+#include "tests/sanitized.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -19,13 +20,6 @@ constexpr double kFlatMb = 64;                     // by which a node may grow i
 constexpr double kFlood = 10;                      // [MB] by which it may in a flood of names
 // The loop runs at 1000 Hz while the machine does: much may fall out in one attack of a second or two, little in all.
 constexpr double kMinHz = 950, kMinHzOfAll = 990;
-
-// A sanitizer keeps what has been freed for a while.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryIsTheirs = false;
-#else
-constexpr bool kMemoryIsTheirs = true;
-#endif
 
 bool long_form() {
   return std::getenv("PALPATE_LONG_TESTS") != nullptr;
@@ -56,7 +50,7 @@ class Hostile : public ::testing::Test {
     const double rate_hz = hand().rate_hz(*host_);
     EXPECT_GE(rate_hz, kMinHz);
     const double in_all = grown_since(memory_);
-    EXPECT_TRUE(in_all < kFlatMb || !kMemoryIsTheirs) << in_all << " MB";
+    EXPECT_TRUE(in_all < kFlatMb || testing::kSanitized) << in_all << " MB";
     fmt::print("hand: {:.3f} N at most, {:.3f} N a step, {:.0f} Hz; memory: {:.1f} MB more\n", hand().max_force(),
                hand().max_rise(), rate_hz, in_all);
   }
@@ -82,7 +76,7 @@ class Hostile : public ::testing::Test {
     flood(0, many / 3);
     const Memory before = system().memory_mb();
     flood(many / 3, many / 3 + many);
-    return kMemoryIsTheirs ? grown_since(before) : 0;
+    return testing::kSanitized ? 0 : grown_since(before);
   }
 
   static AttackedSystem& system() { return *system_; }

@@ -12,6 +12,7 @@
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
 #include "tests/realtime/host_watch.hpp"
+#include "tests/sanitized.hpp"
 
 namespace palpate::testing {
 namespace {

@@ -8,6 +8,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
+#include "tests/sanitized.hpp"
 
 namespace palpate::testing {
 namespace {

@@ -7,13 +7,6 @@
 
 namespace palpate::testing {
 
-/// A sanitizer's build is several times slower: what is timed then has more time.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
-
 /// The last line that a program printed, as JSON.
 inline nlohmann::json last_line(ChildProcess& program) {
   const auto lines = program.take_lines();

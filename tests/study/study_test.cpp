@@ -8,6 +8,7 @@
 
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_generators.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/study/small_scenes.hpp"
 #include "tools/study/modal.hpp"
 #include "tools/study/patches.hpp"
@@ -22,13 +23,6 @@ namespace {
 
 using std::filesystem::path;
 using namespace testing;
-
-/// Under a sanitizer's allocator a process cannot be asked what it has taken.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryCounts = false;
-#else
-constexpr bool kMemoryCounts = true;
-#endif
 
 TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
   const Folder folder;
@@ -61,7 +55,7 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   ASSERT_TRUE(as_is);
   EXPECT_GT(as_is->step_us_median, 0);
   EXPECT_LE(as_is->step_us_median, as_is->step_us_p99);
-  if (kMemoryCounts) {
+  if (!palpate::testing::kSanitized) {
     EXPECT_GT(as_is->memory_bytes, 8.0 * 300 * 300);
   }
   EXPECT_GT(as_is->offline_s, 0);
@@ -74,7 +68,7 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
   const Row* few = find(result, "quasi_static", "tensors", "", "fine_linear");
   ASSERT_TRUE(few);
   EXPECT_NEAR(few->err_f_rel, as_is->err_f_rel, 0.02);
-  if (kMemoryCounts) {
+  if (!palpate::testing::kSanitized) {
     EXPECT_LT(few->memory_bytes, 0.8 * as_is->memory_bytes);
   }
 
@@ -352,7 +346,7 @@ TEST(Study, ACathetersErrorFallsWithItsParticles) {
   ASSERT_TRUE(coarse && own && fine);
   EXPECT_LT(own->err_f_rel, coarse->err_f_rel);
   EXPECT_LT(fine->err_f_rel, own->err_f_rel);
-  if (kMemoryCounts) {
+  if (!palpate::testing::kSanitized) {
     EXPECT_LT(own->memory_bytes, fine->memory_bytes);
   }
 }

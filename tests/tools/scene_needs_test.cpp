@@ -13,6 +13,7 @@
 #include "common/bus/dds_entity.hpp"
 #include "common/scene/scene.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 
@@ -96,7 +97,7 @@ struct Needs {
   Names programs{"haptic_node"};
   Names topics{"tool_state", "contact_state", "force_state", "haptic_keyframe",
                "scene",      "node_status",   "clock_probe", "clock_answer"};
-  int haptic_threads = 2;  ///< the loop, and what writes to the network
+  int haptic_threads = 2 + testing::kSanitizerThreads;  ///< the loop, and what writes to the network
 
   explicit Needs(const Scene& scene) {
     const auto any = [&](auto&& has) { return std::ranges::any_of(scene.bodies, has); };

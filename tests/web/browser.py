@@ -28,6 +28,7 @@ def press(options):
         browser = open_browser()
         try:
             page = Page(browser, nodes.address)
+            page.wait("palpate.frame.tools[0].seen", 20)  # without a tool there is nothing to press with
             page.press(0.45, 0.6)
             page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05 && {MOVED} > 0.002", 10)
             page.wait("palpate.curve.points.at(-1).forces[0] > 0.05", 3)
