@@ -85,7 +85,10 @@ void AttackedSystem::look() {
   hand_.look();
   while (const auto status = status_->take())
     for (const auto& [name, process] : nodes_)
-      if (status->node.starts_with(fmt::format("{} {}@", name, process.pid()))) statuses_[name] = *status;
+      if (status->node.starts_with(fmt::format("{} {}@", name, process.pid()))) {
+        statuses_[name] = *status;
+        said_[name] += status->text + '\n';
+      }
   while (const auto picture = picture_->take()) newest_picture_ = *picture, ++pictures_;
 }
 

@@ -33,6 +33,12 @@ class AttackedSystem {
   std::map<std::string, double> memory_mb() const;  ///< resident, by node
   /// The newest status of the node of a role, as it told itself.
   std::map<std::string, NodeStatus>& statuses() { return statuses_; }
+  /// All texts of the statuses of a role's node since begin_anew().
+  const std::string& said(const std::string& role) { return said_[role]; }
+  void begin_anew() {
+    hand_.begin_anew();
+    said_.clear();
+  }
 
   /// Looks at everything until `done`; false when the time is over.
   template <class Done>
@@ -67,6 +73,7 @@ class AttackedSystem {
   std::unique_ptr<Reader<NodeStatus>> status_;
   std::unique_ptr<Reader<PictureState>> picture_;
   std::map<std::string, NodeStatus> statuses_;  ///< by role, of the processes started here
+  std::map<std::string, std::string> said_;
   PictureState newest_picture_;
   std::uint64_t pictures_ = 0;
   std::atomic<bool> over_ = false;
