@@ -12,6 +12,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
+#include "tools/check_output.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
@@ -20,22 +21,22 @@
 namespace palpate {
 namespace {
 
-void print_archive(const Scene& scene, const Body& body) {
+void say_archive(const Scene& scene, const Body& body, CheckOutput& out) {
   const auto file = archive_path(body);
   if (file.empty()) return;
   if (!std::filesystem::exists(file)) {
-    fmt::print("  archive: not computed yet, `palpate precompute` does it\n");
+    out.say("  archive: not computed yet, `palpate precompute` does it");
     return;
   }
   try {
     find_archive(scene, body, ArchivePart::header);
-    fmt::print("  archive: {} ({})\n", file.string(), human_bytes(std::filesystem::file_size(file)));
+    out.say(fmt::format("  archive: {} ({})", file.string(), human_bytes(std::filesystem::file_size(file))));
   } catch (const std::exception& error) {
-    fmt::print("  archive: refused and to be rebuilt, because {}\n", error.what());
+    out.say(fmt::format("  archive: refused and to be rebuilt, because {}", error.what()));
   }
 }
 
-/// Empty if there is none or it is refused, which print_archive() says.
+/// Empty if there is none or it is refused, which say_archive() says.
 std::optional<Archive> stored_archive(const Scene& scene, const Body& body, ArchivePart part) {
   const auto file = archive_path(body);
   if (file.empty() || !std::filesystem::exists(file)) return {};
@@ -52,7 +53,7 @@ const ShellSpec* find_wall(const Scene& scene, const std::string& name) {
 }
 
 /// Loads and validates a body's mesh and everything that refers to it.
-CheckReport check_body(const Scene& scene, const Body& body) {
+CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
   const CheckSettings settings{
       .contact = scene.contact,
       .tools = scene.tools,
@@ -60,42 +61,42 @@ CheckReport check_body(const Scene& scene, const Body& body) {
       .stored = [&](ArchivePart part) { return stored_archive(scene, body, part); },
       .find_wall = [&](const std::string& name) { return find_wall(scene, name); },
       .check_guests = [&](const ShellSpec& wall, const ShellMesh& mesh) { check_guests(scene, wall, mesh); }};
-  CheckReport report{.say = [](const std::string& line) { fmt::print("{}\n", line); }};
+  CheckReport report{.say = [&out](const std::string& line) { out.say(line); }};
   std::visit([&](const auto& spec) { check(spec, settings, report); }, body);
-  print_archive(scene, body);
-  for (const MemoryPart& part : report.memory)
-    fmt::print("  {:>10}  {:<20}  {}\n", human_bytes(part.bytes), part.owner, part.what);
+  say_archive(scene, body, out);
+  out.memory(report.memory);
   return report;
 }
 
 /// Keys are made apart from the scene, and a host may have those of its own nodes alone.
-void print_keys(const std::filesystem::path& folder) {
+void say_keys(const std::filesystem::path& folder, CheckOutput& out) {
   if (!std::filesystem::is_directory(folder)) {
-    fmt::print("  keys: {} is not there, so that no node starts; `palpate keys` makes it\n", folder.string());
+    out.say(fmt::format("  keys: {} is not there, so that no node starts; `palpate keys` makes it", folder.string()));
     return;
   }
-  fmt::print("  keys: {}\n", folder.string());
+  out.say("  keys: " + folder.string());
   for (const std::string& role : bus_roles()) try {
-      fmt::print("    {}: until {}\n", role, last_day(find_keys(folder, role)));
+      out.say(fmt::format("    {}: until {}", role, last_day(find_keys(folder, role))));
     } catch (const std::runtime_error& error) {
-      fmt::print("    {}: none, {}\n", role, std::string_view(error.what()).substr(9));  // without "network: "
+      out.say(fmt::format("    {}: none, {}", role, std::string_view(error.what()).substr(9)));  // without "network: "
     }
 }
 
-void print_sections(const Scene& scene) {
-  fmt::print("contact: {} rule, friction {}\n", scene.contact.rule, scene.contact.friction);
-  fmt::print("rates: haptic {} Hz, visual {} Hz\n", scene.rates.haptic_hz, scene.rates.visual_hz);
-  fmt::print("network: domain {}, {}\n", scene.network.domain,
-             scene.network.interface.empty() ? "loopback" : scene.network.interface);
-  if (scene.network.security) print_keys(scene.network.security->keys);
-  if (scene.record) fmt::print("record: {}\n", scene.record->file.string());
+void say_sections(const Scene& scene, CheckOutput& out) {
+  out.say(fmt::format("contact: {} rule, friction {}", scene.contact.rule, scene.contact.friction));
+  out.say(fmt::format("rates: haptic {} Hz, visual {} Hz", scene.rates.haptic_hz, scene.rates.visual_hz));
+  out.say(fmt::format("network: domain {}, {}", scene.network.domain,
+                      scene.network.interface.empty() ? "loopback" : scene.network.interface));
+  if (scene.network.security) say_keys(scene.network.security->keys, out);
+  if (scene.record) out.say("record: " + scene.record->file.string());
   if (!scene.render) return;
-  fmt::print("render: {} x {}, coloured by {}\n", scene.render->width, scene.render->height, scene.render->colour);
+  out.say(
+      fmt::format("render: {} x {}, coloured by {}", scene.render->width, scene.render->height, scene.render->colour));
   if (scene.render->backdrop.empty()) return;
   const TriangleMesh backdrop = load_triangle_mesh(scene.render->backdrop, scene.render->backdrop_scale);
-  fmt::print(
-      "  backdrop: {} triangles, {}\n", backdrop.triangles.size(),
-      human_bytes(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int)));
+  out.say(fmt::format(
+      "  backdrop: {} triangles, {}", backdrop.triangles.size(),
+      human_bytes(backdrop.nodes.size() * sizeof(Eigen::Vector3f) + backdrop.triangles.size() * 3 * sizeof(int))));
 }
 
 std::vector<DeviceSpec> devices_of(const Scene& scene) {
@@ -122,55 +123,72 @@ std::vector<std::string_view> absences(const std::vector<Table>& all) {
   return sentences;
 }
 
-void print_left_out(const Scene& scene, std::span<const CheckReport> bodies) {
-  fmt::print("left out:\n");
+void say_left_out(const Scene& scene, std::span<const CheckReport> bodies, CheckOutput& out) {
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    for (const std::string& what : bodies[b].left_out) fmt::print("  body '{}': {}\n", name_of(scene.bodies[b]), what);
-  for (const std::string_view sentence : absences<Body>(scene.bodies)) fmt::print("  {}\n", sentence);
+    for (const std::string& what : bodies[b].left_out)
+      out.left_out(fmt::format("body '{}': {}", name_of(scene.bodies[b]), what));
+  for (const std::string_view sentence : absences<Body>(scene.bodies)) out.left_out(sentence);
   const auto works = [](const Tool& tool) { return abilities_of(tool).works(); };
-  if (std::ranges::none_of(scene.tools, works)) fmt::print("  no cautery and no jaws\n");
-  if (scene.tools.empty()) fmt::print("  no tool: no haptic node\n");
-  for (const std::string_view sentence : absences<DeviceSpec>(devices_of(scene))) fmt::print("  {}\n", sentence);
-  if (!scene.record) fmt::print("  no [record]: no recorder and no log file\n");
+  if (std::ranges::none_of(scene.tools, works)) out.left_out("no cautery and no jaws");
+  if (scene.tools.empty()) out.left_out("no tool: no haptic node");
+  for (const std::string_view sentence : absences<DeviceSpec>(devices_of(scene))) out.left_out(sentence);
+  if (!scene.record) out.left_out("no [record]: no recorder and no log file");
   if (!scene.network.security)
-    fmt::print("  no [network.security]: no keys and no encryption; whoever is on the network can take part\n");
-  if (!scene.render) fmt::print("  no [render]: default picture\n");
-  if (!scene.render || scene.render->backdrop.empty()) fmt::print("  no backdrop\n");
-  if (!has_moving_tissue(scene)) fmt::print("  no surface topic, unless a deformation node of its own is asked for\n");
+    out.left_out("no [network.security]: no keys and no encryption; whoever is on the network can take part");
+  if (!scene.render) out.left_out("no [render]: default picture");
+  if (!scene.render || scene.render->backdrop.empty()) out.left_out("no backdrop");
+  if (!has_moving_tissue(scene)) out.left_out("no surface topic, unless a deformation node of its own is asked for");
 }
 
-void print_warnings(std::span<const std::string> warnings) {
-  for (const std::string& sentence : warnings) fmt::print("warning: {}\n", sentence);
+void warn_all(std::span<const std::string> warnings, CheckOutput& out) {
+  for (const std::string& sentence : warnings) out.warn(sentence);
 }
 
-void check_tools(const Scene& scene, std::span<const CheckReport> bodies) try {
-  for (const Tool& tool : scene.tools) check_tool(scene, tool, bodies);
+void check_tools(const Scene& scene, std::span<const CheckReport> bodies, CheckOutput& out) try {
+  for (const Tool& tool : scene.tools) {
+    out.about("tools", tool.name);
+    check_tool(scene, tool, bodies, out);
+  }
 } catch (const std::exception&) {
-  for (const CheckReport& body : bodies) print_warnings(body.warnings);  // they may say why
+  for (const CheckReport& body : bodies) warn_all(body.warnings, out);  // they may say why
   throw;
 }
 
-void check_scene(const Scene& scene) {
-  fmt::print("{}{}scene {}\n", scene.title, scene.title.empty() ? "" : "\n", scene.file.string());
+void check_scene(const Scene& scene, CheckOutput& out) {
+  if (!scene.title.empty()) out.fact("title", scene.title, scene.title);
+  out.fact("scene", scene.file.string(), "scene " + scene.file.string());
   std::vector<CheckReport> bodies;
-  for (const Body& body : scene.bodies) bodies.push_back(check_body(scene, body));
-  check_tools(scene, bodies);
-  print_sections(scene);
-  print_left_out(scene, bodies);
-  for (const CheckReport& body : bodies) print_warnings(body.warnings);
-  print_warnings(tool_warnings(scene));
-  print_warnings(reach_warnings(scene, bodies));
-  fmt::print("hash {}\n", scene_hash(scene));
+  for (const Body& body : scene.bodies) {
+    out.about("bodies", name_of(body));
+    bodies.push_back(check_body(scene, body, out));
+  }
+  check_tools(scene, bodies, out);
+  out.about("", "");
+  say_sections(scene, out);
+  say_left_out(scene, bodies, out);
+  for (const CheckReport& body : bodies) warn_all(body.warnings, out);
+  warn_all(tool_warnings(scene), out);
+  warn_all(reach_warnings(scene, bodies), out);
+  out.fact("hash", scene_hash(scene), "hash " + scene_hash(scene));
+  out.end();
 }
 
 }  // namespace
 
 void add_check_command(cli::Command& app) {
   cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
-  auto file = std::make_shared<std::string>();
-  command.add_option("SCENE", *file, "Scene file").required();
+  struct Arguments {
+    std::string scene;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  command.add_option("SCENE", arguments->scene, "Scene file").required();
+  command.add_flag("--json", arguments->json, "Print one line of JSON");
   command.examples({"palpate check scenes/liver.toml"});
-  command.does([file] { check_scene(load_scene(*file)); });
+  command.does([arguments] {
+    CheckOutput out(arguments->json);
+    check_scene(load_scene(arguments->scene), out);
+  });
 }
 
 }  // namespace palpate

@@ -44,17 +44,18 @@ std::vector<std::string> reach_warnings(const Scene& scene, std::span<const Chec
   return warnings;
 }
 
-void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies) {
-  fmt::print("{}", std::visit([&](const auto& end) { return sentence(end, tool); }, tool.end));
-  fmt::print(", device {}", kind_of(tool.device));
+void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckReport> bodies, CheckOutput& out) {
+  const std::string said =
+      fmt::format("{}, device {}", std::visit([&](const auto& end) { return sentence(end, tool); }, tool.end),
+                  kind_of(tool.device));
   const std::filesystem::path file = motion_file_of(tool.device);
   const std::optional<Trajectory> script = script_of(tool.device);
   if (!script) {
-    fmt::print("{}\n", file.empty() ? "" : " " + file.string());
+    out.say(said + (file.empty() ? "" : " " + file.string()));
     return;
   }
+  out.say(fmt::format("{}, {} s{}", said, script->duration(), file.empty() ? "" : " of " + file.filename().string()));
   check_grip(*script, file, tool);
-  fmt::print(", {} s{}\n", script->duration(), file.empty() ? "" : " of " + file.filename().string());
   for (std::size_t b = 0; b < bodies.size(); ++b) check_start(tool, file, script->at(0), scene.bodies[b], bodies[b]);
 }
 

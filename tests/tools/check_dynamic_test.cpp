@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {
@@ -50,6 +53,27 @@ TEST_F(ToolsCheckDynamic, SaysWhatMovesAndWhereItIsJoined) {
   expect_line(said, "  motion: rk4, single precision, damping 5 1/s, gravity 0 0 0 m/s2\n");
   expect_line(said, "  step: stable up to 0.0011");
   expect_line(said, "  body 'cylinder': does not tear by itself\n");
+}
+
+TEST_F(ToolsCheckDynamic, SaysTheSameAsJson) {
+  const std::string command = check(scene_);
+  const ProgramResult text = testing::run_program(command), json = testing::run_program(command + " --json");
+  ASSERT_EQ(json.status, 0) << json.err;
+  const auto said = nlohmann::json::parse(json.out);
+  EXPECT_NE(text.out.find("\nhash " + said["hash"].get<std::string>()), std::string::npos);
+  ASSERT_EQ(said["bodies"].size(), 1u);
+  EXPECT_EQ(said["bodies"][0]["name"], "cylinder");
+  const auto& of_body = said["bodies"][0]["said"];
+  EXPECT_NE(std::ranges::find(of_body, "motion: rk4, single precision, damping 5 1/s, gravity 0 0 0 m/s2"),
+            of_body.end());
+  for (const auto& line : of_body) EXPECT_NE(text.out.find(line.get<std::string>() + "\n"), std::string::npos) << line;
+  EXPECT_GT(said["bodies"][0]["memory"][0]["bytes"], 1000);
+  for (const auto& line : said["left_out"])
+    EXPECT_NE(text.out.find("\n  " + line.get<std::string>() + "\n"), std::string::npos) << line;
+  std::size_t warnings = 0;
+  for (auto at = text.out.find("\nwarning: "); at != std::string::npos; at = text.out.find("\nwarning: ", at + 1))
+    ++warnings;
+  EXPECT_EQ(said["warnings"].size(), warnings);
 }
 
 TEST_F(ToolsCheckDynamic, ATensorMassBodyMovesAsAWhole) {

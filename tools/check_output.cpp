@@ -1,0 +1,72 @@
+#include "tools/check_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/human_bytes.hpp"
+
+namespace palpate {
+namespace {
+
+std::string_view without_indent(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return line;
+}
+
+}  // namespace
+
+nlohmann::ordered_json& CheckOutput::here() {
+  return list_.empty() ? all_ : all_[list_].back();
+}
+
+void CheckOutput::fact(std::string_view key, const std::string& value, const std::string& line) {
+  if (json_)
+    all_[key] = value;
+  else
+    fmt::print("{}\n", line);
+}
+
+void CheckOutput::about(std::string_view list, const std::string& name) {
+  list_ = list;
+  if (!list_.empty()) all_[list_].emplace_back(nlohmann::ordered_json{{"name", name}});
+}
+
+void CheckOutput::say(std::string_view line) {
+  if (json_)
+    here()["said"].emplace_back(without_indent(line));
+  else
+    fmt::print("{}\n", line);
+}
+
+void CheckOutput::memory(std::span<const MemoryPart> parts) {
+  for (const MemoryPart& part : parts)
+    if (json_)
+      here()["memory"].emplace_back(
+          nlohmann::ordered_json{{"owner", part.owner}, {"what", part.what}, {"bytes", part.bytes}});
+    else
+      fmt::print("  {:>10}  {:<20}  {}\n", human_bytes(part.bytes), part.owner, part.what);
+}
+
+void CheckOutput::left_out(std::string_view line) {
+  if (json_)
+    all_["left_out"].emplace_back(line);
+  else
+    fmt::print("{}  {}\n", std::exchange(headed_, true) ? "" : "left out:\n", line);
+}
+
+void CheckOutput::warn(const std::string& sentence) {
+  if (json_)
+    all_["warnings"].emplace_back(sentence);
+  else
+    fmt::print("warning: {}\n", sentence);
+}
+
+void CheckOutput::end() {
+  if (!json_) return;
+  for (const char* list : {"left_out", "warnings"}) all_.emplace(list, nlohmann::ordered_json::array());
+  fmt::print("{}\n", all_.dump());
+}
+
+}  // namespace palpate
