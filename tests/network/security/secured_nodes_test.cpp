@@ -10,6 +10,7 @@
 #include "tests/network/nodes.hpp"
 #include "tests/network/observer.hpp"
 #include "tests/network/security/secured_test.hpp"
+#include "tests/sanitized.hpp"
 
 /// The programs themselves, with the keys of their roles.
 namespace palpate::testing {
@@ -166,9 +167,9 @@ TEST_P(SecuredScenes, RunWithKeys) {
   keys::make_folder(folder / "keys", this_month());
   const auto& [scene, topics] = GetParam();
   std::string said;
-  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --seconds 1.7 --domain {} --keys {} --record {}",
-                                    program("palpate"), PALPATE_SOURCE, scene, own_domain(), (folder / "keys").string(),
-                                    (folder / "all.lcmlog").string()),
+  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --seconds {} --domain {} --keys {} --record {}",
+                                    program("palpate"), PALPATE_SOURCE, scene, kSanitized ? 4 : 1.7, own_domain(),
+                                    (folder / "keys").string(), (folder / "all.lcmlog").string()),
                         &said),
             0)
       << said;
