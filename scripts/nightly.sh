@@ -6,6 +6,7 @@
 # full, into out/papers_docs), packages (made, and tried in a bare Debian 12; needs root). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+export PATH=/usr/bin:$PATH  # the python3 that has Debian's modules
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
 [ $# -gt 0 ] || set -- long address thread tidy stability mcap python papers packages

@@ -64,6 +64,21 @@ class InterruptedPress : public ::testing::Test {
     EXPECT_NEAR(felt.end, undisturbed.end, 0.15 * undisturbed.end);  // friction remembers the way there
   }
 
+  /// The same press and slide `kHaste` times as fast, of a tissue that gets on with one tick of so many alone. The tool
+  /// has been there for a while.
+  std::vector<double> feel_slow(int of) const {
+    constexpr int kBefore = 1500, kHaste = 4;
+    TwoNodes nodes(scene_.scene, scene_.archives);
+    nodes.start(std::array{at(0)});
+    std::vector<double> felt;
+    for (int k = -kBefore; k < 1500; ++k) {
+      k % of == 0 ? nodes.continue_tissue() : nodes.stop_tissue();
+      nodes.step(std::array{at(kHaste * std::max(k, 0))});
+      if (k >= 0) felt.push_back(nodes.force(0).norm());
+    }
+    return felt;
+  }
+
   const testing::PlayedScene scene_ = testing::cut_block();
 };
 
@@ -90,6 +105,22 @@ TEST_F(InterruptedPress, IsNoKickWhenTheHapticNodeDiesAndAnotherComesBack) {
               first, away, [](auto& t) { t.kill_haptic(); }, [&](auto& t) { t.restart_haptic(std::array{at(back)}); }),
           undisturbed);
     }
+}
+
+TEST_F(InterruptedPress, IsFeltAllTheWayOfATissueTooSlowForItsTicks) {
+  const std::vector<double> undisturbed = feel_slow(1);
+  const double largest = std::ranges::max(undisturbed);
+  for (const int of : {2, 4}) {
+    SCOPED_TRACE(fmt::format("one tick of {}", of));
+    const std::vector<double> felt = feel_slow(of);
+    double off = 0, rise = 0;
+    for (std::size_t k = 1; k < felt.size(); ++k) {
+      off = std::max(off, std::abs(felt[k] - undisturbed[k]));
+      rise = std::max(rise, felt[k] - felt[k - 1]);
+    }
+    EXPECT_LT(off, 0.25 * largest);
+    EXPECT_LE(rise, 1e-3 * scene_.scene.tools[0].max_force_rate * (1 + 1e-9));
+  }
 }
 
 }  // namespace
