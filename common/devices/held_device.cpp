@@ -33,4 +33,9 @@ DeviceSample HeldDevice::read(double seconds) {
   return now;
 }
 
+// A pointer has no motors; the device that still leads the tool may have them.
+void HeldDevice::render(const Wrench& wrench, double grip) {
+  if (seq_ == 0 && until_taken_) until_taken_->render(wrench, grip);
+}
+
 }  // namespace palpate

@@ -19,6 +19,7 @@ class HeldDevice : public Device {
   HeldDevice(const Settings& settings, double haptic_hz, std::unique_ptr<Device> until_taken);
 
   DeviceSample read(double seconds) override;
+  void render(const Wrench& wrench, double grip) override;
   bool finished(double) const override { return false; }
   bool on_bus() const override { return true; }
   void put(const DeviceSample& sample) override { newest_.put(sample); }

@@ -57,6 +57,27 @@ TEST(Lease, ADriverThatComesBackElsewhereIsReachedAtAHandsPaceWithoutForce) {
   EXPECT_LT(silent, 160);
 }
 
+/// A device with motors, and what they were told.
+struct MotorDevice : Device {
+  DeviceSample read(double) override { return {}; }
+  void render(const Wrench& wrench, double) override { told = wrench.force.z(); }
+  bool finished(double) const override { return false; }
+  double told = 0;
+};
+
+TEST(Lease, ADeviceUnderAHandGetsItsForceUntilTheHandTakesTheTool) {
+  auto owned = std::make_unique<MotorDevice>();
+  const MotorDevice& motors = *owned;
+  HeldDevice held({}, 1 / kDt, std::move(owned));
+  held.read(kDt);
+  held.render({{0, 0, 1.5}, {0, 0, 0}}, 0);
+  EXPECT_EQ(motors.told, 1.5);
+  held.put({{.depth = 0.1}, 1});
+  held.read(2 * kDt);
+  held.render({{0, 0, 0.5}, {0, 0, 0}}, 0);
+  EXPECT_EQ(motors.told, 1.5) << "another hand feels it now";
+}
+
 TEST(Lease, AHeldToolNeitherJumpsWhenItIsTakenNorWhenItsHandComesBack) {
   Driver driver(PointerDeviceSpec{.start = {0, 0, -0.1}});
   const double start = driver.tick(false, 0).dofs.depth;
