@@ -46,6 +46,17 @@ const Body& body_of(const Scene& scene, const std::string& name) {
 
 using Hold = std::array<std::optional<double>, 3>;
 
+/// [body.nonlinear], where the body has one. Returns how many times the linear forces the corrected ones are.
+std::optional<double> correct(const Body& body, const Archive& archive, const std::map<int, Hold>& holds,
+                              SurfaceSolution& solution) {
+  const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
+  if (!correction) return {};
+  std::vector<int> places;
+  for (std::size_t i = 0; i < archive.surface.node_number.size(); ++i)
+    if (holds.contains(archive.surface.node_number[i])) places.push_back(static_cast<int>(i));
+  return correction(archive, {places, archive.surface.position, solution.displacement, solution.force});
+}
+
 py::dict solve(const Scene& scene, const std::map<int, Hold>& holds, const std::string& body_name) {
   const Body& body = body_of(scene, body_name);
   if (!std::visit([](const auto& spec) { return has_static_states(spec); }, body))
@@ -57,13 +68,15 @@ py::dict solve(const Scene& scene, const std::map<int, Hold>& holds, const std::
   if (held.empty()) throw py::value_error("nothing is held");
   ensure_archive(scene, body);
   const Archive archive = find_archive(scene, body, ArchivePart::surface);
-  const SurfaceSolution solution = solve_tensors(archive, held);
+  SurfaceSolution solution = solve_tensors(archive, held);
+  const std::optional<double> corrected = correct(body, archive, holds, solution);
   py::dict result;
   result["node"] = py::array_t<int>(static_cast<py::ssize_t>(archive.surface.node_number.size()),
                                     archive.surface.node_number.data());
   result["position"] = rows_of(std::span(archive.surface.position));
   result["displacement"] = rows_of(std::span(std::as_const(solution.displacement)));
   result["force"] = rows_of(std::span(std::as_const(solution.force)));
+  if (corrected) result["correction"] = *corrected;
   return result;
 }
 
@@ -90,7 +103,9 @@ PYBIND11_MODULE(_core, module) {
              "mesh node, the\n"
              "displacement [m] along x, y and z, None leaves an axis free. Returns node (n,), position (n, 3) [m], "
              "displacement\n"
-             "(n, 3) [m] and force (n, 3) [N] on the tissue.");
+             "(n, 3) [m] and force (n, 3) [N] on the tissue; where the body has [body.nonlinear] the corrected ones, "
+             "and correction: how\n"
+             "many times the linear forces they are.");
   bind_simulator(module);
   bind_log(module);
 }
