@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -95,6 +96,25 @@ TEST(ToolPlayback, ATissueTooSlowForItsTicksStillFollowsTheHand) {
       EXPECT_NEAR(playback.dofs().depth, kPace * k * steps_per_tick, 4 * kPace) << k;
       EXPECT_LT(playback.behind(), 0.02 * kPace) << k;
     }
+  }
+}
+
+TEST(ToolPlayback, OfASlowTissueGoesOnFromASavedStateInAllBits) {
+  ToolPlayback first = begun(), second;
+  const auto tick = [](ToolPlayback& playback, std::uint64_t k) {
+    const ToolState state = on_the_way(3 * k);
+    playback.tick(&state);
+  };
+  for (std::uint64_t k = 1; k < 200; ++k) tick(first, k);
+  std::vector<std::uint8_t> saved;
+  State to = State::save(saved);
+  first.state(to);
+  State from = State::restore(saved);
+  second.state(from);
+  for (std::uint64_t k = 200; k < 400; ++k) {
+    tick(first, k);
+    tick(second, k);
+    ASSERT_EQ(first.dofs().depth, second.dofs().depth) << k;
   }
 }
 
