@@ -77,7 +77,7 @@ struct Said {
   Sample motion;             ///< of a sample
   std::uint32_t number = 0;  ///< frames that have been taken
 };
-inline constexpr std::size_t kMostBytesSaid = 32;
+inline constexpr std::size_t kMaxBytesSaid = 32;
 
 /// Empty for what is no such message: wrong length, kind, or a number that is none.
 std::optional<Said> decode(std::string_view bytes);

@@ -16,7 +16,7 @@ void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) 
   timeout.idle_timeout = std::chrono::seconds(6);
   timeout.keep_alive_pings = true;
   socket_.set_option(timeout);
-  socket_.read_message_max(kMostBytesSaid);
+  socket_.read_message_max(kMaxBytesSaid);
   socket_.async_accept(upgrade, [self = shared_from_this()](beast::error_code error) {
     if (error) return self->end();
     self->host_.opened(self);
@@ -53,7 +53,7 @@ bool Session::flooded() {
     second_ns_ = now;
     said_ = 0;
   }
-  return ++said_ > kMostSaidPerSecond;
+  return ++said_ > kMaxSaidPerSecond;
 }
 
 void Session::throw_out() {

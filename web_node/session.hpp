@@ -40,7 +40,7 @@ class SessionHost {
 class Session : public std::enable_shared_from_this<Session> {
  public:
   static constexpr std::uint32_t kInFlight = 3;
-  static constexpr int kMostSaidPerSecond = 500;
+  static constexpr int kMaxSaidPerSecond = 500;
 
   Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number);
 

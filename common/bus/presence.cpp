@@ -19,9 +19,9 @@ constexpr std::int64_t kAliveNs = 5 * kNsPerS / 2;     // each node says once a 
 constexpr std::int64_t kStoodNs = 2 * kNsPerS;         // one that only stood for a moment has said so again by then
 constexpr std::int64_t kNoticedNs = 3 * kNsPerS / 10;  // an end shows so long after it at most
 constexpr std::int64_t kBeginningNs = 3 * kNsPerS;     // in which two that began at once have heard of each other
-constexpr std::size_t kMostPeers = 256;
+constexpr std::size_t kMaxPeers = 256;
 constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
-constexpr int kMostTold = 8;  // sentences about one of them
+constexpr int kMaxTold = 8;  // sentences about one of them
 
 std::string also(const std::string& first, const std::string& second) {
   return first.empty() ? second : first + "; " + second;
@@ -109,7 +109,7 @@ std::vector<std::string> Presence::watch() {
 }
 
 void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said) {
-  if (peers_.size() >= kMostPeers && !peers_.contains(status.node)) return;
+  if (peers_.size() >= kMaxPeers && !peers_.contains(status.node)) return;
   Peer& peer = peers_[status.node];
   const NodeStatus& before = peer.status;
   const bool news = before.node.empty() || before.run != status.run || before.scene_hash != status.scene_hash ||
@@ -120,7 +120,7 @@ void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std:
   if (!news) return;
   peer.met_ns = now;
   peer.accepted = same_scene(status);
-  if (++peer.told <= kMostTold) said.push_back(meet(status));
+  if (++peer.told <= kMaxTold) said.push_back(meet(status));
 }
 
 bool Presence::accepts(std::uint64_t run) const {

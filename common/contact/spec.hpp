@@ -17,7 +17,7 @@ inline void describe(Description& d, ContactSpec& c) {
             "`\"patch\"` spreads the pressure of a probe's tip over squares of its own, on solid bodies, and "
             "that of shafts where such a body has no inertia and does not relax, so that the mesh is not felt; all "
             "else touches as under `\"barycentric\"`, which holds the touched point; "
-            "`\"alpha\"` holds the three nodes of its triangle, for comparison"},
+            "`\"alpha\"` holds the three nodes of its triangle, for comparison, where tissue is not moving of itself"},
            c.rule, {"patch", "barycentric", "alpha"});
   d.number({"friction", "1", "Coulomb's coefficient; 0 slides freely"}, c.friction, at_least(0));
   d.number({"bucket_size", "m", "edge of the collision grid's cells; 0 means twice the surface's mean edge length"},

@@ -41,6 +41,10 @@ double mean_edge(const SurfaceMap& map) {
   return sum / (3.0 * map.triangles.size());
 }
 
+double bucket_size(const ContactSpec& contact, const SurfaceMap& map) {
+  return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
+}
+
 ToolContacts::ToolContacts(const ContactSurface& surface, ContactLaw& law, std::size_t parts, Options options)
     : law_(law), surface_(surface), options_(std::move(options)), vertex_stamp_(surface.nodes(), 0) {
   double sum = 0;

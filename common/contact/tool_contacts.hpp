@@ -7,6 +7,7 @@
 
 #include "common/contact/body_part.hpp"
 #include "common/contact/contact_law.hpp"
+#include "common/contact/spec.hpp"
 #include "common/contact/touch_surface.hpp"
 #include "common/geometry/segment.hpp"
 #include "common/tool/jaws.hpp"
@@ -168,5 +169,8 @@ std::size_t parts_of(std::span<const Tool> tools);
 
 /// [m] mean edge of a surface at rest.
 double mean_edge(const SurfaceMap& map);
+
+/// [m] of the cells in which a surface is looked for: as the scene says, or twice its mean edge.
+double bucket_size(const ContactSpec& contact, const SurfaceMap& map);
 
 }  // namespace palpate

@@ -7,10 +7,6 @@
 namespace palpate {
 namespace {
 
-double bucket_size(const SurfaceMap& map, const ContactSpec& contact) {
-  return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
-}
-
 ContactLaw::Rule rule_of(const ContactSpec& contact) {
   return contact.rule == "alpha" ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
 }
@@ -23,7 +19,7 @@ TouchBody::TouchBody(const SurfaceMap& map, Compliance<double> compliance, const
       compliance_(std::move(compliance)),
       unloaded_(map_.position),
       response_(compliance_),
-      surface_(map_, bucket_size(map_, settings.contact)),
+      surface_(map_, bucket_size(settings.contact, map_)),
       law_({response_, unloaded_}, rule_of(settings.contact), settings.contact.friction, kMaxContacts),
       contacts_(surface_, law_, parts_of(settings.tools), std::move(options)),
       own_(settings.tools.size()) {}

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -55,6 +56,12 @@ constexpr bool has_task(const NamedSpec&) {
 constexpr bool has_static_states(const NamedSpec&) {
   return true;
 }
+
+/// moving_gravity(spec): [m/s^2] on tissue that moves; zero for all else.
+inline Eigen::Vector3d moving_gravity(const NamedSpec&) {
+  return Eigen::Vector3d::Zero();
+}
+Eigen::Vector3d moving_gravity(const MovingSpec& body);
 
 /// absence(spec): what programs leave out where a scene has no such body; kinds with the same sentence are left out
 /// together.

@@ -7,11 +7,11 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t kLargest = (std::int64_t{1} << 42) - 1;
+constexpr std::int64_t kMax = (std::int64_t{1} << 42) - 1;
 
 /// Values below 32 have a bin each; above, the five bits below the leading one choose the bin in its octave.
 std::size_t bin_of(std::int64_t ns) {
-  const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kLargest));
+  const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMax));
   constexpr int sub = Histogram::kSubBits;
   if (value < (1u << sub)) return value;
   const int octave = std::bit_width(value) - 1 - sub;

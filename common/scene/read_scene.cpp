@@ -25,7 +25,7 @@ namespace {
 
 // The parser, and what it made, go into themselves for each part of a dotted key.
 void refuse_deep_keys(std::string_view text, const std::filesystem::path& file) {
-  constexpr int kMostDots = 64;
+  constexpr int kMaxDots = 64;
   int line = 1, dots = 0;
   char quote = 0;
   for (const char c : text) {
@@ -35,8 +35,8 @@ void refuse_deep_keys(std::string_view text, const std::filesystem::path& file) 
     else if (quote == 0 && (c == '"' || c == '\''))
       quote = c;
     if (quote != 0) continue;
-    if (c == '.' && ++dots > kMostDots)
-      throw std::runtime_error(fmt::format("{}:{}:1: a key of more than {} parts", file.string(), line, kMostDots + 1));
+    if (c == '.' && ++dots > kMaxDots)
+      throw std::runtime_error(fmt::format("{}:{}:1: a key of more than {} parts", file.string(), line, kMaxDots + 1));
     if (std::string_view("\n=,{}[]").find(c) != std::string_view::npos) dots = 0;
   }
 }

@@ -37,8 +37,8 @@ class DynamicWorld {
 
   /// Before the first tick, in a node that comes when tools are in the tissue already: one tick's length of coming to
   /// rest, first under the tissue's own weight, then with the tools, which enter along their shafts to where their
-  /// newest states say. What they cut or tear on their way is gone. True when it is over; call until then, after
-  /// taking the newest states.
+  /// newest states say. They cut nothing on their way; what they tear is gone. True when it is over; call until then,
+  /// after taking the newest states.
   bool settle();
 
   std::uint64_t ticks() const { return ticks_; }

@@ -24,13 +24,6 @@ double min_slew(const Scene& scene) {
   return least;
 }
 
-// [m/s^2] on tissue that moves.
-template <class Spec>
-Eigen::Vector3d gravity_on(const Spec& spec) {
-  if constexpr (std::derived_from<Spec, MovingSpec>) return spec.dynamic.gravity;
-  return Eigen::Vector3d::Zero();
-}
-
 using Rigs = std::vector<std::unique_ptr<ToolRig>>;
 
 Rigs make_rigs(const Scene& scene, double dt) {
@@ -61,7 +54,7 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     const auto make = [&](const auto& spec) { return make_haptic_part(spec, archives[b], settings); };
     auto part = std::visit(make, scene.bodies[b]);
     moving.push_back(part == nullptr);
-    gravity.push_back(std::visit([](const auto& spec) { return gravity_on(spec); }, scene.bodies[b]));
+    gravity.push_back(std::visit([](const auto& spec) { return moving_gravity(spec); }, scene.bodies[b]));
     if (part) add(b, std::move(part));
   }
   limits_ = std::make_unique<TissueLimits>(archives, moving, gravity);

@@ -77,6 +77,7 @@ void TissueTool::enter(double share) {
   if (!waiting_ && !present_) return;
   consumed_ = newest_;
   consumed_.depth *= share;
+  consumed_.pedal = 0;
   playback_.begin(consumed_);
   move(!std::exchange(present_, true));
 }

@@ -27,7 +27,7 @@ class TissueTool {
   void tick(std::uint64_t number);
 
   /// In place of a tick: it has come in along its shaft by this share of the depth that its newest state says; what it
-  /// holds it takes in the first tick. Nothing, of a tool of which no state has come.
+  /// holds it takes in the first tick, and there it begins to cut. Nothing, of a tool of which no state has come.
   void enter(double share);
 
   /// As the organs meet it in this tick. Refers to this object.

@@ -63,8 +63,8 @@ bool kept_for_late_joiners(const std::string& topic) {
 }
 
 constexpr double kRateHz = kSanitized ? 50 : 1000;
-constexpr double kMostSkipped = 0.1;  ///< of the publisher's ticks
-constexpr double kMostStood = 0.02;   ///< [s] of a run, in which the machine stood still
+constexpr double kMaxSkipped = 0.1;  ///< of the publisher's ticks
+constexpr double kMaxStood = 0.02;   ///< [s] of a run, in which the machine stood still
 
 enum class Way { loopback, veth };
 
@@ -100,7 +100,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
     double skipped = 0;  ///< of the publisher's ticks
     double stood = 0;    ///< [s] the machine
     bool whole() const { return summary.value("missing", 1) == 0 && summary.value("lost", 1) == 0; }
-    bool disturbed() const { return skipped > kMostSkipped || (!whole() && stood > kMostStood); }
+    bool disturbed() const { return skipped > kMaxSkipped || (!whole() && stood > kMaxStood); }
   };
 
   /// Records a publisher for so long; `meanwhile` runs with the recorder's process in the midst of it.

@@ -131,5 +131,25 @@ TEST_F(InterruptedPress, IsFeltAllTheWayOfATissueTooSlowForItsTicks) {
   }
 }
 
+// A pedal that is down cuts from the first tick on, and nothing while the tool is led back to where it stands.
+TEST(ReturnToATool, CutsNothingWhileTheTissueComesToRestAroundIt) {
+  const testing::PlayedScene played = testing::cut_block();
+  DynamicWorld world(played.scene, played.archives);
+  const ToolDofs dofs = tip_at(played.scene.tools[0], {-0.01, 0, 0.033});
+  ToolState state{.tool = 0, .run = 1, .yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll};
+  state.pedal = 1;
+  const auto hear = [&] {
+    ++state.step;
+    ASSERT_TRUE(world.take(state));
+  };
+  hear();
+  while (!world.settle()) {
+  }
+  EXPECT_FALSE(world.organ(0).contacts().empty());
+  EXPECT_TRUE(world.organ(0).removed().empty());
+  for (int i = 0; i < 20; ++i) hear(), world.tick();
+  EXPECT_FALSE(world.organ(0).removed().empty());
+}
+
 }  // namespace
 }  // namespace palpate

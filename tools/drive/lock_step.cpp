@@ -31,6 +31,10 @@ void LockStep::step() {
   std::vector<sim::ToolInput> inputs;
   for (const auto& device : devices_) inputs.push_back(device->read(time()));
   step(inputs);
+  for (int t = 0; t < simulator_.tools(); ++t) {
+    const sim::ToolView tool = simulator_.tool(t);
+    devices_[t]->render({tool.force, tool.torque}, tool.grip_torque);
+  }
 }
 
 void LockStep::step(std::span<const sim::ToolInput> inputs) {

@@ -21,8 +21,8 @@ class LockStep {
   const sim::Simulator& simulator() const { return simulator_; }
   double time() const { return static_cast<double>(simulator_.steps()) * simulator_.dt(); }  ///< [s] of the next step
   bool motions_over() const;  ///< every tool's motion has ended before the next step
-  void step();
-  /// A step with other inputs than the devices', one per tool; they pass the same guard.
+  void step();                ///< by the devices' inputs; they get its forces
+  /// A step with other inputs than the devices', one per tool, which pass the same guard; the devices get nothing.
   void step(std::span<const sim::ToolInput> inputs);
   const std::vector<sim::ToolInput>& inputs() const { return inputs_; }  ///< of the last step, or where the tools start
 

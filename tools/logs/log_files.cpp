@@ -90,7 +90,7 @@ std::vector<LogFile> files_for_log(const Scene& scene) {
   for (const fs::path& file : files_of(scene)) {
     std::error_code error;
     if (!is_scene_file(file) || !fs::is_regular_file(file, error)) continue;
-    files.push_back(log_file(file, std::min(room, kLargestLogFile)));
+    files.push_back(log_file(file, std::min(room, kMaxLogFile)));
     room -= files.back().content.size();
   }
   return files;

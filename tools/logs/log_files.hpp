@@ -11,7 +11,7 @@ namespace palpate {
 
 /// What a log takes along [bytes]: files beyond it, and those for which all together leave no room, go by their hash
 /// alone.
-inline constexpr std::uint64_t kLargestLogFile = 16u << 20, kLogFiles = 48u << 20;
+inline constexpr std::uint64_t kMaxLogFile = 16u << 20, kLogFiles = 48u << 20;
 
 /// What a scene names, for a log of it: each file's hash, and its contents while there is room. Files that are not
 /// here, or that no scene would name, are left out.

@@ -23,7 +23,7 @@ using Labels = CGAL::Labeled_mesh_domain_3<Kernel>;
 
 constexpr double kFacetAngle = 30;   // [degrees] least angle of a triangle
 constexpr double kRadiusEdge = 2;    // largest circumradius over shortest edge
-constexpr double kLeastAngle = 15;   // [degrees] dihedral angle that worse tetrahedra are brought to
+constexpr double kMinAngle = 15;     // [degrees] dihedral angle that worse tetrahedra are brought to
 constexpr double kBisection = 1e-4;  // of the box's diagonal: where the surface is found
 
 Eigen::Vector3d vector_of(const Point& p) {
@@ -129,8 +129,8 @@ FilledSolid fill_solid(const Solid& solid, const MeshSizes& sizes, bool better) 
   Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, given::no_lloyd(), given::no_odt(),
                                                given::no_perturb(), given::no_exude());
   if (better) {
-    CGAL::perturb_mesh_3(complex, domain, given::time_limit = 0, given::sliver_bound = kLeastAngle);
-    CGAL::exude_mesh_3(complex, given::time_limit = 0, given::sliver_bound = kLeastAngle);
+    CGAL::perturb_mesh_3(complex, domain, given::time_limit = 0, given::sliver_bound = kMinAngle);
+    CGAL::exude_mesh_3(complex, given::time_limit = 0, given::sliver_bound = kMinAngle);
   }
   if (complex.number_of_cells_in_complex() == 0) throw std::runtime_error("no tetrahedra came of it");
   return in_order(complex);

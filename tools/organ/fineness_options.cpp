@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLargestOrgan = 1, kSmallestOrgan = 5e-3;  // [m]
-constexpr double kSecondsPerSquare = 3e-6;                  // of surface nodes, measured on one core (docs/organ.md)
+constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
+constexpr double kSecondsPerSquare = 3e-6;         // of surface nodes, measured on one core (docs/organ.md)
 
 /// Beside the file, and renamed once it is whole.
 void write_whole(const TetMesh& mesh, const fs::path& file) {
@@ -50,7 +50,7 @@ void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
   for (const auto& [name, group] : mesh.groups)
     fmt::print("  group '{}': {} nodes{}\n", name, group.nodes.size(),
                group.tetrahedra.empty() ? "" : fmt::format(", {} tetrahedra", group.tetrahedra.size()));
-  if (m.extent.maxCoeff() > kLargestOrgan || m.extent.maxCoeff() < kSmallestOrgan)
+  if (m.extent.maxCoeff() > kMaxOrgan || m.extent.maxCoeff() < kMinOrgan)
     fmt::print("warning: {:.3g} m across: is --unit right?\n", m.extent.maxCoeff());
   print_cost(surface.nodes.size());
 }

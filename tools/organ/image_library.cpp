@@ -38,7 +38,7 @@ Image::Pointer read_image(const std::string& file) {
   std::int64_t voxels = 1;
   for (unsigned a = 0; a < format->GetNumberOfDimensions(); ++a) {
     const auto count = static_cast<std::int64_t>(format->GetDimensions(a));
-    if (count < 1 || count > 65536 || (voxels *= count) > kMostVoxels)
+    if (count < 1 || count > 65536 || (voxels *= count) > kMaxVoxels)
       throw std::runtime_error("it announces more voxels than the billion that is read");
   }
   if (file.ends_with(".mha") && is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))

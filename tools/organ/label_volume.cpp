@@ -20,10 +20,10 @@ using GzFile = std::unique_ptr<gzFile_s, int (*)(gzFile)>;
 
 /// The lines KEY=VALUE of the header, which fills whole blocks of 256 bytes and ends in "##}".
 Header read_header(gzFile in) {
-  constexpr std::size_t kBlock = 256, kMostBlocks = 64;
+  constexpr std::size_t kBlock = 256, kMaxBlocks = 64;
   std::string text;
   while (text.find("##}") == std::string::npos) {
-    if (text.size() >= kBlock * kMostBlocks) throw std::runtime_error("its header has no end, ##}");
+    if (text.size() >= kBlock * kMaxBlocks) throw std::runtime_error("its header has no end, ##}");
     char block[kBlock];
     if (gzread(in, block, kBlock) != static_cast<int>(kBlock)) throw std::runtime_error("it ends within its header");
     text.append(block, kBlock);
@@ -58,7 +58,7 @@ GridShape shape_of(const Header& header) {
     const double count = number(header, axis + "DIM", 0);
     shape.spacing[a] = 1e-3 * number(header, "V" + axis, 1);
     voxels *= count;
-    if (!(count >= 1 && count <= 65536 && count == std::floor(count) && voxels <= kMostVoxels))
+    if (!(count >= 1 && count <= 65536 && count == std::floor(count) && voxels <= kMaxVoxels))
       throw std::runtime_error(
           fmt::format("its {}DIM is {}: 1 to 65536 voxels along an axis are read, a billion in all", axis, count));
     if (!(shape.spacing[a] > 0)) throw std::runtime_error(fmt::format("its voxel size V{} is not positive", axis));

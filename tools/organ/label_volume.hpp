@@ -18,7 +18,7 @@ struct LabelVolume {
 };
 
 /// The most voxels that are read.
-inline constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;
+inline constexpr std::int64_t kMaxVoxels = std::int64_t{1} << 30;
 
 /// Reads INR (.inr, .inr.gz), and with ITK NIfTI (.nii, .nii.gz), MetaImage (.mhd, .mha), NRRD (.nrrd, .nhdr) and a
 /// folder with a DICOM series; lengths in these are millimetres. Throws std::runtime_error("FILE: reason").

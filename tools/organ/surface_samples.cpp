@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 constexpr int kOfEachSurface = 40;
-constexpr int kMostSteps = 160;  // along an axis: lines are no denser than that
+constexpr int kMaxSteps = 160;  // along an axis: lines are no denser than that
 
 SurfaceSample between(const Solid& solid, Eigen::Vector3d a, int part_a, Eigen::Vector3d b, int part_b) {
   for (int i = 0; i < 30; ++i) {
@@ -38,7 +38,7 @@ std::vector<SurfaceSample> spread(const std::vector<SurfaceSample>& all) {
 
 std::vector<SurfaceSample> surface_samples(const Solid& solid, double step) {
   const Eigen::Vector3d size = solid.high - solid.low;
-  const double h = std::max(0.5 * step, size.maxCoeff() / kMostSteps);
+  const double h = std::max(0.5 * step, size.maxCoeff() / kMaxSteps);
   std::map<std::array<int, 2>, std::vector<SurfaceSample>> found;
   const Eigen::Array3i count = (size.array() / h).ceil().cast<int>() + 1;
   const auto place = [&](int i, int j, int k) { return Eigen::Vector3d(solid.low + h * Eigen::Vector3d(i, j, k)); };

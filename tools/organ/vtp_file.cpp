@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLargestArray = std::size_t{4} << 30;  // [bytes]
+constexpr std::size_t kMaxArray = std::size_t{4} << 30;  // [bytes]
 
 /// Stands at a tag; `name` is empty past the last one.
 struct Tag {
@@ -83,7 +83,7 @@ std::size_t whole_number(const std::string& bytes, std::size_t place, const Enco
     const std::size_t digit = e.swapped ? i : e.header_size - 1 - i;
     number = number << 8 | static_cast<unsigned char>(bytes[place * e.header_size + digit]);
   }
-  if (number > kLargestArray) throw std::runtime_error("an array is larger than any surface's");
+  if (number > kMaxArray) throw std::runtime_error("an array is larger than any surface's");
   return number;
 }
 

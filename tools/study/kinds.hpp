@@ -18,7 +18,11 @@ struct StudiedBody {
   const StudyOptions& options;
 };
 
-// methods_of(spec, body): all methods that can serve a body, in the order of their rows.
+// methods_of(spec, body): all methods that can serve a body, in the order of their rows. A kind that says none has no
+// row.
+inline Methods methods_of(const NamedSpec& /*spec*/, const StudiedBody& /*body*/) {
+  return {};
+}
 Methods methods_of(const CatheterSpec& spec, const StudiedBody& body);
 Methods methods_of(const ModalShellSpec& spec, const StudiedBody& body);
 /// Of a solid: quasi-static, the references, and the models of moving tissue.

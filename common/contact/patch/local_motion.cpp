@@ -8,7 +8,7 @@ namespace {
 using Eigen::Matrix4d;
 using Eigen::Vector3d;
 
-constexpr double kLeastSpread = 1e-6;  // of the widest direction, below which the nodes lie on a line
+constexpr double kMinSpread = 1e-6;  // of the widest direction, below which the nodes lie on a line
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Eigen::Isometry3d local_motion(const SmoothSurface& surface, std::span<const int
   if (!(sum > 0)) return motion;
   const Vector3d rest = moments.row(3).head<3>(), now = moments.col(3).head<3>();
   const NearestRotation nearest = nearest_rotation(moments.topLeftCorner<3, 3>() - now * rest.transpose() / sum);
-  if (nearest.singular_values[1] > kLeastSpread * nearest.singular_values[0]) motion.linear() = nearest.rotation;
+  if (nearest.singular_values[1] > kMinSpread * nearest.singular_values[0]) motion.linear() = nearest.rotation;
   motion.translation() = place + now / sum - motion.linear() * (place + rest / sum);
   return motion;
 }

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 // Of a square's own compliance: the least that pressures of any pattern find beyond the nodes'.
-constexpr double kLeastGive = 0.02, kTolerated = 0.001;
+constexpr double kMinGive = 0.02, kTolerated = 0.001;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void Patch::find_more() {
   for (int r = 0; r < m; ++r)
     for (int c = 0; c < m; ++c) a(r, c) = compliance_[rows_[r] * n + rows_[c]];
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
-  const double least = kLeastGive * kernel_.own();
+  const double least = kMinGive * kernel_.own();
   std::ranges::fill(more_, 0.0);
   for (int k = 0; k < m && eigen.eigenvalues()[k] < least; ++k) {
     const double raise = least - eigen.eigenvalues()[k];

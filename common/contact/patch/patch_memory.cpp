@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLeast = 1e-15;  // [m] what is smaller is zero
+constexpr double kMin = 1e-15;  // [m] what is smaller is zero
 
 int square_at(const PatchGrid& grid, const Vector2d& at) {
   for (int p = 0; p < grid.size(); ++p)
@@ -46,10 +46,10 @@ void PatchMemory::follow(std::span<const double> dent, const Eigen::Vector3d& be
     Term& term = terms_[k];
     for (std::size_t p = 0; p < dent.size(); ++p) {
       term.dent[p] = step.keep * term.dent[p] + gained * dent[p];
-      if (std::abs(term.dent[p]) < kLeast) term.dent[p] = 0;
+      if (std::abs(term.dent[p]) < kMin) term.dent[p] = 0;
     }
     term.bent = step.keep * term.bent + gained * bent;
-    if (term.bent.norm() < kLeast) term.bent.setZero();
+    if (term.bent.norm() < kMin) term.bent.setZero();
   }
   sum_up();
 }

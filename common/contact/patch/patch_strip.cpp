@@ -9,13 +9,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastLevel = 0.2;  // cosine between the axis and the surface, below which its flank does not press
-constexpr int kTurnsOn = 2;          // of the normal within a step once it is known
-constexpr double kWindow = 1.5;      // half a window, over that of an even overlap with the same moments
-constexpr double kBeside = 0.25;     // radii above the surface from which a cell is not there
-constexpr double kMostDepth = 10;    // radii below the surface, likewise
+constexpr double kMinLevel = 0.2;  // cosine between the axis and the surface, below which its flank does not press
+constexpr int kTurnsOn = 2;        // of the normal within a step once it is known
+constexpr double kWindow = 1.5;    // half a window, over that of an even overlap with the same moments
+constexpr double kBeside = 0.25;   // radii above the surface from which a cell is not there
+constexpr double kMaxDepth = 10;   // radii below the surface, likewise
 constexpr double kLines[] = {0, -0.35, 0.35, -0.65, 0.65, -0.85, 0.85};  // radii aside, along which it overlaps
-constexpr double kLeastCover = 1e-3;                                     // of a cell, likewise
+constexpr double kMinCover = 1e-3;                                       // of a cell, likewise
 
 /// By the line at `y` along the first axis; false if it does not meet the triangle. The ends go along the axis.
 bool cut_at(const std::array<Vector3d, 3>& t, double y, TriangleCut& cut) {
@@ -92,7 +92,7 @@ bool Patch::turn_along(const Segment& axis) {
   const Vector3d along = (axis.end - axis.start) / grid_.length();
   const double down = along.dot(normal_);
   const double level = std::sqrt(std::max(0.0, 1 - down * down));
-  if (level < kLeastLevel) return false;
+  if (level < kMinLevel) return false;
   across_ = (along - down * normal_) / level;
   up_ = normal_.cross(across_);
   const double ends = grid_.radius() * down;
@@ -163,8 +163,8 @@ void Patch::lay_strip(const Ground& ground) {
   bool any = false;
   for (int p = 0; p < grid_.size(); ++p) {
     Cell& cell = cells_[p];
-    const double gap = cell.cover > kLeastCover ? cell.gap / cell.cover : -std::numeric_limits<double>::infinity();
-    const bool there = gap > -kBeside * grid_.radius() && gap < kMostDepth * grid_.radius();
+    const double gap = cell.cover > kMinCover ? cell.gap / cell.cover : -std::numeric_limits<double>::infinity();
+    const bool there = gap > -kBeside * grid_.radius() && gap < kMaxDepth * grid_.radius();
     const double x = cell_middle(grid_.column(p)), y = grid_.across(grid_.row(p));
     const double depth = flank_.slope * x + grid_.rise(p) * flank_.steep - gap;
     cell = {.gap = there ? gap : -std::numeric_limits<double>::infinity(),

@@ -126,7 +126,7 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
     else if (by_mesh && radius < 2 * h)
       warn(fmt::format("less than twice the mean edge {:.3g} m", h), "the force still depends on the mesh");
   }
-  if (across > kLargestBody || across < kSmallestBody)
+  if (across > kMaxBody || across < kMinBody)
     warnings.push_back(fmt::format("body '{}' is {:.3g} m across: is its scale right?", body, across));
   return warnings;
 }

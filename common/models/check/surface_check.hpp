@@ -27,7 +27,7 @@ void say_patches(const CheckSettings& settings, const std::string& body, bool sh
 void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, bool shafts,
                     CheckReport& report);
 /// [m] across: what an organ on a table has.
-inline constexpr double kLargestBody = 1, kSmallestBody = 1e-3;
+inline constexpr double kMaxBody = 1, kMinBody = 1e-3;
 
 /// A tool smaller than the elements or larger than the body, a scale that is off. `body`: its name. `patches`: balls
 /// press it by patches where the scene's rule says so, with a size of their own, not the mesh's.

@@ -137,6 +137,10 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
   add_near_field("deform_node", settings, archive.surface, false, report);
+  if (settings.contact.rule == "alpha")
+    report.warnings.push_back(
+        fmt::format("body '{}' moves: it is touched as under rule \"barycentric\"; \"alpha\" holds nodes of the others",
+                    body.name));
 }
 
 void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& report) {

@@ -22,13 +22,6 @@ constexpr double kLostBeyond = 3;           // diagonals from its place, beyond 
 constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
-double bucket_size(const ContactSpec& contact, const ElasticMesh& mesh) {
-  if (contact.bucket_size > 0) return contact.bucket_size;
-  double edges = 0;
-  for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
-  return 2 * edges / static_cast<double>(mesh.tetrahedra.size());
-}
-
 }  // namespace
 
 DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings,
@@ -37,7 +30,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       mesh_(elastic_mesh(archive)),
       topology_(mesh_.tetrahedra, mesh_.nodes()),
       shown_(archive.surface.triangles, topology_),
-      surface_(topology_, mesh_.rest, bucket_size(settings.contact, mesh_)),
+      surface_(topology_, mesh_.rest, bucket_size(settings.contact, archive.surface)),
       model_(make(mesh_)),
       still_(archive.hybrid
                  ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
@@ -366,6 +359,10 @@ void DynamicOrgan::recall(const Memory& m) {
 std::uint64_t DynamicOrgan::hash() const {
   const std::vector<std::uint8_t> state = motion();
   return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed_.data(), removed_.size() * sizeof(int));
+}
+
+Eigen::Vector3d moving_gravity(const MovingSpec& body) {
+  return body.dynamic.gravity;
 }
 
 std::unique_ptr<DynamicOrgan> make_organ(const NamedSpec&, const Archive&, const StepSettings&) {

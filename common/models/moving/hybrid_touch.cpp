@@ -25,10 +25,6 @@ ToolContacts::Options beside_patches(const StepSettings& settings) {
   return options;
 }
 
-double bucket_size(const ContactSpec& contact, const SurfaceMap& map) {
-  return contact.bucket_size > 0 ? contact.bucket_size : 2 * mean_edge(map);
-}
-
 }  // namespace
 
 HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model)

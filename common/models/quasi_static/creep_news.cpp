@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kLeastShare = 1e-3;  // of the largest load; what is smaller would not be seen
+constexpr double kMinShare = 1e-3;  // of the largest load; what is smaller would not be seen
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void QuasiStaticBody::tell(BodyMessage& message) {
   double largest = 0;
   memory_->for_each_creep_load([&](int, const Eigen::Vector3d& load) { largest = std::max(largest, load.norm()); });
   memory_->for_each_creep_load([&](int node, const Eigen::Vector3d& load) {
-    if (load.isZero(0) || load.norm() < kLeastShare * largest) return;
+    if (load.isZero(0) || load.norm() < kMinShare * largest) return;
     const Eigen::Vector3f l = load.cast<float>();
     loads.push_back({static_cast<std::uint32_t>(node), {l[0], l[1], l[2]}});
   });

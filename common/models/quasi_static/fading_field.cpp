@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastScale = 1e-12;         // below it a part is written anew
-constexpr double kLeastDisplacement = 1e-15;  // [m] what is smaller then is zero
-constexpr double kLeastForce = 1e-9;          // [N] likewise; a load that small is forgotten
+constexpr double kMinScale = 1e-12;         // below it a part is written anew
+constexpr double kMinDisplacement = 1e-15;  // [m] what is smaller then is zero
+constexpr double kMinForce = 1e-9;          // [N] likewise; a load that small is forgotten
 
 }  // namespace
 
@@ -64,7 +64,7 @@ void FadingField::fade() {
     if (busy()) taken_.lag[k] *= keep;
     if (!parts_[k].used) continue;
     parts_[k].scale *= keep;
-    if (parts_[k].scale < kLeastScale) rescale(k);
+    if (parts_[k].scale < kMinScale) rescale(k);
   }
 }
 
@@ -73,12 +73,12 @@ void FadingField::rescale(std::size_t k) {
   part.used = false;
   for (double& u : part.displacement) {
     u *= part.scale;
-    if (std::abs(u) < kLeastDisplacement) u = 0;
+    if (std::abs(u) < kMinDisplacement) u = 0;
     part.used |= u != 0;
   }
   for (Faded& f : faded_) {
     f.lag[k] *= part.scale;
-    if (f.lag[k].norm() < kLeastForce) f.lag[k].setZero();
+    if (f.lag[k].norm() < kMinForce) f.lag[k].setZero();
     part.used |= !f.lag[k].isZero(0);
   }
   part.scale = 1;

@@ -6,7 +6,7 @@ namespace palpate {
 namespace {
 
 bool takes_minutes_with_quadratic(int surface_nodes) {
-  return surface_nodes > kMostQuadratic;
+  return surface_nodes > kMaxQuadratic;
 }
 
 }  // namespace
@@ -18,7 +18,7 @@ Offline offline_of(const QuasiStaticSpec& body, int surface_nodes) {
 std::string why_offline(const QuasiStaticSpec& body, int surface_nodes) {
   if (body.offline) return {};
   if (takes_minutes_with_quadratic(surface_nodes))
-    return fmt::format("the mesh has more than {} surface nodes", kMostQuadratic);
+    return fmt::format("the mesh has more than {} surface nodes", kMaxQuadratic);
   return "since linear ones bend too stiffly";
 }
 

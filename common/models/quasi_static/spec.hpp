@@ -102,12 +102,12 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
 }
 
 /// What the tensors of a body are computed from: what it says, else quadratic elements, which bend as the tissue does
-/// and are true near a tip; beyond kMostQuadratic nodes of its surface linear ones, since the mesh is fine and they
+/// and are true near a tip; beyond kMaxQuadratic nodes of its surface linear ones, since the mesh is fine and they
 /// would take minutes.
 Offline offline_of(const QuasiStaticSpec& body, int surface_nodes);
 /// Why it is that, in words; empty where the body says so itself.
 std::string why_offline(const QuasiStaticSpec& body, int surface_nodes);
-inline constexpr int kMostQuadratic = 2000;
+inline constexpr int kMaxQuadratic = 2000;
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 
