@@ -105,5 +105,12 @@ TEST_F(ToolsCheckDynamic, ACauteryThatNeverBurnsIsPointedOut) {
   expect_line(said, "warning: tool 'knife' has jaws, and the grip of its trajectory never falls below 0.1 rad\n");
 }
 
+TEST_F(ToolsCheckDynamic, ARuleThatMovingTissueDoesNotKnowIsPointedOut) {
+  const std::string warning = "warning: body 'cylinder' moves: it is touched as under rule \"barycentric\"";
+  expect_line(testing::run_program(check(scene_ + "[contact]\nrule = \"alpha\"\n")), warning);
+  const ProgramResult other = testing::run_program(check(scene_ + "[contact]\nrule = \"barycentric\"\n"));
+  EXPECT_EQ(other.out.find(warning), std::string::npos);
+}
+
 }  // namespace
 }  // namespace palpate
