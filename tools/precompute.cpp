@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <numbers>
 
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
@@ -21,26 +20,6 @@ void describe(const Archive& archive, const ArchiveState& state) {
              archive.surface.touchable, archive.touchable_dofs.size(), archive.other_dofs.size(), megabytes);
 }
 
-void describe_moving_part(const Archive& archive) {
-  if (archive.tetrahedra.empty()) return;
-  fmt::print("  {} tetrahedra that move with inertia\n", archive.tetrahedra.size());
-  if (!archive.hybrid) return;
-  const HybridTensors& hybrid = *archive.hybrid;
-  fmt::print("  {} connection nodes to the quasi-static part\n", hybrid.connection.size());
-  if (hybrid.held_by_connection)
-    fmt::print("  a piece of the quasi-static part has too few fixed nodes: the connection nodes hold it\n");
-  if (!hybrid.gap.empty())
-    fmt::print("  partial connection: {} nodes of the border are not shared, the gap is up to {:.3g} m at rest\n",
-               hybrid.gap.size(), hybrid.max_gap);
-}
-
-void describe_modes(const Archive& archive) {
-  if (!archive.modal) return;
-  const auto& omega = archive.modal->omega;
-  fmt::print("  {} modes of {:.4g} to {:.4g} Hz\n", omega.size(), omega.front() / (2 * std::numbers::pi),
-             omega.back() / (2 * std::numbers::pi));
-}
-
 void precompute_body(const Scene& scene, const Body& body) {
   const auto state = ensure_archive(scene, body, show_stage);
   if (state.file.empty()) {
@@ -54,8 +33,8 @@ void precompute_body(const Scene& scene, const Body& body) {
     fmt::print("body '{}': computed and written in {:.3f} s: {}\n", name_of(body), state.seconds, state.file.string());
   const auto archive = read_archive(state.file, ArchivePart::header, {});
   describe(archive, state);
-  describe_moving_part(archive);
-  describe_modes(archive);
+  const auto more = [&](const auto& spec) { return archive_lines(spec, archive); };
+  for (const std::string& line : std::visit(more, body)) fmt::print("  {}\n", line);
 }
 
 }  // namespace

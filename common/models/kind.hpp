@@ -94,6 +94,12 @@ constexpr bool stores_inertia(const NamedSpec&) {
 /// std::runtime_error on a bad mesh, the job on a bad body or too little memory. Empty for a body without a mesh.
 using ArchiveJob = std::function<Archive()>;
 
+/// archive_lines(spec, archive): what `palpate precompute` says of the archive beside its size, a sentence a line.
+inline std::vector<std::string> archive_lines(const NamedSpec&, const Archive&) {
+  return {};
+}
+std::vector<std::string> archive_lines(const MovingSpec& body, const Archive& archive);
+
 /// made_archive(spec): the archive of a body without a mesh, for which there is no file; empty for all others.
 std::optional<Archive> made_archive(const MeshedSpec& body);
 

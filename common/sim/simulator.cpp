@@ -127,9 +127,7 @@ std::vector<Eigen::Vector3d> Simulator::displacement(int body) {
   std::vector<Eigen::Vector3d> u;
   if (const int moving = organ_of(body); moving >= 0) {
     const DynamicOrgan& organ = world_.organ(moving);
-    const HybridPart* still = organ.still_part() ? &organ.still_part()->part() : nullptr;
-    for (int n = 0; n < deformer_.map(body).size(); ++n)
-      u.push_back(still && still->owns(n) ? still->displacement(n) : organ.model().displacement(n));
+    for (int n = 0; n < deformer_.map(body).size(); ++n) u.push_back(organ.displacement(n));
     return u;
   }
   show_now();

@@ -140,4 +140,17 @@ ArchiveJob archive_job(const HybridSpec& body, const Progress& progress) {
   };
 }
 
+std::vector<std::string> archive_lines(const HybridSpec& body, const Archive& archive) {
+  std::vector<std::string> lines = archive_lines(static_cast<const MovingSpec&>(body), archive);
+  const HybridTensors& hybrid = *archive.hybrid;
+  lines.push_back(fmt::format("{} connection nodes to the quasi-static part", hybrid.connection.size()));
+  if (hybrid.held_by_connection)
+    lines.emplace_back("a piece of the quasi-static part has too few fixed nodes: the connection nodes hold it");
+  if (!hybrid.gap.empty())
+    lines.push_back(
+        fmt::format("partial connection: {} nodes of the border are not shared, the gap is up to {:.3g} m at rest",
+                    hybrid.gap.size(), hybrid.max_gap));
+  return lines;
+}
+
 }  // namespace palpate

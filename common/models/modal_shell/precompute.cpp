@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <new>
+#include <numbers>
 #include <stdexcept>
 
 #include "common/fem/factorisation.hpp"
@@ -141,6 +142,12 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
+}
+
+std::vector<std::string> archive_lines(const ModalShellSpec&, const Archive& archive) {
+  const auto& omega = archive.modal->omega;
+  return {fmt::format("{} modes of {:.4g} to {:.4g} Hz", omega.size(), omega.front() / (2 * std::numbers::pi),
+                      omega.back() / (2 * std::numbers::pi))};
 }
 
 ArchiveJob archive_job(const ModalShellSpec& body, const Progress& progress) {

@@ -16,6 +16,7 @@ inline void describe(Description& d, ModalShellSpec& b) {
 }
 
 ArchiveJob archive_job(const ModalShellSpec& body, const Progress& progress);
+std::vector<std::string> archive_lines(const ModalShellSpec& body, const Archive& archive);
 
 std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Archive& archive,
                                            const StepSettings& settings);

@@ -178,6 +178,10 @@ Eigen::Vector3d DynamicOrgan::position(int node) const {
   return surface_.positions()[node];
 }
 
+Eigen::Vector3d DynamicOrgan::displacement(int node) const {
+  return still_ && still_->part().owns(node) ? still_->part().displacement(node) : model_->displacement(node);
+}
+
 bool DynamicOrgan::holds(int tool) const {
   return contacts_.grasping(tool) || (still_ && still_->grasping(tool));
 }

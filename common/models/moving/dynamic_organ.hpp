@@ -70,6 +70,7 @@ class DynamicOrgan {
   const HybridTouch* still_part() const { return still_.get(); }
   /// [m] of a surface node of either part.
   Eigen::Vector3d position(int node) const;
+  Eigen::Vector3d displacement(int node) const;  ///< [m] of a node of either part
   /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
   bool is_joint(int facet) const { return shown_.is_joint(facet); }
   bool holds(int tool) const;  ///< its jaws hold something of this organ

@@ -72,6 +72,10 @@ Archive precompute_moving(const MovingSpec& body, std::string_view kind, const T
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
 }
 
+std::vector<std::string> archive_lines(const MovingSpec&, const Archive& archive) {
+  return {fmt::format("{} tetrahedra that move with inertia", archive.tetrahedra.size())};
+}
+
 ArchiveJob moving_archive_job(const MovingSpec& body, std::string_view kind, const Progress& progress) {
   return [&body, kind, &progress, mesh = load_tet_mesh(body.mesh, body.scale)] {
     return precompute_moving(body, kind, mesh, progress);
