@@ -48,7 +48,7 @@ Scene relaxing(Scene scene) {
 }
 
 Scene by_nodes(Scene scene) {
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   return scene;
 }
 

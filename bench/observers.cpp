@@ -33,7 +33,7 @@ using testing::NetworkNamespace;
 using testing::TwoHosts;
 namespace fs = std::filesystem;
 
-const std::string scene = PALPATE_SCENES "/liver.toml";
+const std::string kScene = PALPATE_SCENES "/liver.toml";
 constexpr int kPublisherPriority = 40;  // of haptic_node's thread that writes to the bus
 
 struct Case {
@@ -163,7 +163,7 @@ class Bench {
     return start(hosts_.b(), TwoHosts::address_a, c, name, words);
   }
   ChildProcess observer(const Case& c, int i) const {
-    if (i == 0) return on_b(c, "render_node", {scene, "--supervised"});
+    if (i == 0) return on_b(c, "render_node", {kScene, "--supervised"});
     if (i % 4 == 1)
       return on_b(c, "palpate", {"record", "--supervised", "-o", (folder_ / fmt::format("{}.lcmlog", i)).string()});
     return on_b(c, "listener", {});
@@ -178,12 +178,12 @@ class Bench {
 
   Run run(const Case& c) const {
     std::vector<ChildProcess> others;
-    others.push_back(on_b(c, "deform_node", {scene, "--supervised"}));
+    others.push_back(on_b(c, "deform_node", {kScene, "--supervised"}));
     for (int i = 0; i < c.observers; ++i) others.push_back(observer(c, i));
     for (ChildProcess& process : others) await_ready(process);
     std::this_thread::sleep_for(1s);
     ChildProcess haptic = start(hosts_.a(), TwoHosts::address_b, c, "haptic_node",
-                                {scene, "--supervised", "--seconds", fmt::format("{}", seconds_ + 2)});
+                                {kScene, "--supervised", "--seconds", fmt::format("{}", seconds_ + 2)});
     await_ready(haptic);
     std::this_thread::sleep_for(1500ms);  // the peers have met, and the loop runs
     const auto begin = std::chrono::steady_clock::now();
@@ -261,8 +261,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   try {
-    for (const palpate::Body& body : palpate::load_scene(palpate::scene).bodies)
-      palpate::ensure_archive(palpate::load_scene(palpate::scene), body);
+    for (const palpate::Body& body : palpate::load_scene(palpate::kScene).bodies)
+      palpate::ensure_archive(palpate::load_scene(palpate::kScene), body);
     palpate::Bench(palpate::bench::quick(argc, argv)).measure();
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_observers: {}\n", error.what());

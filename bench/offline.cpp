@@ -36,7 +36,8 @@ void lap(PressRig& rig, ScriptedTools& tools, bench::Samples& samples) {
 void measure(const Scene& scene, bool quick) {
   ScriptedTools tools(scene);
   PressRig plain(scene, {compute(scene, {}, "liver1400_plain")});
-  PressRig fine(scene, {compute(scene, Offline{0, "p2", "locking_free"}, "liver1400_p2_locking_free")});
+  PressRig fine(
+      scene, {compute(scene, Offline{0, FiniteElement::p2, Formulation::locking_free}, "liver1400_p2_locking_free")});
   plain.start(tools.at(0));
   fine.start(tools.at(0));
   bench::Samples none, of_plain, of_fine;

@@ -55,10 +55,10 @@ SlideMeasures slide(PressRig& rig, const Way& way, double depth) {
   return measure_slide(ticks, line_through(ticks), rig.dt());
 }
 
-void measure(double per_edge, const char* rule, std::span<const double> reference) {
+void measure(double per_edge, ContactRule rule, std::span<const double> reference) {
   const double h = kShaftRadius / per_edge;
   const Archive archive = precompute(bench::shaft_block(), bench::shaft_block_of_edges(h));
-  const std::string name = fmt::format("{}_R_over_h_{}", rule, per_edge);
+  const std::string name = fmt::format("{}_R_over_h_{}", word_of(rule), per_edge);
   std::vector<double> aside;
   for (const double share : {0.0, 0.2, 0.4, 0.6, 0.8}) aside.push_back(share * std::min(h, kShaftRadius));
   for (int d = 0; d < 2; ++d) {
@@ -87,7 +87,7 @@ void measure(double per_edge, const char* rule, std::span<const double> referenc
 std::vector<double> reference(double per_edge) {
   const double h = kShaftRadius / per_edge, beside = 1.4 * kShaftRadius;
   const Archive archive = precompute(bench::shaft_block(beside), bench::shaft_block_of_edges(h, beside));
-  PressRig rig(bench::shaft_scene(bench::shaft_block(beside), "barycentric", 0), {archive});
+  PressRig rig(bench::shaft_scene(bench::shaft_block(beside), ContactRule::barycentric, 0), {archive});
   rig.start(shaft_tip(0, 0, -0.5 * kShaftRadius));
   std::vector<double> forces;
   for (const double depth : kDepths) {
@@ -112,5 +112,5 @@ int main(int argc, char** argv) {
   auto fine = coarse;
   if (!bench::quick(argc, argv)) fine = reference(4);
   for (const double per_edge : {0.25, 0.5, 1.0, 2.0})
-    for (const char* rule : {"barycentric", "patch"}) measure(per_edge, rule, fine);
+    for (const ContactRule rule : {ContactRule::barycentric, ContactRule::patch}) measure(per_edge, rule, fine);
 }

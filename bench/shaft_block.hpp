@@ -33,7 +33,7 @@ inline QuasiStaticSpec shaft_block(double beside = 2.5 * kShaftRadius) {
 }
 
 /// That block under a shaft along x, which a far pivot leaves level.
-inline Scene shaft_scene(const QuasiStaticSpec& block, const char* rule, double friction) {
+inline Scene shaft_scene(const QuasiStaticSpec& block, ContactRule rule, double friction) {
   Scene scene = touch_scene(block, friction);
   scene.contact.rule = rule;
   Tool& tool = scene.tools[0];

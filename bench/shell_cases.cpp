@@ -47,7 +47,7 @@ std::vector<Published> for_polynomial() {
 }
 
 void converge(const Published& kind, Bending bending, int finest, std::ostream& table) {
-  const char* element = bending == Bending::polynomial ? "polynomial" : "discrete_kirchhoff";
+  const std::string_view element = word_of(bending);
   double error = 0;
   for (int n = 4; n <= finest; n *= 2) {
     ShellCase shell = kind.make(n);

@@ -48,7 +48,7 @@ inline QuasiStaticSpec touch_block(int refine = 0) {
   block.name = "block";
   block.material = {kBlockYoung, kBlockPoisson, 1000};
   block.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-  block.offline = Offline{.refine = refine, .element = "p2"};
+  block.offline = Offline{.refine = refine, .element = FiniteElement::p2};
   return block;
 }
 
@@ -56,7 +56,7 @@ inline QuasiStaticSpec touch_block(int refine = 0) {
 inline Scene touch_scene(const QuasiStaticSpec& block, double friction) {
   Scene scene;
   scene.bodies.push_back(block);
-  scene.contact.rule = "patch";
+  scene.contact.rule = ContactRule::patch;
   scene.contact.friction = friction;
   scene.passivity.controller = false;
   Tool ball;

@@ -42,9 +42,9 @@ struct Element {
 };
 
 const std::vector<Element> kElements{{"p1", {}},
-                                     {"p1_refine1_locking_free", {1, "p1", "locking_free"}},
-                                     {"p2", {0, "p2", "displacement"}},
-                                     {"p2_locking_free", {0, "p2", "locking_free"}}};
+                                     {"p1_refine1_locking_free", {1, FiniteElement::p1, Formulation::locking_free}},
+                                     {"p2", {0, FiniteElement::p2, Formulation::displacement}},
+                                     {"p2_locking_free", {0, FiniteElement::p2, Formulation::locking_free}}};
 
 /// Rows of the table, and each error on stdout.
 class Table {

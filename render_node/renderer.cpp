@@ -18,7 +18,7 @@
 namespace palpate {
 namespace {
 
-const std::string head = "#version 450 core\n";
+const std::string kHead = "#version 450 core\n";
 
 }  // namespace
 
@@ -46,7 +46,7 @@ struct Renderer::Impl {
   std::optional<FontAtlas> font;
   int font_size = 0;
   std::map<int, GpuMesh> meshes;
-  using InstrumentKey = std::array<double, 5>;
+  using InstrumentKey = std::array<double, 6>;
   struct Instrument {
     InstrumentShape shape;
     std::vector<GpuMesh> parts;
@@ -58,14 +58,14 @@ struct Renderer::Impl {
 };
 
 Renderer::Impl::Impl(int width, int height, int samples) : target(context, width, height, samples), quads(context) {
-  const std::string scene = head + shaders::scene;
+  const std::string scene = kHead + shaders::scene;
   const std::string lit = scene + "#define TOOLS 0\n" + shaders::noise + shaders::light;
   const std::string rigid = scene + shaders::rigid_vert;
   bone = context.link_program("bone", rigid, lit + shaders::bone_frag);
   lining = context.link_program("lining", rigid, lit + shaders::lining_frag);
   metal = context.link_program("metal", rigid, lit + shaders::metal_frag);
   cavity = context.link_program("cavity", scene + shaders::cavity_vert, lit + shaders::cavity_frag);
-  flat = context.link_program("flat", scene + shaders::flat_vert, head + shaders::colours + shaders::flat_frag);
+  flat = context.link_program("flat", scene + shaders::flat_vert, kHead + shaders::colours + shaders::flat_frag);
   gl.CreateBuffers(1, &block);
   gl.NamedBufferData(block, sizeof(SceneBlock), nullptr, GL_DYNAMIC_DRAW);
   gl.CreateVertexArrays(1, &empty_array);
@@ -110,7 +110,7 @@ GLuint Renderer::Impl::soft_program(Finish finish, bool by_scalar, std::size_t t
   GLuint& program = soft[{finish, by_scalar, tools}];
   if (program) return program;
   const std::string start =
-      fmt::format("{}{}#define TOOLS {}\n{}", head, by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
+      fmt::format("{}{}#define TOOLS {}\n{}", kHead, by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
       shaders::noise;
   const std::string lit = start + shaders::light;
   if (finish == Finish::tissue)
@@ -162,8 +162,8 @@ void Renderer::Impl::draw_instruments(const Frame& frame) {
   for (const InstrumentView& tool : frame.instruments) {
     const Steel steel = steel_of(tool);
     gl.ProgramUniform4f(metal, 4, steel.polish, 0, 0, steel.bare);
-    Instrument& made =
-        instruments[{tool.tip_radius, tool.shaft_radius, tool.shaft_length, tool.jaw_length, tool.jaw_radius}];
+    Instrument& made = instruments[{tool.tip_radius, tool.blade ? 1.0 : 0.0, tool.shaft_radius, tool.shaft_length,
+                                    tool.jaw_length, tool.jaw_radius}];
     if (made.parts.empty()) {
       made.shape = make_instrument(tool);
       for (const InstrumentPart& part : made.shape.parts) {

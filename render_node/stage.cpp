@@ -68,7 +68,7 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
   body.rest.resize(body.refinement.vertices());
   normal.resize(body.refinement.vertices());
   body.refinement.apply(body.rest, normal);
-  if (render_.colour == "displacement" && body.finish != Finish::plastic)
+  if (render_.colour == Colouring::displacement && body.finish != Finish::plastic)
     body.displacement.assign(body.rest.size(), 0.0f);
   ++body.shape;
 }
@@ -181,7 +181,7 @@ Frame Stage::frame() const {
   }
   for (const Instrument& tool : tools_)
     if (tool.seen) frame.instruments.push_back(tool.view);
-  if (render_.colour == "displacement") frame.legend = Legend{"displacement", legend_max_};
+  if (render_.colour == Colouring::displacement) frame.legend = Legend{"displacement", legend_max_};
   if (render_.overlay) frame.overlay = overlay_;
   return frame;
 }

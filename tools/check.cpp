@@ -83,15 +83,15 @@ void say_keys(const std::filesystem::path& folder, CheckOutput& out) {
 }
 
 void say_sections(const Scene& scene, CheckOutput& out) {
-  out.say(fmt::format("contact: {} rule, friction {}", scene.contact.rule, scene.contact.friction));
+  out.say(fmt::format("contact: {} rule, friction {}", word_of(scene.contact.rule), scene.contact.friction));
   out.say(fmt::format("rates: haptic {} Hz, visual {} Hz", scene.rates.haptic_hz, scene.rates.visual_hz));
   out.say(fmt::format("network: domain {}, {}", scene.network.domain,
                       scene.network.interface.empty() ? "loopback" : scene.network.interface));
   if (scene.network.security) say_keys(scene.network.security->keys, out);
   if (scene.record) out.say("record: " + scene.record->file.string());
   if (!scene.render) return;
-  out.say(
-      fmt::format("render: {} x {}, coloured by {}", scene.render->width, scene.render->height, scene.render->colour));
+  out.say(fmt::format("render: {} x {}, coloured by {}", scene.render->width, scene.render->height,
+                      word_of(scene.render->colour)));
   if (scene.render->backdrop.empty()) return;
   const TriangleMesh backdrop = load_triangle_mesh(scene.render->backdrop, scene.render->backdrop_scale);
   out.say(fmt::format(

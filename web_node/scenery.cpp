@@ -105,7 +105,7 @@ std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surf
                                             {"target", of(camera.target)},
                                             {"up", of(camera.up)},
                                             {"field_of_view", camera.field_of_view}}},
-                                          {"colour", render.colour},
+                                          {"colour", word_of(render.colour)},
                                           {"mucosa_colour", kMucosaColour},
                                           {"bodies", bodies},
                                           {"tools", tools},

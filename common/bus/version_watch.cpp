@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-const char* const program = "palpate";
+const char* const kProgram = "palpate";
 
 std::string messages_hash() {
   const std::string schema = schema_text();
@@ -37,12 +37,12 @@ std::string part_of_sentence(const std::string& text) {
 std::string participant_words() {
   char host[256] = "localhost";
   gethostname(host, sizeof host - 1);
-  return fmt::format("{};{};{};{}@{}", program, PALPATE_VERSION, messages_hash(), getpid(), host);
+  return fmt::format("{};{};{};{}@{}", kProgram, PALPATE_VERSION, messages_hash(), getpid(), host);
 }
 
 std::string version_fault(const std::string& words) {
   const std::vector<std::string> parts = split(words);
-  if (parts.size() != 4 || parts[0] != program || parts[2] == messages_hash()) return {};
+  if (parts.size() != 4 || parts[0] != kProgram || parts[2] == messages_hash()) return {};
   return fmt::format(
       "cannot talk with process {}: its palpate {} has other messages (version {}) than this {} (version {}); install "
       "the same on both",

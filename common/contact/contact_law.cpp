@@ -34,6 +34,10 @@ ContactLaw::ContactLaw(const ContactBody& body, Rule rule, double friction, int 
   displacements_.assign(3 * points, 0.0);
 }
 
+bool ContactLaw::grasps(int tool) const {
+  return std::ranges::any_of(contacts_, [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
+}
+
 bool ContactLaw::full() const {
   return contacts_.size() == contacts_.capacity();
 }

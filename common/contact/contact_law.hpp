@@ -91,6 +91,7 @@ class ContactLaw {
   std::span<TouchContact> contacts() { return contacts_; }
   std::span<const TouchContact> contacts() const { return contacts_; }
   bool full() const;
+  bool grasps(int tool) const;  ///< jaws of the tool hold one of the contacts
   int capacity() const { return static_cast<int>(contacts_.capacity()); }
   void add(const TouchContact& contact);
   /// Adds a contact together with the forces of its held points (3 or 9 numbers [N]), as point_forces() gave them.

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <variant>
 
+#include "common/describe/state.hpp"
 #include "common/geometry/anchor.hpp"
 
 namespace palpate {
@@ -13,6 +14,13 @@ struct ToolPoint {
   double softness = 0;                               ///< [m/N] by which what holds the point gives way to the force
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] in the part's own frame; of jaws' hold, in the tip frame
 };
+
+/// What is remembered of one from step to step; its softness is the scene's.
+inline void state(State& s, ToolPoint& point) {
+  s.value(point.tool);
+  s.value(point.part);
+  s.value(point.offset);
+}
 
 /// What presses in a contact: a point of a tool, or a material point of another body's surface, which gives way as that
 /// body does.

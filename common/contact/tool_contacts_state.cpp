@@ -1,70 +1,44 @@
-// The state of ToolContacts as bytes, from which a replay starts.
+// What ToolContacts remembers from step to step, from which a replay starts.
 #include <algorithm>
-#include <cstring>
-#include <stdexcept>
 
 #include "common/contact/tool_contacts.hpp"
 
 namespace palpate {
 namespace {
 
-// A contact as plain bytes for the state that replay starts from.
-struct StoredContact {
-  int tool, part, nodes[3];
-  unsigned char face, grasped, touch, leaving;
-  double receded, receding, weights[3], offset[3], normal[3], slip[3], force[3], point_force[9];
-  int points;
+/// A contact by a tool, and the forces [N] of the points that stand for it: one, or three under the alpha rule.
+struct KeptContact {
+  TouchContact contact;
+  std::array<double, 9> forces{};
+  int points = 1;
 };
 
-void put(double* to, const Eigen::Vector3d& v) {
-  std::memcpy(to, v.data(), sizeof(double[3]));
-}
-Eigen::Vector3d get(const double* from) {
-  return {from[0], from[1], from[2]};
-}
-
-StoredContact stored(const TouchContact& c, std::span<const double> forces) {
-  StoredContact s{};
-  s.tool = c.tool_point().tool;
-  s.part = c.tool_point().part;
-  std::copy(c.anchor.nodes.begin(), c.anchor.nodes.end(), s.nodes);
-  s.face = c.face;
-  s.grasped = c.grasped;
-  s.touch = static_cast<unsigned char>(c.touch);
-  s.leaving = c.leaving;
-  s.receded = c.receded;
-  s.receding = c.receding;
-  put(s.weights, c.anchor.weights);
-  put(s.offset, c.tool_point().offset);
-  put(s.normal, c.normal);
-  put(s.slip, c.slip);
-  put(s.force, c.force);
-  std::copy(forces.begin(), forces.end(), s.point_force);
-  s.points = static_cast<int>(forces.size()) / 3;
-  return s;
+void walk(State& s, KeptContact& kept) {
+  TouchContact& c = kept.contact;
+  palpate::state(s, c.tool_point());
+  palpate::state(s, c.anchor);
+  for (bool* flag : {&c.face, &c.grasped, &c.leaving}) s.value(*flag);
+  s.value(c.touch);
+  for (double* pace : {&c.receded, &c.receding}) s.value(*pace);
+  for (Eigen::Vector3d* v : {&c.normal, &c.slip, &c.force}) s.value(*v);
+  s.value(kept.forces);
+  s.value(kept.points);
 }
 
-TouchContact contact_of(const StoredContact& s) {
-  TouchContact c{.by = ToolPoint{.tool = s.tool, .part = s.part, .offset = get(s.offset)},
-                 .face = s.face != 0,
-                 .grasped = s.grasped != 0,
-                 .touch = static_cast<Touch>(s.touch),
-                 .leaving = s.leaving != 0,
-                 .receded = s.receded,
-                 .receding = s.receding};
-  c.anchor = {{s.nodes[0], s.nodes[1], s.nodes[2]}, get(s.weights)};
-  c.normal = get(s.normal);
-  c.slip = get(s.slip);
-  c.force = get(s.force);
-  return c;
+std::size_t size_of_one() {
+  KeptContact any;
+  State s = State::measure();
+  walk(s, any);
+  return s.size();
 }
 
-// Of a contact that was read: whether a scene with these tools and so many surface nodes can have it.
-bool can_be(const StoredContact& s, std::span<const MovingTool> tools, int nodes) {
-  const bool tool_known = s.tool >= 0 && s.tool < static_cast<int>(tools.size());
-  if (!tool_known || s.part < 0 || s.part >= tools[s.tool].size() || s.touch > 2) return false;
-  if (s.points != 1 && s.points != 3) return false;
-  return std::ranges::all_of(s.nodes, [&](int node) { return node >= 0 && node < nodes; });
+/// Of a contact that was read: whether a scene with these tools and so many surface nodes can have it.
+bool can_be(const KeptContact& kept, std::span<const MovingTool> tools, int nodes) {
+  const ToolPoint& by = kept.contact.tool_point();
+  const bool tool_known = by.tool >= 0 && by.tool < static_cast<int>(tools.size());
+  if (!tool_known || by.part < 0 || by.part >= tools[by.tool].size()) return false;
+  if (kept.contact.touch > Touch::sticking || (kept.points != 1 && kept.points != 3)) return false;
+  return std::ranges::all_of(kept.contact.anchor.nodes, [&](int node) { return node >= 0 && node < nodes; });
 }
 
 }  // namespace
@@ -75,15 +49,19 @@ void ToolContacts::state(State& s, std::span<const MovingTool> tools) {
   s.require(count >= 0 && count <= law_.capacity(), "the state names an impossible number of contacts");
   if (s.restoring()) law_.clear();
   for (int i = 0; i < count; ++i) {
-    StoredContact c = s.restoring() ? StoredContact{} : stored(law_.contacts()[i], law_.point_forces(i));
-    s.value(c);
+    KeptContact kept;
+    if (!s.restoring()) {
+      kept.contact = law_.contacts()[i];
+      kept.points = static_cast<int>(law_.point_forces(i).size()) / 3;
+      std::ranges::copy(law_.point_forces(i), kept.forces.begin());
+    }
+    walk(s, kept);
     if (!s.restoring()) continue;
-    s.require(can_be(c, tools, surface_.nodes()), "the state holds a contact that this scene cannot have");
-    TouchContact contact = contact_of(c);
-    contact.tool_point().softness = softness(contact.tool_point().tool);
-    law_.add(contact, std::span(c.point_force).first(3 * c.points));
+    s.require(can_be(kept, tools, surface_.nodes()), "the state holds a contact that this scene cannot have");
+    kept.contact.tool_point().softness = softness(kept.contact.tool_point().tool);
+    law_.add(kept.contact, std::span(kept.forces).first(3 * kept.points));
   }
-  s.skip((static_cast<std::size_t>(law_.capacity()) - static_cast<std::size_t>(count)) * sizeof(StoredContact));
+  s.skip(static_cast<std::size_t>(law_.capacity() - count) * size_of_one());
 }
 
 }  // namespace palpate

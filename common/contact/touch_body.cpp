@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 ContactLaw::Rule rule_of(const ContactSpec& contact) {
-  return contact.rule == "alpha" ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
+  return contact.rule == ContactRule::alpha ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/describe/range.hpp"
+#include "common/describe/words.hpp"
 
 namespace palpate {
 
@@ -72,8 +73,12 @@ class Description {
   /// The same, of a file that exists. Hashes see what is in it, not where it is.
   virtual void file(const Key& key, std::filesystem::path& value) = 0;
 
-  void choice(const Key& key, std::string& value, std::initializer_list<std::string_view> allowed) {
-    choice(key, value, std::span(allowed.begin(), allowed.size()));
+  /// One of the words of an enumeration.
+  template <Choice E>
+  void choice(const Key& key, E& value) {
+    std::string word(word_of(value));
+    choice(key, word, words_of(value));
+    value = value_of<E>(word);
   }
 
   /// A table that may be absent.

@@ -49,7 +49,13 @@ class State {
   template <class T>
   void value(T& v) {
     static_assert(std::is_trivially_copyable_v<T> || std::is_base_of_v<Eigen::PlainObjectBase<T>, T>);
-    bytes(&v, sizeof v);
+    if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = v;  // another byte than 0 and 1 is no bool
+      bytes(&byte, 1);
+      v = byte != 0;
+    } else {
+      bytes(&v, sizeof v);
+    }
   }
   /// Plain memory of a number of entries that never changes.
   template <class Range>

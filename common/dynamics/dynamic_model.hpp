@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "common/describe/state.hpp"
+#include "common/dynamics/integrator.hpp"
 
 namespace palpate {
-
-enum class Integrator { rk4, semi_implicit, forward_euler };
 
 /// Linear forces that other parts of a body exert on some nodes of a dynamic model, such as the quasi-static part of
 /// a hybrid organ through its connection nodes: force = constant - B u over the coupled nodes.

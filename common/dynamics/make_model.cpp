@@ -5,10 +5,6 @@
 
 namespace palpate {
 
-Integrator integrator_of(const Dynamic& motion) {
-  return motion.integrator == "semi_implicit" ? Integrator::semi_implicit : Integrator::rk4;
-}
-
 std::unique_ptr<DynamicModel> make_element_model(const ElasticMesh& mesh, const Dynamic& motion) {
   if (motion.corotational) return make_in_precision<Corotational>(mesh, motion);
   return make_in_precision<TensorMass>(mesh, motion);

@@ -8,8 +8,6 @@
 
 namespace palpate {
 
-Integrator integrator_of(const Dynamic& motion);
-
 /// Makes a model of one body on a mesh.
 using MakeModel = std::function<std::unique_ptr<DynamicModel>(const ElasticMesh& mesh)>;
 
@@ -17,11 +15,11 @@ using MakeModel = std::function<std::unique_ptr<DynamicModel>(const ElasticMesh&
 template <template <class> class Model, class... More>
 std::unique_ptr<DynamicModel> make_in_precision(const ElasticMesh& mesh, const Dynamic& motion, const More&... more) {
   const auto make = [&]<class Scalar>(Scalar) -> std::unique_ptr<DynamicModel> {
-    auto model = std::make_unique<Model<Scalar>>(mesh, integrator_of(motion), motion.damping, more...);
+    auto model = std::make_unique<Model<Scalar>>(mesh, motion.integrator, motion.damping, more...);
     model->set_gravity(motion.gravity);
     return model;
   };
-  return motion.precision == "double" ? make(double{}) : make(float{});
+  return motion.precision == Precision::float64 ? make(double{}) : make(float{});
 }
 
 /// Moving tissue of elements: tensors, or elements that turn.

@@ -1,16 +1,26 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <optional>
-#include <string>
+#include <string_view>
 
+#include "common/dynamics/integrator.hpp"
 #include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 
+/// Of forces, displacements and velocities.
+enum class Precision { float32, float64 };
+
+inline const auto& words_of(Precision) {
+  static constexpr std::array<std::string_view, 2> words{"single", "double"};
+  return words;
+}
+
 /// Motion of tissue that is cut or torn (RR3510 sec. 4).
 struct Dynamic {
-  std::string integrator = "rk4";                     ///< rk4 | semi_implicit
-  std::string precision = "single";                   ///< single | double
+  Integrator integrator = Integrator::rk4;
+  Precision precision = Precision::float32;
   double step = 0;                                    ///< [s] 0: chosen from the frequency bound
   double damping = 5;                                 ///< [1/s] proportional to mass: gamma_i = damping * m_i
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
@@ -21,8 +31,8 @@ inline void describe(Description& d, Dynamic& m) {
   d.choice({"integrator", "",
             "`\"rk4\"`: Runge and Kutta's of the fourth order; `\"semi_implicit\"`: Euler's, where the new velocity "
             "moves the position"},
-           m.integrator, {"rk4", "semi_implicit"});
-  d.choice({"precision", "", "of forces, displacements and velocities"}, m.precision, {"single", "double"});
+           m.integrator);
+  d.choice({"precision", "", "of forces, displacements and velocities"}, m.precision);
   d.number({"step", "s", "0: the largest that is stable, with a margin. One that is given is refused above the bound"},
            m.step, at_least(0));
   d.number({"damping", "1/s", "proportional to mass: a node of mass m is braked by damping · m · velocity"}, m.damping,
@@ -34,16 +44,25 @@ inline void describe(Description& d, Dynamic& m) {
          m.corotational);
 }
 
+/// The three measures of RR3510 sec. 5.5 of how far a tetrahedron is deformed. A motion without deformation
+/// gives zero, and none depends on the size of the tetrahedron.
+enum class TearCriterion { volume, mean_elongation, max_elongation };
+
+inline const auto& words_of(TearCriterion) {
+  static constexpr std::array<std::string_view, 3> words{"volume", "mean_elongation", "max_elongation"};
+  return words;
+}
+
 /// When dynamic tissue tears by itself (RR3510 sec. 4.4).
 struct Tearing {
-  std::string criterion = "volume";  ///< volume | mean_elongation | max_elongation
-  double threshold = 0;              ///< [1] > 0, relative change
+  TearCriterion criterion = TearCriterion::volume;
+  double threshold = 0;  ///< [1] > 0, relative change
 };
 
 inline void describe(Description& d, Tearing& t) {
   d.choice({"criterion", "",
             "relative change of a tetrahedron's volume, or of its six edges' length, their mean or the largest"},
-           t.criterion, {"volume", "mean_elongation", "max_elongation"});
+           t.criterion);
   d.number(
       {"threshold", "1", "a tetrahedron above it is removed, the worst first; 0.5 is a change by half", Need::required},
       t.threshold, above(0));

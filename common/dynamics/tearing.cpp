@@ -58,14 +58,6 @@ double max_elongation(const Corners& rest, const Corners& present) {
   return largest;
 }
 
-TearCriterion tear_criterion(std::string_view name) {
-  if (name == "volume") return TearCriterion::volume;
-  if (name == "mean_elongation") return TearCriterion::mean_elongation;
-  if (name == "max_elongation") return TearCriterion::max_elongation;
-  throw std::runtime_error(
-      fmt::format("no tearing criterion '{}': there are volume, mean_elongation and max_elongation", name));
-}
-
 TearSearch::TearSearch(const ElasticMesh& mesh, TearCriterion criterion, double threshold, int limit)
     : rest_(mesh.rest),
       tetrahedra_(mesh.tetrahedra),

@@ -2,16 +2,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/dynamics/spec.hpp"
 
 namespace palpate {
-
-/// The three measures of RR3510 sec. 5.5 of how far a tetrahedron is deformed. A motion without deformation
-/// gives zero, and none depends on the size of the tetrahedron.
-enum class TearCriterion { volume, mean_elongation, max_elongation };
 
 using Corners = std::array<Eigen::Vector3d, 4>;  ///< [m]
 
@@ -21,9 +17,6 @@ double volume_change(const Corners& rest, const Corners& present);
 double mean_elongation(const Corners& rest, const Corners& present);
 /// Largest (l - l0) / l0 of the six edges; negative if all are shorter.
 double max_elongation(const Corners& rest, const Corners& present);
-
-/// "volume", "mean_elongation" or "max_elongation". Throws std::runtime_error for another name.
-TearCriterion tear_criterion(std::string_view name);
 
 /// Looks for tetrahedra that are deformed beyond a threshold.
 class TearSearch {

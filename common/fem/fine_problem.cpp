@@ -55,7 +55,7 @@ FineProblem make_fine_problem(const TetMesh& mesh, const Offline& offline, Mater
                               const std::string& body) try {
   auto space = make_fine_space(mesh, offline);
   std::optional<Pressures> pressures;
-  if (offline.formulation == "locking_free") pressures = make_pressures(space, materials);
+  if (offline.formulation == Formulation::locking_free) pressures = make_pressures(space, materials);
   auto fine = fine_dofs(space, dofs);
   auto hats = hat_tractions(space, mesh);
   return {std::move(space), std::move(materials), std::move(pressures), std::move(fine), std::move(dofs), hats, body};

@@ -54,11 +54,13 @@ void make_quadratic(FineSpace& space) {
 }  // namespace
 
 bool is_finer(const std::optional<Offline>& offline) {
-  return offline && (offline->refine > 0 || offline->element != "p1" || offline->formulation != "displacement");
+  return offline && (offline->refine > 0 || offline->element != FiniteElement::p1 ||
+                     offline->formulation != Formulation::displacement);
 }
 
 FineSpace make_fine_space(const TetMesh& mesh, const Offline& offline) {
-  const bool linear_pressures = offline.element == "p1" && offline.formulation == "locking_free";
+  const bool linear_pressures =
+      offline.element == FiniteElement::p1 && offline.formulation == Formulation::locking_free;
   if (linear_pressures && offline.refine == 0)
     throw std::runtime_error(
         "element = \"p1\" with formulation = \"locking_free\" needs refine = 1 or 2, since eight linear elements share "
@@ -75,7 +77,7 @@ FineSpace make_fine_space(const TetMesh& mesh, const Offline& offline) {
     space.mesh = std::move(refined.mesh);
   }
   if (linear_pressures) space.per_pressure = 8;
-  if (offline.element == "p2")
+  if (offline.element == FiniteElement::p2)
     make_quadratic(space);
   else
     make_linear(space);

@@ -2,6 +2,8 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "common/describe/state.hpp"
+
 namespace palpate {
 
 /// A material point of a body's surface: three surface nodes and barycentric coordinates (TVCG99 sec. 5).
@@ -10,6 +12,12 @@ struct Anchor {
   std::array<int, 3> nodes{};
   Eigen::Vector3d weights = Eigen::Vector3d::UnitX();
 };
+
+/// What is remembered of one.
+inline void state(State& s, Anchor& anchor) {
+  s.value(anchor.nodes);
+  s.value(anchor.weights);
+}
 
 /// Position of the anchor for given node positions [m].
 template <class Positions>

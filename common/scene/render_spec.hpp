@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
-#include <string>
+#include <string_view>
 
 #include "common/describe/description.hpp"
 #include "common/geometry/direction.hpp"
@@ -28,12 +28,20 @@ inline void describe(Description& d, Camera& c) {
   d.require(!parallel(c.up, view), "up", "up must be a direction across the camera's line of sight");
 }
 
+/// What the tissue's colour shows.
+enum class Colouring { tissue, displacement };
+
+inline const auto& words_of(Colouring) {
+  static constexpr std::array<std::string_view, 2> words{"tissue", "displacement"};
+  return words;
+}
+
 /// The picture.
 struct Render {
   int width = 1024;
   int height = 768;
   Camera camera;
-  std::string colour = "tissue";                          ///< tissue | displacement
+  Colouring colour = Colouring::tissue;
   std::array<double, 3> tissue_colour{0.55, 0.16, 0.13};  ///< linear RGB
   std::filesystem::path backdrop;                         ///< empty: none
   double backdrop_scale = 1;                              ///< [m per mesh unit]
@@ -44,8 +52,7 @@ inline void describe(Description& d, Render& r) {
   d.integer({"width", "pixel", "of the picture", Need::optional, Use::local}, r.width, 16, 8192);
   d.integer({"height", "pixel", "of the picture", Need::optional, Use::local}, r.height, 16, 8192);
   d.table({"camera", "", "the endoscope", Need::optional, Use::local, "defaults"}, r.camera);
-  d.choice({"colour", "", "`\"displacement\"` has a legend", Need::optional, Use::local}, r.colour,
-           {"tissue", "displacement"});
+  d.choice({"colour", "", "`\"displacement\"` has a legend", Need::optional, Use::local}, r.colour);
   d.colour({"tissue_colour", "", "linear, each 0 to 1; a modal shell has a paler one unless this is given",
             Need::optional, Use::local},
            r.tissue_colour);

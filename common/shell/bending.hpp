@@ -1,13 +1,8 @@
 #pragma once
 #include "common/shell/flat_triangle.hpp"
+#include "common/shell/spec.hpp"
 
 namespace palpate {
-
-/// Plate bending of a shell triangle.
-enum class Bending {
-  discrete_kirchhoff,  ///< DKT
-  polynomial,          ///< Tocher's nine terms (BHS01 app. A); singular where x3 + 2 y3 = y2
-};
 
 /// Both have the dofs w [m] along the local z, and the rotations [rad] about the local x and y, theta_x =
 /// dw/dy and theta_y = -dw/dx, corner by corner. `rigidity` [N m]: plane stress times thickness cubed

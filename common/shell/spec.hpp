@@ -1,20 +1,32 @@
 #pragma once
-#include <string>
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "common/fem/solid_spec.hpp"
 
 namespace palpate {
 
+/// Plate bending of a shell triangle.
+enum class Bending {
+  discrete_kirchhoff,  ///< DKT
+  polynomial,          ///< Tocher's nine terms (BHS01 app. A); singular where x3 + 2 y3 = y2
+};
+
+inline const auto& words_of(Bending) {
+  static constexpr std::array<std::string_view, 2> words{"discrete_kirchhoff", "polynomial"};
+  return words;
+}
+
 /// A thin wall of shell triangles that moves by its lowest modes (BHS01 sec. V-C-1). The mesh is the wall's middle
 /// surface.
 struct Shell {
-  double thickness = 0;                        ///< [m]
-  std::string bending = "discrete_kirchhoff";  ///< discrete_kirchhoff | polynomial (BHS01 app. A)
-  int modes = 50;                              ///< kept, the lowest ones
-  double damping_ratio = 0.2;                  ///< [1] of every mode; means nothing with a damping
-  double damping = 0;                          ///< [1/s] B = damping M (BHS01 eq. 21); 0: the ratio holds
-  bool residual = true;                        ///< static share of the modes left out, at touched nodes
+  double thickness = 0;  ///< [m]
+  Bending bending = Bending::discrete_kirchhoff;
+  int modes = 50;              ///< kept, the lowest ones
+  double damping_ratio = 0.2;  ///< [1] of every mode; means nothing with a damping
+  double damping = 0;          ///< [1/s] B = damping M (BHS01 eq. 21); 0: the ratio holds
+  bool residual = true;        ///< static share of the modes left out, at touched nodes
 };
 
 inline void describe(Description& d, Shell& s) {
@@ -24,7 +36,7 @@ inline void describe(Description& d, Shell& s) {
             "the bending element; `\"polynomial\"` is the paper's, which is singular for some triangles and refused "
             "there",
             Need::optional, Use::stored},
-           s.bending, {"discrete_kirchhoff", "polynomial"});
+           s.bending);
   d.integer({"modes", "", "how many modes are kept, the lowest ones; at most the free displacements of the mesh",
              Need::optional, Use::stored},
             s.modes, 1, 100000);

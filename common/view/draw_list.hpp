@@ -37,11 +37,12 @@ struct MeshView {
   bool moving = true;                              ///< false: uploaded once per shape
 };
 
-/// A rigid instrument: a probe, whose spherical tip on a shaft opens into two jaws, or a forceps.
+/// A rigid instrument: a probe, whose spherical tip on a shaft opens into two jaws, an electric scalpel, or a forceps.
 struct InstrumentView {
   Eigen::Isometry3d tip =
       Eigen::Isometry3d::Identity();  ///< z from handle to tip; origin at the tip's centre, of a forceps at the hinge
   double tip_radius = 0.004;          ///< of a probe
+  bool blade = false;                 ///< the probe is a scalpel: a blade stands where its ball touches
   double shaft_radius = 0.0025;
   double shaft_length = 0.3;  ///< from the origin back along the shaft
   double jaw_opening = 0;     ///< [rad] between the jaws

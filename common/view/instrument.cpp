@@ -77,6 +77,35 @@ void close_jaw(InstrumentPart& part, const std::vector<OutlinePoint>& outline, i
   }
 }
 
+/// Presses what has been turned about z flat along x, to `share` of its depth.
+void flatten(InstrumentPart& part, float share) {
+  for (auto& p : part.position) p.x() *= share;
+  for (auto& n : part.normal) n = Eigen::Vector3f(n.x() / share, n.y(), n.z()).normalized();
+}
+
+/// A flat electrode with a round end, which ends where the ball that touches does, and the insulator that holds it.
+void add_electrode(InstrumentShape& shape, const InstrumentView& view) {
+  constexpr float kThickness = 0.3;  // of the width
+  const double wide = 0.8 * view.tip_radius, rod = 0.4 * wide, round = view.tip_radius - wide, pi = std::numbers::pi;
+  const double shoulder = -0.55 * shape.hinge, collar = 0.85 * view.shaft_radius, hinge = -shape.hinge;
+  std::vector<OutlinePoint> outline;
+  constexpr int cap_steps = 12, neck_steps = 8;
+  for (int i = 0; i <= cap_steps; ++i) {
+    const double c = std::cos(pi / 2 * i / cap_steps), s = std::sin(pi / 2 * i / cap_steps);
+    outline.push_back({round + wide * c, wide * s, c, s});
+  }
+  for (int i = 0; i <= neck_steps; ++i) {
+    const double t = static_cast<double>(i) / neck_steps, length = 1.5 * wide, drop = wide - rod;
+    const double slope = 0.5 * pi * drop / length * std::sin(pi * t), norm = std::hypot(slope, 1.0);
+    outline.push_back({-wide - t * length, rod + 0.5 * drop * (1 + std::cos(pi * t)), -slope / norm, 1 / norm});
+  }
+  outline.push_back({shoulder, rod, 0, 1});
+  revolve(shape.parts[1], outline, 0, 2 * pi, kAround);
+  flatten(shape.parts[1], kThickness);
+  revolve(shape.parts[2], {{shoulder, 0, 1, 0}, {shoulder, collar, 1, 0}}, 0, 2 * pi, kAround);
+  revolve(shape.parts[2], {{shoulder, collar, 0, 1}, {hinge, collar, 0, 1}}, 0, 2 * pi, kAround);
+}
+
 }  // namespace
 
 InstrumentShape make_instrument(const InstrumentView& view) {
@@ -91,6 +120,10 @@ InstrumentShape make_instrument(const InstrumentView& view) {
   revolve(shaft, {{-shape.hinge, 0, 1, 0}, {-shape.hinge, r, 1, 0}}, 0, 2 * pi, kAround);
   revolve(shaft, {{-shape.hinge, r, 0, 1}, {-view.shaft_length, r, 0, 1}}, 0, 2 * pi, kAround);
   revolve(shaft, {{-view.shaft_length, r, -1, 0}, {-view.shaft_length, 0, -1, 0}}, 0, 2 * pi, kAround);
+  if (view.blade) {
+    add_electrode(shape, view);
+    return shape;
+  }
   for (const int side : {1, -1}) {
     InstrumentPart& jaw = shape.parts[side > 0 ? 1 : 2];
     revolve(jaw, tip, side > 0 ? 0 : pi, pi, kAround / 2);

@@ -13,8 +13,8 @@ struct InstrumentPart {
 };
 
 /// An instrument in three parts. Each jaw turns about the tip frame's x axis at z = -hinge, the upper one (y > 0) by
-/// +opening/2 towards +y, the lower one the other way. A probe's jaws together are the round tip; a forceps' hinge is
-/// the tip frame's origin.
+/// +opening/2 towards +y, the lower one the other way. A probe's jaws together are the round tip; a scalpel has its
+/// electrode and the insulator in their place; a forceps' hinge is the tip frame's origin.
 struct InstrumentShape {
   std::array<InstrumentPart, 3> parts;  ///< shaft, upper jaw, lower jaw
   double hinge = 0;                     ///< [m] behind the tip's centre

@@ -41,6 +41,7 @@ InstrumentView instrument_of(const Tool& tool) {
   view.shaft_length = tool.shaft_length;
   const EndAbilities can = abilities_of(tool);
   if (can.ball) view.tip_radius = *can.ball;
+  view.blade = can.cautery && !can.closing;
   if (can.turning) {
     view.jaw_length = can.turning->length;
     view.jaw_radius = can.turning->radius;

@@ -24,15 +24,15 @@ Vector3d momentum(const CatheterBody& body, const Chain& chain) {
 }
 
 TEST(FreeCatheter, FallsAsAFreeBody) {
-  for (const char* integrator : {"implicit", "semi_implicit"}) {
+  for (const ChainIntegrator integrator : {ChainIntegrator::implicit, ChainIntegrator::semi_implicit}) {
     CatheterSettings s = plain_catheter();
     s.shape.gravity = {0, -9.81, 0};
     s.shape.integrator = integrator;
     CatheterBody body(s, nullptr);
     for (int i = 0; i < 300; ++i) body.step({}, {});
     for (int i = 0; i < body.size(); ++i) {
-      EXPECT_NEAR(body.velocities()[i].y(), -9.81 * 0.3, 1e-9) << integrator;
-      EXPECT_NEAR(body.positions()[i].y(), -0.5 * 9.81 * 0.09, 9.81 * 0.3 * 1e-3) << integrator;
+      EXPECT_NEAR(body.velocities()[i].y(), -9.81 * 0.3, 1e-9) << word_of(integrator);
+      EXPECT_NEAR(body.positions()[i].y(), -0.5 * 9.81 * 0.09, 9.81 * 0.3 * 1e-3) << word_of(integrator);
     }
   }
 }
@@ -98,7 +98,7 @@ TEST(FreeCatheter, StretchesAsARodUnderLoad) {
 }
 
 TEST(FreeCatheter, KeepsMomentumAndLosesEnergyWithoutInput) {
-  for (const char* integrator : {"implicit", "semi_implicit"}) {
+  for (const ChainIntegrator integrator : {ChainIntegrator::implicit, ChainIntegrator::semi_implicit}) {
     CatheterSettings s = plain_catheter(0.12, 31);
     s.young = 2e6;
     s.shape.integrator = integrator;
@@ -121,14 +121,14 @@ TEST(FreeCatheter, KeepsMomentumAndLosesEnergyWithoutInput) {
     const double first = energy;
     for (int i = 0; i < 2000; ++i) {
       body.step({}, {});
-      if (s.shape.integrator == "implicit") {
+      if (s.shape.integrator == ChainIntegrator::implicit) {
         EXPECT_LE(body.energy(), energy * (1 + 1e-3) + 1e-15) << i;
       }
       energy = body.energy();
-      ASSERT_LE(energy, 1.05 * first) << integrator << i;
+      ASSERT_LE(energy, 1.05 * first) << word_of(integrator) << i;
     }
-    EXPECT_LT((momentum(body, chain) - begin).norm(), 1e-9 * std::sqrt(first)) << integrator;
-    if (s.shape.integrator == "implicit") {
+    EXPECT_LT((momentum(body, chain) - begin).norm(), 1e-9 * std::sqrt(first)) << word_of(integrator);
+    if (s.shape.integrator == ChainIntegrator::implicit) {
       EXPECT_LT(energy, 0.5 * first);
     }
   }
@@ -201,7 +201,7 @@ TEST(FreeCatheter, StaysBoundedAtAnyStiffness) {
 
 TEST(FreeCatheter, SubstepsFollowFromTheStiffness) {
   CatheterSettings s = plain_catheter(0.12, 41);
-  s.shape.integrator = "semi_implicit";
+  s.shape.integrator = ChainIntegrator::semi_implicit;
   s.young = 1e6;
   const CatheterBody body(s, nullptr);
   const double bound = Chain(s.shape, s.young, s.density).frequency_bound();
@@ -214,7 +214,7 @@ TEST(FreeCatheter, SubstepsFollowFromTheStiffness) {
         throw;
       },
       std::runtime_error);
-  s.shape.integrator = "implicit";
+  s.shape.integrator = ChainIntegrator::implicit;
   EXPECT_EQ(CatheterBody(s, nullptr).substeps(), 1);
 }
 

@@ -29,8 +29,8 @@ TEST(DynamicOrgan, AtRestFeelsNothingAndStaysWhereItIs) {
 
 TEST(DynamicOrgan, APressedTipFeelsWhatTheStaticSolverSaysForTheHeldNodes) {
   Scene scene = block_scene();
-  moving_block_of(scene).dynamic.precision = "double";
-  scene.contact = {.rule = "barycentric", .friction = 10};
+  moving_block_of(scene).dynamic.precision = Precision::float64;
+  scene.contact = {.rule = ContactRule::barycentric, .friction = 10};
   Bench bench(scene);
   for (int i = 0; i < 3000; ++i) bench.tick(from_above(i, 500, kTop + kRadius + 0.001, kTop + kRadius - 0.004));
   const auto contacts = bench.organ().contacts();
@@ -100,7 +100,7 @@ Scene fine_scalpel() {
   probe.radius = 0.002;
   probe.cautery = Cautery{0.0022};
   scene.tools[0].shaft_radius = 0.001;
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   return scene;
 }
 
@@ -228,7 +228,7 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   HybridSpec split;
   split.hybrid.regions.push_back({{.box = Box{Vector3d(-1, -1, -1), Vector3d(-0.0026, 1, 1)}}});
   Scene scene = block_scene(split);
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   moving_block_of(scene).dynamic.gravity = {0, 0, -9.81};
   Bench first(scene), second(first);
   const auto move = [](Bench& bench, int i) {
@@ -272,7 +272,7 @@ TEST(DynamicOrgan, AStateWithDamagedContactsIsRefused) {
 TEST(DynamicOrgan, TearsBeyondItsThreshold) {
   Scene scene = block_scene();
   std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{0.012, 0.012, 0.1};
-  moving_block_of(scene).tearing = Tearing{"max_elongation", 0.5};
+  moving_block_of(scene).tearing = Tearing{TearCriterion::max_elongation, 0.5};
   Bench bench(scene);
   const double low = kTop + kRadius - 0.001;
   for (int i = 0; i < 40; ++i) bench.tick(low, 0, 0, 0.6);
@@ -295,8 +295,8 @@ Vector3d settled_press(const Scene& scene, double x, const TetMesh& mesh = middl
 
 TEST(DynamicOrgan, AHybridFeelsTheSameUnderATipWhicheverPartItTouches) {
   Scene whole = block_scene();
-  moving_block_of(whole).dynamic.precision = "double";
-  whole.contact = {.rule = "barycentric", .friction = 0};
+  moving_block_of(whole).dynamic.precision = Precision::float64;
+  whole.contact = {.rule = ContactRule::barycentric, .friction = 0};
   for (const double x : {-0.01, 0.002, 0.015}) {
     const Vector3d wanted = settled_press(whole, x);
     EXPECT_LT(wanted.z(), -0.03);
@@ -315,7 +315,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   HybridSpec joined;
   joined.hybrid.mesh = "coarse.msh";
   Scene scene = block_scene(joined);
-  scene.contact = {.rule = "barycentric", .friction = 0};
+  scene.contact = {.rule = ContactRule::barycentric, .friction = 0};
   moving_block_of(scene).fixed[0].where = {.indices = {},
                                            .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)},
                                            .group = ""};  // not the coarse mesh's bottom

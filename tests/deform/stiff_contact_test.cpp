@@ -18,7 +18,7 @@ struct Held {
   double young;        ///< [Pa]
   double tip = 0.005;  ///< [m] radius
   double friction = 0;
-  const char* integrator = "rk4";
+  Integrator integrator = Integrator::rk4;
   bool slab = false;  ///< cells of 10 x 10 x 1 mm, ten deep, in place of cubes of 10 mm
 };
 
@@ -34,7 +34,7 @@ Felt hold_in(const Held& held) {
   tissue.material = {held.young, 0.3, 1000};
   tissue.dynamic.damping = 5;
   tissue.dynamic.integrator = held.integrator;
-  tissue.dynamic.precision = "double";
+  tissue.dynamic.precision = Precision::float64;
   scene.contact.friction = held.friction;
   std::get<ProbeSpec>(scene.tools[0].end).radius = held.tip;
   const double top = held.slab ? 0.01 : 0.04, half = held.slab ? 0.05 : 0.03;
@@ -70,10 +70,10 @@ TEST_P(StiffContact, IsAtRestUnderAToolAtRest) {
 
 INSTANTIATE_TEST_SUITE_P(Tissue, StiffContact,
                          ::testing::Values(Held{"soft", 2e5}, Held{"stiff", 1e6}, Held{"stiffer", 5e6},
-                                           Held{"very_stiff", 1e8, 0.005, 0, "semi_implicit"},
+                                           Held{"very_stiff", 1e8, 0.005, 0, Integrator::semi_implicit},
                                            Held{"rough", 5e6, 0.005, 0.3}, Held{"on_nodes", 5e6, 0.012},
-                                           Held{"slab", 5e3, 0.005, 0, "rk4", true},
-                                           Held{"slab_on_nodes", 5e3, 0.02, 0, "rk4", true}),
+                                           Held{"slab", 5e3, 0.005, 0, Integrator::rk4, true},
+                                           Held{"slab_on_nodes", 5e3, 0.02, 0, Integrator::rk4, true}),
                          [](const auto& info) { return info.param.name; });
 
 TEST(StiffTissue, TheForceGrowsWithYoungsModulusAlone) {

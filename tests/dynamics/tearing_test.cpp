@@ -13,7 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-const Corners corner{Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(0, 3, 0), Vector3d(0, 0, 4)};
+const Corners kCorner{Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(0, 3, 0), Vector3d(0, 0, 4)};
 
 Corners moved(const Corners& rest, const Matrix3d& a, const Vector3d& shift = {0.5, -0.25, 1}) {
   Corners present;
@@ -23,48 +23,41 @@ Corners moved(const Corners& rest, const Matrix3d& a, const Vector3d& shift = {0
 
 TEST(Tearing, RigidMotionIsNoDeformation) {
   for (const double angle : {0.1, 0.5, 2.0, 3.1}) {
-    const Corners present = moved(corner, rotation(angle, {1, -2, 0.5}));
-    EXPECT_NEAR(volume_change(corner, present), 0, 1e-14);
-    EXPECT_NEAR(mean_elongation(corner, present), 0, 1e-15);
-    EXPECT_NEAR(max_elongation(corner, present), 0, 1e-15);
+    const Corners present = moved(kCorner, rotation(angle, {1, -2, 0.5}));
+    EXPECT_NEAR(volume_change(kCorner, present), 0, 1e-14);
+    EXPECT_NEAR(mean_elongation(kCorner, present), 0, 1e-15);
+    EXPECT_NEAR(max_elongation(kCorner, present), 0, 1e-15);
   }
 }
 
 TEST(Tearing, UniformGrowthChangesVolumeByItsCube) {
   for (const double s : {0.5, 0.9, 1.25, 2.0}) {
-    const Corners present = moved(corner, s * rotation(0.7, {0, 1, 1}));
-    EXPECT_NEAR(volume_change(corner, present), std::abs(s * s * s - 1), 1e-13);
-    EXPECT_NEAR(mean_elongation(corner, present), s - 1, 1e-14);
-    EXPECT_NEAR(max_elongation(corner, present), s - 1, 1e-14);
+    const Corners present = moved(kCorner, s * rotation(0.7, {0, 1, 1}));
+    EXPECT_NEAR(volume_change(kCorner, present), std::abs(s * s * s - 1), 1e-13);
+    EXPECT_NEAR(mean_elongation(kCorner, present), s - 1, 1e-14);
+    EXPECT_NEAR(max_elongation(kCorner, present), s - 1, 1e-14);
   }
 }
 
 TEST(Tearing, StretchAlongAnEdgeHasItsClosedForm) {
   const double s = 1.5;  // along x: edges 0-1, 1-2 and 1-3 grow, the others keep their length
-  const Corners present = moved(corner, Vector3d(s, 1, 1).asDiagonal());
+  const Corners present = moved(kCorner, Vector3d(s, 1, 1).asDiagonal());
   const double along = s - 1, to_y = std::sqrt((4 * s * s + 9) / 13) - 1, to_z = std::sqrt((4 * s * s + 16) / 20) - 1;
-  EXPECT_NEAR(volume_change(corner, present), s - 1, 1e-14);
-  EXPECT_NEAR(mean_elongation(corner, present), (along + to_y + to_z) / 6, 1e-14);
-  EXPECT_NEAR(max_elongation(corner, present), along, 1e-14);
+  EXPECT_NEAR(volume_change(kCorner, present), s - 1, 1e-14);
+  EXPECT_NEAR(mean_elongation(kCorner, present), (along + to_y + to_z) / 6, 1e-14);
+  EXPECT_NEAR(max_elongation(kCorner, present), along, 1e-14);
 }
 
 TEST(Tearing, ShearKeepsTheVolumeAndLengthensAnEdge) {
   Matrix3d shear = Matrix3d::Identity();
   shear(0, 1) = 1;
-  const Corners present = moved(corner, shear);
-  EXPECT_NEAR(volume_change(corner, present), 0, 1e-14);
-  EXPECT_NEAR(max_elongation(corner, present), std::sqrt(2.0) - 1, 1e-14);
+  const Corners present = moved(kCorner, shear);
+  EXPECT_NEAR(volume_change(kCorner, present), 0, 1e-14);
+  EXPECT_NEAR(max_elongation(kCorner, present), std::sqrt(2.0) - 1, 1e-14);
 }
 
 TEST(Tearing, InvertedTetrahedronExceedsOne) {
-  EXPECT_NEAR(volume_change(corner, moved(corner, Vector3d(-1, 1, 1).asDiagonal())), 2, 1e-14);
-}
-
-TEST(Tearing, CriteriaHaveNames) {
-  EXPECT_EQ(tear_criterion("volume"), TearCriterion::volume);
-  EXPECT_EQ(tear_criterion("mean_elongation"), TearCriterion::mean_elongation);
-  EXPECT_EQ(tear_criterion("max_elongation"), TearCriterion::max_elongation);
-  EXPECT_THROW(tear_criterion("stress"), std::runtime_error);
+  EXPECT_NEAR(volume_change(kCorner, moved(kCorner, Vector3d(-1, 1, 1).asDiagonal())), 2, 1e-14);
 }
 
 TEST(Tearing, WorstTetrahedraComeFirstAndTheDeadDoNot) {

@@ -16,8 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-const std::vector<Offline> kFiner{{1, "p1", "displacement"}, {2, "p1", "displacement"}, {1, "p1", "locking_free"},
-                                  {0, "p2", "displacement"}, {0, "p2", "locking_free"}, {1, "p2", "locking_free"}};
+const std::vector<Offline> kFiner{
+    {1, FiniteElement::p1, Formulation::displacement}, {2, FiniteElement::p1, Formulation::displacement},
+    {1, FiniteElement::p1, Formulation::locking_free}, {0, FiniteElement::p2, Formulation::displacement},
+    {0, FiniteElement::p2, Formulation::locking_free}, {1, FiniteElement::p2, Formulation::locking_free}};
 
 TEST(RefinedMesh, EightChildrenShareTheVolumeOfTheirTetrahedronAndAllArePositive) {
   const auto mesh = testing::make_organ({4, 3, 3});
@@ -49,7 +51,8 @@ TEST(FineSpace, InterpolationGivesTheNodesTheirPlaces) {
 }
 
 TEST(FineSpace, RefusesLinearElementsWithAPressureEach) {
-  EXPECT_THROW(make_fine_space(testing::make_organ({3, 3, 2}), {0, "p1", "locking_free"}), std::runtime_error);
+  EXPECT_THROW(make_fine_space(testing::make_organ({3, 3, 2}), {0, FiniteElement::p1, Formulation::locking_free}),
+               std::runtime_error);
 }
 
 TEST(FineStiffness, IsTheDerivativeOfTheInternalForceAndRigidMotionsMakeNone) {
@@ -157,7 +160,8 @@ TEST(FineProblem, HoldsExactlyThePlacesThatTheRunTimeMeshHolds) {
 /// Strip the claim of stability down to a number: the least eigenvalue of B^T K(mu)^-1 B against the volumes does not
 /// vanish with h on irregular meshes, so that no pressure goes unfelt (checkerboards) and none is forced (locking).
 TEST(Pressures, AreAllFeltOnIrregularMeshes) {
-  for (const Offline& offline : {Offline{0, "p2", "locking_free"}, Offline{1, "p1", "locking_free"}}) {
+  for (const Offline& offline : {Offline{0, FiniteElement::p2, Formulation::locking_free},
+                                 Offline{1, FiniteElement::p1, Formulation::locking_free}}) {
     std::vector<double> least;
     for (int cells : {2, 4, 6}) {
       const auto mesh = testing::make_jittered_block({1, 1, 1}, {cells, cells, cells / 2}, 0.2);
@@ -180,9 +184,9 @@ TEST(Pressures, AreAllFeltOnIrregularMeshes) {
       const Eigen::MatrixXd schur = divergence.transpose() * factor.solve(divergence);
       least.push_back(symmetric_eigenvalues(schur)[0] * lame({1, 0.25, 1}).mu);
     }
-    std::printf("%s: %.4f %.4f %.4f\n", offline.element.c_str(), least[0], least[1], least[2]);
-    EXPECT_GT(least[2], 0.01) << offline.element;
-    EXPECT_GT(least[2], 0.7 * least[1]) << offline.element;
+    std::printf("%s: %.4f %.4f %.4f\n", word_of(offline.element).data(), least[0], least[1], least[2]);
+    EXPECT_GT(least[2], 0.01) << word_of(offline.element);
+    EXPECT_GT(least[2], 0.7 * least[1]) << word_of(offline.element);
   }
 }
 

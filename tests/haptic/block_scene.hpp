@@ -20,7 +20,7 @@ struct BlockScene {
     body.material = {.young = 5000, .poisson = 0.4, .density = 1000};
     body.fixed.push_back({.where = {.box = Box{{-1, -1, -0.0501}, {1, 1, -0.0499}}}});
     scene.bodies.push_back(body);
-    scene.contact.rule = "barycentric";
+    scene.contact.rule = ContactRule::barycentric;
     for (int t = 0; t < tools; ++t) {
       Tool tool;
       tool.name = "probe" + std::to_string(t);

@@ -157,7 +157,7 @@ TEST_F(HapticStepTest, AClosedMotionGivesNoEnergyToTheHand) {
 }
 
 TEST_F(HapticStepTest, RestoredStateGoesOnBitForBit) {
-  for (const char* rule : {"barycentric", "alpha"}) {
+  for (const ContactRule rule : {ContactRule::barycentric, ContactRule::alpha}) {
     BlockScene s = two_tools();
     s.scene.contact.rule = rule;
     for (Tool& tool : s.scene.tools) std::get<ProbeSpec>(tool.end).radius = 0.005;
@@ -181,8 +181,8 @@ TEST_F(HapticStepTest, RestoredStateGoesOnBitForBit) {
       largest = std::max(largest, original.force(0).norm());
       copy.step(input(i));
       for (int t = 0; t < 2; ++t) {
-        ASSERT_EQ(original.force(t), copy.force(t)) << rule << " step " << i;
-        ASSERT_EQ(original.torque(t), copy.torque(t)) << rule << " step " << i;
+        ASSERT_EQ(original.force(t), copy.force(t)) << word_of(rule) << " step " << i;
+        ASSERT_EQ(original.torque(t), copy.torque(t)) << word_of(rule) << " step " << i;
       }
     }
     EXPECT_GT(largest, 0.05);

@@ -96,15 +96,15 @@ struct Setting {
 };
 
 // Damping and stiffness of a hand grow several times over with its grip: a loose, a usual and a firm one.
-const Setting settings[] = {{"loose hand, 5 kPa", {0.1, 2, 100}, 5e3},   {"usual hand, 5 kPa", {0.2, 4, 400}, 5e3},
-                            {"firm hand, 5 kPa", {0.3, 10, 1000}, 5e3},  {"loose hand, 20 kPa", {0.1, 2, 100}, 20e3},
-                            {"usual hand, 20 kPa", {0.2, 4, 400}, 20e3}, {"firm hand, 20 kPa", {0.3, 10, 1000}, 20e3}};
+const Setting kSettings[] = {{"loose hand, 5 kPa", {0.1, 2, 100}, 5e3},   {"usual hand, 5 kPa", {0.2, 4, 400}, 5e3},
+                             {"firm hand, 5 kPa", {0.3, 10, 1000}, 5e3},  {"loose hand, 20 kPa", {0.1, 2, 100}, 20e3},
+                             {"usual hand, 20 kPa", {0.2, 4, 400}, 20e3}, {"firm hand, 20 kPa", {0.3, 10, 1000}, 20e3}};
 constexpr double kTissueDamping = 5;  // [1/s]: the block swings for a second by itself
 
 TEST(LocalModelInTheLoop, ItsForceFollowsTheFullModelAndNoSwingGrowsAtAnyDelay) {
   const std::pair<int, double> bounds[] = {
       {0, 0.005}, {1, 0.005}, {5, 0.006}, {20, 0.01}, {50, 0.02}};  // rms, of the peak
-  for (const Setting& s : settings) {
+  for (const Setting& s : kSettings) {
     const LoopTrace reference = run(s.hand, s.young, kTissueDamping, 0, true);
     for (const auto& [delay, bound] : bounds) {
       const LoopTrace trace = run(s.hand, s.young, kTissueDamping, delay, false);
@@ -129,7 +129,7 @@ TEST(LocalModelInTheLoop, ItsForceFollowsTheFullModelAndNoSwingGrowsAtAnyDelay) 
 }
 
 TEST(LocalModelInTheLoop, AStiffnessTwiceTooLargeOrTooSmallIsStableUpToFiveMilliseconds) {
-  for (const Setting& s : settings)
+  for (const Setting& s : kSettings)
     for (const double factor : {0.5, 2.0})
       for (const int delay : {0, 1, 5}) {
         const LoopTrace trace = run(s.hand, s.young, kTissueDamping, delay, false, factor);
@@ -143,7 +143,7 @@ TEST(LocalModelInTheLoop, AStiffnessTwiceTooLargeOrTooSmallIsStableUpToFiveMilli
 
 // What makes the test above mean something: without the stiffness the delayed force alone drives the loop.
 TEST(LocalModelInTheLoop, WithoutItsStiffnessTheDelayedForceMakesTheHandShake) {
-  const Setting& s = settings[4];
+  const Setting& s = kSettings[4];
   const double alone = swing(run(s.hand, s.young, kTissueDamping, 20, false, 0, 5000, false), 1.4, 2);
   const double controlled = swing(run(s.hand, s.young, kTissueDamping, 20, false, 0), 1.4, 2);
   EXPECT_GT(alone, 1e-3);
@@ -152,7 +152,7 @@ TEST(LocalModelInTheLoop, WithoutItsStiffnessTheDelayedForceMakesTheHandShake) {
 }
 
 TEST(LocalModelInTheLoop, WhenTheModelsStopTheForceFadesAndTheToolComesToRest) {
-  const Setting& s = settings[1];
+  const Setting& s = kSettings[1];
   const LoopTrace trace = run(s.hand, s.young, kTissueDamping, 1, false, 1, 1500);
   const int fades = 1500 + 150;
   EXPECT_GT(trace.felt[fades - 5].norm(), 0.5);

@@ -182,7 +182,7 @@ TEST(NoSyscall, TheHapticStepAllocatesNothing) {
 }
 
 TEST(NoSyscall, TheStepOfABodyThatIsCorrectedFromPlaceToPlaceAllocatesNothing) {
-  for (const char* rule : {"barycentric", "patch"}) {
+  for (const ContactRule rule : {ContactRule::barycentric, ContactRule::patch}) {
     BlockScene scene(2);
     scene.scene.contact.rule = rule;
     std::get<QuasiStaticSpec>(scene.scene.bodies[0]).nonlinear = Nonlinear{NeoHookeanLaw{}};
@@ -193,8 +193,8 @@ TEST(NoSyscall, TheStepOfABodyThatIsCorrectedFromPlaceToPlaceAllocatesNothing) {
     counting = true;
     ticks.run(10, 2000);
     counting = false;
-    EXPECT_EQ(allocations.exchange(0), 0) << rule;
-    EXPECT_GT(ticks.touched(), 100) << rule;
+    EXPECT_EQ(allocations.exchange(0), 0) << word_of(rule);
+    EXPECT_GT(ticks.touched(), 100) << word_of(rule);
   }
 }
 

@@ -19,11 +19,11 @@ struct PatchBlock {
     block.name = "block";
     block.material = {kYoung, kPoisson, 1000};
     block.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "bottom"}});
-    block.offline = Offline{.refine = refine, .element = "p2"};
+    block.offline = Offline{.refine = refine, .element = FiniteElement::p2};
     const double side = 16 * kRadius;
     archive = precompute(block, make_block({-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, 0}, {8, 8, 4}));
     scene.bodies.push_back(block);
-    scene.contact.rule = "patch";
+    scene.contact.rule = ContactRule::patch;
   }
 
   /// A probe with that tip that comes down from above, `aside` [m] along x.

@@ -22,7 +22,7 @@ class PatchRule : public ::testing::Test {
   static void TearDownTestSuite() { block_.reset(); }
 
   /// Under tools that come down from above, each by its own tip's place.
-  static PressRig rig(double friction, int tools = 1, const char* rule = "patch") {
+  static PressRig rig(double friction, int tools = 1, ContactRule rule = ContactRule::patch) {
     Scene scene = block_->scene;
     scene.contact.friction = friction;
     scene.contact.rule = rule;
@@ -110,6 +110,33 @@ TEST_F(PatchRule, AHeldTipIsHeldByTheSameForce) {
     rig.step(at(1e-3, 0, 3e-3));
     EXPECT_LT((rig.force() - held).norm(), 1e-6 * held.norm());
   }
+}
+
+// As on moving tissue: what they hold they carry, and the tip beside it presses nothing besides.
+TEST_F(PatchRule, JawsThatHoldTheTissueAreAllThatTouchesIt) {
+  Scene scene = block_->scene;
+  scene.tools.push_back(PatchBlock::probe("probe0", 0));
+  std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{.length = 0.02, .width = 0.03};
+  PressRig rig(scene, {block_->archive});
+  const auto jaws = [&](double depth, double grip) {
+    ToolDofs dofs = tip_at(scene.tools[0], at(0.003, 0.002, depth));
+    dofs.grip = grip;
+    return std::array{dofs};
+  };
+  const auto pressed_besides = [&] {
+    int count = 0;
+    rig.haptic().part(0)->for_each_contact([&](const TouchContact& c) { count += !c.grasped; });
+    return count;
+  };
+  rig.start(jaws(-0.001, 0.6));
+  for (int i = 0; i <= 100; ++i) rig.step(jaws(3e-5 * i, 0.6));
+  EXPECT_EQ(pressed_besides(), 1);
+  for (int i = 0; i < 10; ++i) rig.step(jaws(3e-3, 0));
+  EXPECT_EQ(pressed_besides(), 0);
+  for (int i = 0; i <= 100; ++i) rig.step(jaws(3e-3 - 5e-5 * i, 0));
+  EXPECT_LT(rig.haptic().force(0).z(), -0.01) << "what is held pulls back";
+  for (int i = 0; i < 10; ++i) rig.step(jaws(3e-3, 0.6));
+  EXPECT_EQ(pressed_besides(), 1) << "let go, the tip presses again";
 }
 
 TEST_F(PatchRule, TwoTipsThatComeCloseFeelEachOtherSmoothly) {

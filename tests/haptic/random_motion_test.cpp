@@ -35,7 +35,7 @@ class Wanderer {
 
 TEST(RandomMotion, ForcesStayFiniteWithinTheirLimitsAndNeverPull) {
   const int steps = std::getenv("PALPATE_LONG_TESTS") ? 300'000 : 6'000;
-  for (const char* rule : {"barycentric", "alpha"})
+  for (const ContactRule rule : {ContactRule::barycentric, ContactRule::alpha})
     for (double friction : {0.0, 0.5}) {
       BlockScene s(2);
       s.scene.contact.rule = rule;
@@ -49,14 +49,14 @@ TEST(RandomMotion, ForcesStayFiniteWithinTheirLimitsAndNeverPull) {
       for (int i = 0; i < steps; ++i) {
         haptic.step(std::array{tip_at(s.scene.tools[0], a.next(), 1e-3 * i), tip_at(s.scene.tools[1], b.next())});
         for (int t = 0; t < 2; ++t) {
-          ASSERT_TRUE(haptic.force(t).allFinite() && haptic.torque(t).allFinite()) << rule << " step " << i;
-          ASSERT_LE(haptic.force(t).norm(), 20 * (1 + 1e-12)) << rule << " step " << i;
-          ASSERT_FALSE(haptic.flags(t) & fault) << rule << " step " << i;
+          ASSERT_TRUE(haptic.force(t).allFinite() && haptic.torque(t).allFinite()) << word_of(rule) << " step " << i;
+          ASSERT_LE(haptic.force(t).norm(), 20 * (1 + 1e-12)) << word_of(rule) << " step " << i;
+          ASSERT_FALSE(haptic.flags(t) & fault) << word_of(rule) << " step " << i;
         }
         for (const TouchContact& c : haptic.law(0).contacts()) {
           if (c.touch == Touch::open) continue;
           const double pressing = c.force.dot(c.normal);
-          ASSERT_GE(pressing, -1e-6 * (1 + c.force.norm())) << rule << " step " << i;
+          ASSERT_GE(pressing, -1e-6 * (1 + c.force.norm())) << word_of(rule) << " step " << i;
           touching += pressing > 1e-3;
         }
       }

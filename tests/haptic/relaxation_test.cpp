@@ -18,7 +18,7 @@ constexpr double kLeft = 0.45;  // of the modulus, in the end
 
 /// A mesh, and where its top is pressed.
 struct Ground {
-  const char* rule;
+  ContactRule rule;
   int cells;  ///< 8: triangles larger than the tip, which touches one point; 16: smaller ones
   Vector3d at;
 };
@@ -188,13 +188,15 @@ TEST_P(Relaxing, AStepTakesNoMemory) {
   EXPECT_EQ(allocations(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Rules, Relaxing,
-    ::testing::Values(Ground{"barycentric", 8, {0, 0, 0}}, Ground{"barycentric", 8, {0.004, 0.003, 0}},
-                      Ground{"alpha", 8, {0.004, 0.003, 0}}, Ground{"barycentric", 16, {0.001, 0.002, 0}}),
-    [](const auto& info) {
-      return std::string(info.param.rule) + std::to_string(info.param.cells) + "_" + std::to_string(info.index);
-    });
+INSTANTIATE_TEST_SUITE_P(Rules, Relaxing,
+                         ::testing::Values(Ground{ContactRule::barycentric, 8, {0, 0, 0}},
+                                           Ground{ContactRule::barycentric, 8, {0.004, 0.003, 0}},
+                                           Ground{ContactRule::alpha, 8, {0.004, 0.003, 0}},
+                                           Ground{ContactRule::barycentric, 16, {0.001, 0.002, 0}}),
+                         [](const auto& info) {
+                           return std::string(word_of(info.param.rule)) + std::to_string(info.param.cells) + "_" +
+                                  std::to_string(info.index);
+                         });
 
 }  // namespace
 }  // namespace palpate

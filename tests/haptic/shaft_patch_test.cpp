@@ -23,7 +23,7 @@ constexpr Converged kConverged[] = {{0.25 * kShaftRadius, 0.317}, {0.5 * kShaftR
 class ShaftOnEdges : public ::testing::TestWithParam<double> {
  protected:
   static double edge() { return kShaftRadius / GetParam(); }
-  static PressRig rig(double friction, const char* rule = "patch") {
+  static PressRig rig(double friction, ContactRule rule = ContactRule::patch) {
     const QuasiStaticSpec block = bench::shaft_block();
     return {bench::shaft_scene(block, rule, friction), {precompute(block, bench::shaft_block_of_edges(edge()))}};
   }
@@ -46,7 +46,7 @@ TEST_P(ShaftOnEdges, TheForceIsThatOfAConvergedMeshWhereverItLies) {
 }
 
 TEST_P(ShaftOnEdges, ByTheMeshItIsTheMeshs) {
-  PressRig rig = ShaftOnEdges::rig(0, "barycentric");
+  PressRig rig = ShaftOnEdges::rig(0, ContactRule::barycentric);
   EXPECT_GT(std::ranges::max(shares(rig)), 1.3);
 }
 
@@ -85,7 +85,7 @@ class ProbeWithShaft : public ::testing::Test {
   static void TearDownTestSuite() { archive_ = {}; }
   static QuasiStaticSpec block() { return bench::shaft_block(bench::kShaftBlockHalf); }
   static Scene scene(double tip_radius, double shaft_radius) {
-    Scene scene = bench::shaft_scene(block(), "patch", 0.3);
+    Scene scene = bench::shaft_scene(block(), ContactRule::patch, 0.3);
     Tool& tool = scene.tools[0];
     std::get<ProbeSpec>(tool.end).radius = tip_radius;
     tool.shaft_radius = shaft_radius;

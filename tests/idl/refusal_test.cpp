@@ -38,7 +38,7 @@ struct Change {
   const char *from, *to, *said;
 };
 
-const Change changes[] = {
+const Change kChanges[] = {
     {"[-] [-] in the pod", "in the pod",
      "bad.idl:18: a field of Pea is 'type name;  // [unit] [frame] [limits] meaning'"},
     {"[-] [-] in the pod", "[-] [-] [0..1]", "bad.idl:18: a field of Pea is"},
@@ -82,15 +82,15 @@ const Change changes[] = {
 TEST(ToyIdl, IsTakenAsItIsAndRefusedWithTheLineWhereAnAnnotationIsMalformed) {
   const std::string toy = text_of(PALPATE_TOY_IDL);
   std::vector<std::string> texts{toy};
-  for (const auto& [from, to, said] : changes) {
+  for (const auto& [from, to, said] : kChanges) {
     const std::size_t at = toy.find(from);
     ASSERT_NE(at, toy.npos) << from;
     texts.push_back(std::string(toy).replace(at, std::string(from).size(), to));
   }
   const std::vector<std::string> answers = said_of(texts);
   EXPECT_EQ(answers[0], "");
-  for (std::size_t i = 0; i < std::size(changes); ++i) {
-    const auto& [from, to, said] = changes[i];
+  for (std::size_t i = 0; i < std::size(kChanges); ++i) {
+    const auto& [from, to, said] = kChanges[i];
     const std::string& answer = answers[i + 1];
     EXPECT_EQ(answer.empty(), *said == '\0') << from << " -> " << to;
     EXPECT_EQ(answer.substr(0, std::string(said).size()), said) << from << " -> " << to;

@@ -44,7 +44,7 @@ double fine_disc(int cells, double poisson) {
   auto body = testing::make_body(1, poisson);
   body.fixed.push_back(testing::fix_group("x0", {true, false, false}));
   body.fixed.push_back(testing::fix_group("y0", {false, true, false}));
-  const auto problem = make_fine_problem(body, mesh, {0, "p2", "locking_free"});
+  const auto problem = make_fine_problem(body, mesh, {0, FiniteElement::p2, Formulation::locking_free});
   const auto load = bench::disc_loads(problem.space, 0.5, -0.25);
   return 4 * testing::disc_work(load, solve_fine_loads(problem, load));
 }
@@ -68,13 +68,14 @@ TEST(Disc, ComplianceNearIncompressibilityIsWithinTwoPercentOfTheReferenceWhereP
     std::printf("nu %.7f: reference %.5f, plain %.5f (%.1f %%)\n", poisson, reference, plain,
                 100 * (plain / reference - 1));
     EXPECT_LT(plain, 0.35 * reference);
-    const double quadratic = run_time_disc(12, poisson, {0, "p2", "locking_free"});
+    const double quadratic = run_time_disc(12, poisson, {0, FiniteElement::p2, Formulation::locking_free});
     std::printf("p2 locking_free %.5f (%.2f %%)\n", quadratic, 100 * (quadratic / reference - 1));
     EXPECT_NEAR(quadratic, reference, 0.02 * reference);
-    const double smeared = run_time_disc(12, poisson, {0, "p2", "locking_free"}, SurfaceWeight::hat);
+    const double smeared =
+        run_time_disc(12, poisson, {0, FiniteElement::p2, Formulation::locking_free}, SurfaceWeight::hat);
     std::printf("the same with mere hats %.5f (%.2f %%)\n", smeared, 100 * (smeared / reference - 1));
     EXPECT_LT(smeared, 0.93 * reference) << "why the weights are dual";
-    const double linear = run_time_disc(12, poisson, {1, "p1", "locking_free"});
+    const double linear = run_time_disc(12, poisson, {1, FiniteElement::p1, Formulation::locking_free});
     std::printf("p1 refine 1 locking_free %.5f (%.2f %%)\n", linear, 100 * (linear / reference - 1));
     EXPECT_NEAR(linear, reference, 0.05 * reference);
   }

@@ -31,11 +31,11 @@ Matrix3d determinate_gradient(const Matrix3d& stress, double young, double poiss
   return gradient;
 }
 
-const std::vector<Offline> kFiner{{1, "p1", "displacement"},
-                                  {1, "p1", "locking_free"},
-                                  {0, "p2", "displacement"},
-                                  {0, "p2", "locking_free"},
-                                  {1, "p2", "locking_free"}};
+const std::vector<Offline> kFiner{{1, FiniteElement::p1, Formulation::displacement},
+                                  {1, FiniteElement::p1, Formulation::locking_free},
+                                  {0, FiniteElement::p2, Formulation::displacement},
+                                  {0, FiniteElement::p2, Formulation::locking_free},
+                                  {1, FiniteElement::p2, Formulation::locking_free}};
 
 TEST(FinePatch, ConstantStressIsExactInEveryFormulationUpToIncompressibility) {
   Matrix3d stress = Matrix3d::Constant(400);
@@ -60,10 +60,10 @@ TEST(FinePatch, ConstantStressIsExactInEveryFormulationUpToIncompressibility) {
       for (std::size_t i = 0; i < u.size(); ++i)
         furthest = std::max(furthest, (u[i] - slope * problem.space.nodes[i]).norm());
       EXPECT_LT(furthest, 1e-11 * slope.norm() / (1 - 2 * poisson))
-          << poisson << " " << offline.element << " " << offline.formulation;
+          << poisson << " " << word_of(offline.element) << " " << word_of(offline.formulation);
       // Rounding in the dilatation is felt with the factor 1/(1 - 2 nu).
       EXPECT_LT(worst, 1e-9 * 2000 / (1 - 2 * poisson))
-          << poisson << " " << offline.element << " " << offline.formulation;
+          << poisson << " " << word_of(offline.element) << " " << word_of(offline.formulation);
     }
 }
 
@@ -102,13 +102,14 @@ double energy_error(const Offline& offline, double poisson, int cells) {
 TEST(FineConvergence, LinearElementsAreOfFirstAndQuadraticOnesOfSecondOrderInTheEnergyNorm) {
   const auto order = [](const Offline& offline, double poisson, int cells) {
     const double coarse = energy_error(offline, poisson, cells), fine = energy_error(offline, poisson, 2 * cells);
-    std::printf("%s refine %d, nu %.2f: %.5f %.5f\n", offline.element.c_str(), offline.refine, poisson, coarse, fine);
+    std::printf("%s refine %d, nu %.2f: %.5f %.5f\n", word_of(offline.element).data(), offline.refine, poisson, coarse,
+                fine);
     return testing::order(coarse, fine);
   };
-  EXPECT_NEAR(order({1, "p1", "displacement"}, 0.3, 4), 1, 0.1);
-  EXPECT_NEAR(order({0, "p2", "displacement"}, 0.3, 4), 2, 0.15);
-  EXPECT_GT(order({0, "p2", "locking_free"}, 0.45, 4), 0.9);
-  EXPECT_GT(order({1, "p1", "locking_free"}, 0.45, 4), 0.9);
+  EXPECT_NEAR(order({1, FiniteElement::p1, Formulation::displacement}, 0.3, 4), 1, 0.1);
+  EXPECT_NEAR(order({0, FiniteElement::p2, Formulation::displacement}, 0.3, 4), 2, 0.15);
+  EXPECT_GT(order({0, FiniteElement::p2, Formulation::locking_free}, 0.45, 4), 0.9);
+  EXPECT_GT(order({1, FiniteElement::p1, Formulation::locking_free}, 0.45, 4), 0.9);
 }
 
 }  // namespace

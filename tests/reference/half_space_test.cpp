@@ -12,7 +12,8 @@ namespace {
 
 using namespace bench;
 
-const Offline kP1{}, kP2{0, "p2", "displacement"}, kFree{0, "p2", "locking_free"};
+const Offline kP1{}, kP2{0, FiniteElement::p2, Formulation::displacement},
+    kFree{0, FiniteElement::p2, Formulation::locking_free};
 
 /// Errors halfway to the far faces, ahead of the force and beside it.
 std::array<double, 2> halfway(int n, const Offline& offline, bool in_infinite_body) {

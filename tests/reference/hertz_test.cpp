@@ -54,7 +54,7 @@ class Block {
     archives_.push_back(precompute(body, block(h, extent)));
     scene_.bodies.push_back(body);
     scene_.contact.friction = 0;
-    scene_.contact.rule = "barycentric";
+    scene_.contact.rule = ContactRule::barycentric;
   }
 
   /// Force [N] on the tip at a depth [m].
@@ -148,14 +148,14 @@ TEST(HertzReference, ABlockOfTwiceTheSizeIsALittleSofter) {
 // A refinement offline leaves the nodes that carry the contact as few as they are: at R = 2h the mean is no
 // better, and the places differ as much as on the mesh itself.
 TEST(HertzReference, ARefinementOfflineDoesNotCureTheDependenceOnThePlace) {
-  Block coarse(kTipRadius / 2, Offline{1, "p1", "displacement"});
+  Block coarse(kTipRadius / 2, Offline{1, FiniteElement::p1, Formulation::displacement});
   const auto pressed = press_everywhere(coarse, 0.5 * kTipRadius, "refined_h2");
   EXPECT_GT(*std::max_element(pressed.ratio.begin(), pressed.ratio.end()) -
                 *std::min_element(pressed.ratio.begin(), pressed.ratio.end()),
             0.08);
   EXPECT_LT(pressed.worst(), 0.15);
   if (!long_form()) return;
-  Block fine(kTipRadius / 4, Offline{1, "p1", "displacement"});
+  Block fine(kTipRadius / 4, Offline{1, FiniteElement::p1, Formulation::displacement});
   EXPECT_LT(press_everywhere(fine, 0.5 * kTipRadius, "refined_h4").worst(), 0.05);
 }
 

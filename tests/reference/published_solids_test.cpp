@@ -9,7 +9,9 @@ namespace {
 
 using namespace bench;
 
-const Offline kP1{}, kP2{0, "p2", "displacement"}, kFree{0, "p2", "locking_free"}, kFreeLinear{1, "p1", "locking_free"};
+const Offline kP1{}, kP2{0, FiniteElement::p2, Formulation::displacement},
+    kFree{0, FiniteElement::p2, Formulation::locking_free},
+    kFreeLinear{1, FiniteElement::p1, Formulation::locking_free};
 
 TEST(PublishedSolids, StraightBeamOfMacNealAndHarder) {
   EXPECT_NEAR(straight_beam(2, kP2, 0).value, 3.0e-5, 0.005 * 3.0e-5);
@@ -32,8 +34,8 @@ TEST(PublishedSolids, PatchOfMacNealAndHarderIsExactToRoundingInEveryFormulation
   for (const auto& offline : {kP1, kP2, kFree, kFreeLinear})
     for (unsigned seed : {1, 2, 3}) {
       const auto errors = solid_patch(offline, 0.25, seed);
-      EXPECT_LT(errors.displacement, 100) << offline.element << " " << offline.formulation;
-      EXPECT_LT(errors.stress, 1000) << offline.element << " " << offline.formulation;
+      EXPECT_LT(errors.displacement, 100) << word_of(offline.element) << " " << word_of(offline.formulation);
+      EXPECT_LT(errors.stress, 1000) << word_of(offline.element) << " " << word_of(offline.formulation);
     }
 }
 

@@ -139,7 +139,7 @@ TEST(DuctStage, FollowsShapesAndDrawsThem) {
 
 TEST(DuctStage, ColourByDisplacementCoversBothSidesButNotTheCatheter) {
   DuctStage d;
-  d.s.scene.render->colour = "displacement";
+  d.s.scene.render->colour = Colouring::displacement;
   Stage stage = d.stage();
   Deformer deformer(d.s.scene, d.s.archives);
   std::vector<Eigen::Vector3f> position = deformer.surface(kDuctBody).position;

@@ -77,6 +77,25 @@ TEST(Instrument, TrianglesLookOutwards) {
     }
 }
 
+TEST(Instrument, AScalpelIsABladeWithinTheBallThatTouches) {
+  InstrumentView view;
+  view.blade = true;
+  const InstrumentShape shape = make_instrument(view);
+  Eigen::Vector3f largest = Eigen::Vector3f::Zero();
+  for (const auto& p : shape.parts[1].position) {
+    largest = largest.cwiseMax(p);
+    EXPECT_LE(p.head<2>().norm(), view.tip_radius);
+  }
+  EXPECT_NEAR(largest.z(), view.tip_radius, 1e-6);
+  EXPECT_LT(largest.x(), 0.4 * largest.y());
+  for (const InstrumentPart& part : shape.parts)
+    for (const auto& [a, b, c] : part.triangles) {
+      const Eigen::Vector3f area = (part.position[b] - part.position[a]).cross(part.position[c] - part.position[a]);
+      if (area.norm() < 1e-12f) continue;
+      EXPECT_GT(area.dot(part.normal[a] + part.normal[b] + part.normal[c]), 0);
+    }
+}
+
 TEST(Instrument, JawsOpenAwayFromEachOther) {
   InstrumentView view;
   view.jaw_opening = 0.6;

@@ -130,7 +130,7 @@ TEST(Stage, ShowsToolsOnceHeardOf) {
 
 TEST(Stage, LegendCoversTheLargestDisplacement) {
   World world;
-  world.scene.render->colour = "displacement";
+  world.scene.render->colour = Colouring::displacement;
   Stage stage = world.stage();
   EXPECT_DOUBLE_EQ(stage.frame().legend->max, 1e-3);
   std::vector<Eigen::Vector3f> position, normal(world.nodes()[0], Eigen::Vector3f::UnitX());

@@ -32,7 +32,7 @@ TEST(PressRig, TissuePressedAloneMovesAsItDoesInTheWholeScene) {
 TEST(PressRig, TheHapticStepAloneGivesTheForceAndTheShapeOfTheWhole) {
   Scene scene = block_scene();
   scene.passivity.controller = false;
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   PressRig alone(scene, {precompute_on(scene.bodies[0], block_mesh())}), whole(scene, alone.archives());
   const auto tip = [](int i) { return Vector3d(1e-5 * i, 0, 0.009 - 2e-5 * i); };
   for (PressRig* rig : {&alone, &whole}) rig->start(tip(0));

@@ -61,7 +61,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(tool.max_force_rate, 4000);
   EXPECT_TRUE(std::holds_alternative<BusDeviceSpec>(scene.tools[1].device));
   EXPECT_EQ(std::get<LogDeviceSpec>(scene.tools[2].device).trajectory, folder / "session.lcmlog");
-  EXPECT_EQ(scene.contact.rule, "alpha");
+  EXPECT_EQ(scene.contact.rule, ContactRule::alpha);
   EXPECT_EQ(scene.contact.bucket_size, 0.01);
   EXPECT_EQ(scene.network.domain, 7);
   EXPECT_EQ(scene.network.peers.size(), 2u);
@@ -81,13 +81,13 @@ TEST_F(SceneFile, KeysOfMovingTissueArriveWhereTheyBelong) {
   EXPECT_FALSE(as<MovingSpec>(scene.bodies[0]));
   EXPECT_TRUE(as<MovingSpec>(scene.bodies[3]) && as<MovingSpec>(scene.bodies[5]));
   EXPECT_EQ(kind_of(scene.bodies[3]), "hybrid");
-  EXPECT_EQ(segment.dynamic.integrator, "semi_implicit");
-  EXPECT_EQ(segment.dynamic.precision, "double");
+  EXPECT_EQ(segment.dynamic.integrator, Integrator::semi_implicit);
+  EXPECT_EQ(segment.dynamic.precision, Precision::float64);
   EXPECT_EQ(segment.dynamic.step, 0.0005);
   EXPECT_EQ(segment.dynamic.damping, 12);
   EXPECT_EQ(segment.dynamic.gravity, Eigen::Vector3d(0, 0, -9.81));
   EXPECT_TRUE(segment.dynamic.corotational);
-  EXPECT_EQ(segment.tearing->criterion, "mean_elongation");
+  EXPECT_EQ(segment.tearing->criterion, TearCriterion::mean_elongation);
   EXPECT_EQ(segment.tearing->threshold, 0.7);
   ASSERT_EQ(segment.hybrid.regions.size(), 3u);
   EXPECT_EQ(segment.hybrid.regions[0].indices, (std::vector<int>{4, 2}));
@@ -117,7 +117,7 @@ TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
   EXPECT_FALSE(duct.fixed[0].rotations);
   EXPECT_EQ(duct.touchable->indices, (std::vector<int>{1, 2}));
   EXPECT_EQ(duct.shell.thickness, 0.001);
-  EXPECT_EQ(duct.shell.bending, "polynomial");
+  EXPECT_EQ(duct.shell.bending, Bending::polynomial);
   EXPECT_EQ(duct.shell.modes, 40);
   EXPECT_EQ(duct.shell.damping, 3);
   EXPECT_FALSE(duct.shell.residual);
@@ -133,7 +133,7 @@ TEST_F(SceneFile, KeysOfShellAndCatheterArriveWhereTheyBelong) {
   EXPECT_EQ(wire.catheter.sleeve, 0.03);
   EXPECT_EQ(wire.catheter.damping, 4);
   EXPECT_EQ(wire.catheter.gravity, Eigen::Vector3d(0, 0, -9.5));
-  EXPECT_EQ(wire.catheter.integrator, "semi_implicit");
+  EXPECT_EQ(wire.catheter.integrator, ChainIntegrator::semi_implicit);
   const Tool& tool = scene.tools[3];
   ASSERT_TRUE(std::holds_alternative<ForcepsSpec>(tool.end));
   EXPECT_EQ(tool.compliance, 0.0002);
@@ -234,8 +234,8 @@ TEST_F(SceneFile, HashSeesWhatNodesMustAgreeOn) {
   EXPECT_TRUE(changed([](Scene& s) { s.rates.haptic_hz = 1000; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.step = 0; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.gravity.x() = 1; }));
-  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.precision = "single"; }));
-  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.integrator = "rk4"; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.precision = Precision::float32; }));
+  EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.integrator = Integrator::rk4; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.corotational = false; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->dynamic.damping = 13; }));
   EXPECT_TRUE(changed([](Scene& s) { as<MovingSpec>(s.bodies[3])->tearing->threshold = 0.8; }));

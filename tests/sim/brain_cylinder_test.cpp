@@ -50,7 +50,7 @@ class PressedBrainCylinder : public ::testing::TestWithParam<const char*> {
     plate.shaft_length = 0.01;
     plate.max_force = plate.max_force_rate = 1e6;
     scene_.tools.push_back(plate);
-    scene_.contact.rule = "barycentric";  // a plate is no ball
+    scene_.contact.rule = ContactRule::barycentric;  // a plate is no ball
     archives_.push_back(precompute(body_, mesh_));
   }
 

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// A block whose left half is soft in what was fitted and whose right half is stiff, under a probe.
-class CorrectedPress : public ::testing::TestWithParam<const char*> {
+class CorrectedPress : public ::testing::TestWithParam<ContactRule> {
  protected:
   CorrectedPress() {
     scene_.contact.rule = GetParam();
@@ -84,8 +84,8 @@ TEST_P(CorrectedPress, TheShapeWidensByTheLawOfThePlaceAlone) {
   EXPECT_GT(most, 1.05);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, CorrectedPress, ::testing::Values("barycentric", "patch"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Rules, CorrectedPress, ::testing::Values(ContactRule::barycentric, ContactRule::patch),
+                         [](const auto& info) { return std::string(word_of(info.param)); });
 
 }  // namespace
 }  // namespace palpate

@@ -33,7 +33,7 @@ inline PlayedScene pressed_block() {
 inline PlayedScene relaxing_block() {
   PlayedScene played = pressed_block();
   played.name = "relaxing_block";
-  played.scene.contact.rule = "patch";
+  played.scene.contact.rule = ContactRule::patch;
   as<QuasiStaticSpec>(played.scene.bodies[0])->relaxation = Relaxation{{0.02, 0.3}, {0.3, 0.3}};
   return played;
 }

@@ -152,7 +152,7 @@ TEST(Budget, OffersOfAQuasiStaticBodyWhatItsSceneLeavesOpen) {
   EXPECT_FALSE(has(better, "offline refine 1"));
 
   Scene scene = block_scene(folder.at);
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   EXPECT_FALSE(has(offered(scene), "rule patch"));
 }
 

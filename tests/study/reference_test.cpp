@@ -41,7 +41,7 @@ const Lame kLame = lame({5000, 0.4, 1000});
 class OneThread : public ::testing::Environment {
   void SetUp() override { set_linear_algebra_threads(1); }
 };
-const auto* const one_thread = ::testing::AddGlobalTestEnvironment(new OneThread);
+const auto* const kOneThread = ::testing::AddGlobalTestEnvironment(new OneThread);
 
 TEST(NeoHookean, ForcesAreTheDerivativeOfTheEnergyAndTheTangentThatOfTheForces) {
   for (unsigned seed = 1; seed <= 5; ++seed) {

@@ -127,7 +127,7 @@ TEST(Study, TensorsFromAFinerMeshAreNearerToTheReferenceWhereTheMeshLocks) {
   const Folder folder;
   Scene scene = block_scene(folder.at);
   as<SolidSpec>(scene.bodies[0])->material.poisson = 0.499;
-  scene.contact.rule = "barycentric";
+  scene.contact.rule = ContactRule::barycentric;
   const auto solid = std::make_shared<SolidCase>(scene, 0, on_one(scene), true, ReferenceCache(kept_references()));
   const auto method = make_quasi_static(solid);
   const auto from = [&](const Offline& offline) {
@@ -152,9 +152,11 @@ TEST(Study, TensorsFromQuadraticAndLockingFreeElementsArePressed) {
   const Scene scene = block_scene(folder.at);
   const auto method =
       make_quasi_static(std::make_shared<SolidCase>(scene, 0, on_one(scene), true, ReferenceCache(kept_references())));
-  for (const Offline& offline : {Offline{.element = "p2"}, Offline{.refine = 1, .formulation = "locking_free"}}) {
+  for (const Offline& offline :
+       {Offline{.element = FiniteElement::p2}, Offline{.refine = 1, .formulation = Formulation::locking_free}}) {
     const auto apply = [&](Scene& s) { as<QuasiStaticSpec>(s.bodies[0])->offline = offline; };
-    const Result result = method->evaluate({"quasi_static", "offline", offline.element, apply, true});
+    const Result result =
+        method->evaluate({"quasi_static", "offline", std::string(word_of(offline.element)), apply, true});
     const Row* row = find(result, "quasi_static", "offline", "", "fine_linear");
     ASSERT_TRUE(row);
     EXPECT_LT(row->err_u_rel, 1);

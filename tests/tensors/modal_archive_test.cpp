@@ -266,7 +266,7 @@ TEST_F(ShellFiles, TheContentHashCoversWhatChangesAStoredNumber) {
   const std::vector<std::function<void(ModalShellSpec&)>> changes{
       [](ModalShellSpec&) {},
       [](ModalShellSpec& b) { b.shell.thickness = 9e-4; },
-      [](ModalShellSpec& b) { b.shell.bending = "polynomial"; },
+      [](ModalShellSpec& b) { b.shell.bending = Bending::polynomial; },
       [](ModalShellSpec& b) { b.shell.modes = 31; },
       [](ModalShellSpec& b) { b.material.density = 1000; },
       [](ModalShellSpec& b) { b.material.young = 2e5; },

@@ -16,11 +16,11 @@ namespace {
 using Eigen::Vector3d;
 using testing::spread_holds;
 
-const std::vector<Offline> kFiner{{1, "p1", "displacement"},
-                                  {1, "p1", "locking_free"},
-                                  {0, "p2", "displacement"},
-                                  {0, "p2", "locking_free"},
-                                  {1, "p2", "locking_free"}};
+const std::vector<Offline> kFiner{{1, FiniteElement::p1, Formulation::displacement},
+                                  {1, FiniteElement::p1, Formulation::locking_free},
+                                  {0, FiniteElement::p2, Formulation::displacement},
+                                  {0, FiniteElement::p2, Formulation::locking_free},
+                                  {1, FiniteElement::p2, Formulation::locking_free}};
 
 Eigen::MatrixXd touchable_matrix(const Archive& archive) {
   const auto t = static_cast<Eigen::Index>(archive.touchable_dofs.size());
@@ -46,8 +46,9 @@ void expect_agreement(QuasiStaticSpec body, const TetMesh& mesh, const Offline& 
       for (int axis = 0; axis < 3; ++axis)
         if (archive.surface.fixed[i][axis]) force.back()[axis] = 0;
     }
-    SCOPED_TRACE(::testing::Message() << offline.refine << " " << offline.element << " " << offline.formulation << ", "
-                                      << count << " nodes, nu " << body.material.poisson);
+    SCOPED_TRACE(::testing::Message() << offline.refine << " " << word_of(offline.element) << " "
+                                      << word_of(offline.formulation) << ", " << count << " nodes, nu "
+                                      << body.material.poisson);
     EXPECT_LT(testing::relative_difference(tensors.displacement, displacement), tolerance);
     EXPECT_LT(testing::relative_difference(tensors.force, force), tolerance);
     Vector3d sum = Vector3d::Zero();
@@ -63,9 +64,10 @@ void expect_agreement(QuasiStaticSpec body, const TetMesh& mesh, const Offline& 
 TEST(Offline, DirectSolutionEqualsSuperposition) {
   for (const auto& offline : kFiner)
     expect_agreement(testing::make_body(10e3, 0.45), testing::make_organ({4, 3, 3}), offline);
-  expect_agreement(testing::make_body(10e3, 0.4999), testing::make_organ({4, 3, 3}), {0, "p2", "locking_free"});
-  expect_agreement(testing::make_body(10e3, 0.4999999), testing::make_organ({4, 3, 3}), {0, "p2", "locking_free"},
-                   1e-7);
+  expect_agreement(testing::make_body(10e3, 0.4999), testing::make_organ({4, 3, 3}),
+                   {0, FiniteElement::p2, Formulation::locking_free});
+  expect_agreement(testing::make_body(10e3, 0.4999999), testing::make_organ({4, 3, 3}),
+                   {0, FiniteElement::p2, Formulation::locking_free}, 1e-7);
 }
 
 TEST(Offline, DirectSolutionEqualsSuperpositionWithPartlyFixedNodes) {
@@ -109,7 +111,8 @@ TEST(Offline, ComplianceIsSymmetricPositiveDefinite) {
       const auto archive = precompute(body, mesh);
       const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(touchable_matrix(archive));
       // Pressed all around, incompressible tissue does not give way: that eigenvalue is 1 - 2 nu times smaller.
-      EXPECT_GT(eigenvalues[0], 1e-3 * (1 - 2 * poisson) * eigenvalues.tail(1)[0]) << offline.element << " " << poisson;
+      EXPECT_GT(eigenvalues[0], 1e-3 * (1 - 2 * poisson) * eigenvalues.tail(1)[0])
+          << word_of(offline.element) << " " << poisson;
       EXPECT_TRUE(DenseCholesky(touchable_matrix(archive)).positive_definite());
 
       body.touchable = NodeSelector{};
@@ -146,11 +149,12 @@ TEST(Offline, ASectionWithAllDefaultsChangesNoBit) {
 TEST(Offline, RefinementOfTheOfflineMeshConverges) {
   auto body = testing::make_body(10e3, 0.3);
   const auto mesh = testing::make_organ({4, 4, 3});
-  const auto compliance = [&](int refine, const char* element) {
-    body.offline = Offline{refine, element, "displacement"};
+  const auto compliance = [&](int refine, FiniteElement element) {
+    body.offline = Offline{refine, element, Formulation::displacement};
     return touchable_matrix(precompute(body, mesh));
   };
-  const auto once = compliance(1, "p1"), twice = compliance(2, "p1"), quadratic = compliance(1, "p2");
+  const auto once = compliance(1, FiniteElement::p1), twice = compliance(2, FiniteElement::p1),
+             quadratic = compliance(1, FiniteElement::p2);
   EXPECT_LT((twice - quadratic).norm(), 0.5 * (once - quadratic).norm());
   EXPECT_LT((twice - quadratic).norm(), 0.2 * quadratic.norm()) << "single nodes: the smallest forces of all";
 }

@@ -35,7 +35,7 @@ TEST(Specimen, StuckEndsAreStifferThanFreeOnesAndBulge) {
 TEST(Specimen, IsPressedByTheElementsOfTheBody) {
   const auto mesh = make_cylinder(kRadius, kHeight, 4, 4);
   const Material material{kYoung, 0.45, 1000};
-  const Offline quadratic{.element = "p2"};
+  const Offline quadratic{.element = FiniteElement::p2};
   const double linear = press_specimen(mesh, material).force,
                quadratic_force = press_specimen(mesh, material, quadratic).force,
                finer_mesh = press_specimen(make_cylinder(kRadius, kHeight, 6, 6), material).force;

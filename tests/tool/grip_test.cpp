@@ -15,12 +15,12 @@ namespace {
 using Eigen::Vector3d;
 using testing::kForceps;
 
-const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
 constexpr double kDt = 1e-3;
 
 /// [m] between a jaw's axis and a point.
 double away(double opening, ForcepsPart jaw, const Vector3d& p) {
-  return (nearest_point(forceps_parts(kForceps, opening)[jaw].axis(here), p) - p).norm();
+  return (nearest_point(forceps_parts(kForceps, opening)[jaw].axis(kHere), p) - p).norm();
 }
 
 TEST(OpeningAtContact, TheLaterJawJustTouchesTheBall) {

@@ -17,7 +17,7 @@ using testing::program;
 using testing::run_program;
 using testing::text_of;
 
-const std::string columns = "time,yaw,pitch,depth,roll,grip\n";
+const std::string kColumns = "time,yaw,pitch,depth,roll,grip\n";
 
 /// A good scene with its archive, beside which one file is spoiled.
 class ToolsBadFile : public ::testing::Test {
@@ -44,8 +44,8 @@ TEST_F(ToolsBadFile, ATrajectoryThatIsNotOneIsRefusedWithItsLine) {
     EXPECT_EQ(run.status, 1) << run.err;
     for (const std::string& fragment : fragments) EXPECT_NE(run.err.find(fragment), std::string::npos) << run.err;
   };
-  refused(columns + "0,0,0,0.17,0,0\n1,0,nan,0.18,0,0\n", {"motion.csv:3: ", "'nan' is not a finite number"});
-  refused(columns + "0,0,0,0.17,0,0\n1,0,0\n", {"motion.csv:3: "});
+  refused(kColumns + "0,0,0,0.17,0,0\n1,0,nan,0.18,0,0\n", {"motion.csv:3: ", "'nan' is not a finite number"});
+  refused(kColumns + "0,0,0,0.17,0,0\n1,0,0\n", {"motion.csv:3: "});
   refused("when,where\n0,0\n", {"motion.csv:1: "});
 }
 
@@ -117,7 +117,7 @@ TEST_F(ToolsBadFile, AFileThatIsNoLogIsRefused) {
 
 TEST_F(ToolsBadFile, AToolThatStartsInsideTheOrganIsRefused) {
   precompute();
-  scene_.write("motion.csv", columns + "0,0,0,0.22,0,0\n5,0,0,0.22,0,0\n");
+  scene_.write("motion.csv", kColumns + "0,0,0,0.22,0,0\n5,0,0,0.22,0,0\n");
   const auto node = run_program(haptic_node());
   EXPECT_EQ(node.status, 1);
   for (const char* fragment : {"haptic_node: ", "probe", "inside", "block"})

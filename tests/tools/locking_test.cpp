@@ -28,11 +28,11 @@ TEST(LockingWarning, IsSilentOnceTheSceneTakesTheCureAndHearsMaterialRegions) {
   auto body = body_of<QuasiStaticSpec>(0.3);
   body.materials.push_back({{}, {1e4, 0.4999, 1000}});
   EXPECT_EQ(locking_warnings(body).size(), 1u);
-  body.offline = Offline{1, "p1", "displacement"};
+  body.offline = Offline{1, FiniteElement::p1, Formulation::displacement};
   EXPECT_EQ(locking_warnings(body).size(), 1u) << "refined linear elements lock as well";
-  body.offline = Offline{1, "p1", "locking_free"};
+  body.offline = Offline{1, FiniteElement::p1, Formulation::locking_free};
   EXPECT_TRUE(locking_warnings(body).empty());
-  body.offline = Offline{0, "p2", "displacement"};
+  body.offline = Offline{0, FiniteElement::p2, Formulation::displacement};
   EXPECT_TRUE(locking_warnings(body).empty());
 }
 

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kMidline = 0.020;                    // [m] x of the spine; the liver lies mostly right of it
 constexpr double kHalfWidth = 0.170, kDepth = 0.118;  // [m] half axes of the chest at the ribs
-constexpr double kReach = 112;  // [deg] from the spine to a rib's end: the front is cut away, where the camera looks in
+constexpr double kReach = 112;  // [deg] from the spine to a rib's end: the front is open, where the camera looks in
 
 /// A point of the chest: `angle` [rad] from the spine (0) towards the patient's left (positive) or right.
 Vector3d chest(double angle, double height, double scale) {
@@ -72,11 +72,15 @@ void add_spine(TriangleMesh& mesh) {
       });
 }
 
+/// All around the room that gas makes for the camera, and down beyond what it sees, so that no edge shows; from outside
+/// it is not drawn.
 void add_wall(TriangleMesh& mesh) {
-  constexpr int kRows = 10, kColumns = 30;
-  const double reach = (kReach + 6) * std::numbers::pi / 180;
-  add_grid(mesh, kRows, kColumns, false, [&](int r, int c) {
-    return chest(reach * (2.0 * c / kColumns - 1), -0.11 + 0.28 * r / kRows, 1.10 - 0.05 * r / kRows);
+  constexpr int kRows = 13, kColumns = 36;
+  constexpr double kBlown = 2.8;  // how much farther the front is than the back
+  add_grid(mesh, kRows, kColumns, true, [&](int r, int c) {
+    const double angle = 2 * std::numbers::pi * c / kColumns - std::numbers::pi;
+    const Vector3d p = chest(angle, -0.40 + 0.57 * r / kRows, 1.10 - 0.05 * r / kRows);
+    return Vector3d(p.x(), p.y() < 0 ? kBlown * p.y() : p.y(), p.z());
   });
 }
 

@@ -4,7 +4,7 @@
 namespace palpate {
 
 /// A rigid backdrop around the liver, in its axes [m]: five pairs of ribs, open to the front, the spine, and
-/// the wall of the chest behind them (one-sided, facing inward). For the picture only.
+/// the wall around them (one-sided, facing inward). For the picture only.
 TriangleMesh make_ribs();
 
 }  // namespace palpate

@@ -6,7 +6,7 @@
 namespace palpate::keys {
 namespace {
 
-const std::string domains = "<domains><id_range><min>0</min><max>230</max></id_range></domains>";
+const std::string kDomains = "<domains><id_range><min>0</min><max>230</max></id_range></domains>";
 
 std::string document(const std::string& schema, const std::string& body) {
   return fmt::format(
@@ -49,7 +49,7 @@ std::string governance_document() {
                               "      <data_protection_kind>ENCRYPT</data_protection_kind>\n"
                               "    </topic_rule></topic_access_rules>\n"
                               "  </domain_rule></domain_access_rules>\n",
-                              domains));
+                              kDomains));
 }
 
 std::string permissions_document(const std::string& role, const std::string& subject, const Rights& rights,
@@ -64,7 +64,7 @@ std::string permissions_document(const std::string& role, const std::string& sub
                               "    </allow_rule>\n"
                               "    <default>DENY</default>\n"
                               "  </grant></permissions>\n",
-                              role, subject, date(period.from), date(period.to), domains,
+                              role, subject, date(period.from), date(period.to), kDomains,
                               topic_list("publish", rights.writes), topic_list("subscribe", rights.reads)));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-CatheterSettings settings(double young, const std::string& integrator, double damping = 5) {
+CatheterSettings settings(double young, ChainIntegrator integrator, double damping = 5) {
   CatheterSettings s;
   s.shape.tail = {0, 0, -0.12};
   s.shape.tip = {0, 0, 0};
@@ -49,7 +49,7 @@ Result swing(const CatheterSettings& s, int ticks) {
 /// Grasps wherever chance has it: alone, or half led into a duct, drawn to and fro.
 Result many_grasps(int grasps, bool in_duct) {
   std::optional<Duct> duct;
-  CatheterSettings s = settings(3e7, "implicit");
+  CatheterSettings s = settings(3e7, ChainIntegrator::implicit);
   if (in_duct) {
     duct.emplace();
     s.shape.tail = {0, 0, -0.08};
@@ -94,16 +94,16 @@ Result many_grasps(int grasps, bool in_duct) {
 std::vector<Point> catheter_points(const Extent& extent) {
   std::vector<Point> points;
   const int ticks = extent.quick ? 400 : 4000;
-  for (const char* integrator : {"implicit", "semi_implicit"}) {
+  for (const ChainIntegrator integrator : {ChainIntegrator::implicit, ChainIntegrator::semi_implicit}) {
     for (double e :
          extent.quick ? std::vector{1e3, 1e12} : std::vector{1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12})
-      points.push_back({fmt::format("catheter {}", integrator), "E [Pa]", fmt::format("{:g}", e),
+      points.push_back({fmt::format("catheter {}", word_of(integrator)), "E [Pa]", fmt::format("{:g}", e),
                         [=] { return swing(settings(e, integrator), ticks); }});
     for (double d : extent.quick ? std::vector{1e5} : std::vector{0.0, 1.0, 1e3, 1e5})
-      points.push_back({fmt::format("catheter {}", integrator), "damping [1/s]", fmt::format("{:g}", d),
+      points.push_back({fmt::format("catheter {}", word_of(integrator)), "damping [1/s]", fmt::format("{:g}", d),
                         [=] { return swing(settings(1e6, integrator, d), ticks); }});
     for (double h : extent.quick ? std::vector{1e-2} : std::vector{1e-7, 1e-5, 1e-3, 1e-2, 1e-1})
-      points.push_back({fmt::format("catheter {}", integrator), "tick [s]", fmt::format("{:g}", h), [=] {
+      points.push_back({fmt::format("catheter {}", word_of(integrator)), "tick [s]", fmt::format("{:g}", h), [=] {
                           CatheterSettings s = settings(1e6, integrator);
                           s.step = h;
                           return swing(s, ticks);

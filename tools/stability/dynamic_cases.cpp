@@ -23,13 +23,13 @@ std::vector<Tissue> tissues() {
   return {{moving_block_scene<TensorMassSpec>(), true}, {moving_block_scene<SpringMassSpec>(), false}};
 }
 
-constexpr const char* kPrecisions[] = {"single", "double"};
+constexpr Precision kPrecisions[] = {Precision::float32, Precision::float64};
 
 double bound_of(const Scene& scene, const Archive& archive) {
   const Body& body = scene.bodies[0];
   const Dynamic& motion = motion_of(body);
   const auto model = make_model(body, elastic_mesh(archive));
-  return max_step(integrator_of(motion), model->frequency_bound(), motion.damping);
+  return max_step(motion.integrator, model->frequency_bound(), motion.damping);
 }
 
 /// Free motion from a pluck at one step size: the energy of the undamped tissue may not grow.
@@ -62,17 +62,17 @@ Result pluck(const Scene& scene, double step, int count) {
 std::vector<Point> dynamic_points(const Extent& extent) {
   std::vector<Point> points;
   for (const Tissue& tissue : tissues())
-    for (const char* integrator : {"rk4", "semi_implicit"})
+    for (const Integrator integrator : {Integrator::rk4, Integrator::semi_implicit})
       for (const bool corotational : {false, true}) {
         if (corotational && (!tissue.of_elements || extent.quick)) continue;
         Scene scene = tissue.scene;
         Dynamic& motion = moving_block_of(scene).dynamic;
         motion.integrator = integrator;
         motion.damping = 0;
-        motion.precision = "double";
+        motion.precision = Precision::float64;
         motion.corotational = corotational;
-        const std::string name =
-            fmt::format("step {} {}{}", kind_of(scene.bodies[0]), integrator, corotational ? " corotational" : "");
+        const std::string name = fmt::format("step {} {}{}", kind_of(scene.bodies[0]), word_of(integrator),
+                                             corotational ? " corotational" : "");
         for (double s : extent.quick ? std::vector{0.9, 1.5} : std::vector{0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 3.0, 10.0})
           points.push_back({name, "step / bound [1]", fmt::format("{:g}", s), [scene, s, extent, corotational] {
                               return pluck(scene,
@@ -84,16 +84,16 @@ std::vector<Point> dynamic_points(const Extent& extent) {
         if (!extent.quick) points.push_back({name, "step [s]", "1e-7", [scene] { return pluck(scene, 1e-7, 2000); }});
       }
   for (double a : extent.quick ? std::vector{0.0, 1e4} : std::vector{0.0, 1e-3, 1.0, 60.0, 1e3, 1e4, 1e6})
-    for (const char* integrator : {"rk4", "semi_implicit"})
-      points.push_back({fmt::format("damping {}", integrator), "damping [1/s]", fmt::format("{:g}", a), [=] {
+    for (const Integrator integrator : {Integrator::rk4, Integrator::semi_implicit})
+      points.push_back({fmt::format("damping {}", word_of(integrator)), "damping [1/s]", fmt::format("{:g}", a), [=] {
                           Scene scene = moving_block_scene();
                           moving_block_of(scene).dynamic.damping = a;
                           moving_block_of(scene).dynamic.integrator = integrator;
                           return press_tissue(scene, small_block_mesh(), 0.004, extent.quick ? 100 : 1000);
                         }});
   for (double e : extent.quick ? std::vector{1.0} : std::vector{1.0, 1e3, 1e6, 1e8})
-    for (const char* precision : kPrecisions)
-      points.push_back({fmt::format("young moving {}", precision), "E [Pa]", fmt::format("{:g}", e),
+    for (const Precision precision : kPrecisions)
+      points.push_back({fmt::format("young moving {}", word_of(precision)), "E [Pa]", fmt::format("{:g}", e),
                         [=] {
                           Scene scene = moving_block_scene();
                           moving_block_of(scene).material.young = e;
@@ -117,7 +117,7 @@ std::vector<Point> cut_points(const Extent& extent) {
                         const Archive archive = precompute_on(body, small_block_mesh(2));
                         const Dynamic& motion = motion_of(body);
                         const auto tissue = make_model(body, elastic_mesh(archive));
-                        const double step = 0.5 * max_step(integrator_of(motion), tissue->frequency_bound(), 60);
+                        const double step = 0.5 * max_step(motion.integrator, tissue->frequency_bound(), 60);
                         const int count = elastic_mesh(archive).tetrahedra.size();
                         Result r{.note = {}};
                         for (int t = count - 1; t >= 0; --t) {
@@ -149,7 +149,8 @@ std::vector<Point> cut_points(const Extent& extent) {
   for (double threshold : extent.quick ? std::vector{0.05} : std::vector{1e-6, 1e-3, 0.05, 0.5})
     points.push_back({"tearing", "volume change [1]", fmt::format("{:g}", threshold), [=] {
                         Scene scene = moving_block_scene();
-                        moving_block_of(scene).tearing = Tearing{.criterion = "volume", .threshold = threshold};
+                        moving_block_of(scene).tearing =
+                            Tearing{.criterion = TearCriterion::volume, .threshold = threshold};
                         const auto path = [](int i) {
                           return Vector3d(0.002 * std::sin(0.1 * i), 0, 0.0262 - 0.012 * std::min(1.0, i / 200.0));
                         };

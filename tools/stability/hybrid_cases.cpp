@@ -57,8 +57,9 @@ std::vector<Point> hybrid_points(const Extent& extent) {
     add("step / what the bound gives about [1]", fmt::format("{:g}", s),
         [s](Scene& scene) { moving_block_of(scene).dynamic.step = s * 5e-4; });
   for (double t : extent.quick ? std::vector{0.02} : std::vector{1e-6, 0.02, 0.2})
-    add("tears from a volume change of [1]", fmt::format("{:g}", t),
-        [t](Scene& scene) { moving_block_of(scene).tearing = Tearing{.criterion = "volume", .threshold = t}; });
+    add("tears from a volume change of [1]", fmt::format("{:g}", t), [t](Scene& scene) {
+      moving_block_of(scene).tearing = Tearing{.criterion = TearCriterion::volume, .threshold = t};
+    });
   for (double share : extent.quick ? std::vector{0.7} : std::vector{-0.1, 0.2, 0.5, 0.7, 0.95})
     points.push_back({"hybrid share", "height of the border [1]", fmt::format("{:g}", share), [share] {
                         const TetMesh mesh = small_block_mesh();

@@ -17,8 +17,8 @@ constexpr double kMaxSteps = 300;
 
 std::string words_of(const MovingPress& p) {
   return fmt::format("E {:.2g} Pa, cells {:.2g} x {:.2g} mm, R {:.2g} mm, friction {:g}, {}, {} {}", p.young,
-                     1e3 * p.cell.x(), 1e3 * p.cell.z(), 1e3 * p.radius, p.friction, p.gesture, p.integrator,
-                     p.precision);
+                     1e3 * p.cell.x(), 1e3 * p.cell.z(), 1e3 * p.radius, p.friction, p.gesture, word_of(p.integrator),
+                     word_of(p.precision));
 }
 
 /// Whether a tick takes less than some hundred steps.
@@ -45,8 +45,8 @@ MovingPress drawn(std::mt19937& random) {
   p.poisson = one_of(std::array{0.0, 0.3, 0.45});
   p.density = one_of(std::array{300.0, 1000.0, 3000.0});
   p.damping = one_of(std::array{5.0, 60.0});
-  p.integrator = one_of(std::array{"rk4", "semi_implicit"});
-  p.precision = one_of(std::array{"single", "double"});
+  p.integrator = one_of(std::array{Integrator::rk4, Integrator::semi_implicit});
+  p.precision = one_of(std::array{Precision::float32, Precision::float64});
   p.radius = size * between(0.2, 4);
   p.cells = cells_under(p.radius, size);
   p.depth = std::min(0.3 * p.radius, 0.2 * p.cells.z() * p.cell.z());

@@ -87,7 +87,7 @@ TetMesh mesh_of(const MovingPress& p) {
 /// [N] of the same contact with the same tissue without inertia, at the end of the path.
 double static_force(Scene scene, const TetMesh& mesh, const Stroke& stroke) {
   auto body = as_kind<QuasiStaticSpec>(scene.bodies[0]);
-  body.offline = Offline{.element = "p1"};
+  body.offline = Offline{.element = FiniteElement::p1};
   scene.bodies[0] = body;
   PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
   rig.start(stroke.path(0));

@@ -12,7 +12,8 @@ struct MovingPress {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] the middle of its top
   double young = 5000, poisson = 0.3, density = 1000;  ///< [Pa], [1], [kg/m^3]
   double damping = 5;                                  ///< [1/s]
-  std::string integrator = "rk4", precision = "single";
+  Integrator integrator = Integrator::rk4;
+  Precision precision = Precision::float32;
   double radius = 0.005, depth = 0.002;  ///< [m]
   Eigen::Vector2d beside{0.12, -0.23};   ///< [1] of a cell, from the node nearest to the middle
   double friction = 0;

@@ -102,7 +102,7 @@ Result play_at_step(Scene scene, double share) {
     const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
     const auto organ =
         std::visit([&](const auto& spec) { return make_organ(spec, archives[b], settings); }, scene.bodies[b]);
-    const double bound = max_step(integrator_of(*motion), organ->model().frequency_bound(), motion->damping);
+    const double bound = max_step(motion->integrator, organ->model().frequency_bound(), motion->damping);
     motion->step = share * bound;
     bounds += fmt::format("; bound {:.3g} s of body '{}'", bound, name_of(scene.bodies[b]));
   }

@@ -102,8 +102,8 @@ std::vector<Point> shell_points(const Extent& extent) {
                                           kDuctRadius * (1 + t / 2), 0.001);
                       },
                       120});
-  for (const char* bending : {"polynomial", "discrete_kirchhoff"})
-    points.push_back({"singular triangle", "bending", bending, [=] {
+  for (const Bending bending : {Bending::polynomial, Bending::discrete_kirchhoff})
+    points.push_back({"singular triangle", "bending", std::string(word_of(bending)), [=] {
                         Scene scene = duct_scene(0.001);
                         duct_of(scene).shell.bending = bending;
                         return press_wall(scene, plate_mesh(8), 0.0005, 0.001);

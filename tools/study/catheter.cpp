@@ -134,8 +134,9 @@ class CatheterMethod : public Method {
       add("particles", std::to_string(particles),
           [b = body_, particles](Scene& s) { shape_of(s, b).particles = particles; });
     }
-    const std::string other = shape(scene_).integrator == "implicit" ? "semi_implicit" : "implicit";
-    add("integrator", other, [b = body_, other](Scene& s) { shape_of(s, b).integrator = other; });
+    const bool implicit = shape(scene_).integrator == ChainIntegrator::implicit;
+    const ChainIntegrator other = implicit ? ChainIntegrator::semi_implicit : ChainIntegrator::implicit;
+    add("integrator", std::string(word_of(other)), [b = body_, other](Scene& s) { shape_of(s, b).integrator = other; });
     for (const int ticks : {2, 4}) {
       if (quick_ && ticks != 2) continue;
       const double hz = ticks * scene_.rates.haptic_hz;
@@ -185,7 +186,7 @@ class CatheterMethod : public Method {
     Scene scene = scene_;
     Catheter& fine = shape_of(scene, body_);
     fine.particles = (quick_ ? 4 : 6) * fine.particles;
-    fine.integrator = "implicit";
+    fine.integrator = ChainIntegrator::implicit;
     const double tick = interval() / 8;
     course_ = Rig(scene, body_, tick, fine.damping).course(interval());
     reference_ = Rig(scene, body_, 4 * tick, kPullDamping).rest();
@@ -214,7 +215,7 @@ class CatheterMethod : public Method {
     Scene scene = scene_;
     Catheter& fine = shape_of(scene, body_);
     fine.particles = times * (fine.particles - 1) + 1;
-    fine.integrator = "implicit";
+    fine.integrator = ChainIntegrator::implicit;
     return insertion_->course(scene, interval() / (2 * times), interval());
   }
 

@@ -78,7 +78,7 @@ Field rest_of(const Archive& archive, const Body& body, const std::vector<int>& 
   const auto model = make_model(damped, elastic_mesh(archive));
   model->remove(slot);
   for (int n = 0; n < archive.surface.size(); ++n) model->set_load(n, load[archive.surface.node_number[n]]);
-  const double step = 0.9 * max_step(integrator_of(motion), model->frequency_bound(), motion.damping);
+  const double step = 0.9 * max_step(motion.integrator, model->frequency_bound(), motion.damping);
   Field u(load.size(), Eigen::Vector3d::Zero());
   for (int round = 0; round < 400; ++round) {
     const auto times = time_steps(0, 100, [&](int) { model->step(step); });

@@ -55,11 +55,12 @@ class Dynamic : public Method {
       add("corotational", turning ? "off" : "on", true,
           [turning](Body& body) { motion_of(body).corotational = !turning; });
     if (!own_ && solid_->quick()) return all;
-    const std::string integrator = motion.integrator == "rk4" ? "semi_implicit" : "rk4";
-    add("integrator", integrator, true,
+    const Integrator integrator = motion.integrator == Integrator::rk4 ? Integrator::semi_implicit : Integrator::rk4;
+    add("integrator", std::string(word_of(integrator)), true,
         [integrator](Body& body) { motion_of(body).integrator = integrator, motion_of(body).step = 0; });
-    const std::string precision = motion.precision == "single" ? "double" : "single";
-    add("precision", precision, true, [precision](Body& body) { motion_of(body).precision = precision; });
+    const Precision precision = motion.precision == Precision::float32 ? Precision::float64 : Precision::float32;
+    add("precision", std::string(word_of(precision)), true,
+        [precision](Body& body) { motion_of(body).precision = precision; });
     for (const int parts : {1, 2, 4, 8}) {
       if ((solid_->quick() || !own_) && parts != 1 && parts != 4) continue;
       const double step = 0.9 * bound() / parts;
@@ -180,7 +181,7 @@ class Dynamic : public Method {
     Body moving = scene.bodies[body()];
     model_.become(moving);
     auto still = as_kind<QuasiStaticSpec>(solid_->solid());
-    still.offline = Offline{.element = "p1"};
+    still.offline = Offline{.element = FiniteElement::p1};
     scene.bodies[body()] = still;
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
@@ -216,8 +217,8 @@ class Dynamic : public Method {
         fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, kind_of(of),
                     ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
     if (!small_step_.contains(key)) {
-      motion.integrator = "rk4";
-      motion.precision = "double";
+      motion.integrator = Integrator::rk4;
+      motion.precision = Precision::float64;
       motion.step = 0;
       const Scene alone = solid_->press_scene(scene, 0);
       motion.step = on_first_patch(alone, ready)->rig().organ().max_step() / 16;

@@ -62,12 +62,13 @@ class QuasiStatic : public Method {
                      serves && open});
     };
     add("scene", "as it is", [](Scene&) {});
-    const std::string& own_rule = solid_->scene().contact.rule;
-    for (const std::string rule : {"barycentric", "alpha", "patch"})  // alpha is there for comparison
+    const ContactRule own_rule = solid_->scene().contact.rule;
+    for (const ContactRule rule :
+         {ContactRule::barycentric, ContactRule::alpha, ContactRule::patch})  // alpha is there for comparison
       if (rule != own_rule)
         add(
-            "rule", rule, [rule](Scene& scene) { scene.contact.rule = rule; },
-            own_rule == ContactSpec{}.rule && rule != "alpha");
+            "rule", std::string(word_of(rule)), [rule](Scene& scene) { scene.contact.rule = rule; },
+            own_rule == ContactSpec{}.rule && rule != ContactRule::alpha);
     for (const int count : tensor_counts())
       add("tensors", std::to_string(count), [b, nodes = nearest_nodes(*solid_, count)](Scene& scene) {
         as_quasi_static(scene.bodies[b]).touchable = NodeSelector{{.indices = nodes, .box = {}, .group = {}}};
@@ -77,8 +78,8 @@ class QuasiStatic : public Method {
     const std::vector<std::pair<std::string, Offline>> better{
         {"p1", {}},
         {"refine 1", {.refine = 1}},
-        {"p2 refine 1", {.refine = 1, .element = "p2"}},
-        {"locking_free refine 1", {.refine = 1, .formulation = "locking_free"}},
+        {"p2 refine 1", {.refine = 1, .element = FiniteElement::p2}},
+        {"locking_free refine 1", {.refine = 1, .formulation = Formulation::locking_free}},
         {"refine 2", {.refine = 2}}};
     for (const auto& [value, offline] : better) {
       if (solid_->quick() && value != "p1") continue;

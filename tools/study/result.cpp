@@ -8,19 +8,19 @@
 
 namespace palpate::study {
 
-const char* const study_head =
+const char* const kStudyHead =
     "scene,method,knob,value,step_us_median,step_us_p99,offline_s,memory_bytes,err_u_rel,err_f_rel,reference";
 
 namespace {
 
-const char* const depth_head =
+const char* const kDepthHead =
     "scene,method,knob,value,patch,depth_m,depth_per_radius,force_N,reference_force_N,err_u_rel,err_f_rel,"
     "reference";
-const char* const course_head =
+const char* const kCourseHead =
     "scene,method,knob,value,time_s,force_N,reference_force_N,displacement_m,reference_displacement_m";
-const char* const slide_head = "scene,method,knob,value,friction,path_m,force_N,tangential_N,reference_force_N";
-const char* const touch_head = "scene,method,knob,value,friction,mean_force_N,ripple,jump,turn,buzz,spread";
-const char* const note_head = "scene,method,knob,value,text";
+const char* const kSlideHead = "scene,method,knob,value,friction,path_m,force_N,tangential_N,reference_force_N";
+const char* const kTouchHead = "scene,method,knob,value,friction,mean_force_N,ripple,jump,turn,buzz,spread";
+const char* const kNoteHead = "scene,method,knob,value,text";
 
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
@@ -95,12 +95,12 @@ void append(Result& to, const Result& from) {
 }
 
 void write_result(const Result& result, const std::filesystem::path& folder) {
-  write_table(folder / "study.csv", study_head, result.rows);
-  write_table(folder / "depth.csv", depth_head, result.depths);
-  write_table(folder / "course.csv", course_head, result.courses);
-  write_table(folder / "slide.csv", slide_head, result.slides);
-  write_table(folder / "touch.csv", touch_head, result.touches);
-  write_table(folder / "notes.csv", note_head, result.notes);
+  write_table(folder / "study.csv", kStudyHead, result.rows);
+  write_table(folder / "depth.csv", kDepthHead, result.depths);
+  write_table(folder / "course.csv", kCourseHead, result.courses);
+  write_table(folder / "slide.csv", kSlideHead, result.slides);
+  write_table(folder / "touch.csv", kTouchHead, result.touches);
+  write_table(folder / "notes.csv", kNoteHead, result.notes);
 }
 
 void write_fragment(const Result& result, const std::filesystem::path& file) {

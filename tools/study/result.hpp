@@ -8,7 +8,7 @@ namespace palpate::study {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
 
-extern const char* const study_head;  ///< first line of study.csv
+extern const char* const kStudyHead;  ///< first line of study.csv
 
 /// One line of study.csv: what one setting of one knob of a method costs and how wrong it is, everything else
 /// being as the scene has it.

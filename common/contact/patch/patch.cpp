@@ -335,8 +335,7 @@ void Patch::state(State& s) {
   s.value(depth_);
   s.value(normal_);
   s.value(at_);
-  s.value(anchor_.nodes);
-  s.value(anchor_.weights);
+  palpate::state(s, anchor_);
   s.value(sticks_);
   if (memory_) memory_->state(s);
   for (PatchForce& f : forces_) {

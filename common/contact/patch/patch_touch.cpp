@@ -48,16 +48,20 @@ void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<con
 }
 
 // One patch after another, each against the others' newest forces.
-void PatchTouch::touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others,
-                       const Past& past) {
+void PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) {
+  const Past& past = beside.past;
   const Patch::Ground ground{surface_, *near_field_, friction_};
   for (Part& own : parts_) {
+    if (beside.holds(own.tool)) {
+      own.patch.lift();
+      continue;
+    }
     const MovingTool& tool = tools[own.tool];
     const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
     if (nodes.empty()) continue;
     moved_.assign(nodes.size(), Vector3d::Zero());
     if (past) past(nodes, {moved_.data()->data(), 3 * nodes.size()});
-    others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
+    beside.others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
     meet_others(own, nodes, static_cast<bool>(past));
     own.patch.press(ground, moved_);
     own.offset = tool.to_part(own.part, own.patch.at());

@@ -29,9 +29,14 @@ class PatchTouch {
 
   /// Fills what past forces do to nodes [m], three entries a node.
   using Past = std::function<void(std::span<const int> nodes, std::span<double> displacement)>;
-  /// Solves for the forces of one step. `others` visits what else acts on the body; `past`: of tissue that relaxes.
-  void touch(std::span<const MovingTool> tools, const std::function<void(const VisitForce&)>& others,
-             const Past& past = {});
+  /// The body that the patches lie on, beside them.
+  struct Beside {
+    std::function<void(const VisitForce&)> others;  ///< visits what else acts on it
+    std::function<bool(int tool)> holds;            ///< jaws of the tool hold it: then they touch, and no patch does
+    Past past = {};                                 ///< of tissue that relaxes
+  };
+  /// Solves for the forces of one step.
+  void touch(std::span<const MovingTool> tools, const Beside& beside);
   /// Sum over a tool's patches of their pressures' forces [N] on the tissue, without shear.
   Eigen::Vector3d pressing(int tool) const;
   /// Adds what they do to the tools.

@@ -19,9 +19,7 @@ constexpr double kMaxStride = 0.5;  ///< of the spacing: by how much neighbours 
 constexpr int kMaxRounds = 4;       ///< of passages through the wall found and closed
 
 int substeps_for(const Catheter& shape, double step, double bound) {
-  if (shape.integrator == "implicit") return 1;
-  if (shape.integrator != "semi_implicit")
-    throw std::runtime_error("a catheter's integrator is implicit or semi_implicit");
+  if (shape.integrator == ChainIntegrator::implicit) return 1;
   const double needed = std::ceil(step * bound / kStepMargin);
   if (needed <= kMaxSubsteps) return std::max(1, static_cast<int>(needed));
   throw std::runtime_error(
@@ -38,7 +36,7 @@ CatheterBody::CatheterBody(const CatheterSettings& settings, const CatheterWall*
       step_(settings.step),
       damping_(settings.shape.damping),
       gravity_(settings.shape.gravity),
-      implicit_(settings.shape.integrator == "implicit"),
+      implicit_(settings.shape.integrator == ChainIntegrator::implicit),
       substeps_(substeps_for(settings.shape, settings.step, chain_.frequency_bound())),
       wall_(wall),
       lumen_(wall, chain_.rest(), settings.shape.radius),

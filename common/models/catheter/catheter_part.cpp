@@ -139,7 +139,7 @@ void CatheterPart::tell(BodyMessage& message) {
 }
 
 std::string CatheterPart::introduction() const {
-  const std::string steps = settings_.shape.integrator == "implicit"
+  const std::string steps = settings_.shape.integrator == ChainIntegrator::implicit
                                 ? "implicit, one step a tick"
                                 : fmt::format("semi-implicit, {} substeps a tick", body_->substeps());
   return fmt::format("{} particles, {}", body_->size(), steps);

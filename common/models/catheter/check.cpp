@@ -43,10 +43,10 @@ void add_warnings(const CatheterSpec& body, int substeps, CheckReport& report) {
         fmt::format("catheter '{}' has its particles {:.3g} m apart, more than it is thick, {:.3g} m: a wall "
                     "can pass between them",
                     body.name, spacing, 2 * catheter.radius));
-  if (catheter.integrator != "implicit" && substeps > 8)
+  if (catheter.integrator != ChainIntegrator::implicit && substeps > 8)
     report.warnings.push_back(
         fmt::format("catheter '{}' is stiff: {} needs {} steps in each haptic one; implicit takes one", body.name,
-                    catheter.integrator, substeps));
+                    word_of(catheter.integrator), substeps));
 }
 
 }  // namespace
@@ -67,8 +67,8 @@ void check(const CatheterSpec& body, const CheckSettings& settings, CheckReport&
   report.say(fmt::format(
       "  springs: frequencies up to {:.4g} Hz; {}, {} step{} in each haptic one; damping {} 1/s, "
       "gravity {} {} {} m/s2",
-      chain.frequency_bound() / (2 * std::numbers::pi), catheter.integrator, substeps, substeps == 1 ? "" : "s",
-      catheter.damping, catheter.gravity.x(), catheter.gravity.y(), catheter.gravity.z()));
+      chain.frequency_bound() / (2 * std::numbers::pi), word_of(catheter.integrator), substeps,
+      substeps == 1 ? "" : "s", catheter.damping, catheter.gravity.x(), catheter.gravity.y(), catheter.gravity.z()));
   check_rest(body, settings);
   add_warnings(body, substeps, report);
   report.meets = [catheter](const Segment& axis, double radius) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,14 @@
 #include "common/models/kind.hpp"
 
 namespace palpate {
+
+/// How the chain of particles goes on by a step: at once at any stiffness, or by BHS01 eq. 28 in substeps.
+enum class ChainIntegrator { implicit, semi_implicit };
+
+inline const auto& words_of(ChainIntegrator) {
+  static constexpr std::array<std::string_view, 2> words{"implicit", "semi_implicit"};
+  return words;
+}
 
 /// A flexible catheter of particles (BHS01 sec. V-C-2), straight at rest.
 struct Catheter {
@@ -19,7 +28,7 @@ struct Catheter {
   double sleeve = 0;                                  ///< [m] of a straight fixed sleeve, from `tail` towards `tip`
   double damping = 5;                                 ///< [1/s] force -damping m v on a particle
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  std::string integrator = "implicit";                ///< implicit | semi_implicit (BHS01 eq. 28, in substeps)
+  ChainIntegrator integrator = ChainIntegrator::implicit;
 };
 
 inline void describe(Description& d, Catheter& c) {
@@ -41,7 +50,7 @@ inline void describe(Description& d, Catheter& c) {
   d.choice({"integrator", "",
             "`\"implicit\"`: stable at any stiffness; `\"semi_implicit\"`: the paper's, in as many substeps as the "
             "stiffness asks for"},
-           c.integrator, {"implicit", "semi_implicit"});
+           c.integrator);
 }
 
 /// A thin flexible tube of particles. Stretching and bending follow from Young's modulus and the radius.

@@ -76,12 +76,12 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
 }
 
 void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report) {
-  if (settings.contact.rule == "patch" && !settings.tools.empty())
+  if (settings.contact.rule == ContactRule::patch && !settings.tools.empty())
     report.say("  touch: by its mesh, as under rule \"barycentric\": patches are for solid bodies");
 }
 
 void say_patches(const CheckSettings& settings, const std::string& body, bool shafts, CheckReport& report) {
-  if (settings.contact.rule != "patch") return;
+  if (settings.contact.rule != ContactRule::patch) return;
   for (const Tool& tool : settings.tools) {
     const bool ball = abilities_of(tool).ball.has_value();
     if (shafts)
@@ -101,7 +101,7 @@ void add_near_field(const char* owner, const CheckSettings& settings, const Surf
                     CheckReport& report) {
   double radius = 0;
   for (const PatchPart& part : patch_parts(settings.tools, shafts)) radius = std::max(radius, part.radius);
-  if (settings.contact.rule != "patch" || radius == 0) return;
+  if (settings.contact.rule != ContactRule::patch || radius == 0) return;
   report.memory.push_back({owner, "near field of patches", NearField::bytes_of(surface, radius)});
 }
 
@@ -118,7 +118,7 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
       warnings.push_back(fmt::format("tool '{}' has {} of {:.3g} m, {} of body '{}': {}", tool.name, end.radius_of,
                                      radius, than, body, so));
     };
-    const bool by_mesh = !patches || settings.contact.rule != "patch" || !end.ball;
+    const bool by_mesh = !patches || settings.contact.rule != ContactRule::patch || !end.ball;
     if (radius > across)
       warn(fmt::format("more than the {:.3g} m across", across), "it presses as a flat plate; is it in metres?");
     else if (by_mesh && radius < h)

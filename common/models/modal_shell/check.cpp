@@ -29,7 +29,8 @@ void say_boundary_conditions(const ShellSpec& body, const ShellMesh& mesh, Check
 
 void say_wall(const Shell& shell, const ShellMesh& mesh, CheckReport& report) {
   const std::size_t mouths = boundary_loops(mesh.triangles).size();
-  std::string wall = fmt::format("  wall: {} m thick, bending {}; {}", shell.thickness, shell.bending, form_of(mouths));
+  std::string wall =
+      fmt::format("  wall: {} m thick, bending {}; {}", shell.thickness, word_of(shell.bending), form_of(mouths));
   if (mouths == 2) {
     const double radius = lumen_radius(mesh);
     wall += fmt::format(", least radius {:.4g} m, t/R {:.3g}, {:.4g} m wide inside", radius, shell.thickness / radius,

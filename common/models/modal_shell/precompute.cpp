@@ -112,8 +112,7 @@ SurfaceMap make_surface_map(const ShellSpec& body, const ShellMesh& mesh, const 
 ShellSystem shell_system(const ModalShellSpec& body, const ShellMesh& mesh, const std::string& where) {
   auto dofs = apply_boundary_conditions(mesh, body, where);
   check_shell(body, mesh, dofs, where);
-  const auto bending = body.shell.bending == "polynomial" ? Bending::polynomial : Bending::discrete_kirchhoff;
-  return make_shell_system(mesh, material_of(body), bending, std::move(dofs), where);
+  return make_shell_system(mesh, material_of(body), body.shell.bending, std::move(dofs), where);
 }
 
 Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Progress& progress) try {

@@ -46,7 +46,7 @@ void say_extent(const MovingKind& kind, const TetMesh& mesh, const Archive& arch
 
 std::unique_ptr<HybridPart> make_rest(const MovingSpec& body, const Archive& archive, double friction) {
   if (!archive.hybrid) return nullptr;
-  return std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == "single");
+  return std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == Precision::float32);
 }
 
 void say_step(const MovingSpec& body, const MovingKind& kind, const Archive& archive, CheckReport& report) {
@@ -55,7 +55,7 @@ void say_step(const MovingSpec& body, const MovingKind& kind, const Archive& arc
   if (rest) rest->couple(*model);
   const double bound = model->frequency_bound();
   const Dynamic& motion = body.dynamic;
-  const double largest = max_step(integrator_of(motion), bound, motion.damping);
+  const double largest = max_step(motion.integrator, bound, motion.damping);
   if (motion.step > largest)
     throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
                                          body.name, motion.step, largest));
@@ -123,21 +123,21 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   check_solid(body, kind.name, solid, settings, report);
   say_extent(kind, solid.mesh, archive, report);
   const Dynamic& d = body.dynamic;
-  report.say(fmt::format("  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}", d.integrator,
-                         d.precision, d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
+  report.say(fmt::format("  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}", word_of(d.integrator),
+                         word_of(d.precision), d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
                          d.corotational ? ", corotational" : ""));
   say_step(body, kind, archive, report);
   say_patches(settings, body.name, false, report);
   const std::vector<std::string> of_material = material_warnings(body);
   report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
   if (body.tearing)
-    report.say(fmt::format("  tearing: {} above {}", body.tearing->criterion, body.tearing->threshold));
+    report.say(fmt::format("  tearing: {} above {}", word_of(body.tearing->criterion), body.tearing->threshold));
   else
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
   report.memory = memory(body, kind, settings, archive);
   add_near_field("deform_node", settings, archive.surface, false, report);
-  if (settings.contact.rule == "alpha")
+  if (settings.contact.rule == ContactRule::alpha)
     report.warnings.push_back(
         fmt::format("body '{}' moves: it is touched as under rule \"barycentric\"; \"alpha\" holds nodes of the others",
                     body.name));

@@ -32,9 +32,9 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       shown_(archive.surface.triangles, topology_),
       surface_(topology_, mesh_.rest, bucket_size(settings.contact, archive.surface)),
       model_(make(mesh_)),
-      still_(archive.hybrid
-                 ? std::make_unique<HybridTouch>(archive, settings, body.dynamic.precision == "single", *model_)
-                 : nullptr),
+      still_(archive.hybrid ? std::make_unique<HybridTouch>(archive, settings,
+                                                            body.dynamic.precision == Precision::float32, *model_)
+                            : nullptr),
       contacts_(archive, mesh_, topology_, surface_, *model_, still_.get(), settings),
       fading_ticks_(std::max(1, static_cast<int>(std::lround(kFading / settings.dt)))),
       position_(mesh_.rest),
@@ -49,15 +49,14 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
   for (int node = 0; node < mesh_.nodes(); ++node)
     if (std::ranges::all_of(mesh_.fixed[node], std::identity{})) surface_.fix(node);
   const Dynamic& motion = body.dynamic;
-  const double bound = palpate::max_step(integrator_of(motion), model_->frequency_bound(), motion.damping);
+  const double bound = palpate::max_step(motion.integrator, model_->frequency_bound(), motion.damping);
   if (motion.step > bound)
     throw std::runtime_error(
         fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", name_, motion.step, bound));
   max_step_ = motion.step > 0 ? motion.step : kBoundShare * bound;
   touched_step_ = std::min(
       max_step_, kBoundShare * palpate::max_step(Integrator::semi_implicit, model_->frequency_bound(), motion.damping));
-  if (body.tearing)
-    tearing_.emplace(mesh_, tear_criterion(body.tearing->criterion), body.tearing->threshold, kMaxTears);
+  if (body.tearing) tearing_.emplace(mesh_, body.tearing->criterion, body.tearing->threshold, kMaxTears);
   Eigen::Vector3d low = mesh_.rest[0], high = low;
   for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
   diagonal_ = (high - low).norm();

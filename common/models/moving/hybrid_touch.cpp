@@ -18,7 +18,7 @@ SurfaceMap quasi_static_surface(const Archive& archive) {
 // Of parts that press by a patch.
 ToolContacts::Options beside_patches(const StepSettings& settings) {
   ToolContacts::Options options;
-  if (settings.contact.rule == "patch")
+  if (settings.contact.rule == ContactRule::patch)
     options.elsewhere = [parts = patch_parts(settings.tools, false)](int tool, int part, int) {
       return std::ranges::any_of(parts, [&](const PatchPart& p) { return p.tool == tool && p.part == part; });
     };
@@ -40,7 +40,7 @@ HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, b
 }
 
 bool HybridTouch::grasping(int tool) const {
-  return std::ranges::any_of(contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
+  return part_.law().grasps(tool);
 }
 
 void HybridTouch::drop_tool(int tool) {

@@ -285,8 +285,7 @@ void TissuePatches::state(State& s) {
     s.value(tip.motion.matrix());
     s.value(tip.ease);
     s.value(tip.contact.touch);
-    s.value(tip.contact.anchor.nodes);
-    s.value(tip.contact.anchor.weights);
+    palpate::state(s, tip.contact.anchor);
     for (Vector3d* v : {&tip.contact.normal, &tip.contact.force, &tip.contact.at}) s.value(*v);
     s.value(tip.contact.give);
     if (s.restoring()) nodes_->resume(number(tip), seen_from_world(tip));

@@ -34,9 +34,10 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
       free_(mesh.rest),
       response_(mesh, model),
       law_({response_, free_}, ContactLaw::Rule::barycentric, settings.contact.friction, kMaxContacts),
-      patches_(settings.contact.rule == "patch" ? std::make_unique<TissuePatches>(archive, mesh, topology, surface,
-                                                                                  model, still, response_, settings)
-                                                : nullptr),
+      patches_(
+          settings.contact.rule == ContactRule::patch
+              ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
+              : nullptr),
       contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
   aimed_.reserve(kMaxContacts);
   all_.reserve(kMaxContacts + settings.tools.size());
@@ -62,7 +63,7 @@ void TissueTouch::gather() {
 }
 
 bool TissueTouch::grasping(int tool) const {
-  return std::ranges::any_of(law_.contacts(), [&](const TouchContact& c) { return c.grasped && c.is_by(tool); });
+  return law_.grasps(tool);
 }
 
 // What pressed a triangle that has been cut away goes on pressing the nodes that are left of it, and gives way from

@@ -22,7 +22,7 @@ namespace {
 constexpr double kLikeBall = 0.25;  // by which a tip may differ from the ball that pressed
 
 bool has_linear_displacement(const std::optional<Offline>& offline) {
-  return !offline || (offline->element == "p1" && offline->formulation == "displacement");
+  return !offline || (offline->element == FiniteElement::p1 && offline->formulation == Formulation::displacement);
 }
 
 /// What the tensors come from, and why where the scene does not say.
@@ -32,7 +32,7 @@ void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, int surface_n
   const std::string why = why_offline(body, surface_nodes);
   report.say(fmt::format("  offline: tensors from {} {} tetrahedra with {} nodes, {}{}", space.elements.size(),
                          space.per_element == 4 ? "linear" : "quadratic", space.nodes.size(),
-                         offline.formulation == "locking_free" ? "locking-free" : "displacement formulation",
+                         offline.formulation == Formulation::locking_free ? "locking-free" : "displacement formulation",
                          why.empty() ? "" : "; chosen, " + why));
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));

@@ -12,7 +12,8 @@ bool takes_minutes_with_quadratic(int surface_nodes) {
 }  // namespace
 
 Offline offline_of(const QuasiStaticSpec& body, int surface_nodes) {
-  return body.offline.value_or(Offline{.element = takes_minutes_with_quadratic(surface_nodes) ? "p1" : "p2"});
+  return body.offline.value_or(
+      Offline{.element = takes_minutes_with_quadratic(surface_nodes) ? FiniteElement::p1 : FiniteElement::p2});
 }
 
 std::string why_offline(const QuasiStaticSpec& body, int surface_nodes) {

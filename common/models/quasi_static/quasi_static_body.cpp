@@ -9,13 +9,13 @@ namespace palpate {
 namespace {
 
 bool by_patch(const StepSettings& settings) {
-  return settings.contact.rule == "patch";
+  return settings.contact.rule == ContactRule::patch;
 }
 
 // [1] Over how many edges of the mesh the elements behind the tensors know its compliance: nearer by they are too
 // stiff.
 double edges_resolved(const Offline& offline) {
-  return (offline.element == "p2" ? 2.0 : 4.0) / (1 << offline.refine);
+  return (offline.element == FiniteElement::p2 ? 2.0 : 4.0) / (1 << offline.refine);
 }
 
 constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
@@ -155,9 +155,10 @@ void QuasiStaticBody::combine(std::span<const int> nodes, std::span<double> disp
 // the past leave it.
 LawOutcome QuasiStaticBody::hold(std::span<const MovingTool> tools) {
   if (patch_) {
-    const auto others = [this](const VisitForce& visit) { TouchBody::for_each_force(visit); };
-    const auto past = [this](std::span<const int> nodes, std::span<double> u) { recall_ahead(nodes, u); };
-    patch_->touch(tools, others, memory_ ? PatchTouch::Past(past) : PatchTouch::Past());
+    PatchTouch::Beside beside{.others = [this](const VisitForce& visit) { TouchBody::for_each_force(visit); },
+                              .holds = [this](int tool) { return law().grasps(tool); }};
+    if (memory_) beside.past = [this](std::span<const int> nodes, std::span<double> u) { recall_ahead(nodes, u); };
+    patch_->touch(tools, beside);
   }
   if (patch_ || memory_) lay_ground();
   const LawOutcome outcome = TouchBody::hold(tools);

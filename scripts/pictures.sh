@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# pictures.sh [NAME ...]: draws the pictures of README anew, in docs/pictures: liver, hepatectomy, catheter_insertion by the
+# scenes in lock step, live by a browser (needs chromium, chromium-driver and python3-selenium). All of them where none is named.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+bin=build/release/bin
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# draw NAME SCENE FROM TO: the moment of the largest force between FROM and TO [s].
+draw() {
+  "$bin/palpate" drive "scenes/$2.toml" --seconds "$4" --log "$work/$1.lcmlog"
+  "$bin/palpate" film "$work/$1.lcmlog" --from "$3" --to "$4" --width 800 --height 600 --still "$work/$1.png" -o "$work/$1.mp4"
+}
+jpeg() { ffmpeg -loglevel error -y -i "$work/$1.png" -q:v 2 "docs/pictures/$1.jpg"; }
+
+[ $# -gt 0 ] || set -- liver hepatectomy catheter_insertion live
+for name in "$@"; do
+  case "$name" in
+    liver) draw liver liver 0 8 && cp "$work/liver.png" docs/pictures/liver.png ;;
+    hepatectomy) draw hepatectomy hepatectomy 13 13.2 && jpeg hepatectomy ;;
+    catheter_insertion) draw catheter_insertion catheter_insertion 10.5 10.8 && jpeg catheter_insertion ;;
+    live) /usr/bin/python3 scripts/live_view.py --rounds 1 --picture "$work/live.png" && jpeg live ;;
+    -h|--help) sed -n '2,3p' "$0" ;;
+    *) echo "pictures.sh: unknown picture $name" >&2; exit 2 ;;
+  esac
+done
