@@ -49,6 +49,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
   for (int node = 0; node < mesh_.nodes(); ++node)
     if (std::ranges::all_of(mesh_.fixed[node], std::identity{})) surface_.fix(node);
   const Dynamic& motion = body.dynamic;
+  damping_ = motion.damping;
   const double bound = palpate::max_step(motion.integrator, model_->frequency_bound(), motion.damping);
   if (motion.step > bound)
     throw std::runtime_error(
@@ -95,7 +96,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
   take_tools(tools);
   work_jaws(tools);
-  fade();
+  load();
   if (still_) still_->find(in_tick_);
   contacts_.find(in_tick_, dt / steps_in(dt, true), [this](int tool) { return holds(tool); });
   const bool touched = contacts_.touched();
@@ -105,6 +106,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   for (int s = 1; s <= steps; ++s) {
     move_tools(static_cast<double>(s) / steps);
     if (still_) still_->hold(in_step_);
+    for (FloatingPart& part : floating_) part.give_back_damping(*model_, mesh_.rest);
     if (touched)
       contacts_.step(in_step_, dt / steps);
     else
@@ -247,44 +249,46 @@ void DynamicOrgan::cut_from_model(std::span<const int> gone) {
   for (std::size_t i = first; i < fading_.size(); ++i) fading_[i].force -= model_->elastic_force(fading_[i].node);
 }
 
-void DynamicOrgan::fade() {
+// What has been cut away fades, and what floats is damped for its swinging alone.
+void DynamicOrgan::load() {
+  for (const FloatingPart& part : floating_) part.unload(*model_);
   for (const Fading& f : fading_) model_->set_load(f.node, Eigen::Vector3d::Zero());
   std::erase_if(fading_, [](Fading& f) { return --f.ticks_left <= 0; });
   for (const Fading& f : fading_)
     model_->set_load(f.node, model_->load(f.node) + static_cast<double>(f.ticks_left) / fading_ticks_ * f.force);
+  for (FloatingPart& part : floating_) part.keep_loads(*model_);
 }
 
 // Which parts float now.
 void DynamicOrgan::follow_change() {
   const int parts = topology_.parts(part_of_);
-  std::vector<char> held(parts, 0);
-  std::vector<int> first(parts, -1);
+  std::vector<char> held(parts, 0), listed(mesh_.nodes(), 0);
+  std::vector<std::vector<int>> nodes(parts);
   for (int t = 0; t < topology_.size(); ++t) {
     const int part = part_of_[t];
     if (part < 0) continue;
-    if (first[part] < 0) first[part] = t;
-    for (int node : topology_.tetrahedron(t))
+    for (int node : topology_.tetrahedron(t)) {
       held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
+      if (!std::exchange(listed[node], 1)) nodes[part].push_back(node);
+    }
     for (int f = 0; f < 4; ++f) held[part] |= is_joint(4 * t + f);
   }
-  loose_.clear();
+  floating_.clear();
   for (int part = 0; part < parts; ++part)
-    if (!held[part]) loose_.push_back(first[part]);
+    if (!held[part]) floating_.emplace_back(std::move(nodes[part]), damping_);
 }
 
 // A part that floats and has gone far away is not followed for ever.
 void DynamicOrgan::drop_fallen() {
-  if (loose_.empty()) return;
   const std::size_t first = removed_.size();
-  for (int t : loose_) {
-    if (!topology_.alive(t)) continue;
-    const Eigen::Vector3d& at = position_[topology_.tetrahedron(t)[0]];
+  for (const FloatingPart& part : floating_) {
+    const Eigen::Vector3d& at = position_[part.nodes()[0]];
     if ((at - middle_).squaredNorm() < kLostBeyond * kLostBeyond * diagonal_ * diagonal_) continue;
-    topology_.parts(part_of_);
-    const int part = part_of_[t];
+    std::vector<char> of_it(mesh_.nodes(), 0);
+    for (const int n : part.nodes()) of_it[n] = 1;
     std::vector<int> gone;
-    for (int other = 0; other < topology_.size(); ++other)
-      if (part_of_[other] == part) gone.push_back(other);
+    for (int t = 0; t < topology_.size(); ++t)
+      if (topology_.alive(t) && of_it[topology_.tetrahedron(t)[0]]) gone.push_back(t);
     topology_.erase(gone);
     surface_.follow();
     removed_.insert(removed_.end(), gone.begin(), gone.end());

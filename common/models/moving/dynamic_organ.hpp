@@ -16,6 +16,7 @@
 #include "common/dynamics/spec.hpp"
 #include "common/dynamics/tearing.hpp"
 #include "common/mesh/shown_surface.hpp"
+#include "common/models/moving/floating_part.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/tissue_touch.hpp"
 #include "common/tool/kinematics.hpp"
@@ -125,7 +126,7 @@ class DynamicOrgan {
   void drop_fallen();
   void remove(int tetrahedron);
   void cut_from_model(std::span<const int> gone);
-  void fade();
+  void load();
   void note_change(RemovalCause cause, std::size_t first);
   void follow_change();
 
@@ -140,13 +141,15 @@ class DynamicOrgan {
   TissueTouch contacts_;
   std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
+  double damping_;          ///< [1/s]
   double diagonal_;         ///< [m] of the body at rest
   Eigen::Vector3d middle_;  ///< [m] of the body at rest
   int fading_ticks_;
   std::vector<Fading> fading_;
-  std::vector<Eigen::Vector3d> position_;       ///< [m] per node
-  std::vector<MovingTool> in_tick_, in_step_;   ///< per tool: from before to now in the tick, and in one of its steps
-  std::vector<int> removed_, part_of_, loose_;  ///< loose_: one tetrahedron of each part that floats
+  std::vector<Eigen::Vector3d> position_;      ///< [m] per node
+  std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
+  std::vector<int> removed_, part_of_;
+  std::vector<FloatingPart> floating_;
   std::vector<Change> changes_;
   double moved_with_ = 0;  ///< [J] kinetic energy at the last calm()
 };

@@ -1,0 +1,79 @@
+// What jaws carry has weight and inertia and nothing else: in hepatectomy, from the cut to the end.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "common/devices/device.hpp"
+#include "common/fem/dense.hpp"
+#include "common/scene/ensure_archive.hpp"
+#include "common/scene/scene.hpp"
+#include "tools/rig/two_nodes.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kForceps = 0, kSevered = 12800, kEnd = 14200;  // [ticks] while the segment is carried away
+
+/// What floats of a body.
+struct Momentum {
+  double mass = 0;                  ///< [kg]
+  Vector3d sum = Vector3d::Zero();  ///< [kg m/s]
+};
+
+Momentum floating(const DynamicOrgan& organ) {
+  std::vector<int> part;
+  organ.topology().parts(part);
+  std::vector<char> held(part.size(), 0), listed(organ.mesh().nodes(), 0);
+  for (int t = 0; t < organ.topology().size(); ++t)
+    for (int f = 0; f < 4; ++f)
+      if (part[t] >= 0 && organ.is_joint(4 * t + f)) held[part[t]] = 1;
+  Momentum all;
+  for (int t = 0; t < organ.topology().size(); ++t) {
+    if (part[t] < 0 || held[part[t]]) continue;
+    for (const int n : organ.topology().tetrahedron(t)) {
+      if (std::exchange(listed[n], 1)) continue;
+      all.mass += organ.model().mass(n);
+      all.sum += organ.model().mass(n) * organ.model().velocity(n);
+    }
+  }
+  return all;
+}
+
+TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
+  set_linear_algebra_threads(1);
+  const Scene scene = load_scene(PALPATE_SOURCE_DIR "/scenes/hepatectomy.toml");
+  TwoNodes nodes(scene, load_or_precompute(scene, ArchivePart::surface));
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int t = 0; t < static_cast<int>(scene.tools.size()); ++t) devices.push_back(make_device(scene, t));
+  const auto at = [&](int k) {
+    std::vector<ToolDofs> dofs;
+    for (const auto& device : devices) dofs.push_back(device->read(1e-3 * k).dofs);
+    return dofs;
+  };
+  const Vector3d gravity = std::visit([](const auto& body) { return moving_gravity(body); }, scene.bodies[0]);
+  nodes.start(at(0));
+  constexpr int kMean = 20;  // ticks over which the force is taken, as the momentum is
+  Vector3d felt = Vector3d::Zero();
+  Momentum before;
+  double worst = 0;
+  for (int k = 1; k < kEnd; ++k) {
+    nodes.step(at(k));
+    if (k < kSevered) continue;
+    felt += nodes.force(kForceps) / kMean;
+    if ((k - kSevered) % kMean != kMean - 1) continue;
+    const Momentum now = floating(nodes.world().organ(0));
+    ASSERT_GT(now.mass, 0);
+    if (before.mass > 0) {
+      const Vector3d carried = now.mass * gravity - (now.sum - before.sum) / (1e-3 * kMean);
+      EXPECT_LT((felt - carried).norm(), 0.1 * carried.norm()) << "tick " << k;
+      worst = std::max(worst, (felt - carried).norm() / carried.norm());
+    }
+    before = now;
+    felt.setZero();
+  }
+  fmt::print("off by {:.3f} of weight and inertia at most\n", worst);
+}
+
+}  // namespace
+}  // namespace palpate
