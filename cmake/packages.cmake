@@ -10,10 +10,12 @@ set(CPACK_THREADS 0)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what its programs are linked with
-set(CPACK_COMPONENTS_ALL haptic deform render web mesh tools)
-if(TARGET palpate_organ)
-  list(APPEND CPACK_COMPONENTS_ALL organ)
-endif()
+set(CPACK_COMPONENTS_ALL haptic deform render web mesh tools dev)
+foreach(optional organ spacemouse)
+  if(TARGET palpate_${optional})
+    list(APPEND CPACK_COMPONENTS_ALL ${optional})
+  endif()
+endforeach()
 
 # palpate_package(COMPONENT "what it is" [DEPENDS package...] [RECOMMENDS package...])
 function(palpate_package component meaning)
@@ -35,5 +37,8 @@ palpate_package(web "Web node: shows a running scene in browsers, and moves its 
 palpate_package(mesh "Reader of mesh files, which the other programs load where they need one")
 palpate_package(tools "Command line, example scenes, pages, deployment and manual"
   DEPENDS "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS palpate-haptic palpate-deform palpate-render palpate-web ffmpeg python3-matplotlib)
+palpate_package(dev "For drivers of devices: messages, headers, library, CMake package and examples"
+  DEPENDS cyclonedds-dev libfmt-dev libxxhash-dev zlib1g-dev)
+palpate_package(spacemouse "Driver that moves a tool by a SpaceMouse" RECOMMENDS spacenavd)
 palpate_package(organ "Meshes of surfaces and of labelled images" DEPENDS "palpate-mesh (= ${PROJECT_VERSION})")
 include(CPack)

@@ -2,8 +2,8 @@
 # package.sh: builds the programs and makes Debian packages of them, with manual pages, into build/packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-./scripts/install.sh help2man dpkg-dev libcgal-dev libinsighttoolkit5-dev
-./scripts/build.sh release programs palpate_study palpate_organ
+./scripts/install.sh help2man dpkg-dev libcgal-dev libinsighttoolkit5-dev libspnav-dev
+./scripts/build.sh release programs palpate_study palpate_organ palpate_spacemouse
 rm -rf build/release/man build/packages
 ./scripts/manual_pages.sh build/release/bin build/release/man
 mkdir -p build/packages

@@ -17,6 +17,7 @@ void add_export_command(cli::Command& app);
 void add_latency_command(cli::Command& app);
 void add_replay_command(cli::Command& app);
 void add_top_command(cli::Command& app);
+void add_network_command(cli::Command& app);
 void add_keys_command(cli::Command& app);
 void add_scene_command(cli::Command& app);
 void add_motion_command(cli::Command& app);

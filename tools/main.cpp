@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   palpate::add_solve_command(app);
   palpate::add_modes_command(app);
   palpate::add_top_command(app);
+  palpate::add_network_command(app);
   palpate::add_keys_command(app);
   palpate::add_cache_command(app);
   palpate::add_commands_of_other_programs(app);

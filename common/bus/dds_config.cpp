@@ -113,7 +113,7 @@ std::string dds_configuration(const BusSettings& settings) {
   // and the writer repeats it all at the first asking. Fragments are asked for one sample at a time, so that it asks
   // often.
   return fmt::format(
-      "<CycloneDDS><Domain Id=\"any\">{}"
+      "<CycloneDDS><Domain Id=\"{}\">{}"
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</"
       "MaxAutoParticipantIndex>"
       "<LeaseDuration>120 s</LeaseDuration><SPDPInterval>2 s</SPDPInterval>{}</Discovery>"
@@ -125,7 +125,7 @@ std::string dds_configuration(const BusSettings& settings) {
       "<Watermarks><WhcLow>1 MB</WhcLow><WhcHigh>128 MB</WhcHigh><WhcHighInit>128 MB</WhcHighInit>"
       "<WhcAdaptive>false</WhcAdaptive></Watermarks></Internal>"
       "</Domain></CycloneDDS>",
-      parts.general, parts.peers, parts.internal);
+      settings.domain, parts.general, parts.peers, parts.internal);
 }
 
 }  // namespace palpate

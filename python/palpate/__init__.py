@@ -1,6 +1,7 @@
-"""palpate, a haptic simulator of soft tissue: scenes, static states, runs in lock step, topic logs."""
+"""palpate, a haptic simulator of soft tissue: scenes, static states, runs in lock step, topic logs, drivers of devices."""
 import os
 import pathlib
+from typing import TYPE_CHECKING, Any
 
 
 def _choose_blas() -> None:
@@ -18,6 +19,17 @@ def _choose_blas() -> None:
 
 _choose_blas()
 
-from ._core import Scene, Simulator, __version__, read_log, solve, topics_in  # noqa: E402
+from ._device import Device, ForceState  # noqa: E402
 
-__all__ = ["Scene", "Simulator", "read_log", "solve", "topics_in", "__version__"]
+if TYPE_CHECKING:
+    from ._core import Scene, Simulator, __version__, read_log, solve, topics_in
+
+__all__ = ["Device", "ForceState", "Scene", "Simulator", "read_log", "solve", "topics_in", "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    """The simulator's libraries are loaded with the first of its names: a driver goes without them."""
+    if name not in __all__:
+        raise AttributeError(f"module 'palpate' has no attribute '{name}'")
+    from . import _core
+    return getattr(_core, name)

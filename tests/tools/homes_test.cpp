@@ -24,7 +24,8 @@ std::vector<Include> all_includes() {
   const fs::path root = PALPATE_SOURCE;
   const std::regex line(R"(#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> found;
-  for (const char* room : {"common", "haptic_node", "deform_node", "render_node", "web_node", "tools", "idl"})
+  for (const char* room :
+       {"common", "haptic_node", "deform_node", "render_node", "web_node", "drivers", "tools", "idl"})
     for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
       const std::string kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp" && kind != ".h" && kind != ".c") continue;
@@ -45,13 +46,14 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"(Spectra/.*)", {"common/shell"}},
       {R"((.*/)?(hdf5|H5.*)\.h)", {"common/archive"}},
       {R"((.*/)?toml(\+\+)?/.*|toml\.hpp)", {"common/scene"}},
-      {R"(dds/.*)", {"common/bus", "idl"}},
+      {R"(dds/.*)", {"common/bus", "idl", "drivers/c"}},
       {R"(lcm/.*)", {"common/bus"}},
       {R"(openssl/.*)", {"tools/keys"}},
       {R"(GL/.*)", {"render_node"}},
       {R"((.*/)?png\.h)", {"render_node"}},
       {R"(boost/.*)", {"web_node"}},
       {R"((.*/)?ft2build\.h)", {"render_node"}},
+      {R"(spnav\.h)", {"drivers/spacemouse"}},
       {R"(CGAL/.*)", {"tools/organ"}},
       {R"(itk[A-Z].*\.h)", {"tools/organ"}},
   };

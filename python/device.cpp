@@ -1,0 +1,84 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "common/bus/dds_bus.hpp"
+#include "common/realtime/clock.hpp"
+
+namespace py = pybind11;
+
+namespace palpate::python {
+namespace {
+
+/// A driver's ends of the bus, for one tool.
+class Device {
+ public:
+  Device(std::uint32_t tool, int domain, const std::string& interface, const std::vector<std::string>& peers,
+         const std::string& keys)
+      : bus_(make_dds_bus({.domain = domain, .interface = interface, .peers = peers, .keys = keys, .role = "driver"})),
+        writer_(bus_->writer(topics::device_state)),
+        reader_(bus_->reader(topics::force_state)) {
+    state_.tool = tool;
+  }
+
+  /// False if it was not sent.
+  bool write(const std::array<double, 6>& dofs, std::optional<std::int64_t> sense_ns) {
+    state_.seq++;
+    state_.sense_ns = sense_ns.value_or(now_ns());
+    state_.yaw = dofs[0], state_.pitch = dofs[1], state_.depth = dofs[2];
+    state_.roll = dofs[3], state_.grip = dofs[4], state_.pedal = dofs[5];
+    return writer_->write(state_);
+  }
+
+  /// The newest force on the tool since the last call.
+  std::optional<ForceState> take() {
+    std::optional<ForceState> newest;
+    while (const auto force = reader_->take())
+      if (force->tool == state_.tool) newest = force;
+    return newest;
+  }
+
+  /// Until something has come.
+  bool wait(double seconds) { return bus_->wait(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds))); }
+  std::uint64_t written() const { return state_.seq; }
+
+ private:
+  std::unique_ptr<Bus> bus_;
+  std::unique_ptr<Writer<DeviceState>> writer_;
+  std::unique_ptr<Reader<ForceState>> reader_;
+  DeviceState state_;
+};
+
+}  // namespace
+}  // namespace palpate::python
+
+PYBIND11_MODULE(_device, module) {
+  using namespace palpate;
+  using palpate::python::Device;
+  module.doc() = "drivers of devices: a tool's motion on the bus, and the force back";
+  py::class_<ForceState>(module, "ForceState")
+      .def_readonly("step", &ForceState::step, "haptic step number")
+      .def_readonly("sense_ns", &ForceState::sense_ns, "sense time of that step, on the haptic node's clock")
+      .def_readonly("force", &ForceState::force, "[N] on the tool at its tip, world")
+      .def_readonly("torque", &ForceState::torque, "[N m] on the tool about its tip, world")
+      .def_readonly("grip", &ForceState::grip, "[N m] on the handle, opening the jaws")
+      .def_readonly("flags", &ForceState::flags, "bits of ForceFlag");
+  py::class_<Device>(module, "Device")
+      .def(py::init<std::uint32_t, int, const std::string&, const std::vector<std::string>&, const std::string&>(),
+           py::arg("tool") = 0, py::kw_only(), py::arg("domain") = 0, py::arg("interface") = "",
+           py::arg("peers") = std::vector<std::string>(), py::arg("keys") = "",
+           "The driver of a tool whose device is \"bus\": `tool` is its place in the scene's list. Raises RuntimeError "
+           "with one sentence.")
+      .def(
+          "write", &Device::write, py::arg("dofs"), py::arg("sense_ns") = py::none(),
+          "Yaw, pitch [rad], depth [m], roll, grip [rad], pedal. `sense_ns`: time.monotonic_ns() when the hardware was "
+          "read, now if\n"
+          "it is left out. False if it was not sent.")
+      .def("take", &Device::take, "The newest force since the last call, or None.")
+      .def("wait", &Device::wait, py::arg("seconds"), py::call_guard<py::gil_scoped_release>(),
+           "Sleeps until something may have come, at most so long.")
+      .def_property_readonly("written", &Device::written, "samples written");
+}
