@@ -31,6 +31,8 @@ constexpr std::array kCommands{
     OtherCommand{"mesh", "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP)", kOrgan},
     OtherCommand{"organ", "Make a mesh of tetrahedra of labels in an image (INR, NIfTI, MetaImage, NRRD, DICOM)",
                  kOrgan},
+    OtherCommand{"segment",
+                 "Make a label of an organ's grey values, slice by slice (INR, NIfTI, MetaImage, NRRD, DICOM)", kOrgan},
     OtherCommand{"stability", "Stiff and extreme cases, each with its outcome, as a table and a page", kStudy},
     OtherCommand{"study", "Error against run time of all that can serve a scene", kStudy}};
 

@@ -167,7 +167,7 @@ class CutPost : public ::testing::Test {
     Scene scene = block_scene();
     moving_block_of(scene).dynamic.gravity = {0, 0, kGravity};  // upwards: off the base
     moving_block_of(scene).dynamic.damping = kDamping;
-    moving_block_of(scene).dynamic.precision = "double";
+    moving_block_of(scene).dynamic.precision = Precision::float64;
     moving_block_of(scene).fixed[0].where = {
         .indices = {}, .box = Box{Vector3d(-1, -1, -1e-6), Vector3d(1, 1, 1e-6)}, .group = ""};
     std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0062};

@@ -31,7 +31,7 @@ class LabelImages : public ::testing::Test {
     for (int k = 0; k < v.shape.count[2]; ++k)
       for (int j = 0; j < v.shape.count[1]; ++j)
         for (int i = 0; i < v.shape.count[0]; ++i)
-          if (v.label[v.shape.index(i, j, k)] == label) return v.turn * v.shape.place(i, j, k) + v.shift;
+          if (v.value[v.shape.index(i, j, k)] == label) return v.turn * v.shape.place(i, j, k) + v.shift;
     return Eigen::Vector3d::Constant(99);
   }
   std::string voxels_;

@@ -7,5 +7,6 @@ namespace palpate {
 
 void add_mesh_command(cli::Command& app);
 void add_organ_command(cli::Command& app);
+void add_segment_command(cli::Command& app);
 
 }  // namespace palpate

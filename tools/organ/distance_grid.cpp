@@ -76,7 +76,7 @@ std::vector<float> distance_from(const GridShape& shape, const std::vector<char>
 
 }  // namespace
 
-double DistanceGrid::at(const Eigen::Vector3d& x) const {
+double ScalarGrid::at(const Eigen::Vector3d& x) const {
   std::array<int, 3> low;
   Eigen::Vector3d part;
   for (int a = 0; a < 3; ++a) {
@@ -103,7 +103,7 @@ DistanceGrid distance_to_border(const GridShape& shape, const std::vector<char>&
   return grid;
 }
 
-void smooth(DistanceGrid& grid, const Eigen::Vector3d& width) {
+void smooth(ScalarGrid& grid, const Eigen::Vector3d& width) {
   for (int axis = 0; axis < 3; ++axis) {
     const double deviation = width[axis] / grid.shape.spacing[axis];
     const int reach = static_cast<int>(std::ceil(3 * deviation)), count = grid.shape.count[axis];

@@ -17,21 +17,22 @@ struct GridShape {
   Eigen::Vector3d far_corner() const { return place(count[0] - 1, count[1] - 1, count[2] - 1); }
 };
 
-/// Distance to a surface [m], negative inside.
-struct DistanceGrid {
+/// Values between which there are others.
+struct ScalarGrid {
   GridShape shape;
   std::vector<float> value;
 
   /// Between the values evenly; outside of the grid as at its border.
   double at(const Eigen::Vector3d& x) const;
 };
+using DistanceGrid = ScalarGrid;  ///< distance to a surface [m], negative inside
 
 /// Distance to the border between values that are set and others, which is taken to lie midway; exact but for that.
 /// None may be set at the grid's rim, and one has to be.
 DistanceGrid distance_to_border(const GridShape& shape, const std::vector<char>& inside);
 
 /// Weighs every value with its neighbours by a Gaussian of deviation `width` [m] along each axis.
-void smooth(DistanceGrid& grid, const Eigen::Vector3d& width);
+void smooth(ScalarGrid& grid, const Eigen::Vector3d& width);
 
 /// [m^3] where the distance is less than `level`.
 double volume_below(const DistanceGrid& grid, double level);

@@ -18,7 +18,8 @@
 namespace palpate {
 namespace {
 
-using Image = itk::Image<std::int32_t, 3>;
+template <class T>
+using Image = itk::Image<T, 3>;
 
 /// ITK fills what a MetaImage file with its data within lacks.
 bool is_cut_short(const std::string& file, std::int64_t bytes) {
@@ -30,8 +31,8 @@ bool is_cut_short(const std::string& file, std::int64_t bytes) {
   return static_cast<std::int64_t>(std::filesystem::file_size(file) - data - 6) < bytes;
 }
 
-template <class FileFormat>
-Image::Pointer read_image(const std::string& file) {
+template <class T, class FileFormat>
+typename Image<T>::Pointer read_image(const std::string& file) {
   const auto format = FileFormat::New();
   format->SetFileName(file);
   format->ReadImageInformation();
@@ -43,7 +44,7 @@ Image::Pointer read_image(const std::string& file) {
   }
   if (file.ends_with(".mha") && is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
     throw std::runtime_error("it ends before its last voxel");
-  const auto reader = itk::ImageFileReader<Image>::New();
+  const auto reader = itk::ImageFileReader<Image<T>>::New();
   reader->SetImageIO(format);
   reader->SetFileName(file);
   reader->Update();
@@ -51,30 +52,33 @@ Image::Pointer read_image(const std::string& file) {
 }
 
 /// The first series in a folder.
-Image::Pointer read_series(const std::string& folder) {
+template <class T>
+typename Image<T>::Pointer read_series(const std::string& folder) {
   const auto names = itk::GDCMSeriesFileNames::New();
   names->SetDirectory(folder);
   const auto& series = names->GetSeriesUIDs();
   if (series.empty()) throw std::runtime_error("no DICOM series lies in this folder");
-  const auto reader = itk::ImageSeriesReader<Image>::New();
+  const auto reader = itk::ImageSeriesReader<Image<T>>::New();
   reader->SetImageIO(itk::GDCMImageIO::New());
   reader->SetFileNames(names->GetFileNames(series.front()));
   reader->Update();
   return reader->GetOutput();
 }
 
-Image::Pointer read_any(const std::filesystem::path& file) {
+template <class T>
+typename Image<T>::Pointer read_any(const std::filesystem::path& file) {
   const std::string name = file.string();
-  if (std::filesystem::is_directory(file)) return read_series(name);
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_image<itk::NiftiImageIO>(name);
-  if (name.ends_with(".mhd") || name.ends_with(".mha")) return read_image<itk::MetaImageIO>(name);
-  return read_image<itk::NrrdImageIO>(name);
+  if (std::filesystem::is_directory(file)) return read_series<T>(name);
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
+  if (name.ends_with(".mhd") || name.ends_with(".mha")) return read_image<T, itk::MetaImageIO>(name);
+  return read_image<T, itk::NrrdImageIO>(name);
 }
 
+template <class T>
 std::string packed(const std::filesystem::path& file) {
-  const Image::Pointer image = [&] {
+  const typename Image<T>::Pointer image = [&] {
     try {
-      return read_any(file);
+      return read_any<T>(file);
     } catch (const itk::ExceptionObject& error) {
       throw std::runtime_error(std::string("ITK refuses it: ") + error.GetDescription());
     }
@@ -87,25 +91,27 @@ std::string packed(const std::filesystem::path& file) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) put(bytes, image->GetDirection()(r, c));
   bytes.append(reinterpret_cast<const char*>(image->GetBufferPointer()),
-               image->GetLargestPossibleRegion().GetNumberOfPixels() * 4);
+               image->GetLargestPossibleRegion().GetNumberOfPixels() * sizeof(T));
   return bytes;
 }
 
 /// Reverses the order along x, so that the axes are right-handed.
-void mirror(LabelVolume& volume) {
+template <class T>
+void mirror(Volume<T>& volume) {
   const int count = volume.shape.count[0];
-  for (std::size_t row = 0; row < volume.label.size(); row += count)
-    std::reverse(volume.label.begin() + static_cast<std::ptrdiff_t>(row),
-                 volume.label.begin() + static_cast<std::ptrdiff_t>(row) + count);
+  for (std::size_t row = 0; row < volume.value.size(); row += count)
+    std::reverse(volume.value.begin() + static_cast<std::ptrdiff_t>(row),
+                 volume.value.begin() + static_cast<std::ptrdiff_t>(row) + count);
   volume.shift += volume.turn.col(0) * (count - 1) * volume.shape.spacing.x();
   volume.turn.col(0) *= -1;
 }
 
 }  // namespace
 
-LabelVolume read_with_image_library(const std::filesystem::path& file) {
-  const std::string bytes = run_in_child([&] { return packed(file); });
-  LabelVolume volume{{{}, Eigen::Vector3d::Zero(), {}}, {}};
+template <class T>
+Volume<T> read_with_image_library(const std::filesystem::path& file) {
+  const std::string bytes = run_in_child([&] { return packed<T>(file); });
+  Volume<T> volume{{{}, Eigen::Vector3d::Zero(), {}}, {}};
   std::size_t at = 0;
   for (int& count : volume.shape.count) count = take<int>(bytes, at);
   for (int a = 0; a < 3; ++a) volume.shape.spacing[a] = 1e-3 * take<double>(bytes, at);
@@ -114,11 +120,14 @@ LabelVolume read_with_image_library(const std::filesystem::path& file) {
     for (int c = 0; c < 3; ++c) volume.turn(r, c) = take<double>(bytes, at);
   if (!(volume.shape.spacing.minCoeff() > 0) || !volume.shift.allFinite() || !volume.turn.isUnitary(1e-4))
     throw std::runtime_error("its voxel sizes, origin or axes are none");
-  volume.label.resize(volume.shape.size());
-  if (bytes.size() - at != volume.label.size() * 4) throw std::runtime_error("it ends before its last voxel");
-  std::memcpy(volume.label.data(), bytes.data() + at, bytes.size() - at);
+  volume.value.resize(volume.shape.size());
+  if (bytes.size() - at != volume.value.size() * sizeof(T)) throw std::runtime_error("it ends before its last voxel");
+  std::memcpy(volume.value.data(), bytes.data() + at, bytes.size() - at);
   if (volume.turn.determinant() < 0) mirror(volume);
   return volume;
 }
+
+template LabelVolume read_with_image_library(const std::filesystem::path&);
+template GreyVolume read_with_image_library(const std::filesystem::path&);
 
 }  // namespace palpate

@@ -68,19 +68,19 @@ GridShape shape_of(const Header& header) {
   return shape;
 }
 
-template <class T>
-void take_labels(gzFile in, bool swapped, LabelVolume& volume) {
-  std::vector<T> row(volume.shape.count[0]);
-  const auto bytes = static_cast<unsigned>(row.size() * sizeof(T));
-  while (volume.label.size() < volume.shape.size()) {
+template <class Stored, class T>
+void take_values(gzFile in, bool swapped, Volume<T>& volume) {
+  std::vector<Stored> row(volume.shape.count[0]);
+  const auto bytes = static_cast<unsigned>(row.size() * sizeof(Stored));
+  while (volume.value.size() < volume.shape.size()) {
     if (gzread(in, row.data(), bytes) != static_cast<int>(bytes))
       throw std::runtime_error("it ends before its last voxel");
-    for (T value : row) {
+    for (Stored value : row) {
       if (swapped) {
         auto* const raw = reinterpret_cast<unsigned char*>(&value);
         std::reverse(raw, raw + sizeof value);
       }
-      volume.label.push_back(static_cast<std::int32_t>(value));
+      volume.value.push_back(static_cast<T>(value));
     }
   }
 }
@@ -90,43 +90,78 @@ std::string value_of(const Header& header, const std::string& key) {
   return found == header.end() ? "" : found->second;
 }
 
+template <class T>
+void take_whole_numbers(gzFile in, double bits, bool negative_too, bool swapped, Volume<T>& volume) {
+  if (bits == 8)
+    negative_too ? take_values<std::int8_t>(in, swapped, volume) : take_values<std::uint8_t>(in, swapped, volume);
+  else if (bits == 16)
+    negative_too ? take_values<std::int16_t>(in, swapped, volume) : take_values<std::uint16_t>(in, swapped, volume);
+  else if (bits == 32)
+    take_values<std::int32_t>(in, swapped, volume);
+  else
+    throw std::runtime_error(fmt::format("its values have {} bits: 8, 16 and 32 are read", bits));
+}
+
+template <class T>
+void take_fractions(gzFile in, double bits, bool swapped, Volume<T>& volume) {
+  if (bits == 32)
+    take_values<float>(in, swapped, volume);
+  else if (bits == 64)
+    take_values<double>(in, swapped, volume);
+  else
+    throw std::runtime_error(fmt::format("its fractions have {} bits: 32 and 64 are read", bits));
+}
+
+template <class T>
+Volume<T> read_volume(const std::filesystem::path& file) try {
+  if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
+  const std::string name = file.filename();
+  if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr<T>(file);
+  for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
+    if (name.ends_with(ending)) return read_with_image_library<T>(file);
+  if (std::filesystem::is_directory(file)) return read_with_image_library<T>(file);
+  throw std::runtime_error(
+      "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+}
+
 }  // namespace
 
-LabelVolume read_inr(const std::filesystem::path& file) {
+template <class T>
+Volume<T> read_inr(const std::filesystem::path& file) {
   const GzFile in(gzopen(file.c_str(), "rb"), gzclose);
   if (!in) throw std::runtime_error("it cannot be opened");
   const Header header = read_header(in.get());
-  LabelVolume volume{shape_of(header), {}};
-  if (!value_of(header, "TYPE").ends_with("fixed"))
-    throw std::runtime_error(
-        fmt::format("its values are '{}': labels are whole numbers", value_of(header, "TYPE").substr(0, 30)));
-  const std::string cpu = value_of(header, "CPU");
+  Volume<T> volume{shape_of(header), {}};
+  const std::string type = value_of(header, "TYPE"), cpu = value_of(header, "CPU");
   const bool swapped = cpu == "sun" || cpu == "sgi";
   const double bits = number(header, "PIXSIZE", std::strtod(value_of(header, "PIXSIZE").c_str(), nullptr));
-  if (bits == 8)
-    take_labels<std::uint8_t>(in.get(), swapped, volume);
-  else if (bits == 16)
-    take_labels<std::uint16_t>(in.get(), swapped, volume);
-  else if (bits == 32)
-    take_labels<std::int32_t>(in.get(), swapped, volume);
+  if (type.ends_with("fixed"))
+    take_whole_numbers(in.get(), bits, type.starts_with("signed"), swapped, volume);
+  else if (type == "float" && std::is_floating_point_v<T>)
+    take_fractions(in.get(), bits, swapped, volume);
   else
-    throw std::runtime_error(fmt::format("its values have {} bits: 8, 16 and 32 are read", bits));
+    throw std::runtime_error(
+        fmt::format("its values are '{}', and {} is asked for", type.substr(0, 30),
+                    std::is_floating_point_v<T> ? "fixed or float" : "fixed: labels are whole numbers"));
   return volume;
 }
 
+template LabelVolume read_inr(const std::filesystem::path&);
+template GreyVolume read_inr(const std::filesystem::path&);
+
 LabelVolume read_label_volume(const std::filesystem::path& file) {
-  try {
-    if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
-    const std::string name = file.filename();
-    if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr(file);
-    for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
-      if (name.ends_with(ending)) return read_with_image_library(file);
-    if (std::filesystem::is_directory(file)) return read_with_image_library(file);
+  return read_volume<std::int32_t>(file);
+}
+
+GreyVolume read_grey_volume(const std::filesystem::path& file) {
+  GreyVolume volume = read_volume<float>(file);
+  const auto bad = std::ranges::find_if_not(volume.value, [](float grey) { return std::isfinite(grey); });
+  if (bad != volume.value.end())
     throw std::runtime_error(
-        "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
-  }
+        fmt::format("{}: its value number {} is no finite number", file.string(), bad - volume.value.begin() + 1));
+  return volume;
 }
 
 }  // namespace palpate

@@ -7,15 +7,19 @@
 
 namespace palpate {
 
-/// An image of three dimensions whose every value says what is there.
-struct LabelVolume {
+/// An image of three dimensions.
+template <class T>
+struct Volume {
   GridShape shape;  ///< of the values' middles, in a frame of the image's own
-  std::vector<std::int32_t> label;
+  std::vector<T> value;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from that frame to the world's, a rotation
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();     ///< [m]
 
   double diagonal() const { return shape.spacing.norm(); }  ///< [m] of a voxel
 };
+
+using LabelVolume = Volume<std::int32_t>;  ///< every value says what is there
+using GreyVolume = Volume<float>;          ///< every value is finite
 
 /// The most voxels that are read.
 inline constexpr std::int64_t kMaxVoxels = std::int64_t{1} << 30;
@@ -23,9 +27,12 @@ inline constexpr std::int64_t kMaxVoxels = std::int64_t{1} << 30;
 /// Reads INR (.inr, .inr.gz), and with ITK NIfTI (.nii, .nii.gz), MetaImage (.mhd, .mha), NRRD (.nrrd, .nhdr) and a
 /// folder with a DICOM series; lengths in these are millimetres. Throws std::runtime_error("FILE: reason").
 LabelVolume read_label_volume(const std::filesystem::path& file);
+GreyVolume read_grey_volume(const std::filesystem::path& file);
 
-/// The parts of the above. They throw std::runtime_error(reason).
-LabelVolume read_inr(const std::filesystem::path& file);
-LabelVolume read_with_image_library(const std::filesystem::path& file);  ///< refuses where it was built without ITK
+/// The parts of the above, for T = std::int32_t and float. They throw std::runtime_error(reason).
+template <class T>
+Volume<T> read_inr(const std::filesystem::path& file);
+template <class T>
+Volume<T> read_with_image_library(const std::filesystem::path& file);  ///< refuses where it was built without ITK
 
 }  // namespace palpate

@@ -6,5 +6,6 @@ int main(int argc, char** argv) {
   app.require_command();
   palpate::add_mesh_command(app);
   palpate::add_organ_command(app);
+  palpate::add_segment_command(app);
   return app.run(argc, argv);
 }

@@ -4,10 +4,14 @@
 
 namespace palpate {
 
-LabelVolume read_with_image_library(const std::filesystem::path&) {
+template <class T>
+Volume<T> read_with_image_library(const std::filesystem::path&) {
   throw std::runtime_error(
       "this palpate_organ was built without ITK and reads INR alone: build it where ITK is, on Debian with "
       "libinsighttoolkit5-dev");
 }
+
+template LabelVolume read_with_image_library(const std::filesystem::path&);
+template GreyVolume read_with_image_library(const std::filesystem::path&);
 
 }  // namespace palpate

@@ -17,20 +17,6 @@ using Inside = std::function<bool(const Eigen::Vector3d&)>;
 
 constexpr double kEnd = 0.1;  // of the extent: what "below:z" takes
 
-/// Finite numbers between commas; empty where it is anything else.
-std::vector<double> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::string_view word = text.substr(0, text.find(','));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
-    numbers.push_back(value);
-    if (word.size() == text.size()) return numbers;
-    text.remove_prefix(word.size() + 1);
-  }
-}
-
 Eigen::Vector3d three(const std::vector<double>& numbers, int from) {
   return Eigen::Vector3d(numbers.data() + from);
 }
@@ -82,6 +68,19 @@ std::pair<std::string, Inside> parse_group(const std::string& text, const TetMes
 }
 
 }  // namespace
+
+std::vector<double> numbers_of(std::string_view text, char between) {
+  std::vector<double> numbers;
+  while (true) {
+    const std::string_view word = text.substr(0, text.find(between));
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
+    numbers.push_back(value);
+    if (word.size() == text.size()) return numbers;
+    text.remove_prefix(word.size() + 1);
+  }
+}
 
 FinePlace parse_fine_place(const std::string& text) {
   const std::size_t colon = text.rfind(':');

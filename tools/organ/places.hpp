@@ -1,9 +1,14 @@
 #pragma once
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "tools/organ/fill_solid.hpp"
 
 namespace palpate {
+
+/// Finite numbers with one character between two; empty where it is anything else.
+std::vector<double> numbers_of(std::string_view text, char between = ',');
 
 /// Reads "x,y,z,RADIUS:EDGE" (a ball) or "x,y,z,x,y,z:EDGE" (two corners of a box) [m]. Throws std::runtime_error.
 FinePlace parse_fine_place(const std::string& text);

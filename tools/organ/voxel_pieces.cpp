@@ -70,6 +70,14 @@ void keep_largest_piece(const GridShape& shape, std::vector<char>& inside, const
   for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = number[i] == largest;
 }
 
+void keep_pieces_with(const GridShape& shape, std::vector<char>& inside, const std::vector<std::size_t>& seeds) {
+  std::vector<Piece> pieces;
+  const std::vector<int> number = pieces_of(shape, inside, true, pieces);
+  std::vector<char> keep(pieces.size() + 1, 0);
+  for (const std::size_t seed : seeds) keep[number[seed]] = number[seed] > 0;
+  for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = keep[number[i]];
+}
+
 void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std::vector<char>& other,
                    const std::string& name, std::vector<std::string>& findings) {
   std::vector<Piece> pieces;

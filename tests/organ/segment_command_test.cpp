@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh/measures.hpp"
+#include "common/mesh/mesh_file.hpp"
+#include "render_node/image.hpp"
+#include "tests/organ/grey_phantom.hpp"
+#include "tests/organ/surfaces_for_tests.hpp"
+#include "tests/tools/program_result.hpp"
+#include "tools/organ/label_volume.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace palpate::testing;
+
+struct Agreement {
+  double dice = 0, border_voxels = 0;  ///< the second: mean distance of the border's faces from the true surface
+};
+
+class SegmentCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<OwnFolder>("segment");
+    write_file(*folder_ / "thin.inr", thin_.inr());
+    write_file(*folder_ / "thick.inr", thick_.inr());
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static ProgramResult segment(const std::string& arguments) {
+    return run_program("cd " + folder_->path().string() + " && " + program("palpate") + " segment " + arguments);
+  }
+  static LabelVolume labels(const std::string& arguments, const std::string& output) {
+    const ProgramResult result = segment(arguments + " -o " + output);
+    EXPECT_EQ(result.status, 0) << result.err;
+    said_ = result.out;
+    return read_label_volume(*folder_ / output);
+  }
+  static Agreement agreement(const GreyPhantom& phantom, const LabelVolume& found) {
+    const std::vector<char> truth = phantom.truth();
+    double both = 0, either = 0, off = 0, faces = 0;
+    std::size_t n = 0;
+    const std::size_t stride[]{1, static_cast<std::size_t>(phantom.x), static_cast<std::size_t>(phantom.x) * phantom.y};
+    phantom.each([&](const Eigen::Vector3d& v) {
+      both += truth[n] && found.value[n], either += truth[n] + found.value[n];
+      for (int a = 0; a < 3; ++a) {
+        if (v[a] < 1 || found.value[n] == found.value[n - stride[a]]) continue;
+        off += std::abs(phantom.organ(phantom.place_mm(v - 0.5 * Eigen::Vector3d::Unit(a))));
+        ++faces;
+      }
+      ++n;
+    });
+    return {2 * both / either, off / faces / phantom.voxel_mm.mean()};
+  }
+  /// Points on the true border in the slice, as somebody would click them.
+  static std::string clicked(const GreyPhantom& phantom, int slice) {
+    std::string lines;
+    const Eigen::Vector3d middle = phantom.middle_mm().cwiseQuotient(phantom.voxel_mm);
+    for (int p = 0; p < 24; ++p) {
+      const double angle = 2 * std::numbers::pi * p / 24;
+      Eigen::Vector3d x(middle.x(), middle.y(), slice);
+      while (phantom.organ(phantom.place_mm(x)) < 0) x += 0.1 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+      lines += fmt::format("{} {:.1f} {:.1f}\n", slice, x.x(), x.y());
+    }
+    return lines;
+  }
+
+  inline static const GreyPhantom thin_{}, thick_{.neck_mm = 7};
+  inline static std::unique_ptr<OwnFolder> folder_;
+  inline static std::string said_;
+  inline static const std::string kSeed = " --seed-voxel 38,44,28";
+};
+
+TEST_F(SegmentCommand, ThroughAThinNeckTheRegionLeaksAndIsCutOffThere) {
+  const Agreement leaked = agreement(thin_, labels("thin.inr --reach 0" + kSeed, "leaked.inr"));
+  EXPECT_LT(leaked.dice, 0.97);
+  EXPECT_GT(leaked.border_voxels, 0.5);
+  const Agreement region = agreement(thin_, labels("thin.inr --reach 0 --neck 8" + kSeed, "region.inr"));
+  const Agreement found = agreement(thin_, labels("thin.inr --neck 8" + kSeed, "found.inr"));
+  EXPECT_GE(found.dice, 0.97) << said_;
+  EXPECT_LE(found.border_voxels, 0.5) << said_;
+  EXPECT_LT(found.border_voxels, region.border_voxels);
+  labels("thin.inr --neck 8" + kSeed, "again.inr");
+  EXPECT_EQ(text_of(*folder_ / "found.inr"), text_of(*folder_ / "again.inr"));
+}
+
+TEST_F(SegmentCommand, ThroughAThickNeckPointsSetByHandMendIt) {
+  const Agreement leaked = agreement(thick_, labels("thick.inr --neck 8" + kSeed, "leaked.inr"));
+  EXPECT_LT(leaked.dice, 0.97);
+  EXPECT_GT(leaked.border_voxels, 0.5);
+  write_file(*folder_ / "points.txt",
+             "# slice x y\n" + clicked(thick_, 20) + "\n" + clicked(thick_, 28) + clicked(thick_, 36));
+  const Agreement found = agreement(thick_, labels("thick.inr --neck 8 --points points.txt" + kSeed, "found.inr"));
+  EXPECT_GE(found.dice, 0.97) << said_;
+  EXPECT_LE(found.border_voxels, 0.5) << said_;
+}
+
+TEST_F(SegmentCommand, ASpoiltSliceIsBridgedBetweenPointsOnBothSides) {
+  std::string bytes = text_of(*folder_ / "thin.inr");
+  const std::size_t layer = 2 * static_cast<std::size_t>(thin_.x) * thin_.y;
+  std::fill_n(bytes.begin() + 256 + static_cast<std::ptrdiff_t>(20 * layer), layer, '\0');
+  write_file(*folder_ / "spoilt.inr", bytes);
+  EXPECT_LT(agreement(thin_, labels("spoilt.inr --neck 8" + kSeed, "half.inr")).dice, 0.9);
+  write_file(*folder_ / "both.txt", clicked(thin_, 18) + clicked(thin_, 22));
+  const Agreement found =
+      agreement(thin_, labels("spoilt.inr --neck 8 --points both.txt --seed-voxel 38,44,14" + kSeed, "bridged.inr"));
+  EXPECT_GE(found.dice, 0.97) << said_;
+  EXPECT_LE(found.border_voxels, 0.5) << said_;
+}
+
+TEST_F(SegmentCommand, LabelsAreWrittenWhereTheImageLiesAndOrganReadsThem) {
+  std::string bytes = text_of(*folder_ / "thin.inr").substr(256);
+  write_file(*folder_ / "turned.mha",
+             "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+             "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\nElementSpacing = 0.9 0.9 1.2\n"
+             "DimSize = 96 88 56\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
+                 bytes);
+  if (segment("turned.mha -o none.mha" + kSeed).err.find("without ITK") != std::string::npos) GTEST_SKIP();
+  const LabelVolume plain = labels("thin.inr --neck 8" + kSeed, "plain.mha");
+  // The seed's voxel 38,44,28 lies at (10 - 0.9 x 44, 20 + 0.9 x 38, 30 + 1.2 x 28) mm.
+  for (const char* name : {"turned-labels.mha", "turned-labels.nrrd"}) {
+    const LabelVolume turned = labels("turned.mha --neck 8 --seed=-29.6,54.2,63.6", name);
+    EXPECT_EQ(turned.value, plain.value) << name;
+    EXPECT_TRUE(turned.shape.spacing.isApprox(Eigen::Vector3d(9e-4, 9e-4, 1.2e-3), 1e-9)) << name;
+    const Eigen::Vector3d seed = turned.turn * turned.shape.place(38, 44, 28) + turned.shift;
+    EXPECT_TRUE(seed.isApprox(Eigen::Vector3d(-0.0296, 0.0542, 0.0636), 1e-9)) << name << " " << seed.transpose();
+  }
+  EXPECT_NE(segment("turned.mha --neck 8 --seed=-29.6,54.2,63.6 -o t.inr").err.find("no place for the origin"),
+            std::string::npos);
+  const auto made = run_program(fmt::format("cd {} && {} organ plain.mha --label 1=liver --edge 0.009 -o liver.msh",
+                                            folder_->path().string(), program("palpate")));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const double volume = 9e-4 * 9e-4 * 1.2e-3 * static_cast<double>(std::ranges::count(plain.value, 1));
+  EXPECT_NEAR(measures_of(load_tet_mesh(*folder_ / "liver.msh", 1)).volume, volume, 0.01 * volume);
+}
+
+TEST_F(SegmentCommand, APictureOfEachSliceIsDrawn) {
+  labels("thin.inr --neck 8 --preview pictures" + kSeed, "found.inr");
+  for (const char* name : {"slice_0000.png", "slice_0028.png", "slice_0055.png"}) {
+    const Image picture = read_png(*folder_ / "pictures" / name);
+    int contour = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const std::uint8_t* p = picture.pixel(x, y);
+        contour += p[1] == 255 && p[0] < 100 && p[2] < 100;
+      }
+    EXPECT_EQ(picture.width, 2 * thin_.x * picture.height / thin_.y) << name;
+    EXPECT_EQ(contour > 1000, std::string(name) == "slice_0028.png") << name << " " << contour;
+  }
+}
+
+TEST_F(SegmentCommand, MistakesAndDamageAreToldInASentence) {
+  const auto refused = [&](const std::string& arguments, const std::string& said) {
+    const ProgramResult result = segment(arguments + " -o refused.inr");
+    EXPECT_EQ(result.status, 1) << arguments;
+    EXPECT_NE(result.err.find(said), std::string::npos) << arguments << "\n" << result.err;
+    EXPECT_FALSE(std::filesystem::exists(*folder_ / "refused.inr")) << arguments;
+  };
+  refused("thin.inr", "a --seed or --seed-voxel in the organ is asked for");
+  refused("thin.inr --seed 1,2", "--seed 1,2: three numbers x,y,z are asked for");
+  refused("thin.inr --seed 1,2,300",
+          "--seed 1,2,300 lies at voxel 1.111,2.222,250, outside of the image's 96 x 88 x 56");
+  refused("thin.inr --range 90" + kSeed, "--range 90: LOW:HIGH is asked for");
+  refused("thin.inr --range 200:300" + kSeed, "the seed at voxel 38,44,28 has the smoothed grey value 1");
+  refused("thin.inr --neck 90" + kSeed, "in a part thinner than --neck 90 mm: take one deeper inside");
+  const auto points = [&](const std::string& text, const std::string& said) {
+    write_file(*folder_ / "bad.txt", text);
+    refused("thin.inr --points bad.txt" + kSeed, said);
+  };
+  points("20 1 2\n\n20 3\n", "bad.txt:3: 2 words: SLICE X Y is asked for");
+  points("20 1 2\n56 3 4\n", "bad.txt:2: '56' is no slice from 0 to 55");
+  points("20 1 nan\n", "bad.txt:1: Y 'nan' is no number from 0 to 87, in voxels");
+  points("20 1 2\n20 1 2\n", "bad.txt:2: the same point twice");
+  points("20 1 2\n20 3 4\n21 5 6\n", "bad.txt:2: slice 20 has 2 points: a contour has three at least");
+  points("28 1 2\n28 9 2\n28 9 9\n", "a seed lies outside of what is drawn by hand in slice 28");
+  points("# none\n", "bad.txt: no point stands in it");
+  const std::string good = text_of(*folder_ / "thin.inr");
+  write_file(*folder_ / "cut.inr", good.substr(0, good.size() / 2));
+  refused("cut.inr" + kSeed, "cut.inr: it ends before its last voxel");
+  std::string nan =
+      replaced(replaced(good.substr(0, 256), "signed fixed", "float\n\n\n\n\n\n\n"), "16 bits", "32 bits");
+  write_file(*folder_ / "nan.inr", nan + std::string(4 * thin_.size(), '\xff'));
+  refused("nan.inr" + kSeed, "nan.inr: its value number 1 is no finite number");
+}
+
+}  // namespace
+}  // namespace palpate

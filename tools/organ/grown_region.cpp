@@ -1,0 +1,126 @@
+#include "tools/organ/grown_region.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/organ/voxel_pieces.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int kAround = 2;            // [voxels] to each side of a seed
+constexpr double kTold = 4;           // deviations that are still the organ's
+constexpr double kShell = 3;          // [voxels] around the organ, without the first, whose values are between
+constexpr int kEnough = 20;           // voxels from which a median is taken
+constexpr double kOfNormal = 1.4826;  // deviation of a normal distribution, in median distances to its median
+
+std::array<int, 3> place_of(const GridShape& shape, std::size_t voxel) {
+  const auto row = static_cast<std::size_t>(shape.count[0]), layer = row * shape.count[1];
+  return {static_cast<int>(voxel % row), static_cast<int>(voxel / row % shape.count[1]),
+          static_cast<int>(voxel / layer)};
+}
+
+double median_of(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+GreyLevel level_of_values(std::vector<float>& values) {
+  const double median = median_of(values);
+  for (float& v : values) v = static_cast<float>(std::abs(v - median));
+  return {median, kOfNormal * median_of(values)};
+}
+
+GreyLevel level_around(const ScalarGrid& grey, const std::vector<std::size_t>& seeds) {
+  std::vector<float> values;
+  for (const std::size_t seed : seeds) {
+    const auto middle = place_of(grey.shape, seed);
+    std::array<int, 3> low, high;
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::max(middle[a] - kAround, 0);
+      high[a] = std::min(middle[a] + kAround, grey.shape.count[a] - 1);
+    }
+    for (int k = low[2]; k <= high[2]; ++k)
+      for (int j = low[1]; j <= high[1]; ++j)
+        for (int i = low[0]; i <= high[0]; ++i) values.push_back(grey.value[grey.shape.index(i, j, k)]);
+  }
+  return level_of_values(values);
+}
+
+std::vector<char> in_range(const ScalarGrid& grey, const GreyRange& range) {
+  std::vector<char> inside(grey.value.size());
+  for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = range.holds(grey.value[i]);
+  return inside;
+}
+
+/// Puts the range's ends midway to the medians of what is darker and brighter around the region.
+void widen_to_surroundings(const ScalarGrid& grey, const std::vector<char>& inside, double median, GreyRange& range) {
+  const DistanceGrid distance = distance_to_border(grey.shape, inside);
+  const double voxel = grey.shape.spacing.mean();
+  std::vector<float> darker, brighter;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (distance.value[i] < voxel || distance.value[i] > kShell * voxel || range.holds(grey.value[i])) continue;
+    (grey.value[i] < median ? darker : brighter).push_back(grey.value[i]);
+  }
+  if (darker.size() >= kEnough) range.low = 0.5 * (median + median_of(darker));
+  if (brighter.size() >= kEnough) range.high = 0.5 * (median + median_of(brighter));
+}
+
+std::string say_seed(const GridShape& shape, std::size_t seed) {
+  const auto [i, j, k] = place_of(shape, seed);
+  return fmt::format("the seed at voxel {},{},{}", i, j, k);
+}
+
+}  // namespace
+
+GreyLevel level_of(const ScalarGrid& grey, const std::vector<char>& inside) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    if (inside[i]) values.push_back(grey.value[i]);
+  return level_of_values(values);
+}
+
+GreyRange range_around(const ScalarGrid& grey, const std::vector<std::size_t>& seeds) {
+  const GreyLevel level = level_around(grey, seeds);
+  const double half = kTold * level.deviation;
+  GreyRange range{level.median - half, level.median + half};
+  for (const std::size_t seed : seeds) {  // a seed of its own darkness is still the organ's
+    range.low = std::min<double>(range.low, grey.value[seed]);
+    range.high = std::max<double>(range.high, grey.value[seed]);
+  }
+  std::vector<char> inside = in_range(grey, range);
+  keep_pieces_with(grey.shape, inside, seeds);
+  widen_to_surroundings(grey, inside, level.median, range);
+  return range;
+}
+
+std::vector<char> grow_region(const ScalarGrid& grey, const GreyRange& range, const std::vector<std::size_t>& seeds,
+                              double neck) {
+  for (const std::size_t seed : seeds)
+    if (!range.holds(grey.value[seed]))
+      throw std::runtime_error(
+          fmt::format("{} has the smoothed grey value {:.4g}, which is not within {:.4g} to {:.4g}",
+                      say_seed(grey.shape, seed), grey.value[seed], range.low, range.high));
+  std::vector<char> inside = in_range(grey, range);
+  keep_pieces_with(grey.shape, inside, seeds);
+  if (neck <= 0) return inside;
+  const DistanceGrid depth = distance_to_border(grey.shape, inside);
+  std::vector<char> core(inside.size());
+  for (std::size_t i = 0; i < core.size(); ++i) core[i] = depth.value[i] < -0.5 * neck;
+  for (const std::size_t seed : seeds)
+    if (!core[seed])
+      throw std::runtime_error(
+          fmt::format("{} lies {:.3g} mm deep, in a part thinner than --neck {:.3g} mm: take one deeper inside",
+                      say_seed(grey.shape, seed), -1e3 * depth.value[seed], 1e3 * neck));
+  keep_pieces_with(grey.shape, core, seeds);
+  const DistanceGrid from_core = distance_to_border(grey.shape, core);
+  for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] && from_core.value[i] < 0.5 * neck;
+  keep_pieces_with(grey.shape, inside, seeds);
+  return inside;
+}
+
+}  // namespace palpate

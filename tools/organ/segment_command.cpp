@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "tools/organ/commands.hpp"
+#include "tools/organ/fineness_options.hpp"
+#include "tools/organ/label_file.hpp"
+#include "tools/organ/places.hpp"
+#include "tools/organ/slice_pictures.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kSureEnough = 0.6;  // share of a slice's contour on an edge, below which it is worth a look
+
+struct SegmentOptions {
+  std::string image, output, range, points, preview;
+  std::vector<std::string> seeds, seed_voxels;
+  double smoothing = 1, neck = 0;
+  ContourForces forces;
+};
+
+std::vector<double> three_of(const std::string& option, const std::string& text) {
+  std::vector<double> numbers = numbers_of(text);
+  if (numbers.size() != 3)
+    throw std::runtime_error(fmt::format("{} {}: three numbers x,y,z are asked for", option, text));
+  return numbers;
+}
+
+/// The voxel of a place given in voxels.
+std::size_t voxel_at(const GridShape& shape, const Eigen::Vector3d& steps, const std::string& said) {
+  const Eigen::Array3d voxel = steps.array().round();
+  for (int a = 0; a < 3; ++a)
+    if (!(voxel[a] >= 0 && voxel[a] < shape.count[a]))
+      throw std::runtime_error(fmt::format("{} lies at voxel {:.4g},{:.4g},{:.4g}, outside of the image's {} x {} x {}",
+                                           said, steps.x(), steps.y(), steps.z(), shape.count[0], shape.count[1],
+                                           shape.count[2]));
+  const Eigen::Array3i i = voxel.cast<int>();
+  return shape.index(i[0], i[1], i[2]);
+}
+
+std::vector<std::size_t> seeds_of(const SegmentOptions& o, const GreyVolume& volume) {
+  std::vector<std::size_t> seeds;
+  for (const std::string& text : o.seeds) {
+    const Eigen::Vector3d world = 1e-3 * Eigen::Vector3d(three_of("--seed", text).data());
+    const Eigen::Vector3d x = volume.turn.transpose() * (world - volume.shift) - volume.shape.origin;
+    seeds.push_back(voxel_at(volume.shape, x.cwiseQuotient(volume.shape.spacing), "--seed " + text));
+  }
+  for (const std::string& text : o.seed_voxels)
+    seeds.push_back(
+        voxel_at(volume.shape, Eigen::Vector3d(three_of("--seed-voxel", text).data()), "--seed-voxel " + text));
+  if (seeds.empty()) throw std::runtime_error("a --seed or --seed-voxel in the organ is asked for");
+  return seeds;
+}
+
+SegmentationRules rules_of(const SegmentOptions& o, const GridShape& shape) {
+  SegmentationRules rules;
+  rules.neck = 1e-3 * o.neck;
+  rules.forces = o.forces;
+  if (!o.range.empty()) {
+    const std::vector<double> ends = numbers_of(o.range, ':');
+    if (ends.size() != 2 || ends[0] > ends[1])
+      throw std::runtime_error(fmt::format("--range {}: LOW:HIGH is asked for", o.range));
+    rules.range = GreyRange{ends[0], ends[1]};
+  }
+  if (!o.points.empty()) rules.by_hand = read_hand_contours(o.points, shape);
+  return rules;
+}
+
+/// Runs of slices whose contours found few edges, as "12, 30-34".
+std::string doubtful_slices(const Segmentation& s) {
+  std::string text;
+  const auto doubtful = [&](int k) { return !s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough; };
+  const int count = static_cast<int>(s.slices.size());
+  for (int k = 0; k < count; ++k) {
+    if (!doubtful(k)) continue;
+    const int first = k;
+    while (k + 1 < count && doubtful(k + 1)) ++k;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
+    if (k > first) text += fmt::format("-{}", k);
+  }
+  return text;
+}
+
+void print_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
+  fmt::print("  range: {:.4g} to {:.4g}{}\n", s.range.low, s.range.high,
+             o.range.empty() ? ", from what lies around the seeds" : "");
+  for (const std::string& finding : s.findings) fmt::print("  found: {}\n", finding);
+  int first = -1, last = 0, by_hand = 0;
+  double on_edge = 0;
+  int with_contour = 0;
+  for (int k = 0; k < shape.count[2]; ++k) {
+    const SegmentedSlice& slice = s.slices[k];
+    if (slice.moved.empty()) continue;
+    if (first < 0) first = k;
+    last = k, by_hand += slice.by_hand, on_edge += slice.on_edge(), ++with_contour;
+  }
+  fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", first, last,
+             by_hand, 100 * on_edge / with_contour);
+  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty())
+    fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
+               100 * kSureEnough, doubtful);
+  const auto voxels = std::ranges::count(s.inside, 1);
+  fmt::print("{}: label 1, {} voxels, {:.4g} ml\n", o.output, voxels,
+             1e6 * static_cast<double>(voxels) * shape.spacing.prod());
+}
+
+void segment_image(const SegmentOptions& o) {
+  say_progress("reading the image");
+  GreyVolume volume = read_grey_volume(o.image);
+  const GridShape& shape = volume.shape;
+  const Eigen::Vector3d mm = 1e3 * shape.spacing;
+  fmt::print("{}: {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm\n", o.image, shape.count[0], shape.count[1],
+             shape.count[2], mm.x(), mm.y(), mm.z());
+  const std::vector<std::size_t> seeds = seeds_of(o, volume);
+  const SegmentationRules rules = rules_of(o, shape);
+  const ScalarGrid image{shape, std::move(volume.value)};
+  ScalarGrid smoothed = image;
+  say_progress("smoothing");
+  if (o.smoothing > 0) smooth(smoothed, Eigen::Vector3d::Constant(o.smoothing * shape.spacing.head<2>().minCoeff()));
+  say_progress("growing the region and moving contours");
+  const Segmentation segmentation = [&] {
+    try {
+      return segment(smoothed, seeds, rules);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("{}: {}", o.image, error.what()));
+    }
+  }();
+  if (!o.preview.empty()) {
+    say_progress("drawing the slices");
+    write_slice_pictures(image, smoothed, segmentation, o.preview);
+  }
+  write_label_volume(volume, segmentation.inside, o.output);
+  print_segmentation(o, shape, segmentation);
+}
+
+}  // namespace
+
+void add_segment_command(cli::Command& app) {
+  cli::Command command = app.add_command(
+      "segment", "Make a label of an organ's grey values, slice by slice (INR, NIfTI, MetaImage, NRRD, DICOM)");
+  auto o = std::make_shared<SegmentOptions>();
+  command.add_option("IMAGE", o->image, "Image file of grey values, or a folder with a DICOM series").required();
+  command.add_option("-o,--output", o->output, "Labels to write (.mha, .nrrd; .inr keeps no origin)")
+      .required()
+      .output_file();
+  command.add_option("--seed", o->seeds, "Point in the organ: x,y,z in the image's world [mm]; may be given again")
+      .one_value_each_time();
+  command.add_option("--seed-voxel", o->seed_voxels, "The same in voxels, from 0; may be given again")
+      .one_value_each_time();
+  command.add_option("--range", o->range, "Grey values of the organ, LOW:HIGH (default: from the seeds' surroundings)");
+  command.add_option("--smoothing", o->smoothing, "Deviation of the Gaussian that smooths, in voxels of a slice")
+      .between(0.0, 5.0)
+      .show_default();
+  command.add_option("--neck", o->neck, "Cut off what hangs on the region by less than this [mm]").positive();
+  command.add_option("--reach", o->forces.reach, "How far contours look for edges, in voxels; 0: they stay")
+      .between(0.0, 20.0)
+      .show_default();
+  command.add_option("--stiffness", o->forces.stiffness, "Of contours against bending")
+      .between(0.0, 1000.0)
+      .show_default();
+  command.add_option("--points", o->points,
+                     "Text file of lines SLICE X Y, in voxels: the contours of these slices are drawn through their "
+                     "points, those of up to 15 slices between two of them start from both");
+  command.add_option("--preview", o->preview, "Folder for a picture of each slice with its contours");
+  command.examples({"palpate segment ct.nii.gz --seed 60,-20,110 --preview slices -o liver.mha",
+                    "palpate segment ct.nii.gz --seed 60,-20,110 --neck 6 --points mended.txt -o liver.mha"});
+  command.does([o] { segment_image(*o); });
+}
+
+}  // namespace palpate

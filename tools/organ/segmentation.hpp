@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "tools/organ/active_contour.hpp"
+#include "tools/organ/hand_contours.hpp"
+
+namespace palpate {
+
+struct SegmentationRules {
+  std::optional<GreyRange> range;  ///< none: from the seeds' surroundings
+  double neck = 0;                 ///< [m] parts that hang on by less than this are cut off; 0: none
+  ContourForces forces;
+  HandContours by_hand;
+};
+
+struct SegmentedSlice {
+  std::vector<Contour> start;  ///< the region's, or from those drawn by hand
+  std::vector<MovedContour> moved;
+  bool by_hand = false;
+
+  double on_edge() const;  ///< [1] share of all its contours' points
+};
+
+struct Segmentation {
+  GreyRange range{};
+  std::vector<char> inside;  ///< the organ's voxels
+  std::vector<SegmentedSlice> slices;
+  std::vector<std::string> findings;
+};
+
+/// An organ's voxels from smoothed grey values (TVCG99 sec. 2-1): a region of a range grows from the seeds (indices of
+/// voxels), contours drawn by hand take its place in their slices, every slice's other contours move to its edges, and
+/// the slices are stacked: a voxel that differs from both its neighbours in the next slices is as they are (but for
+/// slices drawn by hand), the largest piece stays, its cavities are filled.
+/// Throws std::runtime_error.
+Segmentation segment(const ScalarGrid& grey, const std::vector<std::size_t>& seeds, const SegmentationRules& rules);
+
+}  // namespace palpate
