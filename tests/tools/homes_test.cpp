@@ -24,7 +24,8 @@ std::vector<Include> all_includes() {
   const fs::path root = PALPATE_SOURCE;
   const std::regex line(R"(#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> found;
-  for (const char* room : {"common", "haptic_node", "deform_node", "render_node", "web_node", "tools", "idl"})
+  for (const char* room :
+       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "tools", "idl"})
     for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
       const std::string kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp" && kind != ".h" && kind != ".c") continue;
