@@ -10,7 +10,7 @@ set(CPACK_THREADS 0)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what its programs are linked with
-set(CPACK_COMPONENTS_ALL haptic deform render web mesh tools dev)
+set(CPACK_COMPONENTS_ALL haptic deform render web ros mesh tools dev)
 foreach(optional organ spacemouse)
   if(TARGET palpate_${optional})
     list(APPEND CPACK_COMPONENTS_ALL ${optional})
@@ -33,6 +33,8 @@ palpate_package(deform "Deformation node: the organ's shape by superposition, an
 palpate_package(render "Render node: draws organs and instruments, off screen"
   DEPENDS fonts-dejavu-core RECOMMENDS ffmpeg palpate-mesh)
 palpate_package(web "Web node: shows a running scene in browsers, and moves its tools for their users"
+  RECOMMENDS palpate-mesh)
+palpate_package(ros "Bridge to ROS 2: a running scene as standard messages, and commands to its tools"
   RECOMMENDS palpate-mesh)
 palpate_package(mesh "Reader of mesh files, which the other programs load where they need one")
 palpate_package(tools "Command line, example scenes, pages, deployment and manual"

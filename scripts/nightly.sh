@@ -2,14 +2,15 @@
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
 # undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
-# out/mcap_reader), python (the module and its examples; installs pybind11-dev and python3-dev), papers (docs/papers.md in
-# full, into out/papers_docs), packages (made, and tried in a bare Debian 12; needs root). All of them where none is named.
+# out/mcap_reader), docs (every command of the pages), python (the module and its examples; installs pybind11-dev and
+# python3-dev), papers (docs/papers.md in full, into out/papers_docs), packages (made, and tried in a bare Debian 12;
+# needs root). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=/usr/bin:$PATH  # the python3 that has Debian's modules
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long address thread tidy stability mcap python papers packages
+[ $# -gt 0 ] || set -- long address thread tidy stability mcap docs python papers packages
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -21,6 +22,9 @@ for stage in "$@"; do
       ./scripts/build.sh release palpate test_mcap
       npm install --silent --no-save --prefix out/mcap_reader @mcap/core @foxglove/omgidl-parser @foxglove/omgidl-serialization
       PALPATE_MCAP_READER=$PWD/out/mcap_reader build/release/bin/test_mcap ;;
+    docs)
+      ./scripts/build.sh release programs palpate_study
+      python3 tests/docs/run_commands.py build/release/bin --all ;;
     python)
       ./scripts/install.sh python3-dev pybind11-dev
       ./scripts/build.sh python palpate palpate_python
@@ -40,7 +44,7 @@ for stage in "$@"; do
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
       OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
     tidy) ./scripts/tidy.sh ;;
-    -h|--help) sed -n '2,6p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,7p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done

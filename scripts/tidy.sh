@@ -8,5 +8,5 @@ cd "$(dirname "$0")/.."
 cmake --preset tidy
 cmake --build --preset tidy --target palpate_idl  # its headers are generated
 files=("$@")
-[ $# -gt 0 ] || mapfile -t files < <(git ls-files {common,haptic_node,deform_node,render_node,web_node,tools}/'*.cpp' ':!tools/organ/image_library.cpp')
+[ $# -gt 0 ] || mapfile -t files < <(git ls-files {common,haptic_node,deform_node,render_node,web_node,ros_bridge,tools}/'*.cpp' ':!tools/organ/image_library.cpp')
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/tidy --quiet

@@ -4,13 +4,14 @@
 
 #include <stdexcept>
 
+#include "common/bus/dds_domain.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "palpate.h"
 
 namespace palpate {
 
 BareDds::BareDds(const BusSettings& settings, const std::string& out, const std::string& in)
-    : domain_(make_dds_bus(settings)) {
+    : domain_(join_domain(settings)) {
   participant_ = make_participant(settings);
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));

@@ -26,7 +26,7 @@ class BareDds {
   static constexpr std::size_t kAsToolState = 43, kAsForceState = 47;
 
  private:
-  std::unique_ptr<Bus> domain_;  ///< keeps this process in the domain
+  std::shared_ptr<const void> domain_;
   std::int32_t participant_ = 0, writer_ = 0, reader_ = 0, waitset_ = 0;
 };
 

@@ -5,11 +5,9 @@
 
 #include <atomic>
 #include <functional>
-#include <map>
-#include <mutex>
-#include <stdexcept>
 
 #include "common/bus/dds_convert.hpp"
+#include "common/bus/dds_domain.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "common/bus/dds_gate.hpp"
 #include "common/bus/stamp.hpp"
@@ -18,36 +16,6 @@
 
 namespace palpate {
 namespace {
-
-/// One per domain id and process; the buses of a process share it.
-struct Domain {
-  std::string configuration;
-  std::string keys, role;  ///< the middleware gives all participants of a process and domain the rights of the first
-  Entity entity;
-};
-
-std::shared_ptr<Domain> join_domain(const BusSettings& settings) {
-  static std::mutex mutex;
-  static std::map<int, std::weak_ptr<Domain>> domains;
-  listen_to_middleware();
-  const std::string configuration = dds_configuration(settings);
-  const std::lock_guard lock(mutex);
-  if (auto domain = domains[settings.domain].lock()) {
-    if (domain->configuration == configuration && domain->keys == settings.keys &&
-        (settings.keys.empty() || domain->role == settings.role))
-      return domain;
-    throw std::runtime_error(
-        fmt::format("network: this process is already in domain {} with other settings", settings.domain));
-  }
-  const auto id = static_cast<dds_domainid_t>(settings.domain);
-  auto domain = std::shared_ptr<Domain>(
-      new Domain{configuration,
-                 settings.keys,
-                 settings.role,
-                 {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
-  domains[settings.domain] = domain;
-  return domain;
-}
 
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -293,7 +261,7 @@ class DdsBus final : public Bus {
  private:
   int lease_ms_;
   std::string place_;
-  std::shared_ptr<Domain> domain_;
+  std::shared_ptr<const void> domain_;
   std::atomic<std::uint64_t> refused_ = 0;
   Entity participant_, waitset_;
   VersionWatch versions_;

@@ -73,6 +73,7 @@ TEST(Install, AComponentIsOneNode) {
     const std::set<std::string> files{"bin/" + name + "_node"};
     EXPECT_EQ(MovedPrefix("--component " + name).files(), files);
   }
+  EXPECT_EQ(MovedPrefix("--component ros").files(), std::set<std::string>{"bin/ros_bridge"});
   EXPECT_EQ(MovedPrefix("--component mesh").files(), std::set<std::string>{"lib/palpate/libpalpate_gmsh.so"});
 }
 

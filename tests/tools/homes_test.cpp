@@ -25,7 +25,7 @@ std::vector<Include> all_includes() {
   const std::regex line(R"(#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> found;
   for (const char* room :
-       {"common", "haptic_node", "deform_node", "render_node", "web_node", "drivers", "tools", "idl"})
+       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "drivers", "tools", "idl"})
     for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
       const std::string kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp" && kind != ".h" && kind != ".c") continue;

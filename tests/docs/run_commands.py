@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""run_commands.py BIN [--all]: runs the `palpate` lines of README.md and docs/ word for word, in a folder with a copy of
+scenes/, then the CTest project of docs/drive.md and the reader of docs/logs.md, each as the page has it. Some lines are
+shortened by an option of theirs, some exempt: the tables below say which and why. Without --all only those of README.md,
+docs/drive.md and docs/logs.md that take no minutes."""
+import contextlib
+import fnmatch
+import os
+import pathlib
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES_IN_SHORT = ["README.md", "docs/drive.md", "docs/logs.md"]
+
+# Never run: (page, line, why). `*` stands for anything.
+EXEMPT = [
+    ("docs/papers.md", "*", "the test `papers` runs them"),
+    ("docs/deploy.md", "*", "names two hosts; the tests `deploy` and `network` make two"),
+    ("docs/security.md", "*", "names two hosts, and a scene on one of them; the tests `security` make them"),
+    ("docs/organ.md", "*", "begins with the reader's own surface or image; the test `organ` has some"),
+    ("*", "* HOST*", "names another host"),
+    ("docs/drive.md", "palpate drive --merge results.jsonl *", "belongs to the lines of tasks, which run together below"),
+]
+
+# Run with more words at their end: (line, words). A later row goes before an earlier one.
+SHORTENED = [
+    ("palpate run *", "--seconds 1"),
+    ("palpate run * --record *", "--seconds 2"),
+    ("palpate run * --web*", "--seconds 1"),
+    ("palpate drive scenes/liver.toml * --log *", "--seconds 3"),
+    ("palpate latency*", "--seconds 1"),
+    ("palpate record *", "--seconds 2"),
+    ("palpate top", "--once"),
+    ("palpate study *", "--quick"),
+    ("palpate stability *", "--quick"),
+    ("* --quick*", ""),
+    ("palpate film * --from 2 --to 4 *", ""),
+]
+
+# Only with --all: minutes of computing.
+LONG = ["palpate study *", "palpate stability *", "palpate modes *", "* --sweep *", "palpate drive *--set body.young*",
+        "palpate film * --speed 0.1 *"]
+
+# Need a running system: one runs meanwhile.
+BESIDE_A_RUN = ["palpate record *", "palpate top*"]
+
+# Logs that lines take and the page does not make.
+LOGS = ["out/liver.lcmlog", "monday.lcmlog", "friday.lcmlog", "session.lcmlog"]
+
+
+def matches(line, patterns):
+    return any(fnmatch.fnmatchcase(line, pattern) for pattern in patterns)
+
+
+def lines_of(page):
+    """The lines of indented and fenced blocks that begin with `palpate `, or make a folder for one."""
+    fenced = False
+    for line in (ROOT / page).read_text().splitlines():
+        if line.startswith("```"):
+            fenced = not fenced
+        elif (fenced or line.startswith("    ")) and line.strip().startswith(("palpate ", "mkdir ")):
+            yield line.strip()
+
+
+def shortened(line):
+    words = next((more for pattern, more in reversed(SHORTENED) if fnmatch.fnmatchcase(bare(line), pattern)), "")
+    return f"{bare(line)} {words}".strip()
+
+
+def bare(line):
+    """Without the page's remark."""
+    return re.split(r"\s+#", line)[0]
+
+
+def block(page, language, word):
+    """The fenced block of this language that holds `word`."""
+    blocks = re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    return next(text for text in blocks if word in text)
+
+
+class Place:
+    """A fresh folder with a copy of scenes/, and the programs first in PATH."""
+
+    def __init__(self, programs, folder):
+        self.folder = folder
+        self.failures = []
+        self.environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}"}
+        shutil.copytree(ROOT / "scenes", folder / "scenes")
+        (folder / "out").mkdir()
+
+    def run(self, command, place="", folder="."):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder / folder, env=self.environment, text=True,
+                              capture_output=True, timeout=900)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        print(f"{'ok' if done.returncode == 0 else 'FAILED':6} {used:6.1f} s  {place}: {command}", flush=True)
+        if done.returncode != 0:
+            self.failures.append(command)
+            print(done.stdout + done.stderr, flush=True)
+        return done.stdout
+
+    @contextlib.contextmanager
+    def a_run(self):
+        """A system in the domain that lines without --domain look at."""
+        scene = subprocess.Popen(["palpate", "run", "scenes/liver.toml", "--domain", "0", "--seconds", "60"],
+                                 cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL)
+        try:
+            self.run("until palpate top --once | grep -q haptic; do sleep 0.1; done", "a system begins")
+            yield
+        finally:
+            scene.terminate()
+            scene.wait()
+
+
+def run_page(place, page, everything):
+    for line in lines_of(page):
+        reason = next((why for on, pattern, why in EXEMPT
+                       if fnmatch.fnmatchcase(page, on) and fnmatch.fnmatchcase(bare(line), pattern)), None)
+        if reason or (matches(bare(line), LONG) and not everything):
+            print(f"-                {page}: {bare(line)}: {reason or 'only with --all'}")
+            continue
+        with place.a_run() if matches(bare(line), BESIDE_A_RUN) else contextlib.nullcontext():
+            place.run(shortened(line), page)
+
+
+def run_tasks(place):
+    """What a sweep prints as tasks, on this machine alone, and its table."""
+    lines = [bare(line) for line in lines_of("docs/drive.md")]
+    place.run(next(line for line in lines if "--tasks" in line), "docs/drive.md")
+    place.run("sh tasks.sh > results.jsonl", "docs/drive.md, in place of GNU parallel")
+    place.run(next(line for line in lines if "--merge" in line), "docs/drive.md")
+
+
+def run_project(place):
+    """The tests in somebody else's repository; its scene is the liver under another name."""
+    project = place.folder / "project"
+    shutil.copytree(place.folder / "scenes", project)
+    (project / "liver.toml").rename(project / "press.toml")
+    (project / "CMakeLists.txt").write_text(block("docs/drive.md", "cmake", "my_driver_tests"))
+    for step in re.findall(r"- run: (.*)", block("docs/drive.md", "yaml", "haptics")):
+        place.run(step, "docs/drive.md", "project")
+
+
+def run_reader(place):
+    """The reader of logs prints a line for each force."""
+    (place.folder / "reader.py").write_text(block("docs/logs.md", "python", "def events"))
+    forces = place.run("/usr/bin/python3 reader.py out/liver.lcmlog", "docs/logs.md")
+    counted = place.run("palpate export out/liver.lcmlog --topic force_state --jsonl -o forces.jsonl && wc -l < forces.jsonl",
+                        "docs/logs.md")
+    if not forces or len(forces.splitlines()) != int(counted or 0):
+        place.failures.append(f"the reader of docs/logs.md has {len(forces.splitlines())} forces, the log {counted}")
+
+
+def main():
+    programs, everything = pathlib.Path(sys.argv[1]).resolve(), "--all" in sys.argv
+    pages = ["README.md"] + sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))
+    with tempfile.TemporaryDirectory(prefix="palpate-docs-") as folder:
+        place = Place(programs, pathlib.Path(folder))
+        place.run(f"palpate drive scenes/liver.toml --seconds {5 if everything else 3} --log {LOGS[0]}", "logs for what follows")
+        for log in LOGS[1:]:
+            shutil.copy(place.folder / LOGS[0], place.folder / log)
+        for page in pages if everything else PAGES_IN_SHORT:
+            run_page(place, page, everything)
+        run_project(place)
+        run_reader(place)
+        if everything:
+            run_tasks(place)
+    for failure in place.failures:
+        print("failed:", failure)
+    return 1 if place.failures else 0
+
+
+sys.exit(main())
