@@ -1,6 +1,6 @@
 # What drivers of devices are built with, by find_package(palpate): the bus, its messages, a 1 kHz loop. Component dev.
 include(CMakePackageConfigHelpers)
-set(driver_libraries palpate_bus palpate_idl palpate_messages palpate_realtime)
+set(driver_libraries palpate_bus palpate_describe palpate_idl palpate_messages palpate_realtime)
 foreach(library IN LISTS driver_libraries)
   string(REPLACE palpate_ "" name ${library})
   # A driver may be a module of another program, such as Python; without a precompiled header, whose code is not.

@@ -40,7 +40,7 @@ palpate_package(mesh "Reader of mesh files, which the other programs load where 
 palpate_package(tools "Command line, example scenes, pages, deployment and manual"
   DEPENDS "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS palpate-haptic palpate-deform palpate-render palpate-web ffmpeg python3-matplotlib)
 palpate_package(dev "For drivers of devices: messages, headers, library, CMake package and examples"
-  DEPENDS cyclonedds-dev libfmt-dev libxxhash-dev zlib1g-dev)
+  DEPENDS cyclonedds-dev libeigen3-dev libfmt-dev libxxhash-dev zlib1g-dev)
 palpate_package(spacemouse "Driver that moves a tool by a SpaceMouse" RECOMMENDS spacenavd)
 palpate_package(organ "Meshes of surfaces and of labelled images" DEPENDS "palpate-mesh (= ${PROJECT_VERSION})")
 include(CPack)

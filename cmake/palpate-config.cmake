@@ -1,6 +1,7 @@
 # find_package(palpate): the target palpate::bus, and palpate_IDL, the file of the messages.
 include(CMakeFindDependencyMacro)
 find_dependency(CycloneDDS)
+find_dependency(Eigen3)
 find_dependency(fmt)
 find_dependency(Threads)
 find_dependency(ZLIB)

@@ -38,17 +38,22 @@ void DeformLoop::publish(bool all) {
 void DeformLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) log_info(said);
   for (const std::string& said : link_.look(presence_, now)) log_warning(said);
-  feed_.watch_haptic();
+  feed_.watch_haptic(now);
   if (now - last_status_ns_ < 1'000'000'000) return;
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(report_.frames - last_frames_) /
                                                  static_cast<double>(now - last_status_ns_);
   const std::string silence = link_.silence("haptic", now);
-  presence_.announce(rate, report_.frames, 0, 1e-3 * static_cast<double>(report_.latency.percentile(0.5)),
-                     1e-3 * static_cast<double>(report_.latency.percentile(0.99)),
-                     silence.empty() ? range_.warning() : silence);
+  const Percentiles latency = percentiles_us(recent_latency_);
+  presence_.announce(rate, report_.frames, 0, latency.p50, latency.p99, silence.empty() ? range_.warning() : silence);
+  recent_latency_.clear();
   last_status_ns_ = now;
   last_frames_ = report_.frames;
+}
+
+void DeformLoop::record_latency(std::int64_t ns) {
+  report_.latency.record(ns);
+  recent_latency_.record(ns);
 }
 
 const DeformReport& DeformLoop::run(double seconds) {
@@ -69,7 +74,7 @@ const DeformReport& DeformLoop::run(double seconds) {
     // What the network has not carried yet is not followed by more of the same, or it would never carry anything.
     if (!frame && !(news && surfaces_.delivered())) continue;
     publish(frame);
-    if (news) report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
+    if (news) record_latency(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
     if (frame) next_frame = now + frame_ns_;
   }
   report_.refused = feed_.refused() + bus_.refused();

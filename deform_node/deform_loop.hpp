@@ -35,6 +35,7 @@ class DeformLoop {
  private:
   void publish(bool all);
   void keep_house(std::int64_t now);
+  void record_latency(std::int64_t ns);
 
   Deformer& deformer_;
   Bus& bus_;
@@ -45,6 +46,7 @@ class DeformLoop {
   ContactFeed feed_;
   SurfacePublisher surfaces_;
   RangeMonitor range_;
+  Histogram recent_latency_;  ///< since the last status
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_frames_ = 0;
   DeformReport report_;

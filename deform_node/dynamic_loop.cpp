@@ -177,26 +177,29 @@ void DynamicLoop::publish_frames() {
   }
   ++report_.frames;
   for (const std::string& said : range_.look(deformer_)) log_warning(said);
-  if (newest.sense_ns != shown_sense_ns_)
-    report_.latency.record(surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns));
+  if (newest.sense_ns == shown_sense_ns_) return;
   shown_sense_ns_ = newest.sense_ns;
+  const std::int64_t latency = surfaces_.last_publish_ns() - clock_.to_own(newest.sense_ns);
+  report_.latency.record(latency);
+  recent_latency_.record(latency);
 }
 
 void DynamicLoop::keep_house(std::int64_t now) {
   for (const std::string& said : presence_.watch()) log_info(said);
   if (const std::string lost = presence_.lost_claim(); !lost.empty()) throw std::runtime_error(lost);
   for (const std::string& said : link_.look(presence_, now)) log_warning(said);
-  feed_.watch_haptic();
+  feed_.watch_haptic(now);
   if (now - last_status_ns_ < kNsPerS) return;
   const double rate = last_status_ns_ == 0 ? 0
                                            : 1e9 * static_cast<double>(report_.ticks - last_ticks_) /
                                                  static_cast<double>(now - last_status_ns_);
-  const auto us = [&](double share) { return 1e-3 * static_cast<double>(report_.latency.percentile(share)); };
+  const Percentiles latency = percentiles_us(recent_latency_);
   pace_.look(report_.ticks, report_.period.skipped);
   if (!pace_.news().empty()) log_warning(pace_.news());
   const std::string silence = link_.silence("haptic", now), warning = silence.empty() ? pace_.status() : silence;
-  presence_.announce(rate, report_.ticks, report_.period.skipped, us(0.5), us(0.99),
+  presence_.announce(rate, report_.ticks, report_.period.skipped, latency.p50, latency.p99,
                      warning.empty() ? range_.warning() : warning);
+  recent_latency_.clear();
   last_status_ns_ = now;
   last_ticks_ = report_.ticks;
 }
@@ -234,6 +237,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
   }
   report_.refused += feed_.refused() + bus_.refused();
   report_.period = timer.statistics();
+  report_.behind = pace_.looks_behind();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - first_tick);
   return report_;
 }

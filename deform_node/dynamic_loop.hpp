@@ -27,6 +27,7 @@ struct DynamicReport {
   std::uint64_t cut = 0, torn = 0, fallen = 0;  ///< tetrahedra
   Histogram tick;                               ///< [ns] advancing the tissue
   Histogram latency;                            ///< [ns] sense time of the tool's step to the surface being published
+  std::uint64_t behind = 0;                     ///< [s] in which ticks were left out
   PeriodStatistics period;
 };
 
@@ -77,6 +78,7 @@ class DynamicLoop {
   ContactFeed feed_;
   SurfacePublisher surfaces_;
   RangeMonitor range_;
+  Histogram recent_latency_;  ///< since the last status
   PaceWatch pace_{"the tissue", "its time goes slower"};
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Writer<TopologyChange>> changes_;

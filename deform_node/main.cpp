@@ -74,6 +74,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
           {"ticks", r.ticks},
           {"tick_hz", rate(r.ticks, r.seconds)},
           {"missed", r.period.skipped},
+          {"behind_s", r.behind},
           {"tick_us_p50", us(r.tick, 0.5)},
           {"tick_us_p99", us(r.tick, 0.99)},
           {"tick_us_max", us(r.tick, 1)},
@@ -106,5 +107,7 @@ int main(int argc, char** argv) {
       "deform_node: rebuilds the organs' shape from contact information and publishes the surface"};
   palpate::add_node_options(app, options);
   app.add_flag("--whole", palpate::whole, "Begin with whole bodies, even if other nodes know them to have been cut");
+  app.examples(
+      {"deform_node scenes/hepatectomy.toml", "deform_node scenes/two_hosts.toml --interface eth0 --peer HOST"});
   return palpate::node_main("deform_node", argc, argv, app, palpate::run, options);
 }

@@ -84,6 +84,7 @@ const LoopReport& HapticLoop::run(double seconds) {
   over_.store(true);
   wake_.release();
   publisher.join();
+  report_.behind = pace_.looks_behind();
   if (!lost_claim_.empty()) throw std::runtime_error(lost_claim_);
   return report_;
 }
@@ -117,19 +118,26 @@ void HapticLoop::tick(double time) {
     report_.max_force = std::max(report_.max_force, haptic_.force(t).norm());
     flags |= haptic_.flags(t);
   }
-  report_.limited += (flags & (force_limited | slew_limited)) != 0;
-  report_.regularised += (flags & regularised) != 0;
-  report_.faults += (flags & fault) != 0;
-  report_.damped += (flags & passivity_limited) != 0;
+  count(flags);
   report_.min_energy = std::min(report_.min_energy, haptic_.energy());
-  report_.stale += (flags & stale_model) != 0;
-  report_.implausible += (flags & implausible_force) != 0;
-  shown_flags_.fetch_or(flags, std::memory_order_relaxed);
   std::uint64_t refused = 0, followed = 0;
   for (const MotionGuard& guard : guards_) refused += guard.refused(), followed += guard.followed();
   shown_refused_.store(refused, std::memory_order_relaxed);
   shown_followed_.store(followed, std::memory_order_relaxed);
   shown_ticks_.store(step_, std::memory_order_relaxed);
+}
+
+void HapticLoop::count(std::uint32_t flags) {
+  report_.limited += (flags & (force_limited | slew_limited)) != 0;
+  report_.force_limited += (flags & force_limited) != 0;
+  report_.slew_limited += (flags & slew_limited) != 0;
+  report_.regularised += (flags & regularised) != 0;
+  report_.faults += (flags & fault) != 0;
+  report_.damped += (flags & passivity_limited) != 0;
+  report_.silent += (flags & silent_device) != 0;
+  report_.stale += (flags & stale_model) != 0;
+  report_.implausible += (flags & implausible_force) != 0;
+  shown_flags_.fetch_or(flags, std::memory_order_relaxed);
 }
 
 // Once a second the state is saved for replay. The factor is forgotten in that step whether or not the publisher has
@@ -182,7 +190,7 @@ void HapticLoop::report_status(std::int64_t now) {
   say_interventions();
   pace_.look(ticks, missed);
   if (!pace_.news().empty()) log_warning(pace_.news());
-  presence_.announce(rate, ticks, missed, 0, 0, told_.status().empty() ? pace_.status() : told_.status());
+  presence_.announce(rate, ticks, missed, 0, 0, pace_.status().empty() ? told_.status() : pace_.status());
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
 }

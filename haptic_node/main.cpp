@@ -19,14 +19,19 @@ using namespace std::chrono_literals;
 
 bool hands = false;  // people may take tools that follow a file
 
-/// Waits until every driver elsewhere has spoken, saying once that it waits.
-void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus) {
+/// Waits until every driver elsewhere has spoken, saying once that it waits. Throws std::runtime_error if one has not
+/// after `seconds`; 0: there is no limit.
+void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus, double seconds) {
   BusDevices drivers(bus, devices);
   const auto all_ready = [&] {
     return std::all_of(devices.begin(), devices.end(), [](const auto& d) { return d->ready(); });
   };
   if (!all_ready()) log_info(fmt::format("waiting for a driver on topic {}", topics::device_state.name));
+  const auto begin = std::chrono::steady_clock::now();
   while (!all_ready() && !shutdown_requested()) {
+    if (seconds > 0 && std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(seconds))
+      throw std::runtime_error(
+          fmt::format("no driver on topic {} has spoken for {} s", topics::device_state.name, seconds));
     std::this_thread::sleep_for(250us);
     drivers.take();
   }
@@ -36,8 +41,10 @@ bool fit(const HapticStep& haptic, const ContactState& kept) {
   return std::ranges::all_of(kept.contacts, [&](const HeldContact& held) { return haptic.fits(kept.tool, held); });
 }
 
-/// The last contacts of a haptic node that died, if a peer with the same scene keeps them.
-std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& bus, Presence& presence) {
+/// The last contacts of a haptic node that died, if a peer with the same scene keeps them. `refused` counts those that
+/// cannot be of this scene.
+std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& bus, Presence& presence,
+                                                 std::uint64_t& refused) {
   const auto reader = bus.reader(topics::held_contacts);
   std::vector<ContactState> kept;
   const auto limit = std::chrono::steady_clock::now() + 1s;
@@ -48,7 +55,7 @@ std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& 
     while (auto contacts = known ? reader->take() : std::nullopt) {
       if (fit(haptic, *contacts))
         kept.push_back(std::move(*contacts));
-      else
+      else if (++refused == 1)
         log_warning("a peer keeps contacts that cannot be of this scene; they are left");
     }
     bus.wait(20ms);
@@ -56,19 +63,22 @@ std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& 
   return kept;
 }
 
-void start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence) {
+/// Returns how many contacts that peers kept were refused.
+std::uint64_t start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence) {
+  std::uint64_t refused = 0;
   std::vector<ToolDofs> dofs;
   for (auto& device : devices) dofs.push_back(device->read(0).dofs);
   try {
     haptic.start(dofs);
   } catch (const std::runtime_error&) {
-    const std::vector<ContactState> kept = contacts_kept_by_peers(haptic, bus, presence);
+    const std::vector<ContactState> kept = contacts_kept_by_peers(haptic, bus, presence, refused);
     if (kept.empty()) throw;
     haptic.start(dofs, true);
     for (const ContactState& c : kept)
       for (const HeldContact& held : c.contacts) haptic.adopt(c.tool, held);
     log_info("took up the contacts that a peer kept");
   }
+  return refused;
 }
 
 /// How the tasks of a scene ended, one entry a body that has one.
@@ -108,6 +118,10 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"slack_us_p1", us(r.period.slack, 0.01)},
           {"force_max_n", r.max_force},
           {"limited_steps", r.limited},
+          {"force_limited_steps", r.force_limited},
+          {"slew_limited_steps", r.slew_limited},
+          {"silent_device_steps", r.silent},
+          {"behind_s", r.behind},
           {"regularised_steps", r.regularised},
           {"fault_steps", r.faults},
           {"stale_model_steps", r.stale},
@@ -143,9 +157,9 @@ void run(const NodeOptions& o) {
       {.run = run_id, .seq = 1, .scene_hash = loaded.scene_hash, .text = to_toml(scene), .code_path = code_path()});
   catch_shutdown_signals();
   say_ready(o);
-  wait_for_devices(devices, *bus);
+  wait_for_devices(devices, *bus, o.seconds);
   if (shutdown_requested()) return;
-  start(haptic, devices, *bus, presence);
+  const std::uint64_t refused_contacts = start(haptic, devices, *bus, presence);
   // Peers need a moment to match; what is sent before is lost to them.
   const auto matched = std::chrono::steady_clock::now() + 500ms;
   while (std::chrono::steady_clock::now() < matched && !shutdown_requested()) {
@@ -161,6 +175,7 @@ void run(const NodeOptions& o) {
   if (topology) loop.set_topology(&*topology);
   const LoopReport& report = loop.run(o.seconds);
   nlohmann::json summary = summary_of(report);
+  summary["refused_contacts"] = refused_contacts;
   if (const nlohmann::json tasks = tasks_of(haptic, scene); !tasks.empty()) summary["tasks"] = tasks;
   for (std::size_t t = 0; t < scene.tools.size(); ++t)
     summary["tools"].push_back(handling_summary(scene.tools[t].name, loop.handling(static_cast<int>(t))));
@@ -183,5 +198,7 @@ int main(int argc, char** argv) {
   palpate::cli::CommandLine app{"haptic_node: collision and force at the device's rate, from precomputed tensors"};
   palpate::add_node_options(app, options);
   app.add_flag("--hands", palpate::hands, "People may take tools that follow a file; web_node needs the same");
+  app.examples(
+      {"haptic_node scenes/liver.toml --seconds 10", "haptic_node scenes/two_hosts.toml --interface eth0 --peer HOST"});
   return palpate::node_main("haptic_node", argc, argv, app, palpate::run, options);
 }

@@ -17,9 +17,12 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kQueueLength = 6;
-constexpr int kEncoderNice = 5;  // pictures may wait, the haptic loop and the renderer may not
+constexpr int kFilmDescriptor = 3;  // in ffmpeg
+constexpr int kEncoderNice = 5;     // pictures may wait, the haptic loop and the renderer may not
 
-std::vector<std::string> ffmpeg_arguments(int width, int height, double rate, const std::string& out) {
+/// It opens the film by its descriptor, more than once: no name is given that could mean something else to it, or to
+/// which somebody could have put a link.
+std::vector<std::string> ffmpeg_arguments(int width, int height, double rate) {
   // H.264 in 4:2:0 wants even sides.
   const std::string filter = fmt::format("scale=out_color_matrix=bt709:out_range=tv,format=yuv444p,pad={}:{}",
                                          (width + 1) / 2 * 2, (height + 1) / 2 * 2);
@@ -59,12 +62,12 @@ std::vector<std::string> ffmpeg_arguments(int width, int height, double rate, co
           "+faststart",
           "-f",
           "mp4",
-          out};
+          fmt::format("file:/proc/self/fd/{}", kFilmDescriptor)};
 }
 
-/// Starts ffmpeg with the given standard input and error, in a process group of its own: a Ctrl-C at the
+/// Starts ffmpeg with the given standard input and error and the film, in a process group of its own: a Ctrl-C at the
 /// terminal ends the node, which then ends the film properly. Returns 0 or an error number.
-int spawn_ffmpeg(const std::vector<std::string>& arguments, int input, int error, int& process) {
+int spawn_ffmpeg(const std::vector<std::string>& arguments, int input, int error, int film, int& process) {
   std::vector<char*> argv;
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
@@ -74,6 +77,7 @@ int spawn_ffmpeg(const std::vector<std::string>& arguments, int input, int error
   posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&files, error, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, film, kFilmDescriptor);  // last: the others may have this number here
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none, all;
@@ -94,16 +98,7 @@ int spawn_ffmpeg(const std::vector<std::string>& arguments, int input, int error
 }  // namespace
 
 Film::Film(std::filesystem::path file, int width, int height, double frames_per_second)
-    : file_(std::move(file)),
-      temporary_(fmt::format("{}.part{}", file_.string(), ::getpid())),
-      width_(width),
-      height_(height),
-      rate_(frames_per_second) {
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);  // of a process with this number that was killed, or a link in wait
-  const int probe = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (probe < 0) fail(std::strerror(errno));
-  ::close(probe);
+    : file_(std::move(file)), whole_(file_), width_(width), height_(height), rate_(frames_per_second) {
   start();
 }
 
@@ -112,14 +107,13 @@ void Film::start() {
   complaints_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
   if (complaints_ < 0 || ::pipe2(ends, O_CLOEXEC) != 0) fail(std::strerror(errno));
   const int error =
-      spawn_ffmpeg(ffmpeg_arguments(width_, height_, rate_, temporary_.string()), ends[0], complaints_, ffmpeg_);
+      spawn_ffmpeg(ffmpeg_arguments(width_, height_, rate_), ends[0], complaints_, whole_.descriptor(), ffmpeg_);
   ::close(ends[0]);
   pipe_ = ends[1];
   if (error != 0) {
     ::close(pipe_);
     ::close(complaints_);
     ffmpeg_ = -1;
-    std::filesystem::remove(temporary_);
     fail(error == ENOENT ? "films need the program ffmpeg, which is not installed" : std::strerror(error));
   }
   ::fcntl(pipe_, F_SETPIPE_SZ, 1 << 20);
@@ -132,8 +126,6 @@ Film::~Film() {
   stop_writer();
   ::kill(ffmpeg_, SIGKILL);
   wait_for_ffmpeg();
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
 }
 
 bool Film::full() const {
@@ -150,8 +142,6 @@ void Film::add(const Image& image, int times) {
     lock.unlock();
     stop_writer();
     wait_for_ffmpeg();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
     fail("the film ends early: " + last_words());
   }
   Entry entry{{}, times};
@@ -220,12 +210,8 @@ void Film::finish() {
   if (ffmpeg_ < 0) return;
   stop_writer();
   const int status = wait_for_ffmpeg();
-  std::error_code ignored;
-  if (broken_ || status != 0) {
-    std::filesystem::remove(temporary_, ignored);
-    fail("the film is lost: " + last_words());
-  }
-  std::filesystem::rename(temporary_, file_);
+  if (broken_ || status != 0) fail("the film is lost: " + last_words());
+  whole_.commit();
 }
 
 std::string Film::last_words() const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "common/files/atomic_file.hpp"
 #include "render_node/image.hpp"
 
 namespace palpate {
@@ -44,7 +45,8 @@ class Film {
   std::string last_words() const;
   [[noreturn]] void fail(const std::string& reason) const;
 
-  std::filesystem::path file_, temporary_;
+  std::filesystem::path file_;
+  AtomicFile whole_;
   int width_, height_;
   double rate_;
   long frames_ = 0;

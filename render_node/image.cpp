@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+
+#include "common/files/atomic_file.hpp"
 
 namespace palpate {
 namespace {
@@ -60,19 +61,12 @@ void encode(const Image& image, const std::filesystem::path& file, std::FILE* ou
 }  // namespace
 
 void write_png(const Image& image, const std::filesystem::path& file) {
-  const std::filesystem::path temporary = fmt::format("{}.part{}", file.string(), ::getpid());
-  try {
-    std::filesystem::remove(temporary);  // of a process with this number that was killed, or a link that lies in wait
-    File out(std::fopen(temporary.c_str(), "wbx"));
-    if (!out) fail(file, std::strerror(errno));
-    encode(image, file, out.get());
-    if (std::fclose(out.release()) != 0) fail(file, std::strerror(errno));
-    std::filesystem::rename(temporary, file);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  AtomicFile whole(file);
+  File out(std::fopen(whole.handle().c_str(), "wb"));
+  if (!out) fail(file, std::strerror(errno));
+  encode(image, file, out.get());
+  if (std::fclose(out.release()) != 0) fail(file, std::strerror(errno));
+  whole.commit();
 }
 
 Image read_png(const std::filesystem::path& file) {

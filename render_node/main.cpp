@@ -8,6 +8,7 @@
 #include "common/node/node_setup.hpp"
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/scene/moved_files.hpp"
 #include "render_node/render_loop.hpp"
 #include "render_node/scene_stage.hpp"
 
@@ -36,6 +37,7 @@ void summarise(const RenderReport& r, const Film* film, const RangeMonitor* rang
                          {"seconds", r.seconds},
                          {"frames", r.frames},
                          {"missed", r.missed},
+                         {"behind_s", r.behind},
                          {"refused", r.refused},
                          {"rate_hz", r.seconds > 0 ? static_cast<double>(r.frames) / r.seconds : 0.0},
                          {"latency_us_p50", us(r.latency, 0.5)},
@@ -54,6 +56,7 @@ void summarise(const RenderReport& r, const Film* film, const RangeMonitor* rang
 void run(const NodeOptions& o) {
   if (options.threads > 0) ::setenv("LP_NUM_THREADS", fmt::format("{}", options.threads).c_str(), 1);
   LoadedScene loaded = load_for_node(o, options.deform ? ArchivePart::surface : ArchivePart::header);
+  keep_files_of(loaded.scene, {options.film, options.still});
   const bool moves = has_moving_tissue(loaded.scene);
   if (options.deform && moves)
     throw std::runtime_error(o.scene + ": moving tissue belongs to a deform node; leave --deform out");
@@ -97,5 +100,7 @@ int main(int argc, char** argv) {
       .one_of({1, 4})
       .show_default();
   app.add_option("--threads", o.threads, "Threads that draw; default: one per core").between(1, 64);
+  app.examples({"render_node scenes/liver.toml --deform --film out/liver.mp4",
+                "render_node scenes/two_hosts.toml --interface eth0 --peer HOST --still out/moment.png"});
   return palpate::node_main("render_node", argc, argv, app, palpate::run, node);
 }

@@ -119,6 +119,7 @@ const RenderReport& RenderLoop::run(double seconds) {
     report_.missed = timer.statistics().skipped;
   }
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  report_.behind = pace_.looks_behind();
   report_.peak_force = show_.peak_force();
   report_.refused = show_.refused() + source_.refused() + bus_.refused();
   return report_;

@@ -19,9 +19,10 @@ namespace palpate {
 struct RenderReport {
   double seconds = 0;
   std::uint64_t frames = 0, missed = 0, refused = 0;
-  double peak_force = 0;  ///< [N]
-  Histogram latency;      ///< [ns] sense time of a step to the picture that first shows it
-  Histogram draw;         ///< [ns] drawing and reading back
+  std::uint64_t behind = 0;  ///< [s] in which pictures were left out
+  double peak_force = 0;     ///< [N]
+  Histogram latency;         ///< [ns] sense time of a step to the picture that first shows it
+  Histogram draw;            ///< [ns] drawing and reading back
 };
 
 /// Takes the latest of everything at the visual rate and draws it.

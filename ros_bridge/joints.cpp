@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "common/bus/printable.hpp"
+#include "common/describe/printable.hpp"
 
 namespace palpate::ros {
 namespace {

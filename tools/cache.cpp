@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -29,7 +31,7 @@ struct CacheOptions {
   std::string work;
   std::vector<std::string> scenes;
   int days = 0;
-  bool old_formats = false;
+  bool old_formats = false, json = false;
 };
 
 struct Kept {
@@ -100,9 +102,31 @@ std::uintmax_t bytes_of(const std::vector<Kept>& files) {
   return bytes;
 }
 
+nlohmann::ordered_json json_of(const Kept& kept) {
+  return {{"file", kept.file.string()},
+          {"body", kept.body},
+          {"bytes", kept.bytes},
+          {"made", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", kept.made)},
+          {"usable", archive_is_of_use(kept)}};
+}
+
+void print_json(const fs::path& folder, const std::vector<Kept>& archives, const std::vector<Kept>& readings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Kept& kept : archives) list.push_back(json_of(kept));
+  const nlohmann::ordered_json json{{"folder", folder.string()},
+                                    {"archives", list},
+                                    {"readings", readings.size()},
+                                    {"reading_bytes", bytes_of(readings)}};
+  fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 void list(const CacheOptions& o) {
   for (const fs::path& folder : folders_of(o.scenes)) {
     const std::vector<Kept> archives = files_in(folder, is_archive);
+    if (o.json) {
+      print_json(folder, archives, files_in(readings_folder(folder), is_reading));
+      continue;
+    }
     for (const Kept& kept : archives)
       fmt::print("  {:>10}  {:%Y-%m-%d}  {:<20}  {}{}\n", human_bytes(kept.bytes), kept.made, kept.body,
                  kept.file.filename().string(), archive_is_of_use(kept) ? "" : "  (of no use to this version)");
@@ -147,6 +171,7 @@ void add_cache_command(cli::Command& app) {
   command.add_option("SCENE", o->scenes, "Scenes beside whose meshes to look (default: the user's own folder)");
   command.add_option("--days", o->days, "Remove what is at least so many days old").between(0, 36500).show_default();
   command.add_flag("--unusable", o->old_formats, "Remove only what this version cannot use: older formats, damaged");
+  command.add_flag("--json", o->json, "Of a list: print one line of JSON a folder");
   command.examples({"palpate cache list", "palpate cache list scenes/liver.toml", "palpate cache clean --unusable",
                     "palpate cache clean --days 30"});
   command.does([o] { o->work == "list" ? list(*o) : clean(*o); });

@@ -16,6 +16,7 @@
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
+#include "tools/node_plan.hpp"
 #include "tools/tool_warnings.hpp"
 
 namespace palpate {
@@ -52,6 +53,17 @@ const ShellSpec* find_wall(const Scene& scene, const std::string& name) {
   return body == scene.bodies.end() ? nullptr : wall_of(*body);
 }
 
+/// The parts of a body's memory in the nodes that `palpate run` starts for the scene, and on disk.
+std::vector<MemoryPart> of_nodes(const NodePlan& plan, std::vector<MemoryPart> parts) {
+  const std::vector<std::string> nodes = plan.names();
+  for (MemoryPart& part : parts)
+    if (part.owner == "render_node --deform" && plan.deform) part.owner = "deform_node";  // which superposes then
+  std::erase_if(parts, [&](const MemoryPart& part) {
+    return part.owner != "disk" && std::ranges::find(nodes, part.owner) == nodes.end();
+  });
+  return parts;
+}
+
 /// Loads and validates a body's mesh and everything that refers to it.
 CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
   const CheckSettings settings{
@@ -64,7 +76,7 @@ CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
   CheckReport report{.say = [&out](const std::string& line) { out.say(line); }};
   std::visit([&](const auto& spec) { check(spec, settings, report); }, body);
   say_archive(scene, body, out);
-  out.memory(report.memory);
+  out.memory(of_nodes(plan_nodes(scene, {}), report.memory));
   return report;
 }
 
@@ -135,7 +147,7 @@ void say_left_out(const Scene& scene, std::span<const CheckReport> bodies, Check
   if (!scene.record) out.left_out("no [record]: no recorder and no log file");
   if (!scene.network.security)
     out.left_out("no [network.security]: no keys and no encryption; whoever is on the network can take part");
-  if (!scene.render) out.left_out("no [render]: default picture");
+  if (!scene.render) out.left_out("no [render]: no render node and no picture, unless a film or a still is asked for");
   if (!scene.render || scene.render->backdrop.empty()) out.left_out("no backdrop");
   if (!has_moving_tissue(scene)) out.left_out("no surface topic, unless a deformation node of its own is asked for");
 }
@@ -164,6 +176,7 @@ void check_scene(const Scene& scene, CheckOutput& out) {
   }
   check_tools(scene, bodies, out);
   out.about("", "");
+  out.nodes(plan_nodes(scene, {}).names());
   say_sections(scene, out);
   say_left_out(scene, bodies, out);
   for (const CheckReport& body : bodies) warn_all(body.warnings, out);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/describe/printable.hpp"
 #include "tools/human_bytes.hpp"
 
 namespace palpate {
@@ -13,6 +14,11 @@ namespace {
 std::string_view without_indent(std::string_view line) {
   line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
   return line;
+}
+
+/// Names and files in it are the scene's.
+void print(std::string_view line) {
+  fmt::print("{}\n", printable(line));
 }
 
 }  // namespace
@@ -25,7 +31,7 @@ void CheckOutput::fact(std::string_view key, const std::string& value, const std
   if (json_)
     all_[key] = value;
   else
-    fmt::print("{}\n", line);
+    print(line);
 }
 
 void CheckOutput::about(std::string_view list, const std::string& name) {
@@ -37,7 +43,7 @@ void CheckOutput::say(std::string_view line) {
   if (json_)
     here()["said"].emplace_back(without_indent(line));
   else
-    fmt::print("{}\n", line);
+    print(line);
 }
 
 void CheckOutput::memory(std::span<const MemoryPart> parts) {
@@ -49,24 +55,31 @@ void CheckOutput::memory(std::span<const MemoryPart> parts) {
       fmt::print("  {:>10}  {:<20}  {}\n", human_bytes(part.bytes), part.owner, part.what);
 }
 
+void CheckOutput::nodes(const std::vector<std::string>& names) {
+  if (json_)
+    all_["nodes"] = names;
+  else
+    fmt::print("nodes: {}\n", fmt::join(names, ", "));
+}
+
 void CheckOutput::left_out(std::string_view line) {
   if (json_)
     all_["left_out"].emplace_back(line);
   else
-    fmt::print("{}  {}\n", std::exchange(headed_, true) ? "" : "left out:\n", line);
+    fmt::print("{}  {}\n", std::exchange(headed_, true) ? "" : "left out:\n", printable(line));
 }
 
 void CheckOutput::warn(const std::string& sentence) {
   if (json_)
     all_["warnings"].emplace_back(sentence);
   else
-    fmt::print("warning: {}\n", sentence);
+    print("warning: " + sentence);
 }
 
 void CheckOutput::end() {
   if (!json_) return;
   for (const char* list : {"left_out", "warnings"}) all_.emplace(list, nlohmann::ordered_json::array());
-  fmt::print("{}\n", all_.dump());
+  fmt::print("{}\n", all_.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 }  // namespace palpate

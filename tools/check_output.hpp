@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/models/check/check.hpp"
 
@@ -21,6 +22,7 @@ class CheckOutput {
   /// A line without its end; in JSON without its indentation.
   void say(std::string_view line);
   void memory(std::span<const MemoryPart> parts);
+  void nodes(const std::vector<std::string>& names);  ///< that `palpate run` starts
   void left_out(std::string_view line);
   void warn(const std::string& sentence);
   void end();  ///< prints the JSON if that is asked for

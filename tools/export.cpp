@@ -96,7 +96,8 @@ void add_export_command(cli::Command& app) {
   command.add_flag("--jsonl", o->json, "One JSON object a line").excludes({"--csv"});
   command.add_flag("--mcap", o->mcap, "MCAP for Foxglove and other readers: messages as CDR, types as IDL; with -o")
       .excludes({"--csv", "--jsonl"});
-  command.add_option("-o,--output", o->file, "File (default: standard output)").output_file();
+  command.add_option("-o,--output", o->file, "File (default: standard output)")
+      .output_file("", {".csv", ".json", ".mcap"});
   command.examples({"palpate export session.lcmlog --topic force_state --csv -o force.csv",
                     "palpate export session.lcmlog --mcap -o session.mcap"});
   command.does([o] { run(*o); });

@@ -4,19 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/print.hpp"
+#include "common/describe/printable.hpp"
 #include "tools/commands.hpp"
+#include "tools/latency/hop_json.hpp"
 #include "tools/log_summary.hpp"
 
 namespace palpate {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Histogram& h) {
-  if (h.count() == 0) return nullptr;
-  const Percentiles p = percentiles_us(h);
-  return {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
-}
 
 Json json_of(const TopicSummary& t) {
   return {{"samples", t.samples},
@@ -50,10 +46,7 @@ Json json_of(const LogSummary& s, const std::string& file) {
     json["damage"].push_back({{"offset", d.offset}, {"bytes", d.bytes}, {"tail", d.tail}});
   json["files"] = Json::array();
   for (const LogFile& f : s.files) json["files"].push_back({{"path", f.path}, {"hash", f.hash}, {"bytes", f.size}});
-  json["hops_us"] = {{"tool_to_force", json_of(s.hops.force())},
-                     {"tool_to_surface", json_of(s.hops.surface())},
-                     {"tool_to_picture", json_of(s.hops.picture())},
-                     {"clock_uncertainty", 1e-3 * static_cast<double>(s.hops.uncertainty_ns())}};
+  json["hops_us"] = json_of(s.hops);
   json["tasks"] = Json::array();
   for (const TaskRecord& task : s.tasks) json["tasks"].push_back(Json::parse(to_json(task)));
   json["topics"] = Json::object();
@@ -104,18 +97,18 @@ void print_tasks(const LogSummary& s) {
 void print_text(const LogSummary& s, const std::string& file) {
   fmt::print("{}: {:.2f} s, {:.1f} MB\n", file, s.seconds, 1e-6 * static_cast<double>(s.bytes));
   if (s.has_header)
-    fmt::print("recorded {} on {} by version {}\n", local_time(s.header.start_wall_ns), s.header.host,
-               s.header.version);
+    fmt::print("recorded {} on {} by version {}\n", local_time(s.header.start_wall_ns), printable(s.header.host),
+               printable(s.header.version));
   else
     fmt::print("the header is damaged: scene, version and start are unknown\n");
-  fmt::print("scene     {}\n", s.title.empty() ? "none in the log" : s.title);
-  fmt::print("code path {}\n", s.code_path.empty() ? "unknown" : s.code_path);
+  fmt::print("scene     {}\n", s.title.empty() ? "none in the log" : printable(s.title));
+  fmt::print("code path {}\n", s.code_path.empty() ? "unknown" : printable(s.code_path));
   for (const LogFile& f : s.files)
-    fmt::print("file      {} ({:.2f} MB, {})\n", std::filesystem::path(f.path).filename().string(),
-               1e-6 * static_cast<double>(f.size), f.hash);
+    fmt::print("file      {} ({:.2f} MB, {})\n", printable(std::filesystem::path(f.path).filename().string()),
+               1e-6 * static_cast<double>(f.size), printable(f.hash));
   if (!s.footer) fmt::print("the recorder did not end in order\n");
   if (s.footer && s.footer->lost > 0)
-    fmt::print("the recorder lost {} messages: {}\n", s.footer->lost, s.footer->error);
+    fmt::print("the recorder lost {} messages: {}\n", s.footer->lost, printable(s.footer->error));
   if (!s.damage_text.empty()) fmt::print("{}\n", s.damage_text);
   if (s.thinned_steps > 0)
     fmt::print("keeps enough: one in {} steps of what can be computed again, and no surface that can\n",
@@ -141,7 +134,7 @@ void add_info_command(cli::Command& app) {
   command.does([o] {
     const LogSummary summary = summarise_log(o->file);
     if (o->json) {
-      fmt::print("{}\n", json_of(summary, o->file).dump(2));
+      fmt::print("{}\n", json_of(summary, o->file).dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
       print_text(summary, o->file);
     }

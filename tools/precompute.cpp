@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
@@ -9,9 +11,30 @@
 namespace palpate {
 namespace {
 
+/// What is to be said of an archive of this kind.
+std::vector<std::string> lines_of(const Body& body, const Archive& archive) {
+  return std::visit([&](const auto& spec) { return archive_lines(spec, archive); }, body);
+}
+
 void show_stage(std::string_view stage, double seconds) {
   constexpr double kWorthSaying = 0.1;
   if (seconds >= kWorthSaying) fmt::print(stderr, "  {:<40} {:8.2f} s\n", stage, seconds);
+}
+
+void print_json(const Body& body, const ArchiveState& state) {
+  nlohmann::ordered_json json{{"body", name_of(body)}, {"model", kind_of(body)}, {"archive", nullptr}};
+  if (!state.file.empty()) {
+    const auto archive = read_archive(state.file, ArchivePart::header, {});
+    json["archive"] = state.file.string();
+    json["bytes"] = std::filesystem::file_size(state.file);
+    json["up_to_date"] = state.up_to_date;
+    json["refused"] = state.refused;
+    json["seconds"] = state.up_to_date ? 0.0 : state.seconds;
+    json["nodes"] = archive.surface.size();
+    json["touchable"] = archive.surface.touchable;
+    json["said"] = lines_of(body, archive);
+  }
+  fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 void describe(const Archive& archive, const ArchiveState& state) {
@@ -20,8 +43,7 @@ void describe(const Archive& archive, const ArchiveState& state) {
              archive.surface.touchable, archive.touchable_dofs.size(), archive.other_dofs.size(), megabytes);
 }
 
-void precompute_body(const Scene& scene, const Body& body) {
-  const auto state = ensure_archive(scene, body, show_stage);
+void print_text(const Body& body, const ArchiveState& state) {
   if (state.file.empty()) {
     fmt::print("body '{}': a {} needs no archive\n", name_of(body), kind_of(body));
     return;
@@ -33,20 +55,27 @@ void precompute_body(const Scene& scene, const Body& body) {
     fmt::print("body '{}': computed and written in {:.3f} s: {}\n", name_of(body), state.seconds, state.file.string());
   const auto archive = read_archive(state.file, ArchivePart::header, {});
   describe(archive, state);
-  const auto more = [&](const auto& spec) { return archive_lines(spec, archive); };
-  for (const std::string& line : std::visit(more, body)) fmt::print("  {}\n", line);
+  for (const std::string& line : lines_of(body, archive)) fmt::print("  {}\n", line);
 }
 
 }  // namespace
 
 void add_precompute_command(cli::Command& app) {
   cli::Command command = app.add_command("precompute", "Compute the tensors of every body of a scene, once");
-  auto file = std::make_shared<std::string>();
-  command.add_option("SCENE", *file, "Scene file").required();
+  struct Options {
+    std::string scene;
+    bool json = false;
+  };
+  auto o = std::make_shared<Options>();
+  command.add_option("SCENE", o->scene, "Scene file").required();
+  command.add_flag("--json", o->json, "Print one line of JSON a body");
   command.examples({"palpate precompute scenes/liver.toml"});
-  command.does([file] {
-    const Scene scene = load_scene(*file);
-    for (const auto& body : scene.bodies) precompute_body(scene, body);
+  command.does([o] {
+    const Scene scene = load_scene(o->scene);
+    for (const auto& body : scene.bodies) {
+      const ArchiveState state = ensure_archive(scene, body, show_stage);
+      o->json ? print_json(body, state) : print_text(body, state);
+    }
   });
 }
 

@@ -20,11 +20,11 @@ constexpr double kShort = 600;  // [s]
 constexpr const char *kEverything = "everything", *kEnough = "enough";
 
 struct RecordOptions {
-  BusSettings network;
+  SystemNetwork network;
   std::string file;
   double seconds = 0;
   std::string keep;
-  bool supervised = false;
+  bool supervised = false, json = false;
 
   /// Unless it is told: everything of a recording whose end is near.
   bool keeps_everything() const { return keep.empty() ? seconds > 0 && seconds <= kShort : keep == kEverything; }
@@ -44,10 +44,14 @@ std::uint64_t samples_of(const RecorderReport& report) {
 }
 
 nlohmann::ordered_json summary(const RecordOptions& o, const RecorderReport& report, double seconds) {
+  nlohmann::ordered_json topics = nlohmann::ordered_json::object();
+  for (const auto& [name, topic] : report.topics)
+    topics[name] = {{"samples", topic.samples}, {"missing", topic.missing}, {"invalid", topic.invalid}};
   return {{"node", "recorder"},          {"file", o.file},
           {"seconds", seconds},          {"messages", samples_of(report)},
           {"missing", report.missing()}, {"lost", report.log.lost},
-          {"bytes", report.log.bytes},   {"error", report.log.error}};
+          {"bytes", report.log.bytes},   {"error", report.log.error},
+          {"scene", report.has_scene},   {"topics", topics}};
 }
 
 void print_report(const RecordOptions& o, const RecorderReport& report, double seconds) {
@@ -87,7 +91,8 @@ void record(RecordOptions& o) {
                             }};
   if (!o.keeps_everything()) settings.thinning = thinning_for_log;
   Recorder recorder(*bus, settings);
-  fmt::print("{}\n", o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
+  if (!o.json)
+    fmt::print("{}\n", o.supervised ? "ready" : fmt::format("recording domain {} to {}", o.network.domain, o.file));
   std::fflush(stdout);
 
   const std::int64_t start = now_ns();
@@ -98,7 +103,7 @@ void record(RecordOptions& o) {
     notice.look(recorder.log_status());
   }
   const RecorderReport report = recorder.finish();
-  if (o.supervised) {
+  if (o.supervised || o.json) {
     fmt::print("{}\n", summary(o, report, elapsed()).dump());
   } else {
     print_report(o, report, elapsed());
@@ -111,17 +116,22 @@ void record(RecordOptions& o) {
 void add_record_command(cli::Command& app) {
   auto o = std::make_shared<RecordOptions>();
   cli::Command command = app.add_command("record", "Write every topic of a running system into an LCM event log");
-  add_network_options(command, o->network, "recorder");
-  command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)").output_file();
+  add_system_options(command, o->network, "recorder");
+  command.add_option("-o,--output", o->file, "Log file (default: palpate-DATE-TIME.lcmlog)")
+      .output_file("", {".lcmlog"});
   command.add_option("--seconds", o->seconds, "Stop after so many seconds (default: Ctrl-C)").positive();
   command
       .add_option("--keep", o->keep,
                   "everything, or enough to verify and to draw: what can be computed again is kept at the rate of "
                   "pictures or not at all (default: enough, everything with --seconds up to 600)")
       .one_of(std::vector<std::string>{kEverything, kEnough});
+  command.add_flag("--json", o->json, "Print JSON at the end");
   command.add_flag("--supervised", o->supervised).hidden();
   command.examples({"palpate record --seconds 60 -o out/session.lcmlog"});
-  command.does([o] { record(*o); });
+  command.does([o, command] {
+    take_scene(command, o->network);
+    record(*o);
+  });
 }
 
 }  // namespace palpate

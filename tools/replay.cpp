@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 struct ReplayOptions {
-  BusSettings network;
+  SystemNetwork network;
   PlaySettings play;
   std::string file, data;
   bool verify = false, json = false;
@@ -98,7 +98,7 @@ void add_replay_command(cli::Command& app) {
   command.add_option("LOG", o->file, "LCM event log").required();
   command.add_option("--speed", o->play.speed, "2 plays twice as fast").positive().show_default();
   command.add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
-  add_network_options(command, o->network, "player");
+  add_system_options(command, o->network, "player");
   command.add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
   const cli::Option verifies =
       command
@@ -112,7 +112,11 @@ void add_replay_command(cli::Command& app) {
       .needs(verifies);
   command.examples(
       {"palpate replay out/liver.lcmlog --verify", "palpate replay out/liver.lcmlog --speed 0.5 --topic force_state"});
-  command.does([o] { o->verify ? verify(o->file, o->data) : play(*o); });
+  command.does([o, command] {
+    if (o->verify) return verify(o->file, o->data);
+    take_scene(command, o->network);
+    play(*o);
+  });
 }
 
 }  // namespace palpate

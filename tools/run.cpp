@@ -11,11 +11,14 @@
 
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/scene/moved_files.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/trajectory.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
 #include "tools/domain_claim.hpp"
+#include "tools/guard_summary.hpp"
+#include "tools/node_plan.hpp"
 
 namespace palpate {
 namespace {
@@ -31,6 +34,7 @@ struct RunOptions {
   double seconds = 0;
   int processes = 2;
   bool strict = false;
+  bool force = false;  ///< outputs may replace files of another kind
 };
 
 struct Node {
@@ -136,11 +140,18 @@ double end_of(const Scene& scene, const RunOptions& o) {
   return longest;
 }
 
+/// Empty: none is written.
+std::string log_of(const Scene& scene, const RunOptions& o) {
+  return !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
+}
+
 /// The recorder knows no scene, so the scene's network is passed on.
 std::vector<std::string> recorder_command(const Scene& scene, const std::string& log, const RunOptions& o) {
-  std::vector<std::string> command{sibling_program("palpate"), "record", "-o", log, "--keep", o.keep};
   const double end = o.keep.empty() ? end_of(scene, o) : 0;
-  if (o.keep.empty()) command.back() = end > 0 && end <= kShortRun ? "everything" : "enough";
+  const std::string kept = end > 0 && end <= kShortRun ? "everything" : "enough";
+  std::vector<std::string> command{sibling_program("palpate"), "record", "--output=" + log, "--keep",
+                                   o.keep.empty() ? kept : o.keep};
+  if (o.force) command.push_back("--force");
   if (!scene.network.interface.empty()) command.insert(command.end(), {"--interface", scene.network.interface});
   for (const std::string& peer : scene.network.peers) command.insert(command.end(), {"--peer", peer});
   if (o.keys.empty() && scene.network.security) command.insert(command.end(), {"--keys", scene.network.security->keys});
@@ -170,47 +181,27 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     if (!o.keys.empty()) arguments.insert(arguments.end(), {"--keys", o.keys});
     return arguments;
   };
-  const std::string log = !o.record.empty() ? o.record : scene.record ? scene.record->file.string() : "";
-  if (!log.empty()) nodes.start("recorder", with(recorder_command(scene, log, o)));
-  const bool watched = !o.web.empty();
-  // In a browser or off screen: nobody would see a third picture.
-  const bool drawn = (scene.render && !watched) || !o.film.empty() || !o.still.empty();
-  const bool moves = has_moving_tissue(scene);  // moving tissue needs the node that owns it
-  const bool three = o.processes == 3 || moves || watched;
-  if (three) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
-  if (drawn) {
+  const NodePlan plan = plan_nodes(scene, {.log = !o.record.empty(),
+                                           .picture = !o.film.empty() || !o.still.empty(),
+                                           .browsers = !o.web.empty(),
+                                           .processes = o.processes});
+  if (plan.recorder) nodes.start("recorder", with(recorder_command(scene, log_of(scene, o), o)));
+  if (plan.deform) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  if (plan.render) {
     std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
-    if (!three) render.push_back("--deform");
-    if (!o.film.empty()) render.insert(render.end(), {"--film", o.film});
-    if (!o.still.empty()) render.insert(render.end(), {"--still", o.still});
+    if (plan.superposes()) render.push_back("--deform");
+    if (!o.film.empty()) render.push_back("--film=" + o.film);
+    if (!o.still.empty()) render.push_back("--still=" + o.still);
+    if (o.force) render.push_back("--force");
     nodes.start("render_node", render);
   }
-  if (watched) nodes.start("web_node", with(web_command(o)));
+  if (plan.web) nodes.start("web_node", with(web_command(o)));
   nodes.wait_ready();
   if (shutdown_requested()) return;
   std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
   if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
-  if (watched) haptic.push_back("--hands");
+  if (plan.web) haptic.push_back("--hands");
   nodes.start("haptic_node", haptic);
-}
-
-// What the guards before the hand had to do that a sound run does not need, in a sentence; empty: nothing.
-std::string interventions_in(const nlohmann::json& summary) {
-  const nlohmann::json haptic = summary.value("haptic_node", nlohmann::json());
-  if (!haptic.is_object()) return {};
-  std::string said;
-  for (const auto& [key, what] :
-       {std::pair{"fault_steps", "steps without force after a fault"},
-        {"refused_samples", "samples of a device refused"},
-        {"followed_steps", "steps in which a tool followed its device at a bounded speed"},
-        {"refused_models", "local contact models refused"},
-        {"implausible_models", "local contact models that cannot be of this tissue"},
-        {"implausible_force_steps", "steps in which one asked for more force than the tissue can give"},
-        {"refused_messages", "messages refused"},
-        {"stale_model_steps", "steps in which the force of moving tissue faded"}})
-    if (const auto count = haptic.value(key, std::uint64_t{0}); count > 0)
-      said += fmt::format("{}{} {}", said.empty() ? "the hand was guarded: " : ", ", count, what);
-  return said;
 }
 
 void print_summary(const nlohmann::json& s) {
@@ -258,10 +249,12 @@ void print_summary(const nlohmann::json& s) {
         web.value("refused_requests", 0), web.value("thrown_out", 0));
   if (recorder.is_object())
     fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
+  if (const std::string limits = limits_met_in(s); !limits.empty()) fmt::print("limits   {}\n", limits);
 }
 
 void run(const RunOptions& o) {
   const Scene scene = load_scene(o.scene);
+  keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
   for (const Body& body : scene.bodies) ensure_archive(scene, body);
   catch_shutdown_signals();
   const auto begin = Clock::now();
@@ -303,7 +296,7 @@ void add_run_command(cli::Command& app) {
       .add_option("--seconds", o->seconds,
                   "Stop after so many seconds (default: when a scripted motion ends, with --web never, or Ctrl-C)")
       .positive();
-  run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file();
+  run_command.add_option("--record", o->record, "Write all topics to this LCM event log").output_file("", {".lcmlog"});
   run_command
       .add_option("--keep", o->keep,
                   "What the log keeps, as `palpate record` has it (default: everything where the run ends by itself "
@@ -333,7 +326,10 @@ void add_run_command(cli::Command& app) {
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.examples({"palpate run scenes/liver.toml --web",
                         "palpate run scenes/hepatectomy.toml --record out/cut.lcmlog --film out/cut.mp4"});
-  run_command.does([o] { run(*o); });
+  run_command.does([o, run_command] {
+    o->force = run_command.given("--force");
+    run(*o);
+  });
 }
 
 }  // namespace palpate

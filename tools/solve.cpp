@@ -15,6 +15,7 @@
 #include "common/models/static_state.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
+#include "common/scene/moved_files.hpp"
 #include "common/scene/scene.hpp"
 #include "common/shell/boundary_conditions.hpp"
 #include "tools/choose_body.hpp"
@@ -202,6 +203,7 @@ void solve(const SolveArguments& arguments) {
   if (arguments.plain && arguments.method == "direct")
     throw std::runtime_error("--plain: it is tensors that are summed: take --method tensors");
   const Scene scene = load_scene(arguments.scene);
+  keep_files_of(scene, {arguments.csv, arguments.vtu});
   const Body& body = choose_body(scene, arguments.body);
   check_model(body);
   Solved solved =

@@ -143,5 +143,6 @@ int main(int argc, char** argv) {
   app.add_option("--address", o.address, "Address to listen at in place of the scene's; default: this host alone");
   app.add_option("--port", o.port, "Port in place of the scene's; 0: any that is free").between(0, 65535);
   app.add_flag("--hands", o.hands, "People may take tools that follow a file; haptic_node needs the same");
+  app.examples({"web_node scenes/liver.toml --hands", "web_node scenes/liver.toml --address 0.0.0.0 --port 8081"});
   return palpate::node_main("web_node", argc, argv, app, palpate::run, node);
 }

@@ -145,6 +145,7 @@ void check_fit(const Hdf5Reader& file, const Archive& archive, ArchivePart part)
 }  // namespace
 
 void write_archive(const Archive& archive, const std::filesystem::path& file) {
+  make_folder_of(file);
   AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes);
   Hdf5Writer writer(atomic.path());
   write_header(writer, archive);

@@ -12,9 +12,11 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
+#include "common/files/atomic_file.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -44,12 +46,13 @@ class LogWriter::Impl {
   Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header, WhenFull when_full)
       : queue_limit_(queue_bytes), when_full_(when_full), wall_offset_(wall_ns() - now_ns()) {
     const bool named_later = header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file));
-    const std::filesystem::path part = named_later ? file.string() + ".part" : file.string();
-    log_ = lcm_eventlog_create(part.c_str(), "w");
+    std::optional<AtomicFile> whole;
+    if (named_later) whole.emplace(file);
+    log_ = lcm_eventlog_create(whole ? whole->handle().c_str() : file.c_str(), "w");
     if (!log_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
     std::setvbuf(log_->f, nullptr, _IOFBF, kFlushBytes);
     if (header) begin(*header);
-    if (named_later) give_name(part, file);
+    if (whole) give_name(*whole, file);
     thread_ = std::thread([this] { run(); });
   }
 
@@ -91,13 +94,13 @@ class LogWriter::Impl {
 
  private:
   /// Once the header is on its way to the disk.
-  void give_name(const std::filesystem::path& part, const std::filesystem::path& file) {
-    std::string why = status_.error;
-    if (status_.lost == 0 && std::rename(part.c_str(), file.c_str()) != 0) why = std::strerror(errno);
-    if (why.empty()) return;
+  void give_name(AtomicFile& whole, const std::filesystem::path& file) try {
+    if (status_.lost > 0)
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), status_.error));
+    whole.commit();
+  } catch (...) {
     lcm_eventlog_destroy(log_);
-    std::filesystem::remove(part);
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));
+    throw;
   }
 
   void begin(const LogHeader& header) {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/bus/printable.hpp"
+#include "common/describe/printable.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -30,7 +30,7 @@ std::string also(const std::string& first, const std::string& second) {
 void make_printable(NodeStatus& status) {
   for (std::string* text : {&status.node, &status.role, &status.scene_hash, &status.archive_hash, &status.version,
                             &status.clock_of, &status.text})
-    *text = printable(std::move(*text));
+    *text = printable(*text);
 }
 
 std::string node_name(const std::string& role) {

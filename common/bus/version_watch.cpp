@@ -5,7 +5,7 @@
 #include <xxhash.h>
 
 #include "common/bus/log_format.hpp"
-#include "common/bus/printable.hpp"
+#include "common/describe/printable.hpp"
 
 namespace palpate {
 namespace {

@@ -10,12 +10,18 @@
 #include <exception>
 #include <filesystem>
 
+#include "common/describe/printable.hpp"
+#include "common/files/file_kind.hpp"
+
 namespace palpate::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kOutput = "FILE";  // shown in the help; marks what is written
+constexpr const char* kForce = "--force";
+const std::string kForceMeaning = "Write over files of another kind than what is written";
+const std::string kKind = "kind";  // the check of an output that --force spares
 
 /// Why a file is not written; empty: it may be.
 std::string refuse_output(const std::string& name, const std::string& ending) {
@@ -27,6 +33,32 @@ std::string refuse_output(const std::string& name, const std::string& ending) {
     return name + " is no regular file, and would be replaced by one";
   if (!name.ends_with(ending)) return name + " does not end in " + ending;
   return "";
+}
+
+/// Why a file that is there is not replaced by one of these kinds; empty: it may be.
+std::string refuse_kind(const std::string& name, const std::vector<std::string>& kinds) {
+  std::error_code error;
+  if (!fs::exists(name, error) || fs::file_size(name, error) == 0) return "";
+  const std::string kind(kind_of(name));
+  if (std::ranges::find(kinds, kind) != kinds.end()) return "";
+  std::string written;
+  for (const std::string& one : kinds)
+    written += fmt::format("{}{}", written.empty() ? "" : " or ", kind_in_words(one));
+  return fmt::format("{} is {}, and would be replaced by {}: give another name, or {}", name, kind_in_words(kind),
+                     written, kForce);
+}
+
+/// Nothing of another kind is written over unless that is asked for.
+void keep_other_kinds(const CLI::App& app) {
+  const CLI::Option* const force = app.get_option_no_throw(kForce);
+  if (!force || force->count() > 0) return;
+  for (CLI::Option* output : const_cast<CLI::App&>(app).get_options()) {
+    if (output->get_type_name() != kOutput) continue;
+    CLI::Validator kind = *output->get_validator(kKind);
+    kind.active();
+    for (std::string name : output->results())
+      if (const std::string why = kind(name); !why.empty()) throw CLI::ValidationError(output->get_name(), why);
+  }
 }
 
 /// Whatever else is given on the command line is not written over.
@@ -113,15 +145,19 @@ Option& Option::hidden() {
   return *this;
 }
 
-Option& Option::output_file(const std::string& ending) {
+Option& Option::output_file(const std::string& ending, const std::vector<std::string>& kinds) {
+  const std::vector<std::string> written = kinds.empty() ? std::vector{ending} : kinds;
   option_->type_name(kOutput);
   option_->check([ending](const std::string& name) { return refuse_output(name, ending); }, "");
+  option_->check(
+      CLI::Validator([written](std::string& name) { return refuse_kind(name, written); }, "", kKind).active(false));
+  if (!command_->get_option_no_throw(kForce)) command_->add_flag(kForce, kForceMeaning);
   return *this;
 }
 
 template <class T>
 Option Command::add_option(const std::string& name, T& value, const std::string& meaning) {
-  return Option(app_->add_option(name, value, meaning));
+  return Option(app_->add_option(name, value, meaning), app_);
 }
 template Option Command::add_option(const std::string&, std::string&, const std::string&);
 template Option Command::add_option(const std::string&, int&, const std::string&);
@@ -132,11 +168,15 @@ template Option Command::add_option(const std::string&, std::array<double, 3>&, 
 template Option Command::add_option(const std::string&, std::array<int, 3>&, const std::string&);
 
 Option Command::add_flag(const std::string& name, bool& value, const std::string& meaning) {
-  return Option(app_->add_flag(name, value, meaning));
+  return Option(app_->add_flag(name, value, meaning), app_);
 }
 
 Command Command::add_command(const std::string& name, const std::string& meaning) {
   return Command(app_->add_subcommand(name, meaning));
+}
+
+bool Command::given(const std::string& name) const {
+  return app_->count(name) > 0;
 }
 
 void Command::examples(std::initializer_list<std::string> lines) {
@@ -146,6 +186,7 @@ void Command::examples(std::initializer_list<std::string> lines) {
 void Command::does(const std::function<void()>& work) {
   app_->callback([app = app_, work] {
     keep_inputs(*app);
+    keep_other_kinds(*app);
     work();
   });
 }
@@ -185,6 +226,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
   try {
     app_->parse(std::move(words));
     keep_inputs(*app_);
+    keep_other_kinds(*app_);
   } catch (const CLI::ParseError& error) {
     return app_->exit(error);
   }
@@ -196,7 +238,7 @@ int CommandLine::run(int argc, char** argv, const std::function<void()>& first) 
     if (first) first();
     if (const auto status = read(argc, argv)) return *status;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "palpate: {}\n", error.what());
+    fmt::print(stderr, "palpate: {}\n", printable(error.what()));
     return 1;
   }
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return 0;

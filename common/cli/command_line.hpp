@@ -17,7 +17,7 @@ namespace palpate::cli {
 /// What more is asked of an option.
 class Option {
  public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, CLI::App* command) : option_(option), command_(command) {}
 
   Option& required();
   Option& positive();
@@ -32,11 +32,14 @@ class Option {
   Option& needs(const Option& other);
   Option& hidden();
   /// It names a file that is written: refused where that is there and no regular file, is a link, is what another
-  /// option of the command names, or ends in another way than `ending` (".png") says.
-  Option& output_file(const std::string& ending = "");
+  /// option of the command names, or ends in another way than `ending` (".png") says; and, without the command's flag
+  /// --force, which this adds, where it is of another kind (common/files/file_kind.hpp) than those that this option
+  /// writes, `kinds` or that of `ending`. An empty file is of every kind.
+  Option& output_file(const std::string& ending = "", const std::vector<std::string>& kinds = {});
 
  private:
   CLI::Option* option_;
+  CLI::App* command_;
 };
 
 /// A command with its options; a handle.
@@ -51,6 +54,7 @@ class Command {
   Option add_option(const std::string& name, T& value, const std::string& meaning);
   Option add_flag(const std::string& name, bool& value, const std::string& meaning = "");
   Command add_command(const std::string& name, const std::string& meaning);
+  bool given(const std::string& name) const;                ///< whether the command line, once read, has this option
   void examples(std::initializer_list<std::string> lines);  ///< command lines, at the end of its help
   /// What it does; run while the command line is read.
   void does(const std::function<void()>& work);

@@ -54,6 +54,7 @@ std::optional<std::string> kept_answer(const fs::path& place) {
 void keep_answer(const fs::path& place, const std::string& answer) {
   if (answer.size() > kMaxBytes) return;
   try {
+    make_folder_of(place);
     AtomicFile file(place, kHead + answer.size());
     std::ofstream out(file.path(), std::ios::binary);
     out << head_of(place, answer) << answer;

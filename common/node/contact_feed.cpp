@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/bus/link_watch.hpp"
 #include "common/bus/topic_of.hpp"
 #include "common/log/log.hpp"
 
@@ -29,15 +30,23 @@ bool ContactFeed::take() {
   return deformer_.fresh();
 }
 
-void ContactFeed::watch_haptic() {
+void ContactFeed::hand_on_contacts() {
+  kept_ = 0;
+  for (const auto& [tool, contacts] : deformer_.contacts())
+    if (!contacts.contacts.empty()) kept_ += held_->write(contacts);
+}
+
+void ContactFeed::watch_haptic(std::int64_t now_ns) {
   const bool alive = contacts_->writers() > 0;
-  if (haptic_alive_ && !alive) {
-    int kept = 0;
-    for (const auto& [tool, contacts] : deformer_.contacts())
-      if (!contacts.contacts.empty()) kept += held_->write(contacts);
-    log_warning(fmt::format("the haptic node is gone; keeping the contacts of {} tools for its return", kept));
-  }
+  if (haptic_alive_ && !alive) hand_on_contacts();
   haptic_alive_ = alive;
+  const Presence::Peer* haptic = presence_.holder("haptic");
+  const bool gone = !alive && haptic && now_ns - haptic->heard_ns > LinkWatch::kSilentAfterNs;
+  if (gone && !said_gone_)
+    log_warning(kept_ > 0
+                    ? fmt::format("the haptic node is gone; the contacts of {} of its tools wait for its return", kept_)
+                    : "the haptic node is gone; it held nothing");
+  said_gone_ = gone;
 }
 
 }  // namespace palpate

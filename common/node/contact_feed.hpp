@@ -19,20 +19,24 @@ class ContactFeed {
 
   /// Takes what has come; true if the surfaces have something new to show.
   bool take();
-  /// Looks whether the haptic node has died; call a few times a second.
-  void watch_haptic();
+  /// Looks whether the haptic node has died; call a few times a second. Its contacts are handed on at once as its
+  /// writer falls silent. That it is gone is said only once it has not told how it is for so long that it cannot have
+  /// stood still for a moment.
+  void watch_haptic(std::int64_t now_ns);
   std::uint64_t refused() const { return refused_; }  ///< messages of other scenes, or that do not fit this one
 
  private:
   template <class M>
   void take_all(Reader<M>& reader);
+  void hand_on_contacts();
 
   const Presence& presence_;
   Deformer& deformer_;
   std::unique_ptr<Reader<ContactState>> contacts_;
   std::vector<std::function<void()>> take_news_;  ///< one a type of BodyMessage that some body follows
   std::unique_ptr<Writer<ContactState>> held_;
-  bool haptic_alive_ = false;
+  bool haptic_alive_ = false, said_gone_ = false;
+  int kept_ = 0;  ///< tools whose contacts were handed on
   std::uint64_t refused_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <random>
 
+#include "common/describe/printable.hpp"
 #include "common/log/log.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/scene/find_archive.hpp"
@@ -12,7 +13,8 @@ namespace palpate {
 void add_node_options(cli::CommandLine& app, NodeOptions& o) {
   app.show_version(PALPATE_VERSION);
   app.add_option("SCENE", o.scene, "Scene file").required();
-  app.add_option("--seconds", o.seconds, "Stop after so many seconds").positive();
+  app.add_option("--seconds", o.seconds, "Stop after so many seconds, or where no driver has spoken for so long")
+      .positive();
   app.add_option("--domain", o.domain, "DDS domain in place of the scene's").between(0, 230);
   app.add_option("--interface", o.interface, "Network interface in place of the scene's");
   app.add_option("--peer", o.peers, "Host to look for peers on, in place of the scene's; may be repeated");
@@ -66,7 +68,7 @@ int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, vo
     body(options);
   } catch (const std::exception& error) {
     std::fflush(stdout);
-    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    std::fprintf(stderr, "%s: %s\n", name, printable(error.what()).c_str());
     return 1;
   }
   std::fflush(stdout);

@@ -20,9 +20,11 @@ void PaceWatch::look(std::uint64_t done, std::uint64_t missed) {
   const bool was_behind = !status_.empty();
   status_.clear();
   news_.clear();
-  if (late_ >= kLooks)
+  if (late_ >= kLooks) {
+    ++looks_behind_;
     status_ =
         fmt::format("{} falls behind by {:.0f} %: {}; this machine has too much to do", what_, 100 * share, means_);
+  }
   if (late_ == kLooks) news_ = status_;
   if (was_behind && late_ == 0) news_ = fmt::format("{} keeps up again", what_);
 }

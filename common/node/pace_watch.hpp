@@ -15,13 +15,14 @@ class PaceWatch {
   /// was left out twice in a row, and has caught up with the first look at which it was not.
   void look(std::uint64_t done, std::uint64_t missed);
 
-  const std::string& status() const { return status_; }  ///< empty: it keeps up
+  std::uint64_t looks_behind() const { return looks_behind_; }  ///< in all
+  const std::string& status() const { return status_; }         ///< empty: it keeps up
   /// For the log: as it begins to fall behind, and when it has caught up. Empty without news.
   const std::string& news() const { return news_; }
 
  private:
   std::string what_, means_, status_, news_;
-  std::uint64_t done_ = 0, missed_ = 0;
+  std::uint64_t done_ = 0, missed_ = 0, looks_behind_ = 0;
   int late_ = 0;  ///< looks in a row
 };
 

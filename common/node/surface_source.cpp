@@ -2,6 +2,7 @@
 
 #include "common/log/log.hpp"
 #include "common/node/contact_feed.hpp"
+#include "common/realtime/clock.hpp"
 
 namespace palpate {
 namespace {
@@ -73,7 +74,7 @@ class OwnSurfaces : public SurfaceSource {
       deformer_.deform();
       for (const std::string& said : range_.look(deformer_)) log_warning(said);
     }
-    feed_.watch_haptic();
+    feed_.watch_haptic(now_ns());
     return news;
   }
 

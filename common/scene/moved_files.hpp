@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,10 @@ namespace palpate {
 
 /// Every file that a scene names, each once, in the order of the scene.
 std::vector<std::filesystem::path> files_of(const Scene& scene);
+
+/// Throws std::runtime_error if one of `outputs`, of which empty ones are none, is the scene's file or one that it
+/// names: nothing is written over what it is made of.
+void keep_files_of(const Scene& scene, std::initializer_list<std::filesystem::path> outputs);
 
 /// Where files lie now, by where the text of a scene says they do.
 using MovedFiles = std::map<std::filesystem::path, std::filesystem::path>;

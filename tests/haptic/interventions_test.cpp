@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "common/node/pace_watch.hpp"
 #include "idl/messages.hpp"
 
@@ -26,6 +28,21 @@ TEST(Interventions, AreToldOnceAndStandInTheStatusWhileTheyLast) {
   EXPECT_EQ(told.status(), "");
 }
 
+TEST(Interventions, TheLimitsOfThePortAndTheDampingAreToldToo) {
+  for (const auto& [flag, words] : {std::pair{force_limited, "more was asked for"},
+                                    {slew_limited, "rises no faster"},
+                                    {passivity_limited, "more energy than they had put in"},
+                                    {silent_device, "driver elsewhere is silent"}}) {
+    Interventions told;
+    told.look({.flags = flag});
+    ASSERT_EQ(told.news().size(), 1u) << words;
+    EXPECT_NE(told.news()[0].find(words), std::string::npos) << told.news()[0];
+    EXPECT_EQ(told.status(), told.news()[0]);
+    told.look({.flags = flag});
+    EXPECT_TRUE(told.news().empty()) << words;
+  }
+}
+
 TEST(PaceWatchTest, ALoopThatFallsBehindTwiceInARowSaysSoOnceAndThatItKeepsUpAgain) {
   PaceWatch pace("the tissue", "its time goes slower");
   std::uint64_t done = 0, missed = 0;
@@ -39,7 +56,9 @@ TEST(PaceWatchTest, ALoopThatFallsBehindTwiceInARowSaysSoOnceAndThatItKeepsUpAga
   look(600, 400);
   EXPECT_EQ(pace.status(), "the tissue falls behind by 40 %: its time goes slower; this machine has too much to do");
   EXPECT_EQ(pace.news(), pace.status());
+  EXPECT_EQ(pace.looks_behind(), 1u);
   look(500, 500);
+  EXPECT_EQ(pace.looks_behind(), 2u);
   EXPECT_NE(pace.status(), "");
   EXPECT_EQ(pace.news(), "");
   look(990, 10);

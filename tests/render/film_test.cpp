@@ -47,7 +47,7 @@ TEST(Png, ReadsBackWhatWasWritten) {
 TEST(Png, FailuresNameTheFileAndLeaveNothing) {
   const Folder folder;
   EXPECT_EQ(complaint([] { write_png(test_picture(8, 8, 0), "/nonexistent/a.png"); }),
-            "/nonexistent/a.png: No such file or directory");
+            "/nonexistent/a.png: cannot be written: No such file or directory");
   std::filesystem::create_directory(folder.path / "taken.png");
   EXPECT_NE(complaint([&] { write_png(test_picture(8, 8, 0), folder.path / "taken.png"); }), "");
   EXPECT_EQ(folder.files(), 1);
@@ -107,6 +107,35 @@ TEST(Film, LeavesNothingWithoutFinish) {
   EXPECT_EQ(folder.files(), 0);
 }
 
+TEST(Film, ItsNameMeansNothingElseToFfmpeg) {
+  const Folder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path);
+  for (const char* name : {"a:b.mp4", "-x.mp4"}) {
+    Film film(name, 64, 48, 30);
+    film.add(test_picture(64, 48, 0), 3);
+    EXPECT_EQ(complaint([&] { film.finish(); }), "");
+    EXPECT_TRUE(std::filesystem::is_regular_file(name)) << name;
+  }
+  std::filesystem::current_path(before);
+  EXPECT_EQ(folder.files(), 2);
+}
+
+TEST(Film, NothingIsWrittenThroughALinkThatTakesItsTemporaryName) {
+  const Folder folder;
+  const auto victim = folder.path / "victim";
+  std::ofstream(victim) << "precious";
+  Film film(folder.path / "a.mp4", 64, 48, 30);
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path)) {
+    if (entry.path() == victim) continue;
+    std::filesystem::remove(entry.path());
+    std::filesystem::create_symlink("victim", entry.path());
+  }
+  film.add(test_picture(64, 48, 0), 3);
+  film.finish();
+  EXPECT_EQ(std::filesystem::file_size(victim), 8u);
+}
+
 TEST(Film, SaysThatFfmpegIsMissing) {
   const Folder folder;
   const std::string path = ::getenv("PATH");
@@ -119,7 +148,7 @@ TEST(Film, SaysThatFfmpegIsMissing) {
 
 TEST(Film, RefusesAFileItCannotWriteAndAPictureOfAnotherSize) {
   EXPECT_EQ(complaint([] { Film("/nonexistent/a.mp4", 160, 120, 30); }),
-            "/nonexistent/a.mp4: No such file or directory");
+            "/nonexistent/a.mp4: cannot be written: No such file or directory");
   const Folder folder;
   Film film(folder.path / "a.mp4", 160, 120, 30);
   EXPECT_NE(complaint([&] { film.add(test_picture(80, 60, 0)); }).find("cannot take a picture of 80 x 60"),

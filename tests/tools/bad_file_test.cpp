@@ -57,6 +57,20 @@ TEST_F(ToolsBadFile, AMissingTrajectoryIsRefusedAtItsPlaceInTheScene) {
                    {"scene.toml:", "motion.csv", "is not a file that can be read"});
 }
 
+TEST_F(ToolsBadFile, WhatASceneSaysReachesNoTerminalAsACommand) {
+  scene_.replace("title = \"loopback block\"", "title = \"pale\\u001b[8m block\"");
+  const auto check = run_program(program("palpate") + " check " + scene_.scene());
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_NE(check.out.find("pale?[8m block"), std::string::npos) << check.out;
+  scene_.replace("[render]", "[\"\\u001b]0;owned\\u0007\"]\nx = 1\n[render]");
+  for (const char* start : {"palpate check", "haptic_node"}) {
+    const auto refused = run_program(program(start) + " " + scene_.scene());
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.err.find_first_of("\x1b\x07"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("?]0;owned?"), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(ToolsBadFile, AMalformedCurveIsRefusedWithItsLine) {
   const LoopbackScene bent("bad-curve", R"([body.nonlinear]
 force_curve = "force.csv"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/tools/program_result.hpp"
 
@@ -39,7 +40,10 @@ class ToolsCache : public ::testing::Test {
 TEST_F(ToolsCache, ListsWhatIsThereAndRemovesWhatIsOfNoUse) {
   EXPECT_NE(cache("list").find("cache: 0 archives"), std::string::npos) << "no folder yet";
   const LoopbackScene scene("cache", kLinear);
-  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  const auto made = run_program(program("palpate") + " precompute --json " + scene.scene());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(nlohmann::json::parse(made.out)["body"], "block");
+  EXPECT_EQ(nlohmann::json::parse(made.out)["up_to_date"], false);
   ASSERT_EQ(files(), 1u);
   const std::string hash(32, 'a');
   write("old-" + hash + ".h5");
@@ -51,6 +55,11 @@ TEST_F(ToolsCache, ListsWhatIsThereAndRemovesWhatIsOfNoUse) {
   EXPECT_NE(listed.find("old-" + hash + ".h5  (of no use to this version)"), std::string::npos) << listed;
   EXPECT_NE(listed.find("cache: 2 archives"), std::string::npos) << listed;
   EXPECT_EQ(listed.find("passwd"), std::string::npos);
+  const auto json = nlohmann::json::parse(cache("list --json"));
+  ASSERT_EQ(json["archives"].size(), 2u) << json;
+  EXPECT_EQ(json["archives"][0]["body"], "block");
+  EXPECT_EQ(json["archives"][0]["usable"], true);
+  EXPECT_EQ(json["archives"][1]["usable"], false);
   EXPECT_EQ(cache("list " + scene.scene()), listed) << "its archives are there too";
 
   EXPECT_NE(cache("clean --days 1").find(" 0 archives removed"), std::string::npos) << "all are new";

@@ -50,6 +50,18 @@ TEST(ToolsHelp, EveryCommandHasExamplesOfOptionsThatItHas) {
   }
 }
 
+TEST(ToolsHelp, EveryNodeHasExamplesOfOptionsThatItHas) {
+  for (const char* node : {"haptic_node", "deform_node", "render_node", "web_node"}) {
+    if (!std::filesystem::exists(program(node))) continue;
+    const std::string text = run_program(program(node) + " --help").out;
+    const std::size_t at = text.find(std::string("\nExamples:\n  ") + node);
+    ASSERT_NE(at, std::string::npos) << text;
+    const std::set<std::string> options = matches(text.substr(0, at), R"([ ,](--?[a-z][a-z-]*))");
+    for (const std::string& used : matches(text.substr(at), R"([ "](--?[a-z][a-z-]*))"))
+      EXPECT_TRUE(options.contains(used)) << node << ": its example has " << used;
+  }
+}
+
 TEST(ToolsHelp, WhatIsToldByItsPlaceIsInCapitalsAndTheFolderOrFileThatIsMadeIsTheOutput) {
   for (const auto& [command, text] : all_help()) {
     const auto usage = matches(text, R"((Usage: [^\n]*))");

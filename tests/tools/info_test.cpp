@@ -47,5 +47,25 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
   EXPECT_EQ(tasks[0]["deepest"], 0.022);
 }
 
+TEST(Info, ALogsWordsReachNoTerminalAsCommands) {
+  const OwnFolder folder("info-words");
+  const std::string log = folder / "words.lcmlog";
+  {
+    LogWriter writer(log);
+    LogHeader header;
+    header.schema = schema_text();
+    header.host = "here\x1b[2J";
+    header.version = "1\x1b]0;title\x07";
+    header.scene = "title = \"pale\x1b[8m liver, mürb\"\n";
+    writer.write(kHeaderChannel, 1, header);
+    writer.finish();
+  }
+  const ProgramResult text = run_program(program("palpate") + " info " + log);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.out.find_first_of("\x1b\x07"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("on here?[2J by version 1?]0;title?"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("mürb"), std::string::npos) << text.out;
+}
+
 }  // namespace
 }  // namespace palpate

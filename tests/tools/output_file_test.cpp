@@ -10,6 +10,7 @@ namespace fs = std::filesystem;
 using testing::LoopbackScene;
 using testing::program;
 using testing::run_program;
+using testing::text_of;
 
 /// The command line is refused before anything is done.
 void refused_at_once(const std::string& command, const std::vector<std::string>& fragments) {
@@ -28,7 +29,11 @@ class ToolsOutputFile : public ::testing::Test {
     return program("palpate") + " run " + scene_.scene() + " " + option + " " + to;
   }
 
-  LoopbackScene scene_{"output-file"};
+  std::string drive(const std::string& option, const std::string& to) const {
+    return program("palpate") + " drive " + scene_.scene() + " --seconds 0.05 " + option + " " + to;
+  }
+
+  LoopbackScene scene_{"output-file", testing::kLinear};
 };
 
 TEST_F(ToolsOutputFile, ADeviceIsNotReplaced) {
@@ -61,6 +66,41 @@ TEST_F(ToolsOutputFile, AnInputIsNotWrittenOver) {
                       scene_.folder().filename().string() + "/log",
                   {"log is named by"});
   refused_at_once(run("--record", scene_.scene()), {"is named by"});
+}
+
+TEST_F(ToolsOutputFile, ALinkUnderAForeseeableNameIsNotWrittenThrough) {
+  scene_.write("victim", "precious");
+  fs::create_symlink("victim", file("x.lcmlog.part"));
+  const auto run = run_program(drive("--log", file("x.lcmlog")));
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(text_of(file("victim")), "precious");
+  EXPECT_TRUE(fs::is_symlink(file("x.lcmlog.part")));
+  EXPECT_GT(fs::file_size(file("x.lcmlog")), 1000u);
+}
+
+TEST_F(ToolsOutputFile, WhatTheSceneNamesIsKept) {
+  const std::string mesh = text_of(file("block.msh")), motion = text_of(file("motion.csv"));
+  const std::string palpate = program("palpate") + " ", solve = " --hold 0:0,0,-0.001 --csv ";
+  for (const std::string& command :
+       {run("--record", file("block.msh")) + " --force", drive("--log", file("block.msh")) + " --force",
+        drive("--course", file("motion.csv")), palpate + "solve " + scene_.scene() + solve + file("motion.csv"),
+        palpate + "motion " + scene_.scene() + " \"press 1mm\" -o " + file("motion.csv"),
+        drive("--log", file("../" + scene_.folder().filename().string() + "/block.msh")) + " --force"})
+    testing::expect_refusal(command, {"needs this file"});
+  EXPECT_EQ(text_of(file("block.msh")), mesh);
+  EXPECT_EQ(text_of(file("motion.csv")), motion);
+}
+
+TEST_F(ToolsOutputFile, AFileOfAnotherKindIsReplacedOnlyByForce) {
+  scene_.write("notes", "of the kidney, and of the spleen\n");
+  scene_.write("other.png", "no picture");
+  refused_at_once(drive("--log", file("notes")), {"notes is text, and would be replaced by a topic log", "--force"});
+  refused_at_once(run("--still", file("other.png")), {"other.png is text", "a picture"});
+  refused_at_once(drive("--json -o", scene_.scene()), {"is named by"});
+  EXPECT_EQ(text_of(file("notes")), "of the kidney, and of the spleen\n");
+  EXPECT_EQ(run_program(drive("--log", file("notes")) + " --force").status, 0);
+  EXPECT_EQ(run_program(drive("--log", file("notes"))).status, 0) << "a log replaces a log";
+  for (int round = 0; round < 2; ++round) EXPECT_EQ(run_program(drive("--course", file("course.csv"))).status, 0);
 }
 
 TEST_F(ToolsOutputFile, WhatEndsInAnotherWayIsSomethingElse) {

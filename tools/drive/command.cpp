@@ -12,6 +12,7 @@
 #include "common/models/content_hash.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/scene/moved_files.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
 #include "tools/drive/run.hpp"
@@ -74,7 +75,9 @@ RunSettings settings_of(const DriveOptions& o) {
 /// One point, whatever becomes of it.
 PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& changes) {
   try {
-    return run_scene(load_scene(o.scene, changes), settings_of(o));
+    const Scene scene = load_scene(o.scene, changes);
+    keep_files_of(scene, {o.log, o.course, o.output});
+    return run_scene(scene, settings_of(o));
   } catch (const std::runtime_error& error) {
     if (o.point < 0) throw;
     return {.outcome = PointResult::kFailed, .reason = error.what()};
@@ -111,6 +114,7 @@ void prepare(const DriveOptions& o, const std::vector<std::vector<SceneChange>>&
   std::set<std::string> known;
   for (const auto& changes : points) {
     const Scene scene = load_scene(o.scene, changes);
+    keep_files_of(scene, {o.output});
     for (const Body& body : scene.bodies)
       if (!o.tasks && !shutdown_requested() && known.insert(content_hash(body)).second) ensure_archive(scene, body);
   }
@@ -186,8 +190,8 @@ void add_drive_command(cli::Command& app) {
       .one_value_each_time();
   command.add_flag("--json", o->json, "Print one line of JSON a run");
   command.add_flag("--csv", o->csv, "Print one row of CSV a run (the default of a sweep)").excludes({"--json"});
-  command.add_option("-o,--output", o->output, "Write what is printed to this file").output_file();
-  command.add_option("--log", o->log, "Write a topic log, as a recorder would").output_file();
+  command.add_option("-o,--output", o->output, "Write what is printed to this file").output_file("", {".csv", ".json"});
+  command.add_option("--log", o->log, "Write a topic log, as a recorder would").output_file("", {".lcmlog"});
   command.add_option("--course", o->course, "Write each step's tips and forces").output_file(".csv");
   command.add_option("--jobs", o->jobs, "Runs at the same time (default: one a core)").between(1, 1024);
   command.add_flag("--tasks", o->tasks, "Print the command of each run, one a line, and run none");

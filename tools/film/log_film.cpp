@@ -32,6 +32,7 @@ Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
 
 LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, long)>& progress) {
   const LoggedScene logged(s.log, s.data);
+  keep_files_of(logged.scene(), {s.film, s.still});
   logged.ensure_archives();
   const LogContents contents = contents_of(s.log);
   const Stretch stretch = stretch_of(s, contents);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/scene/ensure_archive.hpp"
+#include "common/scene/moved_files.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/motion/motion_maker.hpp"
@@ -46,6 +47,7 @@ void make_motion(const MotionOptions& o) {
   std::vector<MotionStep> steps;
   for (const std::string& text : o.steps) steps.push_back(parse_motion_step(text));
   const Scene scene = load_scene(o.scene);
+  keep_files_of(scene, {o.out});
   const int tool = choose_tool(scene, o.tool);
   const std::string body = name_of(choose_body(scene, o.body));
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);

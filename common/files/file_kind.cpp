@@ -1,0 +1,66 @@
+#include "common/files/file_kind.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kRead = 4096;
+
+struct Kind {
+  std::string_view ending, words, mark;
+  std::size_t at = 0;  ///< of the mark
+};
+constexpr Kind kKinds[] = {
+    {".lcmlog", "a topic log", "\xed\xa1\xda\x01"},
+    {".mp4", "a film", "ftyp", 4},
+    {".png", "a picture", "\x89PNG"},
+    {".mcap", "an MCAP file", "\x89MCAP"},
+    {".h5", "an HDF5 file", "\x89HDF"},
+    {".msh", "a mesh", "$MeshFormat"},
+    {".vtu", "XML", "<"},
+    {".json", "JSON", "{"},
+};
+constexpr std::string_view kScene = ".toml", kText = ".csv";
+
+bool is_text(std::string_view bytes) {
+  return std::ranges::none_of(
+      bytes, [](char c) { return static_cast<unsigned char>(c) < 0x20 && !std::strchr("\t\n\f\r", c); });
+}
+
+/// Whether the first line that says something names a table or a key.
+bool is_toml(std::string_view text) {
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    line.remove_prefix(std::min(line.size(), line.find_first_not_of(" \t\r")));
+    if (line.empty() || line[0] == '#') continue;
+    const std::size_t key = line.find_first_of("=,;");
+    return line[0] == '[' || (key != line.npos && line[key] == '=');
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view kind_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(kRead, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  for (const Kind& kind : kKinds)
+    if (bytes.size() >= kind.at && std::string_view(bytes).substr(kind.at).starts_with(kind.mark)) return kind.ending;
+  if (bytes.empty() || !is_text(bytes)) return {};
+  return is_toml(bytes) ? kScene : kText;
+}
+
+std::string_view kind_in_words(std::string_view kind) {
+  const auto* known = std::ranges::find(kKinds, kind, &Kind::ending);
+  if (known != std::end(kKinds)) return known->words;
+  return kind == kScene ? "TOML" : kind == kText ? "text" : "something else";
+}
+
+}  // namespace palpate

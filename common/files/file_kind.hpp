@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+#include <string_view>
+
+namespace palpate {
+
+/// What a file is by its first bytes, as the ending by which such a file goes: ".lcmlog", ".mp4", ".png", ".mcap",
+/// ".h5", ".msh", ".vtu" (XML), ".json", ".toml", or ".csv" for any other text; "" of bytes that are none of these, or
+/// cannot be read.
+std::string_view kind_of(const std::filesystem::path& file);
+
+/// A kind in words: "a topic log".
+std::string_view kind_in_words(std::string_view kind);
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+#include "tools/guard_summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace palpate {
+namespace {
+
+using nlohmann::json;
+
+TEST(GuardSummary, WhatASoundRunDoesNotNeedIsAnInterventionAndItsLimitsAreNot) {
+  EXPECT_EQ(interventions_in({{"haptic_node", nullptr}}), "");
+  const json sound{{"haptic_node", {{"slew_limited_steps", 3}, {"passivity_limited_steps", 2}, {"behind_s", 1}}},
+                   {"render_node", {{"behind_s", 4}}}};
+  EXPECT_EQ(interventions_in(sound), "");
+  EXPECT_EQ(limits_met_in(sound),
+            "3 steps in which the force rose no faster than the port lets it, 2 steps damped, 1 s in which the "
+            "force's steps were late, 4 s in which pictures were left out");
+  for (const char* key : {"fault_steps", "refused_samples", "followed_steps", "silent_device_steps", "refused_models",
+                          "implausible_models", "implausible_force_steps", "stale_model_steps", "force_limited_steps",
+                          "refused_contacts", "refused_messages"})
+    EXPECT_TRUE(interventions_in({{"haptic_node", {{key, 7}}}}).starts_with("the hand was guarded: 7 ")) << key;
+}
+
+}  // namespace
+}  // namespace palpate

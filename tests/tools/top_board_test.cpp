@@ -1,0 +1,65 @@
+#include "tools/top_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/bus/memory_bus.hpp"
+#include "common/realtime/clock.hpp"
+#include "idl/topics.hpp"
+
+namespace palpate {
+namespace {
+
+/// A board that has heard of these nodes and forces.
+class TopBoardTest : public ::testing::Test {
+ protected:
+  void hear(const NodeStatus& status) { nodes_->write(status); }
+  std::shared_ptr<MemoryNetwork> network_ = make_memory_network();
+  std::unique_ptr<Bus> nodes_bus_ = make_memory_bus(network_), own_bus_ = make_memory_bus(network_);
+  std::unique_ptr<Writer<NodeStatus>> nodes_ = nodes_bus_->writer(topics::node_status);
+  std::unique_ptr<Writer<ForceState>> forces_ = nodes_bus_->writer(topics::force_state);
+  TopBoard board_{*own_bus_};
+};
+
+TEST_F(TopBoardTest, ALatencyThatANodeDoesNotMeasureIsNoZero) {
+  hear({.node = "haptic 1@here", .role = "haptic", .seq = 1, .rate_hz = 1000, .ticks = 5000});
+  hear({.node = "render 2@here",
+        .role = "render",
+        .seq = 1,
+        .rate_hz = 60,
+        .ticks = 300,
+        .latency_p50_us = 1500,
+        .latency_p99_us = 2500});
+  board_.take();
+  const std::string text = board_.text(1);
+  const auto line = [&](const char* node) {
+    const std::size_t at = text.find(node);
+    return at == text.npos ? std::string() : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(line("haptic 1@here").find(" 0.0 "), std::string::npos) << text;
+  EXPECT_NE(line("haptic 1@here").find(" - "), std::string::npos) << text;
+  EXPECT_NE(line("render 2@here").find("1500.0      2500.0"), std::string::npos) << text;
+  const auto json = board_.json(1);
+  ASSERT_EQ(json["nodes"].size(), 2u);
+  EXPECT_TRUE(json["nodes"][0]["latency_us_p50"].is_null());
+  EXPECT_EQ(json["nodes"][1]["latency_us_p99"], 2500);
+}
+
+TEST_F(TopBoardTest, WordsOfOthersReachNoTerminalAsCommands) {
+  hear({.node = "haptic\x1b[2J", .role = "haptic", .seq = 1, .text = "all is well\x1b]0;x\x07"});
+  board_.take();
+  EXPECT_EQ(board_.text(1).find_first_of("\x1b\x07"), std::string::npos) << board_.text(1);
+  EXPECT_NE(board_.text(1).find("haptic?[2J"), std::string::npos) << board_.text(1);
+}
+
+TEST_F(TopBoardTest, ForcesAreCountedAnewFromLookToLook) {
+  for (std::uint64_t seq = 1; seq <= 3; ++seq)
+    forces_->write({.tool = 0, .run = 1, .seq = seq, .step = seq, .sense_ns = now_ns(), .force = {0, 0, 0.5}});
+  board_.take();
+  EXPECT_EQ(board_.json(1)["tools"][0]["steps_hz"], 3);
+  EXPECT_EQ(board_.json(1)["tools"][0]["force_max_n"], 0.5);
+  board_.begin_anew();
+  EXPECT_EQ(board_.json(1)["tools"][0]["steps_hz"], 0);
+}
+
+}  // namespace
+}  // namespace palpate
