@@ -14,6 +14,9 @@ set(CPACK_COMPONENTS_ALL haptic deform render web ros mesh tools)
 if(TARGET palpate_organ)
   list(APPEND CPACK_COMPONENTS_ALL organ)
 endif()
+if(PALPATE_PYTHON)  # its programs are slower than those of a build without it
+  set(CPACK_COMPONENTS_ALL python)
+endif()
 
 # palpate_package(COMPONENT "what it is" [DEPENDS package...] [RECOMMENDS package...])
 function(palpate_package component meaning)
@@ -38,4 +41,7 @@ palpate_package(mesh "Reader of mesh files, which the other programs load where 
 palpate_package(tools "Command line, example scenes, pages, deployment and manual"
   DEPENDS "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS palpate-haptic palpate-deform palpate-render palpate-web ffmpeg python3-matplotlib)
 palpate_package(organ "Meshes of surfaces and of labelled images" DEPENDS "palpate-mesh (= ${PROJECT_VERSION})")
+palpate_package(python "Python module: lock step with one's own controller, static states, logs as arrays"
+  DEPENDS python3 python3-numpy "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS python3-matplotlib)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-palpate)
 include(CPack)

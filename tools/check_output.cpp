@@ -63,10 +63,10 @@ void CheckOutput::warn(const std::string& sentence) {
     fmt::print("warning: {}\n", sentence);
 }
 
-void CheckOutput::end() {
-  if (!json_) return;
-  for (const char* list : {"left_out", "warnings"}) all_.emplace(list, nlohmann::ordered_json::array());
-  fmt::print("{}\n", all_.dump());
+nlohmann::ordered_json CheckOutput::json() const {
+  nlohmann::ordered_json all = all_;
+  for (const char* list : {"left_out", "warnings"}) all.emplace(list, nlohmann::ordered_json::array());
+  return all;
 }
 
 }  // namespace palpate

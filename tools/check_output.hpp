@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// What `palpate check` says: lines as the check goes on, or at the end one of JSON with the same sentences under what
-/// they are about.
+/// What `palpate check` says: lines, printed as the check goes on, or JSON with the same sentences under what they are
+/// about.
 class CheckOutput {
  public:
   explicit CheckOutput(bool json) : json_(json) {}
@@ -23,7 +23,7 @@ class CheckOutput {
   void memory(std::span<const MemoryPart> parts);
   void left_out(std::string_view line);
   void warn(const std::string& sentence);
-  void end();  ///< prints the JSON if that is asked for
+  nlohmann::ordered_json json() const;  ///< all that was said, where it is asked for
 
  private:
   nlohmann::ordered_json& here();

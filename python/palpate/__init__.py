@@ -1,4 +1,4 @@
-"""palpate, a haptic simulator of soft tissue: scenes, static states, runs in lock step, topic logs."""
+"""palpate, a haptic simulator of soft tissue: scenes, tensors, static states, runs in lock step, topic logs."""
 import os
 import pathlib
 
@@ -18,6 +18,6 @@ def _choose_blas() -> None:
 
 _choose_blas()
 
-from ._core import Scene, Simulator, __version__, read_log, solve, topics_in  # noqa: E402
+from ._core import Archive, Scene, Simulator, __version__, check, read_log, solve, topics_in  # noqa: E402
 
-__all__ = ["Scene", "Simulator", "read_log", "solve", "topics_in", "__version__"]
+__all__ = ["Archive", "Scene", "Simulator", "check", "read_log", "solve", "topics_in", "__version__"]
