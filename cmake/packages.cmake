@@ -16,6 +16,9 @@ foreach(optional organ spacemouse)
     list(APPEND CPACK_COMPONENTS_ALL ${optional})
   endif()
 endforeach()
+if(PALPATE_PYTHON)  # its programs are slower than those of a build without it
+  set(CPACK_COMPONENTS_ALL python)
+endif()
 
 # palpate_package(COMPONENT "what it is" [DEPENDS package...] [RECOMMENDS package...])
 function(palpate_package component meaning)
@@ -43,4 +46,7 @@ palpate_package(dev "For drivers of devices: messages, headers, library, CMake p
   DEPENDS cyclonedds-dev libeigen3-dev libfmt-dev libxxhash-dev zlib1g-dev)
 palpate_package(spacemouse "Driver that moves a tool by a SpaceMouse" RECOMMENDS spacenavd)
 palpate_package(organ "Meshes of surfaces and of labelled images" DEPENDS "palpate-mesh (= ${PROJECT_VERSION})")
+palpate_package(python "Python module: lock step with one's own controller, static states, logs as arrays"
+  DEPENDS python3 python3-numpy "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS python3-matplotlib)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-palpate)
 include(CPack)

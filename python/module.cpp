@@ -2,12 +2,9 @@
 
 #include <map>
 
-#include "common/archive/static_solve.hpp"
-#include "common/models/static_state.hpp"
-#include "common/scene/ensure_archive.hpp"
-#include "common/scene/find_archive.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "python/bindings.hpp"
+#include "tools/check.hpp"
 
 namespace palpate::python {
 namespace {
@@ -37,6 +34,14 @@ std::vector<std::string> tool_names(const Scene& scene) {
   return names;
 }
 
+py::object checked(const Scene& scene) {
+  CheckOutput out(true);
+  check_scene(scene, out);
+  return py::module_::import("json").attr("loads")(out.json().dump());
+}
+
+}  // namespace
+
 const Body& body_of(const Scene& scene, const std::string& name) {
   for (const Body& body : scene.bodies)
     if (name_of(body) == name || (name.empty() && scene.bodies.size() == 1)) return body;
@@ -44,43 +49,6 @@ const Body& body_of(const Scene& scene, const std::string& name) {
       fmt::format("the scene has no body '{}': name one of {}", name, fmt::join(body_names(scene), ", ")));
 }
 
-using Hold = std::array<std::optional<double>, 3>;
-
-/// [body.nonlinear], where the body has one. Returns how many times the linear forces the corrected ones are.
-std::optional<double> correct(const Body& body, const Archive& archive, const std::map<int, Hold>& holds,
-                              SurfaceSolution& solution) {
-  const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
-  if (!correction) return {};
-  std::vector<int> places;
-  for (std::size_t i = 0; i < archive.surface.node_number.size(); ++i)
-    if (holds.contains(archive.surface.node_number[i])) places.push_back(static_cast<int>(i));
-  return correction(archive, {places, archive.surface.position, solution.displacement, solution.force});
-}
-
-py::dict solve(const Scene& scene, const std::map<int, Hold>& holds, const std::string& body_name) {
-  const Body& body = body_of(scene, body_name);
-  if (!std::visit([](const auto& spec) { return has_static_states(spec); }, body))
-    throw py::value_error(fmt::format("body '{}' is a {}, which has no static state", name_of(body), kind_of(body)));
-  std::vector<Constraint> held;
-  for (const auto& [node, displacement] : holds)
-    for (int axis = 0; axis < 3; ++axis)
-      if (displacement[axis]) held.push_back(hold(node, axis, *displacement[axis]));
-  if (held.empty()) throw py::value_error("nothing is held");
-  ensure_archive(scene, body);
-  const Archive archive = find_archive(scene, body, ArchivePart::surface);
-  SurfaceSolution solution = solve_tensors(archive, held);
-  const std::optional<double> corrected = correct(body, archive, holds, solution);
-  py::dict result;
-  result["node"] = py::array_t<int>(static_cast<py::ssize_t>(archive.surface.node_number.size()),
-                                    archive.surface.node_number.data());
-  result["position"] = rows_of(std::span(archive.surface.position));
-  result["displacement"] = rows_of(std::span(std::as_const(solution.displacement)));
-  result["force"] = rows_of(std::span(std::as_const(solution.force)));
-  if (corrected) result["correction"] = *corrected;
-  return result;
-}
-
-}  // namespace
 }  // namespace palpate::python
 
 PYBIND11_MODULE(_core, module) {
@@ -98,14 +66,13 @@ PYBIND11_MODULE(_core, module) {
       .def_property_readonly("bodies", &body_names, "names, in the order of the scene")
       .def_property_readonly("tools", &tool_names, "names, in the order of the scene")
       .def("to_toml", &to_toml, "the resolved scene, every default written out");
-  module.def("solve", &solve, py::arg("scene"), py::arg("holds"), py::arg("body") = "",
-             "A static state of a body's surface by its tensors, computed first if they are not there. `holds`: by "
-             "mesh node, the\n"
-             "displacement [m] along x, y and z, None leaves an axis free. Returns node (n,), position (n, 3) [m], "
-             "displacement\n"
-             "(n, 3) [m] and force (n, 3) [N] on the tissue; where the body has [body.nonlinear] the corrected ones, "
-             "and correction: how\n"
-             "many times the linear forces they are.");
+  module.def(
+      "check", &checked, py::arg("scene"),
+      "What `palpate check --json` says, as a dict: bodies and tools with what is said of each and the memory that "
+      "they\n"
+      "take, left_out, warnings, hash. Raises RuntimeError with the sentence where the scene cannot run.");
+  bind_archive(module);
+  bind_solve(module);
   bind_simulator(module);
   bind_log(module);
 }

@@ -89,8 +89,8 @@ class Simulator {
   py::array_t<float> normals(const std::string& body) {
     return rows_of(lock_step_.simulator().surface(number_of(body)).normal);
   }
-  py::array_t<int> triangles(const std::string& body) const {
-    return rows_of(std::span(archives_[number_of(body)].surface.triangles));
+  const std::vector<std::array<int, 3>>& triangles(const std::string& body) const {
+    return archives_[number_of(body)].surface.triangles;
   }
 
   py::list contacts(int tool) const {
@@ -136,7 +136,8 @@ void bind_simulator(py::module_& module) {
       module, "Simulator",
       "A scene in lock step: no clock, no bus, no picture. Its archives are computed first if they are not there. "
       "Tools are in\n"
-      "the order of the scene; arrays are copies, in metres and newtons, in the world frame unless said otherwise.")
+      "the order of the scene; arrays are copies unless said otherwise, in metres and newtons, in the world frame "
+      "unless said otherwise.")
       .def(py::init<const Scene&>(), py::arg("scene"))
       .def_property_readonly("dt", &Simulator::dt, "[s] of a step")
       .def_property_readonly("time", &Simulator::time, "[s] of the next step")
@@ -156,8 +157,12 @@ void bind_simulator(py::module_& module) {
       .def("surface", &Simulator::surface, py::arg("body") = "",
            "(n, 3) float32 [m] of each node of a body's surface map")
       .def("normals", &Simulator::normals, py::arg("body") = "", "(n, 3) float32, unit, outward")
-      .def("triangles", &Simulator::triangles, py::arg("body") = "",
-           "(m, 3) rows of surface(), outward, as they were before any cut")
+      .def(
+          "triangles",
+          [](const py::object& self, const std::string& body) {
+            return view_of_rows(self.cast<const Simulator&>().triangles(body), self);
+          },
+          py::arg("body") = "", "(m, 3) rows of surface(), outward, as they were before any cut; a view, read-only")
       .def("contacts", &Simulator::contacts, py::arg("tool") = 0,
            "What a tool holds of bodies that do not move by themselves: body, nodes (3), weights (3), normal (3), "
            "force (3) [N] on\n"

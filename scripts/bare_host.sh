@@ -30,3 +30,5 @@ echo "all of it: after $((SECONDS - begin)) s"
 chroot "$root" su user -c 'cd; palpate run /usr/share/palpate/scenes/liver.toml --seconds 3 --summary run.json'
 echo "first force: after $((SECONDS - begin)) s"
 chroot "$root" su user -c 'cd; grep -q "force_max_n" run.json && palpate cache list'
+chroot "$root" sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends /packages/python3-palpate_*.deb >/dev/null'
+chroot "$root" su user -c 'cd; python3 -c "import palpate; s = palpate.Simulator(palpate.Scene(\"/usr/share/palpate/scenes/liver.toml\")); s.follow(2500); print(\"Python: a force of\", s.force[0])"'

@@ -11,7 +11,8 @@ import matplotlib.pyplot as plt
 
 folder = pathlib.Path(sys.argv[1])
 data = json.loads((folder / "latency.json").read_text())
-titles = {"round_trip": "palpate's bus", "bare_dds": "bare Cyclone DDS", "bare_udp": "bare UDP", "tool_to_force": "tool to force",
+titles = {"round_trip": "palpate's bus", "bare_dds": "bare Cyclone DDS",
+          "bare_dds_listener": "bare Cyclone DDS, by listener", "bare_udp": "bare UDP", "tool_to_force": "tool to force",
           "tool_to_surface": "tool to surface", "tool_to_picture": "tool to picture"}
 
 

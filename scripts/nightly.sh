@@ -26,12 +26,18 @@ for stage in "$@"; do
       ./scripts/build.sh release programs palpate_study
       python3 tests/docs/run_commands.py build/release/bin --all ;;
     python)
-      ./scripts/install.sh python3-dev pybind11-dev
+      ./scripts/install.sh python3-dev pybind11-dev file
       ./scripts/build.sh python palpate palpate_python
       for example in python/examples/*.py; do
         echo "$example"
-        PYTHONPATH=build/python/python MPLBACKEND=Agg python3 "$example" scenes
-      done ;;
+        PYTHONPATH=build/python/python python3 "$example" scenes
+      done
+      mkdir -p out
+      rm -f out/force_depth.png
+      PYTHONPATH=build/python/python MPLBACKEND=Agg python3 python/examples/force_depth.py scenes out/force_depth.png
+      file -b --mime-type out/force_depth.png | grep -qx image/png
+      # the lines of docs/python.md
+      sed -n '/^```python/,/^```/{/^```/!p}' docs/python.md | PYTHONPATH=build/python/python python3 - ;;
     papers)
       ./scripts/build.sh release
       python3 scripts/papers.py build/release/bin out/papers_docs ;;

@@ -8,5 +8,8 @@ rm -rf build/release/man build/packages
 ./scripts/manual_pages.sh build/release/bin build/release/man
 mkdir -p build/packages
 (cd build/release && cpack -B ../packages >cpack.log) || { cat build/release/cpack.log >&2; exit 1; }
+./scripts/install.sh python3-dev pybind11-dev
+./scripts/build.sh python palpate_python
+(cd build/python && cpack -B ../packages >cpack.log) || { cat build/python/cpack.log >&2; exit 1; }
 rm -rf build/packages/_CPack_Packages
 ls -sh build/packages

@@ -1,4 +1,4 @@
-#include "common/models/check/check.hpp"
+#include "tools/check.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include "common/bus/roles.hpp"
 #include "common/bus/security.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/check/check.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
-#include "tools/check_output.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
@@ -166,6 +166,8 @@ void check_tools(const Scene& scene, std::span<const CheckReport> bodies, CheckO
   throw;
 }
 
+}  // namespace
+
 void check_scene(const Scene& scene, CheckOutput& out) {
   if (!scene.title.empty()) out.fact("title", scene.title, scene.title);
   out.fact("scene", scene.file.string(), "scene " + scene.file.string());
@@ -183,10 +185,7 @@ void check_scene(const Scene& scene, CheckOutput& out) {
   warn_all(tool_warnings(scene), out);
   warn_all(reach_warnings(scene, bodies), out);
   out.fact("hash", scene_hash(scene), "hash " + scene_hash(scene));
-  out.end();
 }
-
-}  // namespace
 
 void add_check_command(cli::Command& app) {
   cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
@@ -201,6 +200,8 @@ void add_check_command(cli::Command& app) {
   command.does([arguments] {
     CheckOutput out(arguments->json);
     check_scene(load_scene(arguments->scene), out);
+    if (arguments->json)
+      fmt::print("{}\n", out.json().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   });
 }
 

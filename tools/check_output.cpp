@@ -76,10 +76,10 @@ void CheckOutput::warn(const std::string& sentence) {
     print("warning: " + sentence);
 }
 
-void CheckOutput::end() {
-  if (!json_) return;
-  for (const char* list : {"left_out", "warnings"}) all_.emplace(list, nlohmann::ordered_json::array());
-  fmt::print("{}\n", all_.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+nlohmann::ordered_json CheckOutput::json() const {
+  nlohmann::ordered_json all = all_;
+  for (const char* list : {"left_out", "warnings"}) all.emplace(list, nlohmann::ordered_json::array());
+  return all;
 }
 
 }  // namespace palpate

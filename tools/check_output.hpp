@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// What `palpate check` says: lines as the check goes on, or at the end one of JSON with the same sentences under what
-/// they are about.
+/// What `palpate check` says: lines, printed as the check goes on, or JSON with the same sentences under what they are
+/// about.
 class CheckOutput {
  public:
   explicit CheckOutput(bool json) : json_(json) {}
@@ -25,7 +25,7 @@ class CheckOutput {
   void nodes(const std::vector<std::string>& names);  ///< that `palpate run` starts
   void left_out(std::string_view line);
   void warn(const std::string& sentence);
-  void end();  ///< prints the JSON if that is asked for
+  nlohmann::ordered_json json() const;  ///< all that was said, where it is asked for
 
  private:
   nlohmann::ordered_json& here();

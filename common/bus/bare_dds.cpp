@@ -43,6 +43,21 @@ void BareDds::send(std::uint64_t seq, std::vector<std::uint8_t>& bytes) {
 
 std::uint64_t BareDds::receive(std::chrono::nanoseconds timeout) {
   dds_waitset_wait(waitset_, nullptr, 0, timeout.count());
+  return take();
+}
+
+void BareDds::listen(std::function<void(std::uint64_t)> receive) {
+  heard_ = std::move(receive);
+  dds_listener_t* listener = dds_create_listener(this);
+  dds_lset_data_available(listener, [](dds_entity_t, void* self) {
+    auto& port = *static_cast<BareDds*>(self);
+    while (const std::uint64_t seq = port.take()) port.heard_(seq);
+  });
+  dds_set_listener(reader_, listener);
+  dds_delete_listener(listener);
+}
+
+std::uint64_t BareDds::take() {
   void* sample = nullptr;
   dds_sample_info_t info;
   if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return 0;

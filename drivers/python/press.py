@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A driver in Python: publishes a tool's position a thousand times a second and takes the force for the motors.
 
-    PYTHONPATH=.../lib/palpate/python press.py DOMAIN [TOOL [FROM TO]]
+    PYTHONPATH=.../lib/python3/dist-packages press.py DOMAIN [TOOL [FROM TO]]
 
 DOMAIN: of the running system on this host. TOOL: its place in the scene's list, from 0. FROM, TO: depths beyond the
 trocar [m], between which the emulated hardware goes in and out. For hardware of your own, replace read_position() and

@@ -1,4 +1,4 @@
-"""palpate, a haptic simulator of soft tissue: scenes, static states, runs in lock step, topic logs, drivers of devices."""
+"""palpate, a haptic simulator of soft tissue: scenes, tensors, static states, runs in lock step, topic logs, drivers of devices."""
 import os
 import pathlib
 from typing import TYPE_CHECKING, Any
@@ -22,9 +22,9 @@ _choose_blas()
 from ._device import Device, ForceState  # noqa: E402
 
 if TYPE_CHECKING:
-    from ._core import Scene, Simulator, __version__, read_log, solve, topics_in
+    from ._core import Archive, Scene, Simulator, __version__, check, read_log, solve, topics_in
 
-__all__ = ["Device", "ForceState", "Scene", "Simulator", "read_log", "solve", "topics_in", "__version__"]
+__all__ = ["Archive", "Device", "ForceState", "Scene", "Simulator", "check", "read_log", "solve", "topics_in", "__version__"]
 
 
 def __getattr__(name: str) -> Any:

@@ -34,13 +34,14 @@ struct LatencyOptions {
   bool answer = false, attach = false, json = false;
 };
 
-constexpr std::array kNames{"round_trip", "bare_dds", "bare_udp"};
+constexpr std::array kNames{"round_trip", "bare_dds", "bare_dds_listener", "bare_udp"};
+constexpr std::array kTitles{"palpate's bus", "bare Cyclone DDS", "  by listener", "bare UDP"};
 using Ways = std::array<std::unique_ptr<Echo>, kNames.size()>;
 
 Ways open_ways(const LatencyOptions& o, Side side) {
   const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
-  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side),
-          latency::udp_echo(host, o.port, side)};
+  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side, latency::Wake::waitset),
+          latency::dds_echo(o.network, side, latency::Wake::listener), latency::udp_echo(host, o.port, side)};
 }
 
 /// Sends back whatever comes, over each way on a thread of its own, until told to stop.
@@ -49,10 +50,11 @@ void answer(const LatencyOptions& o) {
   catch_shutdown_signals();
   std::vector<std::jthread> threads;
   for (auto& way : ways)
-    threads.emplace_back([&way](const std::stop_token& stop) {
-      while (!stop.stop_requested())
-        if (const std::uint64_t seq = way->receive(20ms)) way->send(seq);
-    });
+    if (!way->listen([&way](std::uint64_t seq) { way->send(seq); }))
+      threads.emplace_back([&way](const std::stop_token& stop) {
+        while (!stop.stop_requested())
+          if (const std::uint64_t seq = way->receive(20ms)) way->send(seq);
+      });
   if (!o.json) fmt::print("answering in domain {} and on UDP port {}\n", o.network.domain, o.port);
   std::fflush(stdout);
   while (!shutdown_requested()) sleep_until_ns(now_ns() + 20'000'000);
@@ -108,7 +110,7 @@ struct Result {
   bool observed = false;
 };
 
-/// The ways take turns within each period, so that a change of the host's load meets all three.
+/// The ways take turns within each period, so that a change of the host's load meets all of them.
 Result measure(const LatencyOptions& o) {
   const auto other = answerer_here(o);
   std::array<std::unique_ptr<RoundTrips>, kNames.size()> ways;
@@ -170,10 +172,11 @@ Json bins_of(const Histogram& h) {
 Json json_of(const LatencyOptions& o, const Result& r) {
   Json json;
   for (std::size_t i = 0; i < kNames.size(); ++i) json[std::string(kNames[i]) + "_us"] = json_of(r.trips[i].time);
-  json["ratio_to_bare_dds"] =
-      json["round_trip_us"].is_null() || json["bare_dds_us"].is_null()
-          ? Json(nullptr)
-          : Json(json["round_trip_us"]["p50"].get<double>() / json["bare_dds_us"]["p50"].get<double>());
+  for (const std::string way : {"bare_dds", "bare_dds_listener"})
+    json["ratio_to_" + way] =
+        json["round_trip_us"].is_null() || json[way + "_us"].is_null()
+            ? Json(nullptr)
+            : Json(json["round_trip_us"]["p50"].get<double>() / json[way + "_us"]["p50"].get<double>());
   json["hops_us"] = nullptr;
   if (r.observed)
     json["hops_us"] = {{"tool_to_force", json_of(r.hops.force())},
@@ -213,16 +216,15 @@ void print_row(const std::string& name, const Histogram& h, const std::string& r
 void print_text(const Result& r) {
   fmt::print("{:18} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>7} {:>10} {:>10}\n", "there and back [us]", "p50",
              "p90", "p99", "p99.9", "max", "sent", "lost", "reordered", "jitter");
-  constexpr std::array titles{"palpate's bus", "bare Cyclone DDS", "bare UDP"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     const auto& t = r.trips[i];
-    print_row(titles[i], t.time,
+    print_row(kTitles[i], t.time,
               fmt::format(" {:9} {:7} {:10} {:10.1f}", t.sent, t.lost, t.reordered, 1e-3 * t.jitter_ns));
   }
-  if (r.trips[0].time.count() > 0 && r.trips[1].time.count() > 0)
-    fmt::print(
-        "the bus takes {:.2f} times as long as bare DDS (medians)\n",
-        static_cast<double>(r.trips[0].time.percentile(0.5)) / static_cast<double>(r.trips[1].time.percentile(0.5)));
+  const auto median = [&](int way) { return static_cast<double>(r.trips[way].time.percentile(0.5)); };
+  if (r.trips[0].time.count() > 0 && r.trips[1].time.count() > 0 && r.trips[2].time.count() > 0)
+    fmt::print("the bus takes {:.2f} times as long as bare DDS, and {:.2f} times as long by listener (medians)\n",
+               median(0) / median(1), median(0) / median(2));
   if (!r.observed) return;
   fmt::print("\none way [us]\n");
   print_row("tool to force", r.hops.force());

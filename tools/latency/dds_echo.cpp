@@ -34,14 +34,19 @@ class BusEcho : public Echo {
 
 class DdsEcho : public Echo {
  public:
-  DdsEcho(const BusSettings& settings, const char* out, const char* in, std::size_t size)
-      : dds_(settings, out, in), bytes_(size) {}
+  DdsEcho(const BusSettings& settings, const std::string& out, const std::string& in, std::size_t size, Wake wake)
+      : bytes_(size), wake_(wake), dds_(settings, out, in) {}
   void send(std::uint64_t seq) override { dds_.send(seq, bytes_); }
   std::uint64_t receive(std::chrono::nanoseconds timeout) override { return dds_.receive(timeout); }
+  bool listen(const std::function<void(std::uint64_t)>& receive) override {
+    if (wake_ == Wake::listener) dds_.listen(receive);
+    return wake_ == Wake::listener;
+  }
 
  private:
-  BareDds dds_;
   std::vector<std::uint8_t> bytes_;
+  Wake wake_;
+  BareDds dds_;  // the last: its thread may send
 };
 
 }  // namespace
@@ -51,10 +56,11 @@ std::unique_ptr<Echo> bus_echo(const BusSettings& settings, Side side) {
   return std::make_unique<BusEcho<ForceState, ToolState>>(settings, kAnswer, kQuestion);
 }
 
-std::unique_ptr<Echo> dds_echo(const BusSettings& settings, Side side) {
-  const char *there = "palpate/latency_bare_question", *back = "palpate/latency_bare_answer";
-  if (side == Side::asks) return std::make_unique<DdsEcho>(settings, there, back, BareDds::kAsToolState);
-  return std::make_unique<DdsEcho>(settings, back, there, BareDds::kAsForceState);
+std::unique_ptr<Echo> dds_echo(const BusSettings& settings, Side side, Wake wake) {
+  const std::string way = wake == Wake::listener ? "palpate/latency_listener" : "palpate/latency_bare";
+  const std::string there = way + "_question", back = way + "_answer";
+  if (side == Side::asks) return std::make_unique<DdsEcho>(settings, there, back, BareDds::kAsToolState, wake);
+  return std::make_unique<DdsEcho>(settings, back, there, BareDds::kAsForceState, wake);
 }
 
 }  // namespace palpate::latency

@@ -15,7 +15,8 @@ struct RoundTripReport {
   double jitter_ns = 0;  ///< mean change from one round trip to the next
 };
 
-/// Sends over one way and takes what comes back on a thread of its own, so that many may be under way at once.
+/// Sends over one way and takes what comes back on another thread, so that many may be under way at once: one of its
+/// own, or the middleware's where the way has it so.
 class RoundTrips {
  public:
   explicit RoundTrips(std::unique_ptr<Echo> echo);
@@ -31,11 +32,14 @@ class RoundTrips {
  private:
   static constexpr std::size_t kUnderWay = 1 << 16;
   void receive(const std::stop_token& stop);
+  void came(std::uint64_t seq);
+  void stop();
 
   std::unique_ptr<Echo> echo_;
   std::vector<std::atomic<std::int64_t>> sent_ns_;  ///< by number; 0: came back
   std::atomic<std::uint64_t> next_{1}, first_{1}, back_{0};
   RoundTripReport report_;  ///< of the receiving thread until it ends
+  std::uint64_t from_ = 1;  ///< first number in it
   std::int64_t last_ns_ = 0;
   std::uint64_t highest_ = 0, changes_ = 0;
   std::jthread thread_;
