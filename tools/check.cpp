@@ -13,6 +13,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
+#include "tools/check_mesh.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
@@ -188,18 +189,23 @@ void check_scene(const Scene& scene, CheckOutput& out) {
 }
 
 void add_check_command(cli::Command& app) {
-  cli::Command command = app.add_command("check", "Validate a scene and say what will be built, and what it takes");
+  cli::Command command =
+      app.add_command("check", "Validate a scene, or a mesh, and say what will be built and what it takes");
   struct Arguments {
     std::string scene;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("SCENE", arguments->scene, "Scene file").required();
+  command.add_option("SCENE", arguments->scene, "Scene file, or a mesh of tetrahedra in metres (.msh, .vtk)")
+      .required();
   command.add_flag("--json", arguments->json, "Print one line of JSON");
-  command.examples({"palpate check scenes/liver.toml"});
+  command.examples({"palpate check scenes/liver.toml", "palpate check scenes/meshes/liver.msh"});
   command.does([arguments] {
     CheckOutput out(arguments->json);
-    check_scene(load_scene(arguments->scene), out);
+    if (names_mesh(arguments->scene))
+      check_mesh(arguments->scene, out);
+    else
+      check_scene(load_scene(arguments->scene), out);
     if (arguments->json)
       fmt::print("{}\n", out.json().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   });

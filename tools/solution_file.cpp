@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <iterator>
@@ -46,34 +47,71 @@ std::string cells(const std::vector<std::array<int, Corners>>& elements, int typ
          data_array("UInt8", "types", 1, std::vector<int>(elements.size(), type)) + "</Cells>\n";
 }
 
+using Vectors = std::vector<Eigen::Vector3d>;
+
+/// Those that are told, in the order of the columns.
+std::vector<const Vectors*> told(const SolutionTable& table) {
+  std::vector<const Vectors*> fields{&table.position, &table.displacement};
+  for (const Vectors* more : {&table.force, &table.velocity})
+    if (!more->empty()) fields.push_back(more);
+  return fields;
+}
+
+std::string cell_data(const std::vector<Eigen::Matrix3d>& stress) {
+  if (stress.empty()) return {};
+  std::vector<std::string> lines;
+  std::vector<double> von_mises;
+  for (const Eigen::Matrix3d& s : stress) {
+    lines.push_back(fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", s(0, 0), s(1, 1), s(2, 2), s(0, 1),
+                                s(1, 2), s(0, 2)));
+    const Eigen::Matrix3d shear = s - s.trace() / 3 * Eigen::Matrix3d::Identity();
+    von_mises.push_back(std::sqrt(1.5) * shear.norm());
+  }
+  return "<CellData>\n" + data_array("Float64", "stress", 6, lines) + data_array("Float64", "von_mises", 1, von_mises) +
+         "</CellData>\n";
+}
+
 }  // namespace
 
-void write_csv(const SolutionTable& table, const std::filesystem::path& file) {
-  std::string text = "node,x,y,z,ux,uy,uz,fx,fy,fz\n";
+std::string csv_columns(const SolutionTable& table) {
+  std::string columns = "node,x,y,z,ux,uy,uz";
+  if (!table.force.empty()) columns += ",fx,fy,fz";
+  if (!table.velocity.empty()) columns += ",vx,vy,vz";
+  return columns;
+}
+
+std::string csv_lines(const SolutionTable& table, std::string_view before) {
+  std::string text;
+  const std::vector<const Vectors*> fields = told(table);
   for (std::size_t i = 0; i < table.node.size(); ++i) {
     if (!table.listed.empty() && !table.listed[i]) continue;
-    fmt::format_to(std::back_inserter(text), "{}", table.node[i]);
-    for (const auto* field : {&table.position, &table.displacement, &table.force})
+    fmt::format_to(std::back_inserter(text), "{}{}", before, table.node[i]);
+    for (const Vectors* field : fields)
       for (double value : (*field)[i]) fmt::format_to(std::back_inserter(text), ",{:.17g}", value);
     text += '\n';
   }
-  write_text(text, file);
+  return text;
+}
+
+void write_csv(const SolutionTable& table, const std::filesystem::path& file) {
+  write_text(csv_columns(table) + "\n" + csv_lines(table), file);
 }
 
 void write_vtu(const SolutionTable& table, const std::filesystem::path& file) {
   const std::size_t count = table.tetrahedra.size() + table.triangles.size();
   const auto grid =
       table.triangles.empty() ? cells(table.tetrahedra, kVtkTetrahedron) : cells(table.triangles, kVtkTriangle);
+  std::string points = data_array("Float64", "displacement", 3, vectors(table.displacement));
+  if (!table.force.empty()) points += data_array("Float64", "force", 3, vectors(table.force));
+  if (!table.velocity.empty()) points += data_array("Float64", "velocity", 3, vectors(table.velocity));
   write_text(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n" +
           fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", table.node.size(), count) +
           data_array("Float64", "position", 3, vectors(table.position)) + "</Points>\n" + grid +
-          "<PointData Vectors=\"displacement\">\n" +
-          data_array("Float64", "displacement", 3, vectors(table.displacement)) +
-          data_array("Float64", "force", 3, vectors(table.force)) + data_array("Int32", "node", 1, table.node) +
-          "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
+          "<PointData Vectors=\"displacement\">\n" + points + data_array("Int32", "node", 1, table.node) +
+          "</PointData>\n" + cell_data(table.stress) + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
       file);
 }
 

@@ -22,15 +22,18 @@
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
 #include "tools/solution_file.hpp"
+#include "tools/solve_dynamic.hpp"
 
 namespace palpate {
 namespace {
 
 struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
-  std::vector<std::string> holds, touches, forces;
+  std::vector<std::string> holds, touches, forces, pressures;
   std::array<double, 3> gravity{};  // [m/s^2]
-  bool plain = false, json = false;
+  bool plain = false, json = false, dynamic = false;
+  double seconds = 0, every = 0;
+  std::string precision, states;
 };
 
 bool falls(const SolveArguments& arguments) {
@@ -69,6 +72,28 @@ std::vector<Constraint> constraints_of(const Body& body, const SolveArguments& a
   return constraints;
 }
 
+/// Every force and pressure of the command line, by mesh nodes.
+std::vector<NodalLoad> loads_of(const Body& body, const SolveArguments& arguments, int mesh_nodes) {
+  std::vector<NodalLoad> loads = parse_forces(arguments.forces, mesh_nodes);
+  if (arguments.pressures.empty()) return loads;
+  const TetMesh mesh = std::visit([](const auto& spec) { return direct_problem(spec); }, body).mesh;
+  const auto triangles = extract_surface(mesh).triangles;
+  const auto group = [&](const std::string& name) { return select_nodes(mesh, {.group = name}, "--pressure"); };
+  for (const std::string& text : arguments.pressures) {
+    const auto more = parse_pressure(text, mesh.nodes, triangles, group);
+    loads.insert(loads.end(), more.begin(), more.end());
+  }
+  return loads;
+}
+
+std::vector<Eigen::Matrix3d> stress_of(const NamedSpec&, const TetMesh&, const std::vector<Eigen::Vector3d>&) {
+  return {};
+}
+std::vector<Eigen::Matrix3d> stress_of(const SolidSpec& body, const TetMesh& mesh,
+                                       const std::vector<Eigen::Vector3d>& displacement) {
+  return element_stresses(mesh, material_field(body, mesh), displacement);
+}
+
 Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const DirectProblem problem = std::visit([](const auto& spec) { return direct_problem(spec); }, body);
   const TetMesh& mesh = problem.mesh;
@@ -80,13 +105,14 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(body, arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  auto loads = parse_forces(arguments.forces, static_cast<int>(mesh.nodes.size()));
+  auto loads = loads_of(body, arguments, static_cast<int>(mesh.nodes.size()));
   if (falls(arguments))
     for (const int node : table.node)
       loads.push_back({node, problem.mass[node] * Eigen::Vector3d(arguments.gravity.data())});
   const auto solution = problem.solve(constraints, loads);
   table.displacement = solution.displacement;
   table.force = solution.force;
+  table.stress = std::visit([&](const auto& spec) { return stress_of(spec, mesh, table.displacement); }, body);
   return {table, constraints};
 }
 
@@ -118,7 +144,7 @@ Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArgumen
   const auto held =
       constraints_of(body, arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
   if (arguments.plain) return {sorted_table(surface, superpose_tensors(archive, held, Superposition::plain)), held};
-  const auto loads = parse_forces(arguments.forces, archive.mesh_nodes);
+  const auto loads = loads_of(body, arguments, archive.mesh_nodes);
   return {sorted_table(surface, solve_tensors(archive, held, loads)), held};
 }
 
@@ -138,10 +164,11 @@ std::optional<double> correct(const Scene& scene, const Body& body, bool given_f
   const StaticCorrection correction = std::visit([](const auto& spec) { return static_correction(spec); }, body);
   if (!correction) return {};
   if (given_forces)
-    throw std::runtime_error(fmt::format(
-        "--force, --gravity: body '{}' has [body.nonlinear], whose law is of tissue held at displacements: give --hold "
-        "or --touch",
-        name_of(body)));
+    throw std::runtime_error(
+        fmt::format("--force, --pressure, --gravity: body '{}' has [body.nonlinear], whose law is of tissue held at "
+                    "displacements: give --hold "
+                    "or --touch",
+                    name_of(body)));
   ensure_archive(scene, body);  // it holds the press of the specimen
   const Archive archive = find_archive(scene, body, ArchivePart::header);
   return correction(archive,
@@ -195,9 +222,20 @@ void check_model(const Body& body) {
         fmt::format("body '{}' is a {}, which has no static state to solve for", name_of(body), kind_of(body)));
 }
 
+bool loaded(const SolveArguments& arguments) {
+  return !arguments.forces.empty() || !arguments.pressures.empty() || falls(arguments);
+}
+
+void solve_motion(const SolveArguments& arguments) {
+  if (arguments.seconds == 0) throw std::runtime_error("--dynamic: for how long? Give --seconds");
+  solve_dynamic({arguments.scene, arguments.body, arguments.seconds, arguments.every, arguments.precision,
+                 arguments.csv, arguments.states, arguments.json});
+}
+
 void solve(const SolveArguments& arguments) {
-  if (arguments.holds.empty() && arguments.touches.empty() && arguments.forces.empty() && !falls(arguments))
-    throw std::runtime_error("nothing is held or loaded: give --hold, --touch, --force or --gravity");
+  if (arguments.dynamic) return solve_motion(arguments);
+  if (arguments.holds.empty() && arguments.touches.empty() && !loaded(arguments))
+    throw std::runtime_error("nothing is held or loaded: give --hold, --touch, --force, --pressure or --gravity");
   if (falls(arguments) && arguments.method != "direct")
     throw std::runtime_error("--gravity: an archive knows no loads inside: take --method direct");
   if (arguments.plain && arguments.method == "direct")
@@ -208,7 +246,7 @@ void solve(const SolveArguments& arguments) {
   check_model(body);
   Solved solved =
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
-  const auto corrected = correct(scene, body, !arguments.forces.empty() || falls(arguments), solved);
+  const auto corrected = correct(scene, body, loaded(arguments), solved);
   const SolutionTable& table = solved.table;
   require_numbers(table);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
@@ -222,7 +260,7 @@ void solve(const SolveArguments& arguments) {
 }  // namespace
 
 void add_solve_command(cli::Command& app) {
-  cli::Command command = app.add_command("solve", "Compute one static state of a body, offline");
+  cli::Command command = app.add_command("solve", "Compute a static state of a body, or its motion, offline");
   auto arguments = std::make_shared<SolveArguments>();
   command.add_option("SCENE", arguments->scene, "Scene file").required();
   command.add_option("--body", arguments->body, "Name of the body; needed where the scene has several");
@@ -240,6 +278,11 @@ void add_solve_command(cli::Command& app) {
           "--force", arguments->forces,
           "\"NODE:fx,fy,fz\": load a node by a force in newtons; several add up, and go with --hold and --touch")
       .one_value_each_time();
+  command
+      .add_option("--pressure", arguments->pressures,
+                  "\"GROUP:p\": press on the triangles of the surface whose corners are in a group of the mesh, by p "
+                  "pascals against their normals")
+      .one_value_each_time();
   command.add_option("--gravity", arguments->gravity, "x y z: the body's own weight, in m/s2; with --method direct");
   command.add_option("--method", arguments->method, "tensors: through the archive; direct: the full system afresh")
       .one_of({"tensors", "direct"})
@@ -248,16 +291,38 @@ void add_solve_command(cli::Command& app) {
       .add_flag("--plain", arguments->plain,
                 "sum what each held node would do alone, without what the others do to it (TVCG99 fig. 10): to see "
                 "what the correction is worth")
-      .excludes({"--touch", "--force", "--gravity"});
+      .excludes({"--touch", "--force", "--pressure", "--gravity"});
   command
       .add_option("--csv", arguments->csv,
                   "Write node,x,y,z,ux,uy,uz,fx,fy,fz: force on the tissue; with direct at all nodes, reactions of "
                   "fixed axes included; with tensors at the free nodes of the surface, reactions left at zero")
       .output_file(".csv");
-  command.add_option("--vtu", arguments->vtu, "Write a file for ParaView").output_file(".vtu");
+  command
+      .add_option("--vtu", arguments->vtu,
+                  "Write a file for ParaView, with direct also the stress in each element, as of linear ones")
+      .output_file(".vtu");
+  const cli::Option dynamic =
+      command
+          .add_flag("--dynamic", arguments->dynamic,
+                    "in place of a static state the motion of a body that has inertia, with the scene's tools, in lock "
+                    "step from rest; the CSV has time,node,x,y,z,ux,uy,uz,vx,vy,vz at every moving node")
+          .excludes({"--hold", "--touch", "--force", "--pressure", "--gravity", "--plain", "--vtu"});
+  command.add_option("--seconds", arguments->seconds, "With --dynamic: how long").positive().needs(dynamic);
+  command.add_option("--every", arguments->every, "Seconds from state to state (default: the last one alone)")
+      .positive()
+      .needs(dynamic);
+  command
+      .add_option("--states", arguments->states,
+                  "With --dynamic: a new folder of VTU files and the list of their times")
+      .needs(dynamic);
+  command.add_option("--precision", arguments->precision, "Of its motion (default: the scene's)")
+      .one_of({"single", "double"})
+      .needs(dynamic);
   command.add_flag("--json", arguments->json, "Print one line of JSON");
-  command.examples({"palpate solve scenes/plate.toml --touch \"0,0,0.01:0,0,-0.004\" --vtu out/plate.vtu",
-                    "palpate solve scenes/plate.toml --force \"12:0,0,-0.5\" --method direct --csv out/plate.csv"});
+  command.examples(
+      {"palpate solve scenes/plate.toml --touch \"0,0,0.01:0,0,-0.004\" --vtu out/plate.vtu",
+       "palpate solve scenes/plate.toml --force \"12:0,0,-0.5\" --method direct --csv out/plate.csv",
+       "palpate solve scenes/plate_cut.toml --dynamic --seconds 2 --every 0.02 --states out/plate_states"});
   command.does([arguments] { solve(*arguments); });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 
 #include "common/fem/selection.hpp"
@@ -34,6 +35,18 @@ std::vector<Eigen::Matrix3d> assemble_blocks(const TetMesh& mesh, const Material
   return blocks;
 }
 
+constexpr double kMaxContrast = 1e10;  // [1] of Young's moduli: beyond it rounding in the stiff part hides the soft one
+
+void refuse_contrast(const MaterialField& field, const std::string& body) {
+  const auto of_element = [&](std::uint16_t m) { return field.materials[m].young; };
+  const auto [least, most] = std::ranges::minmax(field.of_element | std::views::transform(of_element));
+  if (most > kMaxContrast * least)
+    throw std::runtime_error(
+        fmt::format("body '{}': its materials have Young's moduli from {:.3g} to {:.3g} Pa, a contrast of {:.3g}: "
+                    "more than {:g} and the soft part is lost in the stiff one's rounding",
+                    body, least, most, most / least, kMaxContrast));
+}
+
 }  // namespace
 
 MaterialField material_field(const SolidSpec& body, const TetMesh& mesh) {
@@ -47,6 +60,7 @@ MaterialField material_field(const SolidSpec& body, const TetMesh& mesh) {
     field.materials.push_back(body.materials[i].material);
     for (int e : elements) field.of_element[e] = static_cast<std::uint16_t>(i + 1);
   }
+  refuse_contrast(field, body.name);
   return field;
 }
 
@@ -113,6 +127,18 @@ std::vector<Eigen::Vector3d> internal_force(const TetMesh& mesh, const MaterialF
     for (int j = 0; j < 4; ++j) force[tet[j]] += gradients.volume * stress * gradients.gradient.row(j).transpose();
   }
   return force;
+}
+
+std::vector<Eigen::Matrix3d> element_stresses(const TetMesh& mesh, const MaterialField& materials,
+                                              const std::vector<Eigen::Vector3d>& displacement) {
+  std::vector<Eigen::Matrix3d> stress;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const auto& tet = mesh.tetrahedra[e];
+    Eigen::Matrix<double, 4, 3> u;
+    for (int v = 0; v < 4; ++v) u.row(v) = displacement[tet[v]].transpose();
+    stress.push_back(element_stress(gradients_of(mesh, tet), lame(materials.at(static_cast<int>(e))), u));
+  }
+  return stress;
 }
 
 }  // namespace palpate

@@ -21,7 +21,7 @@ struct MaterialField {
 };
 
 /// The body's material and its regions; where regions overlap the later one holds. Throws std::runtime_error
-/// if a region selects no element.
+/// if a region selects no element, or if the stiffest element is more than 1e10 times as stiff as the softest.
 MaterialField material_field(const SolidSpec& body, const TetMesh& mesh);
 
 /// Which nodes share a tetrahedron: for each node its neighbours with a greater or equal number, ascending,
@@ -45,5 +45,9 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const MaterialField& materi
 /// Nodal forces f = K u [N] over all nodes, fixed ones included: what the outside exerts on the tissue.
 std::vector<Eigen::Vector3d> internal_force(const TetMesh& mesh, const MaterialField& materials,
                                             const std::vector<Eigen::Vector3d>& displacement);
+
+/// Stress [Pa] of every linear element under nodal displacements [m].
+std::vector<Eigen::Matrix3d> element_stresses(const TetMesh& mesh, const MaterialField& materials,
+                                              const std::vector<Eigen::Vector3d>& displacement);
 
 }  // namespace palpate

@@ -19,8 +19,8 @@ std::vector<int> select_nodes(const ShellMesh& mesh, const Selector& selector, c
 ShellDofs apply_boundary_conditions(const ShellMesh& mesh, const ShellSpec& body, const std::string& where);
 
 /// What a modal_shell body must fulfil on its mesh: a wall not thicker than the radius (of a tube its
-/// lumen_radius(), else half the mesh's largest extent), and not more modes than free translations. `where`
-/// starts the error sentences. Throws std::runtime_error.
+/// lumen_radius(), else half the mesh's largest extent) and not thinner than a ten-thousandth of the mean edge, and
+/// not more modes than free translations. `where` starts the error sentences. Throws std::runtime_error.
 void check_shell(const ShellSpec& body, const ShellMesh& mesh, const ShellDofs& dofs, const std::string& where);
 
 }  // namespace palpate

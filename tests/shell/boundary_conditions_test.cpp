@@ -124,6 +124,15 @@ TEST_F(ShellCheck, AWallThickerThanTheTubesRadiusIsRefused) {
             "wall is thinner than that");
 }
 
+TEST_F(ShellCheck, AWallThinnerThanATenThousandthOfItsEdgesIsRefused) {
+  body.shell.thickness = 1e-6;
+  EXPECT_EQ(complaint(tube), "");
+  body.shell.thickness = 1e-7;
+  const std::string sentence = complaint(tube);
+  EXPECT_TRUE(sentence.starts_with("body 'duct': the wall is 0.0001 mm thick, ")) << sentence;
+  EXPECT_NE(sentence.find("below 0.0001 its bending is lost in the rounding of its stretching"), std::string::npos);
+}
+
 TEST_F(ShellCheck, OfAShellThatIsNoTubeHalfItsExtentCounts) {
   ShellMesh cup = tube;
   const int bottom = static_cast<int>(cup.nodes.size());

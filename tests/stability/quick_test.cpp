@@ -93,7 +93,8 @@ TEST(StabilityCases, Hybrids) {
   check(hybrid_points({.quick = true}), {{"hybrid|step / what the bound gives about [1]|10", "refused"}});
 }
 TEST(StabilityCases, Shells) {
-  check(shell_points({.quick = true}), {{"singular triangle|bending|polynomial", "refused"}});
+  check(shell_points({.quick = true}),
+        {{"shell thickness|t/R [1]|1e-05", "refused"}, {"singular triangle|bending|polynomial", "refused"}});
 }
 TEST(StabilityCases, Catheters) {
   check(catheter_points({.quick = true}),

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <memory>
 #include <set>
-#include <stdexcept>
 
 #include "common/contact/cut_surface.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
+#include "common/models/moving/predict.hpp"
 #include "common/models/moving_kind.hpp"
 
 namespace palpate {
@@ -49,19 +49,13 @@ std::unique_ptr<HybridPart> make_rest(const MovingSpec& body, const Archive& arc
   return std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == Precision::float32);
 }
 
-void say_step(const MovingSpec& body, const MovingKind& kind, const Archive& archive, CheckReport& report) {
-  const auto model = kind.make_model(elastic_mesh(archive));
-  const auto rest = make_rest(body, archive, 0);
-  if (rest) rest->couple(*model);
-  const double bound = model->frequency_bound();
-  const Dynamic& motion = body.dynamic;
-  const double largest = max_step(motion.integrator, bound, motion.damping);
-  if (motion.step > largest)
-    throw std::runtime_error(fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s",
-                                         body.name, motion.step, largest));
-  const std::string taken = motion.step > 0 ? fmt::format("{} s is taken", motion.step) : "one below is taken";
-  report.say(
-      fmt::format("  step: stable up to {:.4g} s, for frequencies up to {:.4g} rad/s; {}", largest, bound, taken));
+void predict(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, const CheckedSolid& solid,
+             const Archive& archive, CheckReport& report) {
+  const auto organ = make_moving_organ(body, archive, {settings.contact, settings.tools, settings.dt}, kind.make_model);
+  say_steps(body, *organ, archive, settings, report);
+  const int steps = organ->steps_in(settings.dt, true);
+  if (!settings.tools.empty()) say_tried_contact(body, settings, mean_edge(archive.surface), steps, report);
+  if (!kind.own_mesh) say_sag(body, {solid.mesh, solid.materials, solid.dofs}, report);
 }
 
 /// Bytes that the process has from its heap.
@@ -126,7 +120,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   report.say(fmt::format("  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}", word_of(d.integrator),
                          word_of(d.precision), d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
                          d.corotational ? ", corotational" : ""));
-  say_step(body, kind, archive, report);
+  predict(body, kind, settings, solid, archive, report);
   say_patches(settings, body.name, false, report);
   const std::vector<std::string> of_material = material_warnings(body);
   report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
@@ -135,6 +129,8 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   else
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
+  if (kind.own_mesh && !d.gravity.isZero())
+    report.left_out.emplace_back("no sag is told of two meshes that are joined");
   report.memory = memory(body, kind, settings, archive);
   add_near_field("deform_node", settings, archive.surface, false, report);
   if (settings.contact.rule == ContactRule::alpha)

@@ -10,6 +10,7 @@
 
 #include "common/geometry/triangle.hpp"
 #include "common/mesh/normals.hpp"
+#include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving_kind.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/jaws.hpp"
@@ -17,7 +18,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kBoundShare = 0.9;         // of the largest stable step that is used where the scene names none
 constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
 constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
@@ -48,15 +48,10 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
   surface_.hide(shown_.joints());
   for (int node = 0; node < mesh_.nodes(); ++node)
     if (std::ranges::all_of(mesh_.fixed[node], std::identity{})) surface_.fix(node);
-  const Dynamic& motion = body.dynamic;
-  damping_ = motion.damping;
-  const double bound = palpate::max_step(motion.integrator, model_->frequency_bound(), motion.damping);
-  if (motion.step > bound)
-    throw std::runtime_error(
-        fmt::format("body '{}': a step of {:.4g} s is not stable; the bound is {:.4g} s", name_, motion.step, bound));
-  max_step_ = motion.step > 0 ? motion.step : kBoundShare * bound;
-  touched_step_ = std::min(
-      max_step_, kBoundShare * palpate::max_step(Integrator::semi_implicit, model_->frequency_bound(), motion.damping));
+  damping_ = body.dynamic.damping;
+  const TissueSteps steps = tissue_steps(name_, body.dynamic, model_->frequency_bound());
+  max_step_ = steps.free;
+  touched_step_ = steps.touched;
   if (body.tearing) tearing_.emplace(mesh_, body.tearing->criterion, body.tearing->threshold, kMaxTears);
   Eigen::Vector3d low = mesh_.rest[0], high = low;
   for (const Eigen::Vector3d& x : mesh_.rest) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -67,7 +62,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
 DynamicOrgan::~DynamicOrgan() = default;
 
 int DynamicOrgan::steps_in(double dt, bool touched) const {
-  return std::max(1, static_cast<int>(std::ceil(dt / (touched ? touched_step_ : max_step_) - 1e-9)));
+  return palpate::steps_in(dt, touched ? touched_step_ : max_step_);
 }
 
 // Of a tool that is absent nothing is left, neither parts nor what it touched.

@@ -1,0 +1,24 @@
+#pragma once
+#include "common/archive/archive.hpp"
+#include "common/dynamics/spec.hpp"
+#include "common/fem/direct.hpp"
+#include "common/models/check/check.hpp"
+#include "common/models/moving/dynamic_organ.hpp"
+
+namespace palpate {
+
+/// Says in how many steps the tissue goes on in a tick, what a tick takes on this machine, and up to which stiffness it
+/// fits; warns where it takes longer than it lasts. Ticks are made and timed: with a ball of the scene's, where there
+/// is one, that stands in the tissue where this lies farthest from what holds it.
+void say_steps(const MovingSpec& body, DynamicOrgan& organ, const Archive& archive, const CheckSettings& settings,
+               CheckReport& report);
+
+/// Says how far the body sinks under its gravity, by a static solve of linear elements; nothing without gravity.
+void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& report);
+
+/// Says where contact with moving tissue has been tried, and warns of what lies beyond it. `edge` [m]: mean of the
+/// surface; `steps`: of the tissue in a tick, under tools.
+void say_tried_contact(const MovingSpec& body, const CheckSettings& settings, double edge, int steps,
+                       CheckReport& report);
+
+}  // namespace palpate
