@@ -54,7 +54,7 @@ bool Show::take() {
   if (topology_) follow_cuts();
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const SurfaceSource::Shape shape = source_.shape(static_cast<int>(b));
-    stage_.set_surface(static_cast<int>(b), shape.position, shape.normal);
+    stage_.set_surface(static_cast<int>(b), shape.position, shape.normal, shape.dents);
   }
   take_all(*tools_, [&](const ToolState& tool) { return stage_.set_tool(tool); });
   take_all(*forces_, [&](const ForceState& force) {

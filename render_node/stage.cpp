@@ -63,11 +63,12 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
   body.rest.resize(body.coarse);
   const int levels = refinement_levels(triangles.size(), body.max_triangles);
   body.refinement = Refinement(triangles, static_cast<int>(body.coarse), levels, body.rest);
-  std::vector<Eigen::Vector3f> normal(body.coarse);
-  vertex_normals(body.rest, triangles, normal);
+  body.triangles.assign(triangles.begin(), triangles.end());
+  body.rest_normal.resize(body.coarse);
+  vertex_normals(body.rest, triangles, body.rest_normal);
   body.rest.resize(body.refinement.vertices());
-  normal.resize(body.refinement.vertices());
-  body.refinement.apply(body.rest, normal);
+  body.rest_normal.resize(body.refinement.vertices());
+  body.refinement.apply(body.rest, body.rest_normal);
   if (render_.colour == Colouring::displacement && body.finish != Finish::plastic)
     body.displacement.assign(body.rest.size(), 0.0f);
   ++body.shape;
@@ -104,12 +105,34 @@ void Stage::add_backdrop(const TriangleMesh& mesh, Finish finish, const std::arr
   backdrop_.push_back(std::move(part));
 }
 
-void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal) {
+// The nodes without what is finer than the mesh.
+void Stage::smooth(Soft& body, std::span<const HertzDent> dents) {
+  for (std::size_t n = 0; n < body.coarse; ++n)
+    for (const HertzDent& dent : dents)
+      body.position[n] -=
+          dent.displacement(body.rest[n].cast<double>(), body.rest_normal[n].cast<double>()).cast<float>();
+  vertex_normals(std::span(body.position).first(body.coarse), body.triangles,
+                 std::span(body.normal).first(body.coarse));
+}
+
+void Stage::dent(Soft& body, const HertzDent& dent) {
+  for (std::size_t v = 0; v < body.position.size(); ++v) {
+    const Eigen::Vector3d rest = body.rest[v].cast<double>(), normal = body.rest_normal[v].cast<double>();
+    if (dent.share(rest) == 0) continue;
+    body.position[v] += dent.displacement(rest, normal).cast<float>();
+    body.normal[v] = (body.normal[v] - dent.slope(rest, normal).cast<float>()).normalized();
+  }
+}
+
+void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
+                        std::span<const HertzDent> dents) {
   Soft& body = bodies_.at(index);
   if (position.size() != body.coarse || normal.size() != body.coarse) return;
   std::copy(position.begin(), position.end(), body.position.begin());
   std::copy(normal.begin(), normal.end(), body.normal.begin());
+  if (!dents.empty()) smooth(body, dents);
   body.refinement.apply(body.position, body.normal);
+  for (const HertzDent& d : dents) dent(body, d);
   if (body.finish == Finish::duct) body.wall.place(body.position, body.normal);
   if (body.displacement.empty()) return;
   float most = 0;

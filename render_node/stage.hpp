@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/contact/patch/hertz_dent.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/tool/kinematics.hpp"
 #include "common/view/draw_list.hpp"
@@ -21,8 +22,10 @@ class Stage {
   /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty.
   Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop);
 
-  /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is.
-  void set_surface(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal);
+  /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is. `dents`: which
+  /// the positions show at the nodes; between these they are drawn as they are, round.
+  void set_surface(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
+                   std::span<const HertzDent> dents = {});
   /// Another surface of one body over the same nodes, after a cut: outward triangles.
   void set_triangles(int body, std::span<const std::array<int, 3>> triangles);
   /// False (and nothing set) if the scene has no such tool.
@@ -37,6 +40,8 @@ class Stage {
   struct Soft;
   void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
   void add_wall(Soft& body, const BodyLook& look) const;
+  static void smooth(Soft& body, std::span<const HertzDent> dents);
+  static void dent(Soft& body, const HertzDent& dent);
   static void add_views(const Soft& body, int id, int inner_id, Frame& frame);
 
   struct Soft {
@@ -46,7 +51,8 @@ class Stage {
     std::size_t max_triangles;  ///< after refinement
     Finish finish = Finish::tissue;
     std::array<double, 3> colour;
-    std::vector<Eigen::Vector3f> rest, position, normal;
+    std::vector<std::array<int, 3>> triangles;  ///< before refinement
+    std::vector<Eigen::Vector3f> rest, rest_normal, position, normal;
     std::vector<Eigen::Vector3f> texture;  ///< coordinates that the texture sticks to; empty: rest
     std::vector<float> displacement;       ///< [m], empty unless coloured by it
     ThickWall wall;                        ///< of a modal shell

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/archive/archive.hpp"
 #include "common/contact/body_message.hpp"
+#include "common/contact/patch/hertz_dent.hpp"
 
 namespace palpate {
 
@@ -37,6 +39,8 @@ class BodyShape {
   /// [1] Largest force of a tool in the last rebuild(), of those to which the body's correction was fitted; 0 without a
   /// correction.
   virtual double used_force() const { return 0; }
+  /// Of the last rebuild(): dents that its surface shows at the nodes, and that are finer than its triangles.
+  virtual std::span<const HertzDent> dents() const { return {}; }
   /// Whether it follows from messages of this type.
   virtual bool hears(const BodyMessage&) const { return false; }
   /// Whether a message of that type is of this body: as many modes or particles, known nodes.

@@ -110,9 +110,9 @@ std::optional<Archive> made_archive(const MeshedSpec& body);
 std::unique_ptr<BodyPart> make_haptic_part(const MovingSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
-/// make_shape(spec, archive): its visible surface as it follows from what the haptic node says of the body. `archive`
-/// is read with ArchivePart::surface.
-std::unique_ptr<BodyShape> make_shape(const MovingSpec& body, const Archive& archive);
+/// make_shape(spec, archive, settings): its visible surface as it follows from what the haptic node says of the body.
+/// `archive` is read with ArchivePart::surface; `settings`: of the haptic step.
+std::unique_ptr<BodyShape> make_shape(const MovingSpec& body, const Archive& archive, const StepSettings& settings);
 
 /// make_organ(spec, archive, settings): the body as the deformation node advances it; null for a body that the haptic
 /// step owns. Throws std::runtime_error naming the body if the scene's step is not stable.

@@ -80,7 +80,7 @@ class OwnSurfaces : public SurfaceSource {
 
   Shape shape(int body) const override {
     const DeformedSurface& surface = deformer_.surface(body);
-    return {surface.position, surface.normal};
+    return {surface.position, surface.normal, deformer_.shape(body).dents()};
   }
   Moment moment() const override { return {deformer_.run(), deformer_.step(), deformer_.sense_ns()}; }
   const RangeMonitor* range() const override { return &range_; }

@@ -15,6 +15,7 @@ class SurfaceSource {
   struct Shape {
     std::span<const Eigen::Vector3f> position;  ///< [m] per surface node of the archive
     std::span<const Eigen::Vector3f> normal;    ///< unit, outward
+    std::span<const HertzDent> dents = {};      ///< that the nodes show as far as they can; of shapes of this process
   };
   virtual ~SurfaceSource() = default;
   virtual bool update() = 0;                ///< takes what has come; true if a newer haptic step is shown

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/contact/step_settings.hpp"
+
 namespace palpate {
 
 namespace {
@@ -17,9 +19,10 @@ constexpr std::size_t kPastRuns = 16;
 
 Deformer::Deformer(const Scene& scene, const std::vector<Archive>& archives)
     : tools_(std::max<std::size_t>(scene.tools.size(), 1)) {
+  const StepSettings settings{scene.contact, scene.tools, 1 / scene.rates.haptic_hz};
   for (std::size_t b = 0; b < archives.size(); ++b) {
     DeformableBody& body = bodies_.emplace_back();
-    body.shape = std::visit([&](const auto& spec) { return make_shape(spec, archives[b]); }, scene.bodies[b]);
+    body.shape = std::visit([&](const auto& spec) { return make_shape(spec, archives[b], settings); }, scene.bodies[b]);
     const std::size_t nodes = body.shape->map().position.size();
     body.surface.position.resize(nodes);
     body.surface.displacement.assign(nodes, Eigen::Vector3f::Zero());

@@ -29,6 +29,8 @@ struct World {
     scene.tools[0].pivot = {0, 0, 0.2};
     scene.rates.visual_hz = 50;
     scene.render = Render{.width = 160, .height = 120, .camera = empty_frame().camera};
+    archive.young = {1e4};
+    archive.poisson = {0.3};
     for (const auto& p : ball.position) archive.surface.position.push_back(p.cast<double>());
     archive.surface.triangles = ball.triangles;
     const int n = archive.surface.size();

@@ -117,7 +117,7 @@ class QuasiStatic : public Method {
       answers.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer answer = press.to(depth);
-        if (point.value == "double") answer.displacement = field_in_double(archive, press);
+        if (point.value == "double") superpose_in_double(archive, press, answer.displacement);
         answer.displacement = renumbered(answer.displacement, archive);
         answers.back().push_back(std::move(answer));
       }
@@ -168,17 +168,17 @@ class QuasiStatic : public Method {
       for (double& c : *values) c = static_cast<double>(static_cast<float>(c));
   }
 
-  /// What the deformer does in single precision, in double; without the quasi non-linear correction.
-  std::vector<Eigen::Vector3d> field_in_double(const Archive& archive, BallPress& press) const {
-    const Compliance<double> compliance(archive, Compliance<double>::Rows::surface);
-    std::vector<Eigen::Vector3d> u(archive.surface.size(), Eigen::Vector3d::Zero());
+  /// Of what the deformer shows, what it superposes in single precision anew in double.
+  static void superpose_in_double(const Archive& archive, BallPress& press, std::vector<Eigen::Vector3d>& u) {
+    const Compliance<double> in_double(archive, Compliance<double>::Rows::surface);
+    const Compliance<float> in_single(archive, Compliance<float>::Rows::surface);
     press.rig().haptic().part(0)->for_each_force([&](int, int node, const Eigen::Vector3d& f) {
-      if (node >= compliance.column_nodes()) return;
+      if (node >= in_double.column_nodes()) return;
       for (int axis = 0; axis < 3; ++axis)
         for (std::size_t n = 0; n < u.size(); ++n)
-          u[n] += f[axis] * Eigen::Map<const Eigen::Vector3d>(compliance.column(node, axis) + 3 * n);
+          u[n] += f[axis] * (Eigen::Map<const Eigen::Vector3d>(in_double.column(node, axis) + 3 * n) -
+                             Eigen::Map<const Eigen::Vector3f>(in_single.column(node, axis) + 3 * n).cast<double>());
     });
-    return u;
   }
 
   std::shared_ptr<SolidCase> solid_;

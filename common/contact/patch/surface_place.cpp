@@ -10,7 +10,8 @@ SurfacePlace place_at(const SmoothSurface& surface, int triangle, const Eigen::V
           triangle};
 }
 
-SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles) {
+TrianglePoint nearest_point(const SmoothSurface& surface, const Eigen::Vector3d& point,
+                            std::span<const int> triangles) {
   ClosestPoint closest{Eigen::Vector3d::Unit(0), std::numeric_limits<double>::infinity()};
   int best = triangles.front();
   for (const int t : triangles) {
@@ -19,7 +20,12 @@ SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& 
     closest = p;
     best = t;
   }
-  return place_at(surface, best, closest.weights);
+  return {best, closest.weights};
+}
+
+SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles) {
+  const TrianglePoint nearest = nearest_point(surface, point, triangles);
+  return place_at(surface, nearest.triangle, nearest.weights);
 }
 
 }  // namespace palpate

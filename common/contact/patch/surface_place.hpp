@@ -21,7 +21,14 @@ inline Eigen::Vector3d centre_at(const SurfacePlace& place, double radius, doubl
 /// Pressed along the surface's normal, which turns evenly from corner to corner. `weights`: barycentric.
 SurfacePlace place_at(const SmoothSurface& surface, int triangle, const Eigen::Vector3d& weights);
 
+/// A point of one of a surface's triangles.
+struct TrianglePoint {
+  int triangle;             ///< of the surface map
+  Eigen::Vector3d weights;  ///< barycentric
+};
+
 /// The nearest of some triangles, one at least.
+TrianglePoint nearest_point(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles);
 SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles);
 
 }  // namespace palpate

@@ -74,7 +74,7 @@ std::optional<Archive> made_archive(const CatheterSpec& body);
 std::unique_ptr<BodyPart> make_haptic_part(const CatheterSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
-std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive);
+std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive, const StepSettings& settings);
 
 ArchiveJob archive_job(const CatheterSpec& body, const Progress& progress);
 

@@ -32,7 +32,7 @@ class TubeShape : public ShapeFrom<CatheterState> {
 
 }  // namespace
 
-std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive) {
+std::unique_ptr<BodyShape> make_shape(const CatheterSpec& body, const Archive& archive, const StepSettings&) {
   return std::make_unique<TubeShape>(archive.surface, body.catheter);
 }
 

@@ -21,7 +21,7 @@ std::vector<std::string> archive_lines(const ModalShellSpec& body, const Archive
 std::unique_ptr<BodyPart> make_haptic_part(const ModalShellSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
-std::unique_ptr<BodyShape> make_shape(const ModalShellSpec& body, const Archive& archive);
+std::unique_ptr<BodyShape> make_shape(const ModalShellSpec& body, const Archive& archive, const StepSettings& settings);
 
 void check(const ModalShellSpec& body, const CheckSettings& settings, CheckReport& report);
 

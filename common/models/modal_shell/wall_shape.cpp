@@ -24,7 +24,7 @@ class WallShape : public ShapeFrom<ModalState> {
 
 }  // namespace
 
-std::unique_ptr<BodyShape> make_shape(const ModalShellSpec&, const Archive& archive) {
+std::unique_ptr<BodyShape> make_shape(const ModalShellSpec&, const Archive& archive, const StepSettings&) {
   return std::make_unique<WallShape>(archive);
 }
 

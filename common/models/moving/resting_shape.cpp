@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-std::unique_ptr<BodyShape> make_shape(const MovingSpec&, const Archive& archive) {
+std::unique_ptr<BodyShape> make_shape(const MovingSpec&, const Archive& archive, const StepSettings&) {
   return std::make_unique<BodyShape>(archive.surface);
 }
 

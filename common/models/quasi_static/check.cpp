@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 
 #include "common/contact/creep.hpp"
@@ -95,6 +96,48 @@ void say_relaxation(const QuasiStaticSpec& body, CheckReport& report) {
       body.material.young, left, fmt::join(times, ", ")));
 }
 
+/// [m^2] Of what can be touched, and of that what lies on another material than the body's own.
+struct TouchedArea {
+  double all = 0, other = 0;
+};
+
+std::array<int, 3> ascending(std::array<int, 3> nodes) {
+  std::ranges::sort(nodes);
+  return nodes;
+}
+
+TouchedArea touched_area(const CheckedSolid& solid) {
+  const SurfaceMap& surface = solid.surface;
+  std::map<std::array<int, 3>, double> area;  // of the triangles that can be touched, by their mesh nodes
+  TouchedArea sum;
+  for (const auto& t : surface.triangles) {
+    if (std::ranges::min(t) >= surface.touchable) continue;
+    const auto& p = surface.position;
+    const double size = 0.5 * (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).norm();
+    area[ascending({surface.node_number[t[0]], surface.node_number[t[1]], surface.node_number[t[2]]})] = size;
+    sum.all += size;
+  }
+  for (std::size_t e = 0; e < solid.materials.of_element.size(); ++e) {
+    if (solid.materials.of_element[e] == 0) continue;
+    const auto& n = solid.mesh.tetrahedra[e];
+    for (const auto& [i, j, k] : {std::array{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}})
+      if (const auto found = area.find(ascending({n[i], n[j], n[k]})); found != area.end()) sum.other += found->second;
+  }
+  return sum;
+}
+
+/// A patch takes the tissue near it to be of the body's own material.
+void warn_of_regions(const QuasiStaticSpec& body, const CheckedSolid& solid, const CheckSettings& settings,
+                     CheckReport& report) {
+  if (settings.contact.rule != "patch" || settings.tools.empty()) return;
+  const TouchedArea area = touched_area(solid);
+  if (area.other == 0) return;
+  report.warnings.push_back(fmt::format(
+      "{:.0f} % of what can be touched of body '{}' is of other materials than its own: a patch feels the tissue next "
+      "to it with {:.4g} Pa and poisson {:.3g} there too; rule \"barycentric\" takes each element's own",
+      100 * area.other / area.all, body.name, body.material.young, body.material.poisson));
+}
+
 /// What the haptic node keeps of the past: its field, of each retardation.
 MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface) {
   const std::size_t terms = body.relaxation->times.size();
@@ -113,11 +156,13 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
   report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
   add_near_field("haptic_node", settings, solid.surface, !body.relaxation, report);
+  if (!body.relaxation) add_near_field("render_node --deform", settings, solid.surface, false, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));
   QuasiStaticSpec chosen = body;
   chosen.offline = offline_of(body, solid.surface.size());
   std::ranges::copy(locking_warnings(chosen), std::back_inserter(report.warnings));
   warn_of_ball(body, settings, report);
+  warn_of_regions(body, solid, settings, report);
   std::ranges::copy(material_warnings(body), std::back_inserter(report.warnings));
 }
 

@@ -4,18 +4,13 @@
 #include <functional>
 
 #include "common/kernels/kernels.hpp"
+#include "common/models/quasi_static/resolution.hpp"
 
 namespace palpate {
 namespace {
 
 bool by_patch(const StepSettings& settings) {
   return settings.contact.rule == ContactRule::patch;
-}
-
-// [1] Over how many edges of the mesh the elements behind the tensors know its compliance: nearer by they are too
-// stiff.
-double edges_resolved(const Offline& offline) {
-  return (offline.element == FiniteElement::p2 ? 2.0 : 4.0) / (1 << offline.refine);
 }
 
 constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read

@@ -114,7 +114,8 @@ ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Archive& archive,
                                            const StepSettings& settings);
 
-std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive);
+std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive,
+                                      const StepSettings& settings);
 
 constexpr bool stores_inertia(const QuasiStaticSpec&) {
   return false;

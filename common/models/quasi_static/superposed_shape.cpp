@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/models/quasi_static/relaxing_shape.hpp"
+#include "common/models/quasi_static/resolution.hpp"
 
 namespace palpate {
 namespace {
@@ -25,9 +26,12 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
   return size > 0 ? Eigen::Vector3d(sum / size) : Eigen::Vector3d::Zero();
 }
 
-SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive)
+SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive, const StepSettings& settings)
     : BodyShape(archive.surface), sum_(archive) {
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
+  if (settings.contact.rule == "patch" && !patch_parts(settings.tools, false).empty())
+    fine_ = std::make_unique<FineDents>(map(), archive, HalfSpace{archive.young[0], archive.poisson[0]}, settings.tools,
+                                        edges_resolved(offline_of(body, map().size())));
 }
 
 void SuperposedShape::displace(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
@@ -36,6 +40,13 @@ void SuperposedShape::displace(const ContactsOnBody& contacts, std::vector<Eigen
   sum_.combine(total);
   used_force_ = 0;
   if (nonlinear_ && !sum_.empty()) correct(contacts, total);
+  if (!fine_) return;
+  fine_->follow(contacts);
+  fine_->add(total);
+}
+
+std::span<const HertzDent> SuperposedShape::dents() const {
+  return fine_ ? fine_->dents() : std::span<const HertzDent>();
 }
 
 void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen::Vector3f>& total) {
@@ -71,9 +82,10 @@ SuperposedShape::Press SuperposedShape::press_of(const ContactState& tool, std::
   return {nonlinear_->at(place.mean()), direction, std::abs(sum.dot(direction))};
 }
 
-std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive) {
+std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive,
+                                      const StepSettings& settings) {
   if (body.relaxation) return std::make_unique<RelaxingShape>(archive);
-  return std::make_unique<SuperposedShape>(body, archive);
+  return std::make_unique<SuperposedShape>(body, archive, settings);
 }
 
 }  // namespace palpate

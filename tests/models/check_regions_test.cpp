@@ -1,0 +1,43 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/models/check/check.hpp"
+#include "common/models/quasi_static/spec.hpp"
+
+namespace palpate {
+namespace {
+
+/// A cylinder held at its top whose lower end may be of another material, and what a check warns of.
+std::vector<std::string> warnings_of(bool two_materials, const std::string& rule) {
+  QuasiStaticSpec body;
+  body.name = "cylinder";
+  body.mesh = PALPATE_SOURCE_DIR "/scenes/meshes/cylinder_hybrid.msh";
+  body.material = {1500, 0.4, 1000};
+  body.fixed.push_back({.where = {.indices = {}, .box = {}, .group = "top"}});
+  if (two_materials)
+    body.materials.push_back({.where = {.indices = {}, .box = {}, .group = "lower"}, .material = {9000, 0.4, 1000}});
+  ContactSpec contact;
+  contact.rule = rule;
+  const std::vector<Tool> tools(1);
+  CheckReport report;
+  report.say = [](const std::string&) {};
+  check(body, {contact, tools, 1e-3, [](ArchivePart) { return std::optional<Archive>(); }, {}, {}}, report);
+  return report.warnings;
+}
+
+bool tells_of_materials(const std::vector<std::string>& warnings) {
+  return std::ranges::any_of(warnings, [](const std::string& w) {
+    return w.find("is of other materials than its own: a patch feels the tissue next to it with 1500 Pa") !=
+           std::string::npos;
+  });
+}
+
+TEST(CheckQuasiStatic, WarnsOfOtherMaterialsUnderPatches) {
+  EXPECT_TRUE(tells_of_materials(warnings_of(true, "patch")));
+  EXPECT_FALSE(tells_of_materials(warnings_of(false, "patch")));
+  EXPECT_FALSE(tells_of_materials(warnings_of(true, "barycentric")));
+}
+
+}  // namespace
+}  // namespace palpate
