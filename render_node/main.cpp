@@ -44,8 +44,12 @@ void summarise(const RenderReport& r, const Film* film, const RangeMonitor* rang
                          {"latency_us_p99", us(r.latency, 0.99)},
                          {"draw_us_p50", us(r.draw, 0.5)},
                          {"draw_us_p99", us(r.draw, 0.99)},
-                         {"force_max_n", r.peak_force},
-                         {"film_frames", film ? film->frames() : 0}};
+                         {"force_max_n", r.peak_force}};
+  if (film)
+    summary.update({{"film_frames", film->frames()},
+                    {"film_repeated", r.film.repeated},
+                    {"film_skipped", r.film.skipped},
+                    {"film_longest_stand_s", r.film.longest_stand}});
   if (range) summary["range"] = range_summary(*range);
   if (supervised) fmt::print("{}\n", summary.dump());
   log_info(fmt::format("{} frames, {:.1f} Hz, drawn in p50 {:.1f} ms, tool to picture p50 {:.1f} ms, p99 {:.1f} ms",

@@ -51,7 +51,14 @@ std::string RenderLoop::range_warning() const {
 
 void RenderLoop::add_to_film(std::int64_t since_begin) {
   const long due = static_cast<long>(1e-9 * static_cast<double>(since_begin) * film_->rate()) + 1 - film_->frames();
-  if (due > 0 && !film_->full()) film_->add(image_, static_cast<int>(due));
+  if (due <= 0) return;
+  if (film_->full()) {
+    ++report_.film.skipped;
+    return;
+  }
+  film_->add(image_, static_cast<int>(due));
+  report_.film.repeated += static_cast<std::uint64_t>(due - 1);
+  report_.film.longest_stand = std::max(report_.film.longest_stand, static_cast<double>(due) / film_->rate());
 }
 
 void RenderLoop::keep_house(std::int64_t now) {

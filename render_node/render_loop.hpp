@@ -15,6 +15,13 @@
 
 namespace palpate {
 
+/// Where a live film does not show a picture of its own for every frame.
+struct FilmGaps {
+  std::uint64_t repeated = 0;  ///< frames that show the picture of the frame before
+  std::uint64_t skipped = 0;   ///< pictures that were due and left out, since the encoder was behind
+  double longest_stand = 0;    ///< [s] for which one picture stands
+};
+
 /// What a run of the loop measured.
 struct RenderReport {
   double seconds = 0;
@@ -23,6 +30,7 @@ struct RenderReport {
   double peak_force = 0;     ///< [N]
   Histogram latency;         ///< [ns] sense time of a step to the picture that first shows it
   Histogram draw;            ///< [ns] drawing and reading back
+  FilmGaps film;
 };
 
 /// Takes the latest of everything at the visual rate and draws it.

@@ -31,7 +31,7 @@ for scene in liver hepatectomy catheter_insertion; do
   echo "# palpate run $scene" >&2
   limit=()
   [ "$scene" = liver ] && limit=(--seconds "$seconds")
-  "$bin/palpate" run "scenes/$scene.toml" "${limit[@]}" --domain 97 --summary out/bench_run.json >&2
+  "$bin/palpate" run "scenes/$scene.toml" "${limit[@]}" --processes 2 --domain 97 --summary out/bench_run.json >&2
   python3 scripts/run_rows.py out/bench_run.json "$scene" | keep
 done
 rm -f out/bench_run.json

@@ -63,7 +63,7 @@ def words(values, origin):
     text = [f"The scripted insertion, 50 modes, 60 particles, two forceps, steps with more than 5 mm inserted{origin}: median "
             f"{one('p50'):.0f} µs, p99 {one('p99'):.0f} µs, p99.9 {one('p999'):.0f} µs."]
     if ("run", "catheter_insertion", "haptic_hz") in values:
-        text.append(f"Running with its picture (`palpate run`): {values['run', 'catheter_insertion', 'haptic_hz']:.1f} Hz haptic, "
+        text.append(f"Running with its picture (`palpate run --processes 2`): {values['run', 'catheter_insertion', 'haptic_hz']:.1f} Hz haptic, "
                     f"{values['run', 'catheter_insertion', 'visual_hz']:.1f} Hz visual.")
     for prefix, name in (("modes", "a mode"), ("particles", "a particle")):
         x, y = series(values, prefix)

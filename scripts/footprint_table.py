@@ -19,7 +19,7 @@ def run(scene):
             keys = ["--keys", pathlib.Path(folder) / "keys"]
             subprocess.run([bin_folder / "palpate", "keys", keys[1]], check=True, capture_output=True)
         subprocess.run([bin_folder / "palpate", "precompute", scene], check=True, capture_output=True)
-        subprocess.run([bin_folder / "palpate", "run", scene, "--seconds", "1", "--domain", "96", "--summary", summary, *keys],
+        subprocess.run([bin_folder / "palpate", "run", scene, "--seconds", "1", "--processes", "2", "--domain", "96", "--summary", summary, *keys],
                        check=True, capture_output=True)
         return json.loads(summary.read_text())
 

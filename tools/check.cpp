@@ -148,7 +148,7 @@ void say_left_out(const Scene& scene, std::span<const CheckReport> bodies, Check
   if (!scene.record) out.left_out("no [record]: no recorder and no log file");
   if (!scene.network.security)
     out.left_out("no [network.security]: no keys and no encryption; whoever is on the network can take part");
-  if (!scene.render) out.left_out("no [render]: no render node and no picture, unless a film or a still is asked for");
+  out.left_out("no render node and no picture, unless a film or a still is asked for");
   if (!scene.render || scene.render->backdrop.empty()) out.left_out("no backdrop");
   if (!has_moving_tissue(scene)) out.left_out("no surface topic, unless a deformation node of its own is asked for");
 }

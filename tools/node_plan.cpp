@@ -6,8 +6,8 @@ NodePlan plan_nodes(const Scene& scene, const RunWishes& wishes) {
   NodePlan plan;
   plan.recorder = wishes.log || scene.record.has_value();
   plan.web = wishes.browsers;
-  // In a browser or off screen: nobody would see a third picture.
-  plan.render = (scene.render && !plan.web) || wishes.picture;
+  // Off screen, for who keeps the picture or asks for all processes; beside a browser's nobody would see a third.
+  plan.render = wishes.picture || (wishes.processes != 0 && scene.render && !plan.web);
   plan.deform = wishes.processes == 3 || has_moving_tissue(scene) || plan.web;  // moving tissue needs its owner
   return plan;
 }

@@ -9,9 +9,9 @@ namespace palpate {
 /// What a command line asks of a run besides the scene's own sections.
 struct RunWishes {
   bool log = false;      ///< a topic log, where the scene has no [record]
-  bool picture = false;  ///< a film or a still, where the scene has no [render]
+  bool picture = false;  ///< a film or a still
   bool browsers = false;
-  int processes = 2;  ///< 3: a deformation node of its own in any case
+  int processes = 0;  ///< 0: those that somebody looks at; 3: a deformation node of its own in any case
 };
 
 /// The nodes of a scene on this machine besides the haptic node, which is always one of them.

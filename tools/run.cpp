@@ -32,7 +32,7 @@ const std::string kScenesPort = "the scene's";  // for --web without a port
 struct RunOptions {
   std::string scene, record, keep, film, still, summary, keys, domain, web;
   double seconds = 0;
-  int processes = 2;
+  int processes = 0;  ///< 0: those that somebody looks at
   bool strict = false;
   bool force = false;  ///< outputs may replace files of another kind
 };
@@ -174,6 +174,19 @@ std::vector<std::string> web_command(const RunOptions& o) {
   return command;
 }
 
+NodePlan plan_of(const Scene& scene, const RunOptions& o) {
+  return plan_nodes(scene, {.log = !o.record.empty(),
+                            .picture = !o.film.empty() || !o.still.empty(),
+                            .browsers = !o.web.empty(),
+                            .processes = o.processes});
+}
+
+/// Where all topics are recorded; empty: nowhere.
+std::string log_of(const Scene& scene, const RunOptions& o) {
+  if (!o.record.empty()) return o.record;
+  return scene.record ? scene.record->file.string() : "";
+}
+
 void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
   const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {
@@ -181,10 +194,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     if (!o.keys.empty()) arguments.insert(arguments.end(), {"--keys", o.keys});
     return arguments;
   };
-  const NodePlan plan = plan_nodes(scene, {.log = !o.record.empty(),
-                                           .picture = !o.film.empty() || !o.still.empty(),
-                                           .browsers = !o.web.empty(),
-                                           .processes = o.processes});
+  const NodePlan plan = plan_of(scene, o);
   if (plan.recorder) nodes.start("recorder", with(recorder_command(scene, log_of(scene, o), o)));
   if (plan.deform) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (plan.render) {
@@ -232,6 +242,10 @@ void print_summary(const nlohmann::json& s) {
     fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n",
                number(render, "rate_hz"), 1e-3 * number(render, "latency_us_p50"),
                1e-3 * number(render, "latency_us_p99"), render.value("frames", 0));
+  if (render.is_object() && render.contains("film_frames"))
+    fmt::print("film     {} frames   {} repeat the picture before, {} pictures skipped   longest stand {:.2f} s\n",
+               render.value("film_frames", 0), render.value("film_repeated", 0), render.value("film_skipped", 0),
+               number(render, "film_longest_stand_s"));
   if (deform.is_object() && deform.contains("tick_hz"))
     fmt::print(
         "tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, "
@@ -250,6 +264,13 @@ void print_summary(const nlohmann::json& s) {
   if (recorder.is_object())
     fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
   if (const std::string limits = limits_met_in(s); !limits.empty()) fmt::print("limits   {}\n", limits);
+}
+
+/// Of a run that nobody has seen.
+void say_where_to_look(const Scene& scene, const RunOptions& o) {
+  const std::string log = log_of(scene, o);
+  fmt::print("nothing was shown: --web shows it in a browser, --film FILE.mp4 makes a film{}\n",
+             log.empty() ? "" : fmt::format(", `palpate film {} -o FILE.mp4` one of the log", log));
 }
 
 void run(const RunOptions& o) {
@@ -284,6 +305,7 @@ void run(const RunOptions& o) {
     if (o.strict) throw std::runtime_error(said);
     fmt::print(stderr, "{}\n", said);
   }
+  if (const NodePlan plan = plan_of(scene, o); !plan.web && !plan.render) say_where_to_look(scene, o);
 }
 
 }  // namespace
@@ -318,10 +340,10 @@ void add_run_command(cli::Command& app) {
       "one if another run on this host has it");
   run_command.add_option("--keys", o->keys, "Folder of keys in place of the scene's");
   run_command
-      .add_option(
-          "--processes", o->processes,
-          "2: the render node deforms too; 3: a deformation node of its own, which moving tissue always has, also "
-          "where nothing is drawn here")
+      .add_option("--processes", o->processes,
+                  "Start these although nobody looks. 2: haptic node, and a render node that deforms too; 3: also a "
+                  "deformation "
+                  "node of its own, which moving tissue always has (default: what --film, --still and --web need)")
       .one_of({2, 3});
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.examples({"palpate run scenes/liver.toml --web",

@@ -2,6 +2,7 @@
 #include <variant>
 
 #include "common/devices/bus/spec.hpp"
+#include "common/devices/hand/spec.hpp"
 #include "common/devices/log/spec.hpp"
 #include "common/devices/pointer/spec.hpp"
 #include "common/devices/scripted/spec.hpp"
@@ -9,7 +10,7 @@
 namespace palpate {
 
 /// The table of devices: a tool has one of them.
-using DeviceSpec = std::variant<ScriptedDeviceSpec, LogDeviceSpec, BusDeviceSpec, PointerDeviceSpec>;
+using DeviceSpec = std::variant<ScriptedDeviceSpec, LogDeviceSpec, BusDeviceSpec, PointerDeviceSpec, HandDeviceSpec>;
 
 /// As a scene file writes it: `scripted`.
 inline std::string_view kind_of(const DeviceSpec& device) {

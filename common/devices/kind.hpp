@@ -33,7 +33,8 @@ struct DevicePlace;
 ///
 /// motion_file(spec): the file that its motion comes from; empty without one.
 ///
-/// script(spec): its motion, where it is known before the run. Throws as load_trajectory() does.
+/// script(spec): its motion, or the one that it wants to make, where it is known before the run. Throws as
+/// load_trajectory() does.
 ///
 /// for_hands(spec): whether a person may take the tool.
 ///

@@ -9,7 +9,8 @@ struct MotionFileSpec {
 };
 
 inline void describe(Description& d, MotionFileSpec& m) {
-  d.file({"trajectory", "", "CSV for `\"scripted\"`, an LCM event log for `\"log\"`", Need::required, Use::local},
+  d.file({"trajectory", "", "CSV for `\"scripted\"` and `\"hand\"`, an LCM event log for `\"log\"`", Need::required,
+          Use::local},
          m.trajectory);
 }
 

@@ -80,13 +80,20 @@ bool SceneReader::Choice::strange(const std::string& path, std::string_view name
   return !has(own) && std::ranges::any_of(others, has);
 }
 
-// Keys that belong to another alternative than the one that was chosen.
+/// Put there by a change to the scene, not by its file.
+bool is_change(const toml::node* node) {
+  return node && node->source().path && node->source().path->starts_with("--set ");
+}
+
+// Keys that belong to another alternative than the one that was chosen. Who chooses anew by a change need not know the
+// file's: those are let go.
 void SceneReader::refuse_strange() const {
   const Level& level = levels_.back();
   for (const auto& [key, node] : *level.table)
     for (const Choice& choice : choices_) {
       if (!choice.strange(level.path.path, key.str())) continue;
       const DescribedKey& row = *known_.find(level.path.path)->find(key.str());
+      if (!row.is_table && is_change(levels_[choice.depth - 1].table->get(choice.key)) && !is_change(&node)) continue;
       const TablePath below = level.path.below(key.str(), row.type == "list of tables");
       fail(node.source(), fmt::format("{} means nothing for the {} '{}'", row.is_table ? below.name() : row.name,
                                       choice.key, choice.kind));

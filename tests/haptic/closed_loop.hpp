@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/archive/compliance.hpp"
+#include "common/devices/hand/emulated_hand.hpp"
 #include "common/dynamics/stability.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/geometry/triangle.hpp"
@@ -125,20 +126,7 @@ class TouchedBlock {
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };
 
-/// A second-order hand on a device: mass of both, and the spring and damper of the grip towards the intended path.
-struct Hand {
-  double mass, damping, stiffness;  ///< [kg], [N s/m], [N/m]
-  Eigen::Vector3d at = Eigen::Vector3d::Zero(), speed = Eigen::Vector3d::Zero();
-
-  void move(const Eigen::Vector3d& intended, const Eigen::Vector3d& force, double dt) {
-    constexpr int parts = 10;
-    for (int i = 0; i < parts; ++i) {
-      const Eigen::Vector3d push = stiffness * (intended - at) - damping * speed + force;
-      speed += push / mass * dt / parts;
-      at += speed * dt / parts;
-    }
-  }
-};
+using Hand = EmulatedHand;
 
 /// What one run of the loop gave, per haptic step.
 struct LoopTrace {

@@ -59,6 +59,20 @@ group = "base"
   EXPECT_NE(to_toml(scene).find("young = 20000"), std::string::npos);
 }
 
+TEST_F(SceneChanges, AnotherChoiceLetsGoOfTheFilesKeysForTheOldOne) {
+  const Scene scene = with({"tool.finger.device=log", "tool.finger.trajectory=session.lcmlog"});
+  EXPECT_EQ(std::get<LogDeviceSpec>(scene.tools[4].device).trajectory, folder_ / "session.lcmlog")
+      << "the file's start, lease and delay are a pointer's";
+  EXPECT_NE(refusal("tool.probe.start=[0, 0, 0]").find("start means nothing for the device 'scripted'"),
+            std::string::npos);
+  try {
+    with({"tool.finger.device=bus", "tool.finger.start=[0, 0, 0]"});
+    ADD_FAILURE() << "what a change asks for is never let go";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("start means nothing for the device 'bus'"), std::string::npos);
+  }
+}
+
 TEST_F(SceneChanges, AreRefusedWithTheirOwnPlace) {
   const std::string body = name_of(load_scene(folder_ / "scene.toml").bodies[0]);
   EXPECT_EQ(refusal("body." + body + ".young=-1"),

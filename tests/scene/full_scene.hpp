@@ -244,6 +244,15 @@ lease = 0.3
 delay = 0.03
 max_speed = 0.2
 
+[[tool]]
+name = "pen"
+pivot = [0, 0, 0.3]
+device = "hand"
+trajectory = "move.csv"
+mass = 0.3
+damping = 4
+stiffness = 400
+
 [contact]
 rule = "alpha"
 friction = 0.1

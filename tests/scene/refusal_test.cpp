@@ -240,7 +240,7 @@ const Refusal kRefusals[] = {
     {"axis = [1, 2, -3]", "axis = [0, -2, 0]", "[0, 1, 0]\nradius", "up must not be parallel to the tool's axis"},
     {"radius = 0.006", "radius = 0", "0\nshaft_radius", "radius must be greater than 0, and is 0"},
     {"device = \"bus\"", "device = \"telepathy\"", "\"telepathy",
-     "device 'telepathy' is unknown; known: scripted, log, bus, pointer"},
+     "device 'telepathy' is unknown; known: scripted, log, bus, pointer, hand"},
     {"trajectory = \"move.csv\"", "", "[[tool]]", "[[tool]] needs the key 'trajectory'"},
     {"device = \"bus\"", "device = \"bus\"\ntrajectory = \"move.csv\"", "\"move.csv\"\n\n[[tool]]\nname = \"ghost\"",
      "trajectory means nothing for the device 'bus'"},

@@ -53,7 +53,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(relaxation.times, (std::vector{0.1, 2.0}));
   EXPECT_EQ(relaxation.shares, (std::vector{0.3, 0.25}));
   EXPECT_EQ(as<MeshedSpec>(scene.bodies[2])->touchable->group, "top");
-  ASSERT_EQ(scene.tools.size(), 5u);
+  ASSERT_EQ(scene.tools.size(), 6u);
   const Tool& tool = scene.tools[0];
   EXPECT_NEAR((tool.axis - Eigen::Vector3d(1, 2, -3) / std::sqrt(14.0)).norm(), 0, 1e-15);
   EXPECT_EQ(std::get<ProbeSpec>(tool.end).radius, 0.006);

@@ -47,6 +47,9 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         } else if (key == "lease" || key == "start" || key == "delay" || key == "max_speed") {
           const std::string start = key == "start" ? "" : "start = [0, 0, 0]\n";
           text = body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"pointer\"\n" + start + line;
+        } else if (key == "mass" || (table == "[[tool]]" && (key == "damping" || key == "stiffness"))) {
+          text =
+              body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"hand\"\ntrajectory = \"move.csv\"\n" + line;
         } else if (key == "cautery" || key == "jaws") {
           text = body + tool + line;
         } else if (key == "fixed") {

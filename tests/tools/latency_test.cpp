@@ -124,7 +124,8 @@ TEST(ToolsLatency, MeasuresTheHopsOfASceneUpToThePicture) {
 TEST(ToolsTop, ShowsNodesForcesAndHopsOfARunningSystem) {
   const std::string scene = (std::filesystem::path(PALPATE_SOURCE) / "scenes/plate.toml").string(),
                     domain = std::to_string(own_domain());
-  ChildProcess simulation("palpate", {program("palpate"), "run", scene, "--seconds", "20", "--domain", domain});
+  ChildProcess simulation(
+      "palpate", {program("palpate"), "run", scene, "--seconds", "20", "--processes", "2", "--domain", domain});
   ProgramResult look;
   for (int i = 0; i < 6 && look.out.find("tool to picture") == std::string::npos; ++i)
     look = run_program(program("palpate") + " top --once --interval 3 --domain " + domain);

@@ -143,9 +143,17 @@ TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
   const auto made = testing::run_program(program("palpate") + " precompute " + file);
   ASSERT_EQ(made.status, 0) << made.err;
 
-  std::vector<std::string> command{
-      program("palpate"),     "run", file, "--seconds", "10", "--domain", std::to_string(domain), "--summary",
-      folder / "summary.json"};
+  std::vector<std::string> command{program("palpate"),
+                                   "run",
+                                   file,
+                                   "--seconds",
+                                   "10",
+                                   "--processes",
+                                   "2",
+                                   "--domain",
+                                   std::to_string(domain),
+                                   "--summary",
+                                   folder / "summary.json"};
   const fs::path keys = scene.network.security ? folder / "keys" : "";
   if (!keys.empty()) {
     ASSERT_EQ(testing::run_program(program("palpate") + " keys " + keys.string()).status, 0);
@@ -184,6 +192,23 @@ TEST_P(SceneNeeds, WhatRunsIsWhatItsSectionsAskFor) {
     const std::string node = name == "palpate" ? "recorder" : name;
     EXPECT_GT(summary[node]["startup_s"].get<double>(), 0) << node;
     EXPECT_GT(summary[node]["resident_bytes"].get<double>(), 1e6) << node;
+  }
+}
+
+TEST(SceneNeedsNobody, ARunThatNobodyLooksAtDrawsNothingAndSaysHowToLook) {
+  for (const auto& [name, programs] :
+       {std::pair<std::string, Names>{"plate", {"haptic_node"}}, {"plate_cut", {"haptic_node", "deform_node"}}}) {
+    const testing::OwnFolder folder("nobody");
+    const std::string scene = PALPATE_SOURCE "/scenes/" + name + ".toml", summary = folder / "summary.json";
+    const auto run = testing::run_program(fmt::format("{} run {} --seconds 1 --domain {} --summary {}",
+                                                      program("palpate"), scene, testing::own_domain(), summary));
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto said = nlohmann::json::parse(text_of(summary));
+    Names started;
+    for (const auto& [node, of_it] : said.items())
+      if (of_it.is_object()) started.insert(node);
+    EXPECT_EQ(started, programs) << name;
+    EXPECT_NE(run.out.find("nothing was shown: --web shows it in a browser, --film"), std::string::npos) << run.out;
   }
 }
 

@@ -88,6 +88,16 @@ std::vector<std::string> processes_of(const fs::path& folder) {
   return found;
 }
 
+/// The process of a program of that folder's session; 0 if it does not run.
+pid_t process_of(const fs::path& folder, const std::string& name) {
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string line = text_of(entry.path() / "cmdline");
+    if (line.find(folder.string()) != std::string::npos && fs::path(line.substr(0, line.find('\0'))).filename() == name)
+      return std::stoi(entry.path().filename());
+  }
+  return 0;
+}
+
 /// Forces in a log that is still written.
 int forces_in(const fs::path& log) {
   if (!fs::exists(log) || fs::file_size(log) == 0) return 0;
@@ -194,6 +204,30 @@ TEST(SessionTest, ThreeProcessesTellSurfacesAlsoWhereNothingIsDrawn) {
   ASSERT_TRUE(summary.contains("deform_node")) << summary.dump();
   EXPECT_GT(summary["deform_node"]["frames"].get<int>(), 10);
   EXPECT_FALSE(summary.contains("render_node"));
+}
+
+TEST(SessionTest, APictureThatStandsInTheFilmIsCountedAndSaid) {
+  const LoopbackScene scene("stand", kLinear);
+  const Session session(scene.folder());
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  ChildProcess run("palpate", session.arguments(scene, 2));
+  ASSERT_TRUE(comes_within(20s, [&] { return forces_in(session.log) > 200; })) << "the film runs";
+  const pid_t render = process_of(scene.folder(), "render_node");
+  ASSERT_GT(render, 0);
+  kill(render, SIGSTOP);
+  std::this_thread::sleep_for(1s);
+  kill(render, SIGCONT);
+  ASSERT_TRUE(run.wait(60s));
+  ASSERT_EQ(run.status(), 0);
+  const json drawn = json::parse(text_of(session.summary))["render_node"];
+  EXPECT_GE(drawn["film_longest_stand_s"].get<double>(), 0.95);
+  EXPECT_GE(drawn["film_repeated"].get<int>(), 28);
+  std::string said;
+  for (const std::string& line : run.take_lines())
+    if (line.starts_with("film ")) said = line;
+  EXPECT_NE(said.find(fmt::format("longest stand {:.2f} s", drawn["film_longest_stand_s"].get<double>())),
+            std::string::npos)
+      << said;
 }
 
 TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {

@@ -129,7 +129,7 @@ TouchedArea touched_area(const CheckedSolid& solid) {
 /// A patch takes the tissue near it to be of the body's own material.
 void warn_of_regions(const QuasiStaticSpec& body, const CheckedSolid& solid, const CheckSettings& settings,
                      CheckReport& report) {
-  if (settings.contact.rule != "patch" || settings.tools.empty()) return;
+  if (settings.contact.rule != ContactRule::patch || settings.tools.empty()) return;
   const TouchedArea area = touched_area(solid);
   if (area.other == 0) return;
   report.warnings.push_back(fmt::format(

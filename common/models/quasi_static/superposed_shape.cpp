@@ -29,7 +29,7 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive, const StepSettings& settings)
     : BodyShape(archive.surface), sum_(archive) {
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
-  if (settings.contact.rule == "patch" && !patch_parts(settings.tools, false).empty())
+  if (settings.contact.rule == ContactRule::patch && !patch_parts(settings.tools, false).empty())
     fine_ = std::make_unique<FineDents>(map(), archive, HalfSpace{archive.young[0], archive.poisson[0]}, settings.tools,
                                         edges_resolved(offline_of(body, map().size())));
 }
