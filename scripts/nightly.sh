@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
-# undefined behaviour) and thread (sanitizers, short forms), tidy (clang-tidy over the programs), stability (every case;
+# undefined behaviour) and thread (sanitizers, short forms), fuzz (spoilt files for an hour under the address and
+# undefined-behaviour sanitizers), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
 # out/mcap_reader), docs (every command of the pages), python (the module and its examples; installs pybind11-dev and
 # python3-dev), papers (docs/papers.md in full, into out/papers_docs), packages (made, and tried in a bare Debian 12;
@@ -10,7 +11,7 @@ cd "$(dirname "$0")/.."
 export PATH=/usr/bin:$PATH  # the python3 that has Debian's modules
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
-[ $# -gt 0 ] || set -- long address thread tidy stability mcap docs python papers packages
+[ $# -gt 0 ] || set -- long address fuzz thread tidy stability mcap docs python papers packages
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -49,6 +50,9 @@ for stage in "$@"; do
       ./scripts/build.sh "$stage"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any.
       OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 -E HapticMemory ;;
+    fuzz)
+      ./scripts/build.sh address test_fuzz
+      PALPATE_LONG_TESTS=1 build/address/bin/test_fuzz ;;
     tidy) ./scripts/tidy.sh ;;
     -h|--help) sed -n '2,7p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;

@@ -26,6 +26,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+const std::string kRecorder = "recorder";
 constexpr double kShortRun = 600;               // [s]: its log keeps everything
 const std::string kScenesPort = "the scene's";  // for --web without a port
 
@@ -90,13 +91,17 @@ class Nodes {
 
   bool last_runs() { return nodes_.back().process.running(); }
 
-  /// Stops the nodes, the haptic node first, and gives each time to finish its files.
+  /// Stops the nodes, the haptic node first, and gives each time to finish its files; the recorder hears all others
+  /// end. Those between are told at once: one that waited for another's film would miss the haptic node meanwhile.
   void stop() {
-    for (auto n = nodes_.rbegin(); n != nodes_.rend(); ++n) {
-      n->process.interrupt();
-      if (!n->process.wait(30s))
-        throw std::runtime_error(fmt::format("{} did not stop within 30 s", n->process.name()));
-    }
+    const auto told_last = [](const Node& n) { return n.process.name() == kRecorder; };
+    if (!nodes_.empty()) end(nodes_.back());
+    for (Node& n : nodes_)
+      if (!told_last(n)) n.process.interrupt();
+    for (Node& n : nodes_)
+      if (!told_last(n)) await(n);
+    for (Node& n : nodes_)
+      if (told_last(n)) end(n);
     read();
   }
 
@@ -112,6 +117,14 @@ class Nodes {
   }
 
  private:
+  static void await(Node& node) {
+    if (!node.process.wait(30s))
+      throw std::runtime_error(fmt::format("{} did not stop within 30 s", node.process.name()));
+  }
+  static void end(Node& node) {
+    node.process.interrupt();
+    await(node);
+  }
   /// Stopped by this process before it could take notice.
   static bool stopped_early(const Node& node) {
     return shutdown_requested() && !node.ready && node.process.status() == 128 + SIGINT;
@@ -195,7 +208,7 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     return arguments;
   };
   const NodePlan plan = plan_of(scene, o);
-  if (plan.recorder) nodes.start("recorder", with(recorder_command(scene, log_of(scene, o), o)));
+  if (plan.recorder) nodes.start(kRecorder, with(recorder_command(scene, log_of(scene, o), o)));
   if (plan.deform) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
   if (plan.render) {
     std::vector<std::string> render = with({sibling_program("render_node"), o.scene});

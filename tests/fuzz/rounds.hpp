@@ -8,14 +8,19 @@
 
 namespace palpate::testing {
 
-/// Calls `round(i)` for i = 0, 1, ...: `rounds` times, or with PALPATE_LONG_TESTS for twelve minutes shared by so many
-/// cases. Five suites make an hour.
+/// Calls `round(i)` for i = 0, 1, ...: `rounds` times, or with PALPATE_LONG_TESTS until the time is over.
 template <class Round>
-void fuzz(int rounds, int cases, Round&& round) {
+void repeat(int rounds, std::chrono::seconds in_long_tests, Round&& round) {
   using Clock = std::chrono::steady_clock;
   const bool for_long = std::getenv("PALPATE_LONG_TESTS") != nullptr;
-  const auto end = Clock::now() + std::chrono::minutes(12) / cases;
+  const auto end = Clock::now() + in_long_tests;
   for (int i = 0; for_long ? Clock::now() < end : i < rounds; ++i) round(i);
+}
+
+/// The same in twelve minutes that so many cases share. Five suites make an hour.
+template <class Round>
+void fuzz(int rounds, int cases, Round&& round) {
+  repeat(rounds, std::chrono::seconds(12 * 60) / cases, round);
 }
 
 /// Where programs break: numbers that are none, that are not what was meant, that end a type.

@@ -5,6 +5,7 @@
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/settings.hpp"
+#include "tests/fuzz/rounds.hpp"
 #include "tests/hostile/attacked_system.hpp"
 #include "tests/hostile/learned.hpp"
 #include "tests/hostile/mutations.hpp"
@@ -20,6 +21,8 @@ constexpr double kFlatMb = 64;                     // by which a node may grow i
 constexpr double kFlood = 10;                      // [MB] by which it may in a flood of names
 // The loop runs at 1000 Hz while the machine does: much may fall out in one attack of a second or two, little in all.
 constexpr double kMinHz = 950, kMinHzOfAll = 990;
+
+constexpr std::chrono::minutes kLong{50};  // with PALPATE_LONG_TESTS; the other cases take some minutes then
 
 bool long_form() {
   return std::getenv("PALPATE_LONG_TESTS") != nullptr;
@@ -149,11 +152,12 @@ TEST_F(Hostile, EveryFieldAtItsExtremes) {
       if (kinds % 4 == 0) system().watch(1ms);
     });
   };
-  const int rounds = long_form() ? 200 : 1;
-  for (int round = 0; round < rounds; ++round) [&]<std::size_t... i>(std::index_sequence<i...>) {
+  repeat(1, kLong, [&](int) {
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
       (play(std::integral_constant<std::size_t, i>{}), ...);
     }
-  (std::make_index_sequence<std::tuple_size_v<decltype(topics::all)>>{});
+    (std::make_index_sequence<std::tuple_size_v<decltype(topics::all)>>{});
+  });
   fmt::print("{} kinds, {} of them sent\n", kinds, sent);
   EXPECT_GE(sent, 200);
   EXPECT_TRUE(
