@@ -67,14 +67,13 @@ void run(const NodeOptions& o) {
     nodes.push_back(archive.surface.position.size());
   }
   // Towards the scene it has the rights of the live view: it reads what is shown and moves tools.
-  const BusSettings settings = bus_settings(scene, o, "web");
+  const BusSettings settings = bus_settings(scene, o, "web"), ros_side = ros_settings(settings);
   const std::unique_ptr<Bus> bus = make_dds_bus(settings);
   Presence presence(*bus, "ros", 0, loaded.scene_hash, loaded.archive_hash);
   const std::unique_ptr<SurfaceSource> source = receive_surfaces(*bus, presence, nodes);
   std::optional<TopologyFeed> topology;
   if (has_moving_tissue(scene)) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
-  const BusSettings ros_side = ros_settings(settings);
   ros::Node node(ros_side, "palpate");
   ros::BridgeLoop loop(scene, std::move(surfaces), node, *source, *bus, presence);
   if (topology) loop.set_topology(&*topology);

@@ -96,7 +96,7 @@ class Place:
     def run(self, command, place="", folder="."):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(["bash", "-c", command], cwd=self.folder / folder, env=self.environment, text=True,
-                              capture_output=True, timeout=900)
+                              capture_output=True, timeout=3600)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         print(f"{'ok' if done.returncode == 0 else 'FAILED':6} {used:6.1f} s  {place}: {command}", flush=True)

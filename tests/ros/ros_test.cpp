@@ -328,6 +328,19 @@ TEST(RosBridge, ACommandOfRosMovesATool) {
   EXPECT_TRUE(goes_to(0, 0.16, [&] { commander.command({"depth", "yaw"}, {0.16, 0}); }));
 }
 
+TEST(RosBridge, BesideASceneWithKeysRosNeedsADomainOfItsOwn) {
+  const LoopbackScene scene("ros_keys");
+  precompute(scene);
+  const std::string keys = scene.folder() / "keys";
+  std::string said;
+  ASSERT_EQ(run_command(program("palpate") + " keys " + keys, &said), 0) << said;
+  const std::string command =
+      fmt::format("{} {} --domain {} --keys {} --seconds 1", program("ros_bridge"), scene.scene(), own_domain(), keys);
+  EXPECT_EQ(run_command(command, &said), 1);
+  EXPECT_NE(said.find("asks for keys: ROS needs another, --ros-domain"), std::string::npos) << said;
+  EXPECT_EQ(run_command(fmt::format("{} --ros-domain {}", command, ros_domain()), &said), 0) << said;
+}
+
 TEST(RosBridge, TwoNamesThatAreOneInRosAreRefusedInWords) {
   const LoopbackScene scene("ros_names");
   scene.replace("[render]",
