@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/fem/dense.hpp"
+#include "common/files/atomic_file.hpp"
 #include "tools/study/output_folder.hpp"
 
 namespace palpate::stability {
@@ -42,16 +43,15 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-/// Whole or as it was: written beside and renamed.
+/// Whole or as it was.
 void write_rows(const std::vector<std::optional<Row>>& rows, const std::filesystem::path& file) {
-  const std::filesystem::path beside = file.string() + ".part";
-  std::ofstream out(beside);
+  AtomicFile whole(file);
+  std::ofstream out(whole.handle());
   out << kHeading << "\n";
   for (const auto& row : rows)
     if (row) out << line_of(*row);
-  if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", beside.string()));
-  out.close();
-  std::filesystem::rename(beside, file);
+  if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  whole.commit();
 }
 
 std::string text_of(const std::filesystem::path& file) {

@@ -1,12 +1,11 @@
 #include "tools/study/reference_cache.hpp"
 
-#include <unistd.h>
-
 #include <cstdint>
 #include <fstream>
 #include <optional>
 
 #include "common/describe/digest.hpp"
+#include "common/files/atomic_file.hpp"
 
 namespace palpate::study {
 namespace {
@@ -30,6 +29,18 @@ std::optional<std::vector<double>> read_numbers(const std::filesystem::path& fil
   return values;
 }
 
+void keep_numbers(const std::filesystem::path& file, const std::vector<double>& values) try {
+  make_folder_of(file);
+  AtomicFile whole(file);
+  std::ofstream out(whole.handle(), std::ios::binary);
+  out << sum_of(values);
+  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(double)));
+  out.close();
+  if (out) whole.commit();
+} catch (const std::runtime_error&) {
+  // They are computed again next time.
+}
+
 }  // namespace
 
 std::vector<double> ReferenceCache::get(const std::string& key,
@@ -38,13 +49,7 @@ std::vector<double> ReferenceCache::get(const std::string& key,
   const auto file = folder_ / (digest(key) + ".reference");
   if (auto found = read_numbers(file)) return *std::move(found);
   std::vector<double> values = compute();
-  std::filesystem::create_directories(folder_);
-  const auto beside = file.string() + "." + std::to_string(getpid());
-  std::ofstream out(beside, std::ios::binary);
-  out << sum_of(values);
-  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(double)));
-  out.close();
-  if (out) std::filesystem::rename(beside, file);
+  keep_numbers(file, values);
   return values;
 }
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/files/atomic_file.hpp"
+
 namespace palpate::study {
 
 const char* const kStudyHead =
@@ -104,8 +106,8 @@ void write_result(const Result& result, const std::filesystem::path& folder) {
 }
 
 void write_fragment(const Result& result, const std::filesystem::path& file) {
-  const std::filesystem::path beside = file.string() + ".part";
-  std::ofstream out(beside);
+  AtomicFile whole(file);
+  std::ofstream out(whole.handle());
   for (const Row& r : result.rows) out << "study," << line(r) << '\n';
   for (const DepthRow& r : result.depths) out << "depth," << line(r) << '\n';
   for (const CourseRow& r : result.courses) out << "course," << line(r) << '\n';
@@ -113,9 +115,8 @@ void write_fragment(const Result& result, const std::filesystem::path& file) {
   for (const TouchRow& r : result.touches) out << "touch," << line(r) << '\n';
   for (const Note& r : result.notes) out << "note," << line(r) << '\n';
   out << "end\n";
-  if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", beside.string()));
-  out.close();
-  std::filesystem::rename(beside, file);
+  if (!out.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  whole.commit();
 }
 
 Result read_fragment(const std::filesystem::path& file) {
