@@ -45,7 +45,7 @@ for scene in sorted((root / "scenes").glob("*.toml")):
     summary = run(scene)
     lines.append(f"| {scene.stem} | " + " | ".join(cell(summary.get(name)) for name in nodes) + " |")
 lines += ["",
-          "What runs is what the scene's sections ask for: a test starts every example scene and compares, from outside,",
+          "What runs with `--processes 2` is what the scene's sections ask for: a test starts every example scene and compares, from outside,",
           "its processes, the topics on the network, the haptic node's threads and its open files with the sections",
           "(`tests/tools/scene_needs_test.cpp`). A scene with one linear organ has two threads in the haptic node, opens no",
           "topic of cutting, modes or catheters, and starts no deformation node. `palpate check SCENE` says what will be",
