@@ -47,12 +47,27 @@ void DynamicWorld::tick_organs() {
   for (auto& organ : organs_) organ->tick(in_tick_, dt_);
 }
 
+// Where they are in truth.
+void DynamicWorld::meet_tools() {
+  for (int t = 0; t < tools(); ++t) {
+    tools_[t].enter(1);
+    in_tick_[t] = tools_[t].in_tick();
+  }
+  for (auto& organ : organs_) organ->meet(in_tick_);
+}
+
+// It may have pressed tissue to where it is: that is whole.
+bool DynamicWorld::presses(int tool) const {
+  return std::ranges::all_of(organs_, [&](const auto& o) { return o->removed().empty() && !o->passes(tool); });
+}
+
 bool DynamicWorld::settle() {
   const int entering = settled_ - kRestTicks;
   // Fast through free space, slowly at the end, where it meets the tissue.
   const double left = std::clamp(1 - static_cast<double>(entering) / kEnterTicks, 0.0, 1.0);
+  if (entering == 0) meet_tools();
   if (entering >= 0)
-    for (TissueTool& tool : tools_) tool.enter(1 - left * left);
+    for (int t = 0; t < tools(); ++t) tools_[t].enter(presses(t) ? 1 - left * left : 1);
   tick_organs();
   for (auto& organ : organs_) organ->calm();
   return ++settled_ >= kRestTicks + kEnterTicks + kCalmTicks;

@@ -36,9 +36,10 @@ class DynamicWorld {
   void tick();
 
   /// Before the first tick, in a node that comes when tools are in the tissue already: one tick's length of coming to
-  /// rest, first under the tissue's own weight, then with the tools, which enter along their shafts to where their
-  /// newest states say. They cut nothing on their way; what they tear is gone. True when it is over; call until then,
-  /// after taking the newest states.
+  /// rest, first under the tissue's own weight, then with the tools. These enter whole tissue along their shafts to
+  /// where their newest states say; where they would run through it, or something has been cut, they are there at once,
+  /// and pass through what they touch. They cut nothing on their way; what they tear is gone. True when it is over;
+  /// call until then, after taking the newest states.
   bool settle();
 
   std::uint64_t ticks() const { return ticks_; }
@@ -52,6 +53,8 @@ class DynamicWorld {
 
  private:
   void tick_organs();
+  void meet_tools();
+  bool presses(int tool) const;
 
   double dt_;
   std::vector<TissueTool> tools_;

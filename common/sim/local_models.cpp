@@ -256,6 +256,7 @@ bool LocalModels::describe(int tool, LocalContactModel& model) {
   add_origin(tool, model);
   if (!world_.in_tick(tool).present) return false;
   for (int i = 0; i < world_.organs(); ++i) {
+    if (world_.organ(i).passes(tool)) continue;
     add_contacts(tool, i, model);
     add_surface(tool, i, model);
     if (!world_.organ(i).still_part()) continue;

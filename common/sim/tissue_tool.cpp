@@ -42,8 +42,8 @@ void TissueTool::tick(std::uint64_t number) {
   const bool silent = !waiting_ && heard_ + patience_ < number;
   if (left_ || silent) present_ = false;
   anew_ = std::exchange(waiting_, false);
-  const bool begins = anew_ && (!present_ || newest_.run != consumed_.run);
-  if (begins)
+  begins_ = anew_ && (!present_ || newest_.run != consumed_.run);
+  if (begins_)
     playback_.begin(newest_);
   else if (present_)
     playback_.tick(anew_ ? &newest_ : nullptr);
@@ -55,7 +55,7 @@ void TissueTool::tick(std::uint64_t number) {
     present_ = true;
     consumed_ = newest_;
   }
-  move(begins);
+  move();
 }
 
 void TissueTool::stand() {
@@ -64,13 +64,13 @@ void TissueTool::stand() {
 }
 
 // To where it is played; one that begins there does not sweep through the tissue on its way.
-void TissueTool::move(bool begins) {
+void TissueTool::move() {
   stand();
   dofs_ = playback_.dofs();
   opening_ = playback_.opening();
   now_ = tip_pose(trocar_, dofs_);
   turn_jaws();
-  if (begins) stand();
+  if (begins_) stand();
 }
 
 void TissueTool::enter(double share) {
@@ -79,7 +79,8 @@ void TissueTool::enter(double share) {
   consumed_.depth *= share;
   consumed_.pedal = 0;
   playback_.begin(consumed_);
-  move(!std::exchange(present_, true));
+  begins_ = !std::exchange(present_, true);
+  move();
 }
 
 bool TissueTool::follows() const {
@@ -91,7 +92,8 @@ ToolInTick TissueTool::in_tick() const {
           .dofs = dofs_,
           .opening = opening_,
           .holding = holding_,
-          .present = present_};
+          .present = present_,
+          .begins = begins_};
 }
 
 void TissueTool::state(State& s) {

@@ -45,7 +45,7 @@ class TissueTool {
  private:
   void turn_jaws();
   void stand();
-  void move(bool begins);
+  void move();
 
   Trocar trocar_;
   std::vector<ToolPart> parts_, parts_before_;  ///< of jaws they turn
@@ -55,7 +55,7 @@ class TissueTool {
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
   ToolDofs dofs_;
   double opening_ = 0;  ///< [rad]
-  bool holding_ = false, present_ = false;
+  bool holding_ = false, present_ = false, begins_ = false;
   bool waiting_ = false, anew_ = false, leaving_ = false, left_ = false;
   std::uint64_t heard_ = 0;     ///< tick of the last state
   std::uint64_t patience_ = 0;  ///< [ticks] of silence

@@ -1,8 +1,11 @@
-// What the hand feels when the deformation node is stopped, or dies and comes back, while a tool presses and slides.
+// What the hand feels when the deformation node is stopped, or dies and comes back, while a tool presses and slides, or
+// cuts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "common/devices/device.hpp"
 #include "common/fem/dense.hpp"
+#include "common/scene/ensure_archive.hpp"
 #include "tests/sim/played_scenes.hpp"
 #include "tools/rig/two_nodes.hpp"
 
@@ -128,6 +131,57 @@ TEST_F(InterruptedPress, IsFeltAllTheWayOfATissueTooSlowForItsTicks) {
     EXPECT_LT(off, most_off * largest);
     EXPECT_LT(fall, most_fall * largest);
     EXPECT_LE(rise, 1e-3 * scene_.scene.tools[0].max_force_rate * (1 + 1e-9));
+  }
+}
+
+/// A scalpel cuts a plate across; while one of the nodes is away it goes on, and what it should have cut is not.
+class MissedCut : public ::testing::Test {
+ protected:
+  MissedCut() { set_linear_algebra_threads(1); }
+
+  ToolDofs at(int k) const { return device_->read(1e-3 * k).dofs; }
+
+  struct Felt {
+    double largest = 0, rise = 0, change = 0;  ///< [N]; in a tick of the size, and as vectors
+  };
+  /// The deformation node is gone between two ticks.
+  Felt feel(int first, int back) const {
+    TwoNodes nodes(scene_, archives_);
+    nodes.start(std::array{at(0)});
+    Felt felt;
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (int k = 1; k < kEnd; ++k) {
+      if (k == first) nodes.kill_tissue();
+      if (k == back) nodes.restart_tissue();
+      nodes.step(std::array{at(k)});
+      const Eigen::Vector3d now = nodes.force(0);
+      felt.largest = std::max(felt.largest, now.norm());
+      felt.rise = std::max(felt.rise, now.norm() - before.norm());
+      felt.change = std::max(felt.change, (now - before).norm());
+      before = now;
+    }
+    return felt;
+  }
+
+  static constexpr int kEnd = 8000;  ///< [ticks] the scalpel is above the plate again
+  const Scene scene_ = load_scene(PALPATE_SOURCE_DIR "/scenes/plate_cut.toml");
+  const std::vector<Archive> archives_ = load_or_precompute(scene_, ArchivePart::surface);
+  const std::unique_ptr<Device> device_ = make_device(scene_, 0);
+};
+
+TEST_F(MissedCut, IsNoKickWhenTheTissueComesBack) {
+  const double undisturbed = feel(kEnd, kEnd).largest;
+  struct Death {
+    int first, back;
+    double most;  ///< of the largest force without it
+  };
+  // In the second the scalpel comes into its old slot with its shaft against what was left uncut, and presses on.
+  for (const auto& [first, back, most] : {Death{5757, 5788, 1.1}, Death{3000, 3900, 1.4}}) {
+    SCOPED_TRACE(fmt::format("ticks {} to {}", first, back));
+    const Felt felt = feel(first, back);
+    EXPECT_LT(felt.largest, most * undisturbed);
+    EXPECT_LT(felt.rise, 0.1);
+    EXPECT_LT(felt.change, 0.1);
   }
 }
 

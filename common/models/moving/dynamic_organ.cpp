@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/geometry/triangle.hpp"
+#include "common/geometry/segment.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving_kind.hpp"
@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
 constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
+constexpr double kMeeting = 1e-9;           // [m] within which a line meets a facet
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 }  // namespace
@@ -65,15 +66,59 @@ int DynamicOrgan::steps_in(double dt, bool touched) const {
   return palpate::steps_in(dt, touched ? touched_step_ : max_step_);
 }
 
-// Of a tool that is absent nothing is left, neither parts nor what it touched.
+// Of a tool that is absent nothing is left, neither parts nor what it touched; nor of what one touched where it was
+// before it began anew.
 void DynamicOrgan::take_tools(std::span<const ToolInTick> tools) {
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
     in_tick_[t] = tools[t].moving;
-    if (tools[t].present) continue;
-    in_tick_[t].parts = in_tick_[t].parts_before = {};
+    if (tools[t].present && !tools[t].begins) continue;
+    if (!tools[t].present) in_tick_[t].parts = in_tick_[t].parts_before = {};
+    hands_[t].holding = false;
     contacts_.drop_tool(t);
     if (still_) still_->drop_tool(t);
   }
+}
+
+// Tissue that is whole can be pressed to where a tool is; between the flaps of a cut nobody knows what is on which side
+// of it.
+void DynamicOrgan::meet(std::span<const ToolInTick> tools) {
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    const MovingTool& tool = tools[t].moving;
+    if (tools[t].begins) hands_[t].passing = !holds(t) && (removed_.empty() ? runs_through(tool) : touches(tool));
+  }
+}
+
+void DynamicOrgan::let_pass(std::span<const ToolInTick> tools) {
+  meet(tools);
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
+    bool& passing = hands_[t].passing;
+    passing = passing && tools[t].present && !holds(t) && touches(tools[t].moving);
+    if (passing) in_tick_[t].parts = in_tick_[t].parts_before = {};
+  }
+}
+
+// The line from a tool's tip along its parts meets the surface.
+bool DynamicOrgan::runs_through(const MovingTool& tool) const {
+  const auto meets = [&](const Segment& line) {
+    return std::ranges::any_of(surface_.find(line.start, line.end, kMeeting), [&](int facet) {
+      return closest_points(line, surface_.corners(facet)).squared_distance < kMeeting * kMeeting;
+    });
+  };
+  for (int p = 0; p < tool.size(); ++p) {
+    const Segment axis = tool.axis(p);
+    if (meets({tool.now.translation(), axis.start}) || meets(axis)) return true;
+  }
+  return false;
+}
+
+bool DynamicOrgan::touches(const MovingTool& tool) const {
+  for (int p = 0; p < tool.size(); ++p) {
+    const Segment axis = tool.axis(p);
+    const double radius = tool.radius(p);
+    for (const int facet : surface_.find(axis.start, axis.end, radius))
+      if (closest_points(axis, surface_.corners(facet)).squared_distance < radius * radius) return true;
+  }
+  return false;
 }
 
 // By one step, to a share of their way in the tick.
@@ -91,6 +136,7 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
   take_tools(tools);
   work_jaws(tools);
+  let_pass(tools);
   load();
   if (still_) still_->find(in_tick_);
   contacts_.find(in_tick_, dt / steps_in(dt, true), [this](int tool) { return holds(tool); });
@@ -306,12 +352,13 @@ std::vector<std::uint8_t> DynamicOrgan::motion() const {
 }
 
 DynamicOrgan::Memory DynamicOrgan::memory() const {
-  std::vector<char> holding;
-  for (const Hand& hand : hands_) holding.push_back(hand.holding);
+  std::vector<char> holding, passing;
+  for (const Hand& hand : hands_) holding.push_back(hand.holding), passing.push_back(hand.passing);
   return {removed_,
           fading_,
           motion(),
           holding,
+          passing,
           {surface_.previous().begin(), surface_.previous().end()},
           {surface_.positions().begin(), surface_.positions().end()}};
 }
@@ -322,6 +369,7 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   s.list(m.fading);
   s.list(m.motion);
   s.list(m.holding);
+  s.list(m.passing);
   s.list(m.previous);
   s.list(m.present);
   if (s.restoring()) recall(m);
@@ -332,7 +380,8 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 // Whether what was read can be of this body and these tools.
 bool DynamicOrgan::fits(const Memory& m) const {
   const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == hands_.size() &&
-                     m.previous.size() == position_.size() && m.present.size() == position_.size();
+                     m.passing.size() == hands_.size() && m.previous.size() == position_.size() &&
+                     m.present.size() == position_.size();
   const auto known = [&](const Fading& f) {
     return f.node >= 0 && f.node < mesh_.nodes() && f.ticks_left > 0 && f.ticks_left <= fading_ticks_;
   };
@@ -350,7 +399,8 @@ void DynamicOrgan::recall(const Memory& m) {
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
   model_->restore(m.motion.data());
-  for (std::size_t t = 0; t < hands_.size(); ++t) hands_[t].holding = m.holding[t] != 0;
+  for (std::size_t t = 0; t < hands_.size(); ++t)
+    hands_[t].holding = m.holding[t] != 0, hands_[t].passing = m.passing[t] != 0;
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;

@@ -31,6 +31,7 @@ struct ToolInTick {
   double opening = 0;    ///< [rad] between a forceps' jaws
   bool holding = false;  ///< its jaws are shut on what is between them
   bool present = false;  ///< its pose is known
+  bool begins = false;   ///< no motion has led it to where it is: it has come anew, or its haptic node has
 };
 
 /// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a
@@ -47,6 +48,12 @@ class DynamicOrgan {
   /// Before the first tick: these tetrahedra have gone before, and `changes` is what they are. False, and nothing has
   /// happened, if one of them is not of this body.
   bool begin_without(std::span<const std::uint32_t> removed);
+
+  /// Which of the tools that begin pass through the tissue as it is, as after a tick that they begin in.
+  void meet(std::span<const ToolInTick> tools);
+  /// The tool began run through the tissue, as where a cut was missed, or touching tissue that had been cut: neither
+  /// feels the other until they are clear of one another, or its jaws take hold. What glows cuts all the same.
+  bool passes(int tool) const { return hands_[tool].passing; }
 
   /// Stops all motion once it has begun to slow down: ticks with this after each lead to rest, as each stop finds the
   /// tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic relaxation by kinetic damping).
@@ -92,12 +99,13 @@ class DynamicOrgan {
   std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
-  /// What a tool can do to it, and whether its jaws hold. It takes hold by one of the two at most.
+  /// What a tool can do to it, whether its jaws are shut, and whether it passes through. It takes hold by one of the
+  /// two at most.
   struct Hand {
     std::optional<ClosingJaws> closing;
     std::optional<ForcepsShape> turning;
     std::optional<Cautery> cautery;
-    bool holding = false;
+    bool holding = false, passing = false;
   };
   /// What tetrahedra that have been cut away did to a node that stays.
   struct Fading {
@@ -109,7 +117,7 @@ class DynamicOrgan {
     std::vector<int> removed;
     std::vector<Fading> fading;
     std::vector<std::uint8_t> motion;
-    std::vector<char> holding;
+    std::vector<char> holding, passing;
     std::vector<Eigen::Vector3d> previous, present;
   };
   std::vector<std::uint8_t> motion() const;  ///< what the model remembers
@@ -119,6 +127,9 @@ class DynamicOrgan {
   void take_tools(std::span<const ToolInTick> tools);
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
+  void let_pass(std::span<const ToolInTick> tools);
+  bool runs_through(const MovingTool& tool) const;
+  bool touches(const MovingTool& tool) const;
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);
