@@ -194,12 +194,6 @@ NodePlan plan_of(const Scene& scene, const RunOptions& o) {
                             .processes = o.processes});
 }
 
-/// Where all topics are recorded; empty: nowhere.
-std::string log_of(const Scene& scene, const RunOptions& o) {
-  if (!o.record.empty()) return o.record;
-  return scene.record ? scene.record->file.string() : "";
-}
-
 void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
   const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {

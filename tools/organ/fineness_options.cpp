@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "common/files/atomic_file.hpp"
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
@@ -13,16 +14,13 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
 constexpr double kSecondsPerSquare = 3e-6;         // of surface nodes, measured on one core (docs/organ.md)
 
-/// Beside the file, and renamed once it is whole.
-void write_whole(const TetMesh& mesh, const fs::path& file) {
-  const fs::path part = file.parent_path() / (file.stem().string() + ".part" + file.extension().string());
-  write_tet_mesh(mesh, part);
-  fs::rename(part, file);
+void write_whole(const TetMesh& mesh, const std::filesystem::path& file) {
+  AtomicFile whole(file);
+  write_tet_mesh(mesh, whole.path());
+  whole.commit();
 }
 
 double mean_edge_of(const TetMesh& mesh, const Surface& surface) {
