@@ -208,9 +208,12 @@ TEST(SessionTest, ThreeProcessesTellSurfacesAlsoWhereNothingIsDrawn) {
 
 TEST(SessionTest, APictureThatStandsInTheFilmIsCountedAndSaid) {
   const LoopbackScene scene("stand", kLinear);
+  scene.write("motion.csv", kLongRest);
   const Session session(scene.folder());
   ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
-  ChildProcess run("palpate", session.arguments(scene, 2));
+  std::vector<std::string> command = session.arguments(scene, 2);
+  command.insert(command.end(), {"--seconds", "6"});
+  ChildProcess run("palpate", command);
   ASSERT_TRUE(comes_within(20s, [&] { return forces_in(session.log) > 200; })) << "the film runs";
   const pid_t render = process_of(scene.folder(), "render_node");
   ASSERT_GT(render, 0);
