@@ -399,6 +399,14 @@ def touch_table(rows):
     return table(head, cells)
 
 
+def place_table(depth):
+    """Each place once."""
+    places = {r["patch"]: r for r in depth}
+    head = ["place", "x [m]", "y [m]", "z [m]", "normal", "nearest node"]
+    return table(head, [[p, figures(r["x_m"], 5), figures(r["y_m"], 5), figures(r["z_m"], 5), " ".join(figures(r[n]) for n in ("nx", "ny", "nz")), r["node"]]
+                        for p, r in sorted(places.items())])
+
+
 def linearity_sentence(rows):
     """Where the error of being linear is assessed and where it is not."""
     sentences = []
@@ -437,6 +445,8 @@ def scene_page(folder, rows):
     if budget.exists():
         parts.append(f"<p><b>{html.escape(budget.read_text().strip())}</b></p>")
     parts += [f"<p>{picture(path, text)}</p>" for path, text in pictures if path]
+    if depth:
+        parts.append("<h2>Where it was pressed</h2><p class=small>Against the normal at that point of the surface; the node is the mesh's nearest one.</p>" + place_table(depth))
     if touches:
         parts.append("<h2>How a slide feels</h2><p class=small>Of the force after the run-up, as shares of its mean: <i>ripple</i>, root mean square about the curve of "
                      "<i>fine linear</i>, scaled to it; <i>jump</i>, largest change from one tick to the next; <i>turn</i>, ticks in which the tool is pushed along its motion "

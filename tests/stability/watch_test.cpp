@@ -57,6 +57,38 @@ TEST(StabilityWatch, ADeeperPressOfMovingTissueHasTheLargerForce) {
   EXPECT_GT(deep.energy_growth, -1e-12);
 }
 
+/// A press of which a share of its work is counted.
+Result watched(double share) {
+  PressRig rig(moving_block_scene(), {precompute_on(moving_block_scene().bodies[0], small_block_mesh())});
+  TissueWatch watch;
+  for (int i = 0; i < 200; ++i) {
+    rig.press(Eigen::Vector3d(0, 0, 0.0261 - 2.5e-5 * i));
+    watch.look(rig.organ(), share * rig.force().dot(Eigen::Vector3d(0, 0, -2.5e-5)));
+  }
+  return watch.result();
+}
+
+TEST(StabilityWatch, TissueWithMoreEnergyThanTheWorkHasFailed) {
+  EXPECT_EQ(watched(1).outcome, Outcome::stable) << watched(1).note;
+  const Result gained = watched(0.1);
+  EXPECT_EQ(gained.outcome, Outcome::failed);
+  EXPECT_NE(gained.note.find("energy beyond the work"), std::string::npos) << gained.note;
+  EXPECT_EQ(watched(0).outcome, Outcome::failed) << "no work at all";
+}
+
+TEST(StabilityWatch, TissueThatIsFlungFartherThanHalfItsDiagonalHasFailed) {
+  Scene scene = moving_block_scene();
+  moving_block_of(scene).dynamic.gravity = {0, 0, 1e4};
+  PressRig rig(scene, {precompute_on(scene.bodies[0], small_block_mesh())});
+  TissueWatch watch;
+  for (int i = 0; i < 200; ++i) {
+    rig.press(Eigen::Vector3d(0, 0, 1));
+    watch.look(rig.organ(), 1e3);
+  }
+  EXPECT_EQ(watch.result().outcome, Outcome::failed);
+  EXPECT_NE(watch.result().note.find("reach over the diagonal"), std::string::npos) << watch.result().note;
+}
+
 /// Moving tissue whose two contacts, once its first models have come in, pull against each other with `force` [N], ten
 /// millimetres apart.
 Result pulled_by_a_couple(double force) {
@@ -80,6 +112,16 @@ Result pulled_by_a_couple(double force) {
     watch.look(haptic);
   }
   return watch.result();
+}
+
+TEST(StabilityWatch, AHandThatGainsMoreThanTheReserveIsNeverCalledStable) {
+  HapticStep haptic(block_scene(), {precompute_on(block_scene().bodies[0], block_mesh())});
+  haptic.start(std::array{tip_at(block_scene().tools[0], {0, 0, 0.008})});
+  haptic.step(std::array{tip_at(block_scene().tools[0], {0, 0, 0.008})});
+  Watch watch;
+  watch.look(haptic);
+  EXPECT_EQ(watch.result().outcome, Outcome::stable);
+  EXPECT_EQ(watch.result(-1e-9).outcome, Outcome::failed) << "a reserve below what it has gained";
 }
 
 TEST(StabilityWatch, ATorqueIsLimitedThoughForcesCancelOut) {

@@ -16,7 +16,12 @@ using namespace testing;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 PressErrors two_nodes() {
-  return {{1, 3}, Presses{.radius = 0.01, .radius_from = {}, .depths = {0.001, 0.002}, .patches = {}}};
+  return {{1, 3},
+          Presses{.radius = 0.01,
+                  .radius_from = {},
+                  .depths = {0.001, 0.002},
+                  .patches = {{{1, 2, 3}, {0, 0, -1}, 0}},
+                  .nodes = {7}}};
 }
 PressAnswer answer(double force, double u) {
   return {force, {Eigen::Vector3d(u, 0, 0), Eigen::Vector3d(u, 0, 0)}};
@@ -29,6 +34,9 @@ TEST(Errors, AreTheRootMeanSquareOfTheRelativeOnesAndKeepTheirSignInEachPress) {
   EXPECT_NEAR(result.rows[0].err_u_rel, 0.2 / std::sqrt(2), 1e-12);
   EXPECT_NEAR(result.depths[0].err_f_rel, -0.1, 1e-12);
   EXPECT_NEAR(result.depths[1].err_f_rel, 0.3, 1e-12);
+  EXPECT_EQ(result.depths[1].point, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(result.depths[1].normal, (std::array<double, 3>{0, 0, 1})) << "out of the surface";
+  EXPECT_EQ(result.depths[1].node, 7);
   Result moving;
   add_course({}, {{1, 2}, {3, 2}}, {{1, 2}, {1, 4}}, 0.5, moving);
   EXPECT_NEAR(moving.rows[0].err_f_rel, std::sqrt(4.0 / 2), 1e-12);

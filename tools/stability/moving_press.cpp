@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/mesh/generators.hpp"
+#include "common/models/moving/tried_contact.hpp"
 #include "tools/rig/example_bodies.hpp"
 #include "tools/rig/kinds.hpp"
 #include "tools/rig/press_rig.hpp"
@@ -14,10 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;    // [s]
-constexpr double kPivot = 1e3;    // [m] above the tissue: all of a tool so long moves as its tip does
-constexpr double kStabSpeed = 1;  // [m/s]
-constexpr double kSlideSpeed = 0.02;
+constexpr double kTick = 1e-3;  // [s]
+constexpr double kPivot = 1e3;  // [m] above the tissue: all of a tool so long moves as its tip does
+constexpr double kStabSpeed = TriedContact::kMaxSpeed, kSlideSpeed = 0.02;  // [m/s]
 constexpr double kStand = 1;    // [s] of standing before nothing but chatter is left
 constexpr double kDecay = 8;    // [1] time constants that slow tissue is given to come to rest
 constexpr double kSlow = 0.02;  // [s] period from which it swings on after the press
@@ -66,8 +66,10 @@ Scene scene_of(const MovingPress& p) {
   body.dynamic.damping = p.damping;
   body.dynamic.integrator = p.integrator;
   body.dynamic.precision = p.precision;
+  body.dynamic.corotational = p.corotational;
   Scene scene = scene_of_moving(body);
   scene.contact.friction = p.friction;
+  scene.contact.rule = p.rule;
   scene.passivity.controller = false;
   Tool& tool = scene.tools[0];
   tool.pivot = p.origin + Vector3d(0, 0, kPivot);

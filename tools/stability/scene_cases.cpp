@@ -42,7 +42,7 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
     rig.step(at(time));
     watch.look(rig.haptic());
   }
-  Result r = watch.result();
+  Result r = watch.result(scene.passivity.reserve);
   r.note += fmt::format("{}energy at the end {:.4g} J", r.note.empty() ? "" : "; ", rig.simulator().energy());
   return r;
 }

@@ -4,7 +4,15 @@
 
 #include <cmath>
 
+#include "tools/stability/stand_judge.hpp"
+
 namespace palpate::stability {
+namespace {
+
+constexpr double kLoose = 3 + StandJudge::kReach;  // [1] of the diagonal: as far as parts that float are followed
+constexpr double kNoEnergy = 1e-12;                // [J] is rounding
+
+}  // namespace
 
 void Watch::look(const HapticStep& haptic) {
   ++steps_;
@@ -24,7 +32,7 @@ void Watch::look(const HapticStep& haptic) {
   damped_ += (flags & passivity_limited) != 0;
 }
 
-Result Watch::result() const {
+Result Watch::result(double reserve) const {
   Result r{.max_force = largest_, .energy_growth = max_lost_, .note = {}};
   const auto say = [&](int count, const char* what) {
     if (count == 0) return;
@@ -41,23 +49,37 @@ Result Watch::result() const {
     r.outcome = Outcome::failed;
     r.note += fmt::format("{}torque up to {:.3g} N m", r.note.empty() ? "" : ", ", torque_);
   }
+  if (max_lost_ > reserve) {
+    r.outcome = Outcome::failed;
+    r.note += fmt::format("{}the hand gained more than the reserve of {:g} J", r.note.empty() ? "" : ", ", reserve);
+  }
   if (!finite_ || !std::isfinite(torque_))
     r = {.outcome = Outcome::failed, .note = "a force is not a number; " + r.note};
   return r;
 }
 
-void TissueWatch::look(const DynamicOrgan& organ) {
-  for (const Eigen::Vector3d& x : organ.surface().positions()) reach_ = larger(reach_, x.norm());
+void TissueWatch::look(const DynamicOrgan& organ, double work) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : organ.mesh().rest) box.extend(x);
+  diagonal_ = box.diagonal().norm();
+  for (int n = 0; n < organ.mesh().nodes(); ++n)
+    if (organ.topology().has_node(n)) reach_ = larger(reach_, organ.displacement(n).norm());
+  whole_ &= organ.removed().empty();
   largest_ = larger(largest_, force_on_moving_part(organ).norm());
-  double& most = ++ticks_ <= 200 ? first_energy_ : late_energy_;
-  most = larger(most, organ.model().energy());
+  work_ += work;
+  max_work_ = larger(max_work_, work_);
+  gained_ = larger(gained_, organ.model().energy() - work_);
 }
 
 Result TissueWatch::result() const {
-  Result r{.max_force = largest_,
-           .energy_growth = larger(late_energy_ - first_energy_, 0),
-           .note = "energy is the tissue's own"};
-  if (!(reach_ <= 1e3)) r = {.outcome = Outcome::failed, .note = "the tissue's shape is not a number or runs away"};
+  Result r{.max_force = largest_, .energy_growth = gained_, .note = "energy is the tissue's beyond the work"};
+  const auto hold = [&](const char* what, double value, double bound) {
+    if (value <= bound) return;
+    r.outcome = Outcome::failed;
+    r.note += fmt::format(", {} {:.2g} (at most {:g})", what, value, bound);
+  };
+  hold("reach over the diagonal", reach_ / diagonal_, whole_ ? StandJudge::kReach : kLoose);
+  hold("energy beyond the work, of it", gained_ > kNoEnergy ? gained_ / max_work_ : 0, StandJudge::kEnergy);
   return r;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "common/models/catheter/catheter_body.hpp"
+#include "common/tool/passivity_spec.hpp"
 #include "tools/rig/press_rig.hpp"
 #include "tools/stability/case.hpp"
 
@@ -14,8 +15,8 @@ class Watch {
 
   /// Looks at the step that has just been made.
   void look(const HapticStep& haptic);
-  /// The outcome so far: regularised as soon as any flag was up.
-  Result result() const;
+  /// The outcome so far: regularised as soon as any flag was up; failed if the hand has gained more than `reserve` [J].
+  Result result(double reserve = Passivity{}.reserve) const;
   double largest() const { return largest_; }
 
  private:
@@ -27,14 +28,17 @@ class Watch {
 /// What happens to moving tissue, tick by tick.
 class TissueWatch {
  public:
-  void look(const DynamicOrgan& organ);
-  /// Failed unless every position has stayed within a kilometre; max_force the largest contact force on the tissue that
-  /// moves [N]; energy_growth how far the tissue's own energy has risen above the largest of its first 200 ticks.
+  /// `work` [J]: of the tools' forces on the tissue in this tick.
+  void look(const DynamicOrgan& organ, double work);
+  /// Judged as StandJudge does what does not stand still: failed where a node went farther than its share of the
+  /// diagonal, of what hangs on nothing any more as far as it is followed, or where the tissue had more energy than the
+  /// work by more than its share. max_force is the largest contact force on the tissue that moves [N]; energy_growth
+  /// the most that the tissue had beyond the work.
   Result result() const;
 
  private:
-  int ticks_ = 0;
-  double largest_ = 0, first_energy_ = 0, late_energy_ = 0, reach_ = 0;
+  double largest_ = 0, work_ = 0, max_work_ = 0, gained_ = 0, reach_ = 0, diagonal_ = 0;
+  bool whole_ = true;
 };
 
 /// What happens to a catheter, tick by tick.

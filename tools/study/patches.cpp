@@ -57,6 +57,12 @@ double study_radius(const Scene& scene, const SurfaceMap& surface, std::string& 
   return mean_edge(surface);
 }
 
+/// Of the mesh, of the corners of the patch's triangle.
+int nearest_node(const SurfaceMap& surface, const Patch& patch) {
+  const auto distance = [&](int n) { return (surface.position[n] - patch.point).norm(); };
+  return surface.node_number[std::ranges::min(surface.triangles[patch.triangle], {}, distance)];
+}
+
 }  // namespace
 
 Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick) {
@@ -85,6 +91,7 @@ Presses choose_presses(const Scene& scene, const SurfaceMap& surface, bool quick
         const auto next =
             std::ranges::max_element(free, {}, [&](const Patch& p) { return std::min(1e3, nearest(taken, p.point)); });
         presses.patches.push_back(*next);
+        presses.nodes.push_back(nearest_node(surface, *next));
         if (presses.patches.size() == 1) taken.clear();
         taken.push_back(next->point);
       }

@@ -19,6 +19,7 @@ struct Presses {
   std::string radius_from;     ///< where it comes from, in words
   std::vector<double> depths;  ///< [m] ascending, from first touch
   std::vector<Patch> patches;
+  std::vector<int> nodes;  ///< of the mesh, the nearest to each patch
 
   double deepest() const { return depths.back(); }
 };

@@ -47,8 +47,22 @@ void PressErrors::add(const Row& cost, const PressAnswers& ours, const PressAnsw
       force += of_f * of_f;
       ++count;
       const double depth = presses_.depths[d];
-      result.depths.push_back({cost.scene, cost.method, cost.knob, cost.value, static_cast<int>(p), depth,
-                               depth / presses_.radius, mine.force, theirs.force, of_u, of_f, name});
+      const Patch& at = presses_.patches[p];
+      result.depths.push_back({cost.scene,
+                               cost.method,
+                               cost.knob,
+                               cost.value,
+                               static_cast<int>(p),
+                               depth,
+                               depth / presses_.radius,
+                               mine.force,
+                               theirs.force,
+                               of_u,
+                               of_f,
+                               name,
+                               {at.point.x(), at.point.y(), at.point.z()},
+                               {-at.inward.x(), -at.inward.y(), -at.inward.z()},
+                               presses_.nodes[p]});
     }
   Row row = cost;
   row.reference = name;

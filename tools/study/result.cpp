@@ -17,7 +17,7 @@ namespace {
 
 const char* const kDepthHead =
     "scene,method,knob,value,patch,depth_m,depth_per_radius,force_N,reference_force_N,err_u_rel,err_f_rel,"
-    "reference";
+    "reference,x_m,y_m,z_m,nx,ny,nz,node";
 const char* const kCourseHead =
     "scene,method,knob,value,time_s,force_N,reference_force_N,displacement_m,reference_displacement_m";
 const char* const kSlideHead = "scene,method,knob,value,friction,path_m,force_N,tangential_N,reference_force_N";
@@ -26,6 +26,9 @@ const char* const kNoteHead = "scene,method,knob,value,text";
 
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
+std::string cells(const std::array<double, 3>& values) {
+  return cell(values[0]) + "," + cell(values[1]) + "," + cell(values[2]);
 }
 double number(const std::string& cell) {
   return cell.empty() ? kUnknown : std::stod(cell);
@@ -44,9 +47,10 @@ std::string line(const Row& r) {
 }
 
 std::string line(const DepthRow& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob), cell(r.value),
-                     r.patch, cell(r.depth_m), cell(r.depth_per_radius), cell(r.force_N), cell(r.reference_force_N),
-                     cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference));
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cell(r.scene), cell(r.method), cell(r.knob),
+                     cell(r.value), r.patch, cell(r.depth_m), cell(r.depth_per_radius), cell(r.force_N),
+                     cell(r.reference_force_N), cell(r.err_u_rel), cell(r.err_f_rel), cell(r.reference), cells(r.point),
+                     cells(r.normal), r.node);
 }
 
 std::string line(const CourseRow& r) {
@@ -132,9 +136,22 @@ Result read_fragment(const std::filesystem::path& file) {
     if (kind == "study" && c.size() == 11)
       result.rows.push_back({c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]),
                              number(c[8]), number(c[9]), c[10]});
-    else if (kind == "depth" && c.size() == 12)
-      result.depths.push_back({c[0], c[1], c[2], c[3], std::stoi(c[4]), number(c[5]), number(c[6]), number(c[7]),
-                               number(c[8]), number(c[9]), number(c[10]), c[11]});
+    else if (kind == "depth" && c.size() == 19)
+      result.depths.push_back({c[0],
+                               c[1],
+                               c[2],
+                               c[3],
+                               std::stoi(c[4]),
+                               number(c[5]),
+                               number(c[6]),
+                               number(c[7]),
+                               number(c[8]),
+                               number(c[9]),
+                               number(c[10]),
+                               c[11],
+                               {number(c[12]), number(c[13]), number(c[14])},
+                               {number(c[15]), number(c[16]), number(c[17])},
+                               std::stoi(c[18])});
     else if (kind == "course" && c.size() == 9)
       result.courses.push_back(
           {c[0], c[1], c[2], c[3], number(c[4]), number(c[5]), number(c[6]), number(c[7]), number(c[8])});

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -29,6 +30,8 @@ struct DepthRow {
   double force_N = 0, reference_force_N = 0;  ///< along the press
   double err_u_rel = 0, err_f_rel = 0;
   std::string reference;
+  std::array<double, 3> point{}, normal{};  ///< [m] where it pressed, and [1] out of the surface there
+  int node = 0;                             ///< of the mesh, the nearest one
 };
 
 /// One line of course.csv: a moment of a press in motion.
