@@ -108,7 +108,7 @@ std::vector<Point> moving_points(const Extent& extent) {
   };
   for (const auto& [parameter, value, press] : fixed_presses(extent)) add("moving contact", parameter, value, press);
   for (auto [parameter, value, press] : table_presses(extent)) {
-    press.rule = "barycentric";
+    press.rule = ContactRule::barycentric;
     add("moving contact, by nodes", parameter, value, press);
   }
   std::mt19937 random(5);

@@ -17,7 +17,7 @@ struct MovingPress {
   double radius = 0.005, depth = 0.002;  ///< [m]
   Eigen::Vector2d beside{0.12, -0.23};   ///< [1] of a cell, from the node nearest to the middle
   double friction = 0;
-  std::string rule = "patch";  ///< of contact: patch | barycentric
+  ContactRule rule = ContactRule::patch;
   bool corotational = false;
   std::string gesture = "held";  ///< held | tapped | slid | stabbed; then it stands
 };
