@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 /// A cylinder held at its top whose lower end may be of another material, and what a check warns of.
-std::vector<std::string> warnings_of(bool two_materials, const std::string& rule) {
+std::vector<std::string> warnings_of(bool two_materials, ContactRule rule) {
   QuasiStaticSpec body;
   body.name = "cylinder";
   body.mesh = PALPATE_SOURCE_DIR "/scenes/meshes/cylinder_hybrid.msh";
@@ -34,9 +34,9 @@ bool tells_of_materials(const std::vector<std::string>& warnings) {
 }
 
 TEST(CheckQuasiStatic, WarnsOfOtherMaterialsUnderPatches) {
-  EXPECT_TRUE(tells_of_materials(warnings_of(true, "patch")));
-  EXPECT_FALSE(tells_of_materials(warnings_of(false, "patch")));
-  EXPECT_FALSE(tells_of_materials(warnings_of(true, "barycentric")));
+  EXPECT_TRUE(tells_of_materials(warnings_of(true, ContactRule::patch)));
+  EXPECT_FALSE(tells_of_materials(warnings_of(false, ContactRule::patch)));
+  EXPECT_FALSE(tells_of_materials(warnings_of(true, ContactRule::barycentric)));
 }
 
 }  // namespace
