@@ -13,7 +13,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
-#include "tools/check_mesh.hpp"
+#include "tools/mesh/check_mesh.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"

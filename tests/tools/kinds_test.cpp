@@ -42,6 +42,8 @@ const std::vector<Table> kTables{
              "tools/study",      // measures the methods of known kinds against references
              "tools/stability",  // stiff and extreme cases of known kinds
              "tools/generate",   // makes the meshes and motions of the scenes that come with the project
+             "tools/mesh",       // says what a mesh would cost as a body of a known kind
+             "tools/organ",      // the same of the meshes that it makes
          },
      .question = R"(\b(as|holds_alternative)<\w*Spec>)"},
     {.file = "common/devices/device_spec.hpp",

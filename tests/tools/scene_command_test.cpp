@@ -44,7 +44,10 @@ class ToolsScene : public ::testing::Test {
 TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
   const auto result = checked();
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.out.find("warning:"), std::string::npos) << result.out;
+  const std::size_t warning = result.out.find("warning:");
+  ASSERT_NE(warning, std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("is of other materials than its own", warning), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("warning:", warning + 1), std::string::npos) << result.out;
   for (const char* said : {"size: 100 x 80 x 60 mm, 480 ml", "dihedral angles: smallest", "young 10000 Pa",
                            "in group 'fat': young 3000 Pa", "group 'attachment', 25 nodes"})
     EXPECT_NE(result.out.find(said), std::string::npos) << said << "\n" << result.out;

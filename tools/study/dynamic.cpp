@@ -186,11 +186,27 @@ class Dynamic : public Method {
     const Archive archive = precompute(still, solid_->mesh());
     const Presses& presses = solid_->presses();
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
-      BallPress press(solid_->press_scene(scene, static_cast<int>(p)), archive, presses.patches[p], presses.radius);
+      Scene alone = solid_->press_scene(scene, static_cast<int>(p));
+      BallPress press(alone, archive, presses.patches[p], presses.radius);
+      alone.contact.rule = ContactRule::barycentric;  // shows no dent that is finer than the nodes, as moving tissue
+      Deformer nodes(alone, {archive});
       same_mesh_.emplace_back();
-      for (const double depth : presses.depths) same_mesh_.back().push_back(press.to(depth));
+      for (const double depth : presses.depths) {
+        PressAnswer& answer = same_mesh_.back().emplace_back(press.to(depth));
+        answer.displacement = shown_by(nodes, press.rig().simulator().contacts(0));
+      }
     }
     return same_mesh_;
+  }
+
+  /// [m] of the surface's nodes under a tool's contacts.
+  static std::vector<Eigen::Vector3d> shown_by(Deformer& deformer, ContactState contacts) {
+    contacts.run = 1;
+    deformer.take(contacts);
+    deformer.deform();
+    std::vector<Eigen::Vector3d> u;
+    for (const Eigen::Vector3f& d : deformer.surface(0).displacement) u.push_back(d.cast<double>());
+    return u;
   }
 
   /// Force and displacement of the first patch over time.

@@ -167,7 +167,7 @@ TEST_P(SecuredScenes, RunWithKeys) {
   keys::make_folder(folder / "keys", this_month());
   const auto& [scene, topics] = GetParam();
   std::string said;
-  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --seconds {} --domain {} --keys {} --record {}",
+  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --processes 2 --seconds {} --domain {} --keys {} --record {}",
                                     program("palpate"), PALPATE_SOURCE, scene, kSanitized ? 4 : 1.7, own_domain(),
                                     (folder / "keys").string(), (folder / "all.lcmlog").string()),
                         &said),

@@ -1,4 +1,4 @@
-#include "tools/check_mesh.hpp"
+#include "tools/mesh/check_mesh.hpp"
 
 #include <fmt/format.h>
 
