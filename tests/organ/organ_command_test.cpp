@@ -4,6 +4,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "render_node/image.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
 
@@ -71,6 +72,30 @@ TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSame
   }
   ASSERT_EQ(organ(image, labels + (folder_ / "b.msh").string()).status, 0);
   EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+}
+
+TEST_F(OrganCommand, PicturesShowTheBorderTheTetrahedraAndBothSurfaces) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const auto made = organ(image, "--label 7=big --label 9=small --edge 0.006 --preview " +
+                                     (folder_ / "pictures").string() + " -o " + (folder_ / "p.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto coloured = [](const Image& picture, int from,
+                           int to) {  // pixels between two columns, neither grey nor black
+    int count = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = from; x < to; ++x) {
+        const std::uint8_t* p = picture.pixel(x, y);
+        count += std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) > 20;
+      }
+    return count;
+  };
+  for (const char* name : {"slice_0011.png", "surface.png"}) {
+    const Image picture = read_png(folder_ / "pictures" / name);
+    const int left = coloured(picture, 0, picture.width / 2),
+              right = coloured(picture, picture.width / 2, picture.width);
+    EXPECT_GT(left, 10000) << name;
+    EXPECT_NEAR(right, left, 0.25 * left) << name;
+  }
 }
 
 TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {

@@ -13,6 +13,7 @@
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
 #include "tools/organ/label_solid.hpp"
+#include "tools/organ/organ_pictures.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/surface_shells.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 
 struct OrganOptions : MeshOptions {
   OrganOptions() { nodes = 2500; }
-  std::string volume;
+  std::string volume, preview;
   std::vector<std::string> labels;
   double smoothing = 1;
 };
@@ -121,6 +122,10 @@ void make_organ(const OrganOptions& o) {
   if (fineness.deviation == 0) fineness.deviation = 0.6 * volume.diagonal();
   FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
   name_parts(filled, labels);
+  if (!o.preview.empty()) {
+    say_progress("drawing slices and surface");
+    write_organ_pictures(volume, labels, solid.solid, filled, o.preview);
+  }
   print_volumes(solid, filled, labels);
   print_distance(solid, filled.mesh, volume.diagonal());
   for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.turn * x + volume.shift;
@@ -143,6 +148,9 @@ void add_organ_command(cli::Command& app) {
   command.add_option("--smoothing", o->smoothing, "Over how many voxels the border is smoothed")
       .between(0.0, 5.0)
       .show_default();
+  command.add_option("--preview", o->preview,
+                     "Folder for pictures: each slice with the smoothed border and the tetrahedra cut there, the "
+                     "surface of the voxels and that of the mesh");
   add_mesh_options(command, *o);
   command.examples(
       {"palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o organ.msh"});

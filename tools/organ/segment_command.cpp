@@ -100,7 +100,7 @@ void print_segmentation(const SegmentOptions& o, const GridShape& shape, const S
   }
   fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", first, last,
              by_hand, 100 * on_edge / with_contour);
-  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty())
+  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty() && o.forces.reach > 0)
     fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
                100 * kSureEnough, doubtful);
   const auto voxels = std::ranges::count(s.inside, 1);
