@@ -59,6 +59,7 @@ void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
 
 void add_mesh_options(cli::Command& command, MeshOptions& o) {
   command.add_option("-o,--output", o.output, "Mesh to write (.msh), in metres").required().output_file(".msh");
+  command.add_option("--report", o.report, "Write all that is found and each place of it (.csv)").output_file(".csv");
   command.add_option("--nodes", o.nodes, "About how many nodes, within a tenth; more where --deviation asks for them")
       .between(50, 200000)
       .show_default();

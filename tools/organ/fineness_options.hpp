@@ -9,7 +9,7 @@ namespace palpate {
 
 /// The options that `palpate mesh` and `palpate organ` share.
 struct MeshOptions {
-  std::string output;
+  std::string output, report;
   int nodes = 1500;
   double edge = 0, inside = 0, deviation = 0, density = 1060;
   std::vector<std::string> fine, groups;

@@ -114,14 +114,16 @@ LabelVolume read_inr(const std::filesystem::path& file) {
   return volume;
 }
 
-LabelVolume read_label_volume(const std::filesystem::path& file) {
+LabelVolume read_label_volume(const std::filesystem::path& file, const std::string& series) {
   try {
     if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
     const std::string name = file.filename();
+    if (!series.empty() && !std::filesystem::is_directory(file))
+      throw std::runtime_error("--series is of a folder of DICOM files");
     if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr(file);
     for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
-      if (name.ends_with(ending)) return read_with_image_library(file);
-    if (std::filesystem::is_directory(file)) return read_with_image_library(file);
+      if (name.ends_with(ending)) return read_with_image_library(file, series);
+    if (std::filesystem::is_directory(file)) return read_with_image_library(file, series);
     throw std::runtime_error(
         "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");
   } catch (const std::runtime_error& error) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tools/organ/distance_grid.hpp"
@@ -21,11 +22,13 @@ struct LabelVolume {
 inline constexpr std::int64_t kMaxVoxels = std::int64_t{1} << 30;
 
 /// Reads INR (.inr, .inr.gz), and with ITK NIfTI (.nii, .nii.gz), MetaImage (.mhd, .mha), NRRD (.nrrd, .nhdr) and a
-/// folder with a DICOM series; lengths in these are millimetres. Throws std::runtime_error("FILE: reason").
-LabelVolume read_label_volume(const std::filesystem::path& file);
+/// folder with a DICOM series, of several that of the UID `series`; lengths in these are millimetres. Throws
+/// std::runtime_error("FILE: reason").
+LabelVolume read_label_volume(const std::filesystem::path& file, const std::string& series = "");
 
 /// The parts of the above. They throw std::runtime_error(reason).
 LabelVolume read_inr(const std::filesystem::path& file);
-LabelVolume read_with_image_library(const std::filesystem::path& file);  ///< refuses where it was built without ITK
+/// Refuses where it was built without ITK.
+LabelVolume read_with_image_library(const std::filesystem::path& file, const std::string& series);
 
 }  // namespace palpate

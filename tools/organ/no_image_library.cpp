@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-LabelVolume read_with_image_library(const std::filesystem::path&) {
+LabelVolume read_with_image_library(const std::filesystem::path&, const std::string&) {
   throw std::runtime_error(
       "this palpate_organ was built without ITK and reads INR alone: build it where ITK is, on Debian with "
       "libinsighttoolkit5-dev");

@@ -56,35 +56,34 @@ std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
   return parts;
 }
 
-std::string sentence(const char* what, const TriangleMesh& part, const char* so) {
-  return fmt::format("{} of {} triangles and {:.3g} ml at {}: {}", what, part.triangles.size(),
-                     1e6 * std::abs(enclosed_volume(part)), place_in_mm(part.nodes[0]), so);
+Finding shell_found(const std::string& what, const TriangleMesh& part, const char* done) {
+  return {fmt::format("a {} of {} triangles and {:.3g} ml", what, part.triangles.size(),
+                      1e6 * std::abs(enclosed_volume(part))),
+          done,
+          {part.nodes[0]},
+          what + "s"};
 }
 
 /// Adds a closed shell to what is kept, or says why not.
-void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept,
-                 std::vector<std::string>& findings) {
+void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept, std::vector<Finding>& findings) {
   const auto inside = std::ranges::count_if(part.nodes, [&](const auto& x) { return largest.winding(x) != 0; });
   if (inside == 0) {
-    findings.push_back(sentence("a stray shell", part, "left out"));
+    findings.push_back(shell_found("stray shell", part, "left out"));
     return;
   }
   const bool cavity = inside == static_cast<std::ptrdiff_t>(part.nodes.size());
-  findings.push_back(cavity ? sentence("a shell inside the largest", part, "taken for a cavity")
-                            : sentence("a shell that crosses the largest", part, "joined to it"));
+  findings.push_back(cavity ? shell_found("shell inside the largest", part, "taken for a cavity")
+                            : shell_found("shell that crosses the largest", part, "joined to it"));
   if ((enclosed_volume(part) < 0) != cavity) turn(part);
   append(kept, part);
 }
 
 }  // namespace
 
-std::string place_in_mm(const Eigen::Vector3d& x) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
-}
-
 double diagonal(const TriangleMesh& mesh) {
-  Eigen::Vector3d low = mesh.nodes[0], high = low;
-  for (const Eigen::Vector3d& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  Eigen::Vector3d low = mesh.nodes[mesh.triangles[0][0]], high = low;
+  for (const Triangle& t : mesh.triangles)
+    for (const int n : t) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
   return (high - low).norm();
 }
 
@@ -146,7 +145,7 @@ double enclosed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
-void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<std::string>& findings) {
+void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
   const std::vector<TriangleMesh> parts = parts_of(mesh);
   const auto largest = std::ranges::max_element(parts, {}, surface_area);
   TriangleMesh kept = *largest;
@@ -155,13 +154,15 @@ void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<
     if (widest_hole(*part) <= largest_hole && part->triangles.size() > 1)
       append(kept, *part);
     else
-      findings.push_back(fmt::format("an open sheet of {} triangles at {}: left out", part->triangles.size(),
-                                     place_in_mm(part->nodes[0])));
+      findings.push_back({fmt::format("an open sheet of {} triangles", part->triangles.size()),
+                          "left out",
+                          {part->nodes[0]},
+                          "open sheets"});
   }
   mesh = kept;
 }
 
-void keep_largest_shell(TriangleMesh& mesh, std::vector<std::string>& findings) {
+void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<TriangleMesh> parts = parts_of(mesh);
   std::ranges::stable_sort(parts, std::ranges::greater{}, [](const auto& p) { return std::abs(enclosed_volume(p)); });
   TriangleMesh kept = parts[0];
