@@ -36,7 +36,7 @@ RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) {
 }
 
 void make_mesh(const SurfaceOptions& o) {
-  const Fineness fineness = fineness_of(o);
+  Fineness fineness = fineness_of(o);
   const ReadSurface read = read_surface(o.surface, kUnits.at(o.unit));
   fmt::print("{}: {} triangles\n", o.surface, read.mesh.triangles.size());
   say_progress("checking the surface");
@@ -45,6 +45,7 @@ void make_mesh(const SurfaceOptions& o) {
   findings.insert(findings.end(), surface.findings.begin(), surface.findings.end());
   tell_findings(findings, o.report);
   if (findings.empty()) fmt::print("  found: nothing to repair\n");
+  add_touched_place(fineness, o, surface.mesh.nodes);
   std::fflush(stdout);
   SurfaceSolid solid = of_file(o.surface, [&] { return solid_of(surface.mesh); });
   if (surface.crosses_itself) solid.measures.volumes.clear();

@@ -15,7 +15,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kFewestNodes = 50;  // of a mesh that shares --nodes with others
+constexpr int kFewestNodes = 50;    // of a mesh that shares --nodes with others
+constexpr double kDeviation = 0.6;  // voxel diagonals
 
 struct OrganOptions : MeshOptions {
   OrganOptions() { nodes = 2500; }
@@ -106,6 +107,31 @@ void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::
   finish_mesh(std::move(filled.mesh), o);
 }
 
+/// A place in the world's frame, in the image's; of a box that is turned the box around it.
+FinePlace in_image(const FinePlace& f, const LabelVolume& volume) {
+  FinePlace turned = f;
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d x;
+    for (int a = 0; a < 3; ++a) x[a] = corner >> a & 1 ? f.high[a] : f.low[a];
+    x = volume.turn.transpose() * (x - volume.shift);
+    turned.low = corner == 0 ? x : turned.low.cwiseMin(x);
+    turned.high = corner == 0 ? x : turned.high.cwiseMax(x);
+  }
+  return turned;
+}
+
+/// What is asked of one of the meshes; places are told in the world's frame.
+Fineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share) {
+  Fineness fineness = fineness_of(o);
+  if (fineness.deviation == 0) fineness.deviation = kDeviation * volume.diagonal();
+  fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * share));
+  std::vector<Eigen::Vector3d> surface;
+  for (const Eigen::Vector3d& x : solid.border) surface.push_back(volume.turn * x + volume.shift);
+  add_touched_place(fineness, o, surface);
+  for (FinePlace& place : fineness.fine) place = in_image(place, volume);
+  return fineness;
+}
+
 LabelVolume read(const OrganOptions& o) {
   say_progress("reading the image");
   LabelVolume volume = read_label_volume(o.volume, o.series);
@@ -117,7 +143,7 @@ LabelVolume read(const OrganOptions& o) {
 }
 
 void make_organ(const OrganOptions& o) {
-  Fineness fineness = fineness_of(o);
+  fineness_of(o);  // what cannot be read is told at once
   const std::vector<NamedLabel> labels = labels_of(o);
   const LabelVolume volume = read(o);
   std::vector<Finding> findings;
@@ -142,11 +168,10 @@ void make_organ(const OrganOptions& o) {
   tell_findings(findings, o.report);
   say_apart(voxels, meshes);
   std::fflush(stdout);
-  if (fineness.deviation == 0) fineness.deviation = 0.6 * volume.diagonal();
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     MeshOptions of_mesh = o;
     of_mesh.output = file_of(o.output, voxels, meshes[m], meshes.size() == 1);
-    fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * solids[m].measures.area / area));
+    const Fineness fineness = fineness_for(volume, solids[m], o, solids[m].measures.area / area);
     make_body(volume, voxels, meshes[m], solids[m], fineness, of_mesh);
   }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "tools/organ/surface_library.hpp"
 
@@ -14,6 +15,25 @@ namespace palpate {
 namespace {
 
 using Triangle = std::array<int, 3>;
+
+struct EdgeUse {
+  std::array<int, 2> edge;  ///< ascending
+  int triangle;
+  bool forward;  ///< the triangle has the edge's nodes in this order
+};
+
+/// Those of one edge beside one another.
+std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (int c = 0; c < 3; ++c) {
+      const int a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
+      uses.push_back({{std::min(a, b), std::max(a, b)}, t, a < b});
+    }
+  std::ranges::stable_sort(uses, {}, &EdgeUse::edge);
+  return uses;
+}
 
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& shell) {
   TriangleMesh part;
@@ -94,13 +114,12 @@ std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
     while (leader[t] != t) t = leader[t] = leader[leader[t]];
     return t;
   };
-  std::map<std::array<int, 2>, int> seen;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
-    for (int c = 0; c < 3; ++c) {
-      const auto [a, b] = std::minmax(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]);
-      const auto [other, is_new] = seen.emplace(std::array{a, b}, t);
-      if (!is_new) leader[std::max(find(t), find(other->second))] = std::min(find(t), find(other->second));
-    }
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].edge != uses[i - 1].edge) continue;
+    const auto [low, high] = std::minmax({find(uses[i].triangle), find(uses[i - 1].triangle)});
+    leader[high] = low;
+  }
   std::map<int, std::vector<int>> shells;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) shells[find(t)].push_back(t);
   std::vector<std::vector<int>> all;
@@ -109,19 +128,21 @@ std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
 }
 
 std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh) {
-  std::map<int, std::map<int, int>> next;  // of an edge from a to b: how often it goes that way less the other
-  for (const Triangle& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c) {
-      const int a = t[c], b = t[(c + 1) % 3];
-      if (const auto back = next.find(b); back != next.end() && back->second.erase(a) > 0) continue;
-      ++next[a][b];
-    }
+  std::map<int, std::set<int>> next;  // along rims: edges that triangles use more often one way than the other
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (auto use = uses.begin(); use != uses.end();) {
+    const auto [a, b] = use->edge;
+    int forward = 0;
+    for (; use != uses.end() && use->edge == std::array{a, b}; ++use) forward += use->forward ? 1 : -1;
+    if (forward > 0) next[a].insert(b);
+    if (forward < 0) next[b].insert(a);
+  }
   std::vector<std::vector<int>> rims;
   for (auto& [start, ends] : next)
     while (!ends.empty()) {
       std::vector<int> rim;
       for (int n = start; !next[n].empty();) {
-        const int to = next[n].begin()->first;
+        const int to = *next[n].begin();
         next[n].erase(to);
         rim.push_back(n);
         n = to;
