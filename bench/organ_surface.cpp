@@ -65,15 +65,9 @@ class MarchingCubes {
     const auto [found, is_new] = vertices_.try_emplace(a * value_.size() + b, static_cast<int>(mesh_.nodes.size()));
     if (is_new) {
       const double part = value_[a] / (value_[a] - value_[b]);
-      mesh_.nodes.emplace_back(place(a) + part * (place(b) - place(a)));
+      mesh_.nodes.emplace_back(shape_.place_of(a) + part * (shape_.place_of(b) - shape_.place_of(a)));
     }
     return found->second;
-  }
-
-  Eigen::Vector3d place(std::size_t at) const {
-    const std::size_t row = shape_.count[0], layer = row * shape_.count[1];
-    return shape_.place(static_cast<int>(at % row), static_cast<int>(at / row % shape_.count[1]),
-                        static_cast<int>(at / layer));
   }
 
   GridShape shape_;
@@ -120,7 +114,8 @@ TriangleMesh organ_surface(const LabelSolid& labels, double deviation) {
 }
 
 void compare(const LabelVolume& volume, int label, bool quick) {
-  const LabelSolid labels = solid_of(volume, {{label, "organ"}}, 1);
+  std::vector<Finding> findings;
+  const LabelSolid labels = solid_of(voxels_of(volume, {{label, "organ"}}, findings), {0}, {});
   const Eigen::Vector3d voxel = volume.shape.spacing;
   const TriangleMesh finest = marching_cubes(labels.solid, voxel);
   const std::size_t stride = finest.nodes.size() / 50000 + 1;
