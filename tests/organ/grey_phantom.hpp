@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/organ/phantom_image.hpp"
+
 namespace palpate::testing {
 
 /// A made image: an ellipsoid with a bump and, hanging on it by a neck, a ball of nearly its grey value. Grey values
@@ -76,12 +78,7 @@ struct GreyPhantom {
   }
 
   std::string inr() const {
-    std::string text = "#INRIMAGE-4#{\nXDIM=" + std::to_string(x) + "\nYDIM=" + std::to_string(y) +
-                       "\nZDIM=" + std::to_string(z) +
-                       "\nVDIM=1\nTYPE=signed fixed\nPIXSIZE=16 bits\nCPU=decm\nVX=" + std::to_string(voxel_mm.x()) +
-                       "\nVY=" + std::to_string(voxel_mm.y()) + "\nVZ=" + std::to_string(voxel_mm.z()) + "\n";
-    text.resize(252, '\n');
-    text += "##}\n";
+    std::string text = inr_header({x, y, z}, {voxel_mm.x(), voxel_mm.y(), voxel_mm.z()}, "signed fixed", 16);
     const auto values = grey();
     return text.append(reinterpret_cast<const char*>(values.data()), 2 * values.size());
   }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
+#include "tests/organ/dicom_for_tests.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
 
@@ -31,7 +34,7 @@ class LabelImages : public ::testing::Test {
     for (int k = 0; k < v.shape.count[2]; ++k)
       for (int j = 0; j < v.shape.count[1]; ++j)
         for (int i = 0; i < v.shape.count[0]; ++i)
-          if (v.value[v.shape.index(i, j, k)] == label) return v.turn * v.shape.place(i, j, k) + v.shift;
+          if (v.value[v.shape.index(i, j, k)] == label) return v.in_world(v.shape.place(i, j, k));
     return Eigen::Vector3d::Constant(99);
   }
   std::string voxels_;
@@ -52,6 +55,50 @@ TEST_F(LabelImages, AMirroredImageIsTurnedRightHandedAndStaysInPlace) {
   const LabelVolume mirrored = read_label_volume(write_file(folder_ / "m.mha", mha("-1")));
   EXPECT_GT(mirrored.turn.determinant(), 0);
   EXPECT_TRUE(place(mirrored, 11).isApprox(Eigen::Vector3d(0.008, 0.022, 0.033))) << place(mirrored, 11).transpose();
+}
+
+TEST_F(LabelImages, OfAFolderWithSeveralDicomSeriesOneIsChosen) {
+  std::filesystem::create_directories(folder_ / "series");
+  const auto write = [&](const std::string& series, int number) {
+    write_file(folder_ / ("series/" + series + "-" + std::to_string(number)),
+               DicomPicture(series, number, 30 + 3 * number, 3, voxels_.substr(6 * number, 6)).bytes());
+  };
+  write("1.2.3.4", 0), write("1.2.3.4", 1);
+  const auto read = [&](const std::string& series) { return read_label_volume(folder_ / "series", series); };
+  const LabelVolume alone = read("");
+  EXPECT_EQ(alone.shape.count, (std::array{3, 2, 2}));
+  EXPECT_TRUE(place(alone, 11).isApprox(Eigen::Vector3d(0.012, 0.022, 0.033))) << place(alone, 11).transpose();
+  write("1.2.3.5", 0);
+  try {
+    read("");
+    FAIL() << "one of two series was taken unasked";
+  } catch (const std::runtime_error& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("2 DICOM series lie in this folder, choose by --series: 1.2.3.4"), std::string::npos) << said;
+    EXPECT_NE(said.find("of 2 pictures"), std::string::npos) << said;
+  }
+  EXPECT_THROW(read("9"), std::runtime_error);
+}
+
+// The 348 bytes of a NIfTI-1 header whose sform turns the image a quarter about z, and its voxels.
+TEST_F(LabelImages, ANiftiImageLiesWhereItsSformSays) {
+  std::string bytes(352, '\0');
+  const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
+  put(0, std::int32_t{348});
+  for (const auto& [at, value] : {std::pair{40, 3}, {42, 3}, {44, 2}, {46, 2}, {48, 1}, {50, 1}, {52, 1}, {54, 1}})
+    put(at, static_cast<std::int16_t>(value));
+  put(70, std::int16_t{2}), put(72, std::int16_t{8});
+  for (const auto& [at, value] : {std::pair{76, 1.f}, {80, 1.f}, {84, 2.f}, {88, 3.f}, {108, 352.f}, {112, 1.f}})
+    put(at, value);
+  put(123, char{2}), put(254, std::int16_t{1});
+  // x of the world is -2 j + 10, y is i + 20, z is 3 k + 30, all in millimetres and to the right and to the front.
+  for (const auto& [at, value] : {std::pair{284, -2.f}, {292, 10.f}, {296, 1.f}, {308, 20.f}, {320, 3.f}, {324, 30.f}})
+    put(at, value);
+  bytes.replace(344, 4, std::string("n+1\0", 4));
+  const LabelVolume turned = read_label_volume(write_file(folder_ / "t.nii", bytes + voxels_));
+  // Voxel (2, 1, 1) lies at (8, 22, 33) there, which to the left and to the back is (-8, -22, 33).
+  EXPECT_TRUE(place(turned, 11).isApprox(Eigen::Vector3d(-0.008, -0.022, 0.033))) << place(turned, 11).transpose();
+  EXPECT_GT(turned.turn.determinant(), 0);
 }
 
 TEST_F(LabelImages, DamageIsRefused) {

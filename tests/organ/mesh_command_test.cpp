@@ -45,6 +45,21 @@ TEST_F(MeshCommand, ABallInMillimetresBecomesAGoodMeshOfItsVolumeAndTheSameAgain
   EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
 }
 
+TEST_F(MeshCommand, TheRadiusOfAToolMakesItFinerOnTheSideThatIsNotHeld) {
+  const auto file = write_file(folder_ / "ball.stl", text_stl(make_sphere({0, 0, 0}, 0.05, 20))).string();
+  const std::string to = " --edge 0.02 --deviation 0.002 -o " + (folder_ / "a.msh").string();
+  const auto made = mesh(file + " --group attachment=below:z --tool-radius 0.008" + to);
+  ASSERT_EQ(made.status, 0) << made.err;
+  const TetMesh body = load_tet_mesh(folder_ / "a.msh", 1);
+  int near = 0, opposite = 0;
+  for (const int n : extract_surface(body).nodes) {
+    near += (body.nodes[n] - Eigen::Vector3d(0, 0, 0.05)).norm() < 0.02;
+    opposite += (body.nodes[n] + Eigen::Vector3d(0, 0, 0.05)).norm() < 0.02;
+  }
+  EXPECT_GT(near, 5 * opposite) << made.out;
+  expect_refusal(program("palpate") + " mesh " + file + " --tool-radius 0.008" + to, {"--tool-radius needs a --group"});
+}
+
 TEST_F(MeshCommand, MistakesAreToldInASentence) {
   const auto file = write_file(folder_ / "ball.stl", text_stl(make_sphere({0, 0, 0}, 0.05, 8))).string();
   const std::string to = " -o " + (folder_ / "a.msh").string();

@@ -4,8 +4,11 @@
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "render_node/image.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tools/organ/mesh_pieces.hpp"
+#include "tools/organ/surface_library.hpp"
 
 namespace palpate {
 namespace {
@@ -71,6 +74,93 @@ TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSame
   }
   ASSERT_EQ(organ(image, labels + (folder_ / "b.msh").string()).status, 0);
   EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+}
+
+TEST_F(OrganCommand, PicturesShowTheBorderTheTetrahedraAndBothSurfaces) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const auto made = organ(image, "--label 7=big --label 9=small --edge 0.006 --preview " +
+                                     (folder_ / "pictures").string() + " -o " + (folder_ / "p.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto coloured = [](const Image& picture, int from,
+                           int to) {  // pixels between two columns, neither grey nor black
+    int count = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = from; x < to; ++x) {
+        const std::uint8_t* p = picture.pixel(x, y);
+        count += std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) > 20;
+      }
+    return count;
+  };
+  for (const char* name : {"slice_0011.png", "surface.png"}) {
+    const Image picture = read_png(folder_ / "pictures" / name);
+    const int left = coloured(picture, 0, picture.width / 2),
+              right = coloured(picture, picture.width / 2, picture.width);
+    EXPECT_GT(left, 10000) << name;
+    EXPECT_NEAR(right, left, 0.25 * left) << name;
+  }
+}
+
+TEST_F(OrganCommand, LabelsThatDoNotTouchBecomeAMeshEach) {
+  std::string apart = voxels();
+  for (int k = 0; k < kZ; ++k)
+    for (int j = 0; j < kY; ++j)
+      for (int i = 30; i < 36; ++i) apart[voxel(i, j, k)] = 0;
+  const auto image = write_file(folder_ / "apart.inr", header() + apart);
+  const auto made = organ(image, "--label 7=big --label 9=small --nodes 400 --preview " +
+                                     (folder_ / "pictures").string() + " -o " + (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("2 bodies that share no border"), std::string::npos) << made.out;
+  for (const auto& [name, label] : {std::pair{"a_big.msh", 7}, {"a_small.msh", 9}}) {
+    const double counted = 2e-9 * static_cast<double>(std::count(apart.begin(), apart.end(), label));
+    const TetMesh mesh = load_tet_mesh(folder_ / name, 1);
+    EXPECT_NEAR(measures_of(mesh).volume, counted, 0.01 * counted) << name;
+    EXPECT_EQ(topology_of(mesh), (Topology{1, 0})) << name;
+  }
+  for (const char* name : {"big", "small"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / name / "surface.png")) << name;
+}
+
+TEST_F(OrganCommand, AGapKeepsLabelsThatTouchApart) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const auto made =
+      organ(image, "--label 7=big --label 9=small --gap 1.5 --nodes 600 -o " + (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const TetMesh big = load_tet_mesh(folder_ / "a_big.msh", 1), small = load_tet_mesh(folder_ / "a_small.msh", 1);
+  const Surface surface = extract_surface(small);
+  const SurfaceTree tree({small.nodes, surface.triangles});
+  double nearest = 1;
+  for (const int n : extract_surface(big).nodes) nearest = std::min(nearest, tree.distance(big.nodes[n]));
+  EXPECT_GT(nearest, 1e-3) << "triangles miss the gap's sides by up to the deviation";
+  EXPECT_LT(nearest, 3e-3);
+}
+
+TEST_F(OrganCommand, AWallOfTwoVoxelsIsMeshedWithItsCavity) {
+  std::string shell;
+  for (int k = 0; k < kZ; ++k)
+    for (int j = 0; j < kY; ++j)
+      for (int i = 0; i < kX; ++i) {
+        const double r = Eigen::Vector3d(i - 30, j - 22, 2 * (k - 11)).norm();
+        shell += static_cast<char>(r < 18 && r >= 14 ? 7 : 0);
+      }
+  const auto image = write_file(folder_ / "shell.inr", header() + shell);
+  const auto made = organ(image, "--label 7=wall --nodes 2000 --report " + (folder_ / "found.csv").string() + " -o " +
+                                     (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(text_of(folder_ / "found.csv").find("\"kept\","), std::string::npos) << text_of(folder_ / "found.csv");
+  const TetMesh mesh = load_tet_mesh(folder_ / "a.msh", 1);
+  const double counted = 2e-9 * static_cast<double>(std::count(shell.begin(), shell.end(), 7));
+  EXPECT_NEAR(measures_of(mesh).volume, counted, 0.01 * counted);
+  EXPECT_EQ(topology_of(mesh), (Topology{2, 0}));
+}
+
+TEST_F(OrganCommand, TwoBallsBecomeASceneThatPassesItsCheck) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const std::string mesh = folder_ / "balls.msh", scene = folder_ / "balls.toml";
+  ASSERT_EQ(organ(image, "--label 7=liver --label 9=fat --group attachment=below:x --edge 0.006 -o " + mesh).status, 0);
+  const auto made = run_program(program("palpate") + " scene " + mesh + " --tissue liver -o " + scene);
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto checked = run_program(program("palpate") + " check " + scene);
+  EXPECT_EQ(checked.status, 0) << checked.out << checked.err;
 }
 
 TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {

@@ -121,7 +121,7 @@ TEST_F(SegmentCommand, LabelsAreWrittenWhereTheImageLiesAndOrganReadsThem) {
     const LabelVolume turned = labels("turned.mha --neck 8 --seed=-29.6,54.2,63.6", name);
     EXPECT_EQ(turned.value, plain.value) << name;
     EXPECT_TRUE(turned.shape.spacing.isApprox(Eigen::Vector3d(9e-4, 9e-4, 1.2e-3), 1e-9)) << name;
-    const Eigen::Vector3d seed = turned.turn * turned.shape.place(38, 44, 28) + turned.shift;
+    const Eigen::Vector3d seed = turned.in_world(turned.shape.place(38, 44, 28));
     EXPECT_TRUE(seed.isApprox(Eigen::Vector3d(-0.0296, 0.0542, 0.0636), 1e-9)) << name << " " << seed.transpose();
   }
   EXPECT_NE(segment("turned.mha --neck 8 --seed=-29.6,54.2,63.6 -o t.inr").err.find("no place for the origin"),
@@ -131,6 +131,17 @@ TEST_F(SegmentCommand, LabelsAreWrittenWhereTheImageLiesAndOrganReadsThem) {
   ASSERT_EQ(made.status, 0) << made.err;
   const double volume = 9e-4 * 9e-4 * 1.2e-3 * static_cast<double>(std::ranges::count(plain.value, 1));
   EXPECT_NEAR(measures_of(load_tet_mesh(*folder_ / "liver.msh", 1)).volume, volume, 0.01 * volume);
+}
+
+TEST_F(SegmentCommand, ACavityIsFilledHoweverLarge) {
+  constexpr double kBall = 18, kCavity = 7;  // [voxels] 6 % of the ball
+  write_phantom(*folder_ / "hollow.inr", {48, 48, 48}, 1, [](int i, int j, int k) {
+    const double r = (Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(23.5)).norm();
+    return r < kBall && r > kCavity ? 120 : 60;
+  });
+  const LabelVolume found = labels("hollow.inr --range 90:255 --seed-voxel 24,24,11", "filled.inr");
+  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(kBall, 3);
+  EXPECT_NEAR(static_cast<double>(std::ranges::count(found.value, 1)), ball, 0.02 * ball);
 }
 
 TEST_F(SegmentCommand, APictureOfEachSliceIsDrawn) {

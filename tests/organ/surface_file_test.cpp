@@ -69,12 +69,12 @@ TEST_F(SurfaceFile, AnStlFileIsWhatItHoldsAndNotWhatItSays) {
   const ReadSurface called_text =
       read_surface(write_file(folder_ / "a.stl", binary_stl(ball_, "solid liver", count_)), 1);
   ASSERT_EQ(called_text.findings.size(), 1u);
-  EXPECT_NE(called_text.findings[0].find("first line is that of a text file"), std::string::npos);
+  EXPECT_NE(say(called_text.findings[0]).find("first line is that of a text file"), std::string::npos);
   EXPECT_EQ(called_text.mesh.triangles.size(), count_);
   for (const std::uint32_t told : {0u, count_ + 7, 4000000000u}) {
     const ReadSurface lying = read_surface(write_file(folder_ / "b.stl", binary_stl(ball_, "made by hand", told)), 1);
     ASSERT_EQ(lying.findings.size(), 1u);
-    EXPECT_NE(lying.findings[0].find("announces " + std::to_string(told)), std::string::npos) << lying.findings[0];
+    EXPECT_NE(say(lying.findings[0]).find("announces " + std::to_string(told)), std::string::npos);
     EXPECT_EQ(lying.mesh.triangles.size(), count_);
   }
 }

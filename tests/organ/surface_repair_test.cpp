@@ -22,8 +22,8 @@ class SurfaceRepair : public ::testing::Test {
     const RepairedSurface repaired = repair_surface(broken, kHole);
     EXPECT_TRUE(rims_of(repaired.mesh).empty());
     EXPECT_NEAR(enclosed_volume(repaired.mesh), volume, 0.01 * volume);
-    EXPECT_EQ(repaired.findings.size(), 1u) << (repaired.findings.empty() ? "" : repaired.findings.back());
-    return repaired.findings.empty() ? "" : repaired.findings[0];
+    EXPECT_EQ(repaired.findings.size(), 1u) << (repaired.findings.empty() ? "" : say(repaired.findings.back()));
+    return repaired.findings.empty() ? "" : say(repaired.findings[0]);
   }
   static void expect_has(const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -56,6 +56,17 @@ TEST_F(SurfaceRepair, TrianglesThereTwiceOrWithoutAreaAreLeftOut) {
   TriangleMesh flat = ball_;
   flat.triangles.push_back({3, 3, 4});
   expect_has(finding(flat, volume_), "1 triangles without area");
+}
+
+TEST_F(SurfaceRepair, NodesThatNoTriangleUsesAreToldAndChangeNothing) {
+  TriangleMesh far = ball_;
+  far.nodes.emplace_back(1e5, 0, 0);
+  expect_has(finding(far, volume_), "1 nodes that no triangle uses, the first at (1e+08, 0, 0) mm: left out");
+  TriangleMesh sheet = ball_;  // a triangle far away makes a diagonal, and joins no corners
+  const int n = static_cast<int>(ball_.nodes.size());
+  sheet.nodes.insert(sheet.nodes.end(), {{1e5, 0, 0}, {1e5, 1, 0}, {1e5, 0, 1}});
+  sheet.triangles.push_back({n, n + 1, n + 2});
+  expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (1e+08, 0, 0) mm");
 }
 
 TEST_F(SurfaceRepair, TurnedTrianglesAreTurnedBack) {
@@ -102,8 +113,8 @@ TEST_F(SurfaceRepair, ACrossingSurfaceIsToldWithItsPlace) {
   const RepairedSurface repaired = repair_surface(two, kHole);
   EXPECT_TRUE(repaired.crosses_itself);
   ASSERT_EQ(repaired.findings.size(), 2u);
-  expect_has(repaired.findings[0], "joined to it");
-  expect_has(repaired.findings[1], "pairs of triangles cross one another, the first at (");
+  expect_has(say(repaired.findings[0]), "joined to it");
+  expect_has(say(repaired.findings[1]), "pairs of triangles cross one another, the first at (");
 }
 
 TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {
@@ -114,7 +125,7 @@ TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {
   EXPECT_TRUE(rims_of(repaired.mesh).empty());
   EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 0.02 * volume_);
   ASSERT_FALSE(repaired.findings.empty());
-  expect_has(repaired.findings[0], "1 edges that more than two triangles share, the first at (");
+  expect_has(say(repaired.findings[0]), "1 edges that more than two triangles share, the first at (");
 }
 
 }  // namespace

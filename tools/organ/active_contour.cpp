@@ -100,8 +100,9 @@ MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, 
   const Slice slice(grey, k);
   const Eigen::Array2d voxel = grey.shape.spacing.head<2>().array() / grey.shape.spacing.head<2>().minCoeff();
   Bending bending(forces.stiffness);
-  MovedContour moved{resampled(start, 1)};
-  double furthest = 1;
+  const Contour first = resampled(start, 1);
+  MovedContour moved{first};
+  double furthest = forces.reach;
   for (int step = 0; step < kMaxSteps && furthest > kStill && moved.line.size() >= kFewestPoints; ++step) {
     const int n = static_cast<int>(moved.line.size());
     Eigen::VectorXd pull = Eigen::VectorXd::Constant(n, kHeld);
@@ -110,7 +111,8 @@ MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, 
       const Eigen::Vector2d outward = normal_step(moved.line, i, voxel);
       const Edge edge = edge_along(slice, moved.line[i], outward, level, forces.reach);
       if (edge.found) pull[i] = 1;
-      target.row(i) = moved.line[i] + edge.at * outward;
+      const Eigen::Vector2d away = moved.line[i] + edge.at * outward - first[i];
+      target.row(i) = first[i] + std::min(1.0, forces.reach / std::max(away.norm(), 1e-9)) * away;
     }
     moved.on_edge = static_cast<double>((pull.array() == 1).count()) / n;
     const Eigen::MatrixX2d x = bending.solve(pull, target);
@@ -119,7 +121,6 @@ MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, 
       furthest = std::max(furthest, (x.row(i).transpose() - moved.line[i]).norm());
       moved.line[i] = x.row(i);
     }
-    moved.line = resampled(moved.line, 1);
   }
   return moved;
 }

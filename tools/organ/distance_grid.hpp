@@ -14,6 +14,14 @@ struct GridShape {
   std::size_t size() const { return static_cast<std::size_t>(count[0]) * count[1] * count[2]; }
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * count[1] + j) * count[0] + i; }
   Eigen::Vector3d place(int i, int j, int k) const { return origin + spacing.cwiseProduct(Eigen::Vector3d(i, j, k)); }
+  std::array<int, 3> voxel_of(std::size_t index) const {
+    const std::size_t row = count[0], layer = row * count[1];
+    return {static_cast<int>(index % row), static_cast<int>(index % layer / row), static_cast<int>(index / layer)};
+  }
+  Eigen::Vector3d place_of(std::size_t index) const {
+    const auto [i, j, k] = voxel_of(index);
+    return place(i, j, k);
+  }
   Eigen::Vector3d far_corner() const { return place(count[0] - 1, count[1] - 1, count[2] - 1); }
 };
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "tools/organ/plain_words.hpp"
 #include "tools/organ/surface_samples.hpp"
 
 namespace palpate {
@@ -115,9 +116,7 @@ FilledSolid in_order(const Complex& complex) {
   return filled;
 }
 
-}  // namespace
-
-FilledSolid fill_solid(const Solid& solid, const MeshSizes& sizes, bool better) {
+FilledSolid fill(const Solid& solid, const MeshSizes& sizes, bool better) {
   namespace given = CGAL::parameters;
   double step = sizes.edge;
   for (const FinePlace& f : sizes.fine) step = std::min(step, f.edge);
@@ -134,6 +133,12 @@ FilledSolid fill_solid(const Solid& solid, const MeshSizes& sizes, bool better) 
   }
   if (complex.number_of_cells_in_complex() == 0) throw std::runtime_error("no tetrahedra came of it");
   return in_order(complex);
+}
+
+}  // namespace
+
+FilledSolid fill_solid(const Solid& solid, const MeshSizes& sizes, bool better) {
+  return in_plain_words("it cannot be filled with tetrahedra of that size", [&] { return fill(solid, sizes, better); });
 }
 
 }  // namespace palpate

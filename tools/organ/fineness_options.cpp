@@ -9,13 +9,16 @@
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/models/quasi_static/spec.hpp"
+#include "tools/organ/finding.hpp"
 #include "tools/organ/places.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
-constexpr double kSecondsPerSquare = 3e-6;         // of surface nodes, measured on one core (docs/organ.md)
+// Of surface nodes squared [s], measured on one core (docs/organ.md): with quadratic elements and with linear ones.
+constexpr double kQuadraticSeconds = 7e-6, kLinearSeconds = 1.3e-6;
 
 void write_whole(const TetMesh& mesh, const std::filesystem::path& file) {
   AtomicFile whole(file);
@@ -32,10 +35,11 @@ double mean_edge_of(const TetMesh& mesh, const Surface& surface) {
 
 /// Of a quasi-static body whose every node can be touched: memory from its sizes, time as measured (docs/organ.md).
 void print_cost(std::size_t surface_nodes) {
-  const double dofs = 3 * static_cast<double>(surface_nodes);
+  const auto nodes = static_cast<double>(surface_nodes);
+  const double seconds = surface_nodes > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds;
   fmt::print(
       "  to come, as a quasi_static body: archive of {:.3g} MB, haptic node {:.3g} MB, precomputation about {:.2g} s\n",
-      4e-6 * dofs * dofs, 8e-6 * dofs * dofs, kSecondsPerSquare * dofs * dofs / 9);
+      36e-6 * nodes * nodes, 72e-6 * nodes * nodes, seconds * nodes * nodes);
 }
 
 void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
@@ -57,6 +61,7 @@ void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
 
 void add_mesh_options(cli::Command& command, MeshOptions& o) {
   command.add_option("-o,--output", o.output, "Mesh to write (.msh), in metres").required().output_file(".msh");
+  command.add_option("--report", o.report, "Write all that is found and each place of it (.csv)").output_file(".csv");
   command.add_option("--nodes", o.nodes, "About how many nodes, within a tenth; more where --deviation asks for them")
       .between(50, 200000)
       .show_default();
@@ -69,6 +74,10 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
   command.add_option("--fine", o.fine, "Finer there: x,y,z,RADIUS:EDGE or x,y,z,x,y,z:EDGE [m]; may be given again")
       .one_value_each_time();
   command
+      .add_option("--tool-radius", o.tool_radius,
+                  "Of the tool's tip [m]: edges of half of it on the side that lies farthest from the first --group")
+      .positive();
+  command
       .add_option("--group", o.groups,
                   "Names nodes of the surface: NAME=below:z (the lowest tenth; above, x, y too), NAME=below:z:0.01, "
                   "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz [m]; may be given again")
@@ -80,7 +89,18 @@ Fineness fineness_of(const MeshOptions& o) {
   Fineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
   for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
   for (const std::string& text : o.groups) check_group(text);
+  if (o.tool_radius > 0 && o.groups.empty())
+    throw std::runtime_error("--tool-radius needs a --group: the tool comes to the side that lies farthest from it");
   return f;
+}
+
+void add_touched_place(Fineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
+  constexpr double kOfRadius = 3, kEdge = 0.5;  // of the tip's radius: what it comes near, and edges there
+  if (o.tool_radius == 0) return;
+  const Eigen::Vector3d place = farthest_from_group(o.groups[0], surface);
+  fineness.fine.push_back({place, place, kOfRadius * o.tool_radius, kEdge * o.tool_radius});
+  fmt::print("  edges of {:.3g} mm around {}, where the tool touches\n", 1e3 * kEdge * o.tool_radius,
+             place_in_mm(place));
 }
 
 void finish_mesh(TetMesh mesh, const MeshOptions& o) {

@@ -17,12 +17,6 @@ constexpr double kShell = 3;          // [voxels] around the organ, without the 
 constexpr int kEnough = 20;           // voxels from which a median is taken
 constexpr double kOfNormal = 1.4826;  // deviation of a normal distribution, in median distances to its median
 
-std::array<int, 3> place_of(const GridShape& shape, std::size_t voxel) {
-  const auto row = static_cast<std::size_t>(shape.count[0]), layer = row * shape.count[1];
-  return {static_cast<int>(voxel % row), static_cast<int>(voxel / row % shape.count[1]),
-          static_cast<int>(voxel / layer)};
-}
-
 double median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -38,7 +32,7 @@ GreyLevel level_of_values(std::vector<float>& values) {
 GreyLevel level_around(const ScalarGrid& grey, const std::vector<std::size_t>& seeds) {
   std::vector<float> values;
   for (const std::size_t seed : seeds) {
-    const auto middle = place_of(grey.shape, seed);
+    const auto middle = grey.shape.voxel_of(seed);
     std::array<int, 3> low, high;
     for (int a = 0; a < 3; ++a) {
       low[a] = std::max(middle[a] - kAround, 0);
@@ -71,7 +65,7 @@ void widen_to_surroundings(const ScalarGrid& grey, const std::vector<char>& insi
 }
 
 std::string say_seed(const GridShape& shape, std::size_t seed) {
-  const auto [i, j, k] = place_of(shape, seed);
+  const auto [i, j, k] = shape.voxel_of(seed);
   return fmt::format("the seed at voxel {},{},{}", i, j, k);
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkImageFileReader.h>
@@ -51,34 +52,46 @@ typename Image<T>::Pointer read_image(const std::string& file) {
   return reader->GetOutput();
 }
 
-/// The first series in a folder.
-template <class T>
-typename Image<T>::Pointer read_series(const std::string& folder) {
+std::vector<std::string> files_of_series(const std::string& folder, const std::string& wanted) {
   const auto names = itk::GDCMSeriesFileNames::New();
   names->SetDirectory(folder);
   const auto& series = names->GetSeriesUIDs();
   if (series.empty()) throw std::runtime_error("no DICOM series lies in this folder");
+  if (wanted.empty() && series.size() == 1) return names->GetFileNames(series.front());
+  std::string known;
+  for (const std::string& uid : series) {
+    const auto files = names->GetFileNames(uid);
+    if (uid == wanted) return files;
+    known += fmt::format("{}{} of {} pictures", known.empty() ? "" : ", ", uid, files.size());
+  }
+  throw std::runtime_error(
+      wanted.empty() ? fmt::format("{} DICOM series lie in this folder, choose by --series: {}", series.size(), known)
+                     : fmt::format("no series '{}' lies in this folder, but {}", wanted, known));
+}
+
+template <class T>
+typename Image<T>::Pointer read_series(const std::string& folder, const std::string& wanted) {
   const auto reader = itk::ImageSeriesReader<Image<T>>::New();
   reader->SetImageIO(itk::GDCMImageIO::New());
-  reader->SetFileNames(names->GetFileNames(series.front()));
+  reader->SetFileNames(files_of_series(folder, wanted));
   reader->Update();
   return reader->GetOutput();
 }
 
 template <class T>
-typename Image<T>::Pointer read_any(const std::filesystem::path& file) {
+typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std::string& series) {
   const std::string name = file.string();
-  if (std::filesystem::is_directory(file)) return read_series<T>(name);
+  if (std::filesystem::is_directory(file)) return read_series<T>(name, series);
   if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
   if (name.ends_with(".mhd") || name.ends_with(".mha")) return read_image<T, itk::MetaImageIO>(name);
   return read_image<T, itk::NrrdImageIO>(name);
 }
 
 template <class T>
-std::string packed(const std::filesystem::path& file) {
+std::string packed(const std::filesystem::path& file, const std::string& series) {
   const typename Image<T>::Pointer image = [&] {
     try {
-      return read_any<T>(file);
+      return read_any<T>(file, series);
     } catch (const itk::ExceptionObject& error) {
       throw std::runtime_error(std::string("ITK refuses it: ") + error.GetDescription());
     }
@@ -109,8 +122,8 @@ void mirror(Volume<T>& volume) {
 }  // namespace
 
 template <class T>
-Volume<T> read_with_image_library(const std::filesystem::path& file) {
-  const std::string bytes = run_in_child([&] { return packed<T>(file); });
+Volume<T> read_with_image_library(const std::filesystem::path& file, const std::string& series) {
+  const std::string bytes = run_in_child([&] { return packed<T>(file, series); });
   Volume<T> volume{{{}, Eigen::Vector3d::Zero(), {}}, {}};
   std::size_t at = 0;
   for (int& count : volume.shape.count) count = take<int>(bytes, at);
@@ -127,7 +140,7 @@ Volume<T> read_with_image_library(const std::filesystem::path& file) {
   return volume;
 }
 
-template LabelVolume read_with_image_library(const std::filesystem::path&);
-template GreyVolume read_with_image_library(const std::filesystem::path&);
+template LabelVolume read_with_image_library(const std::filesystem::path&, const std::string&);
+template GreyVolume read_with_image_library(const std::filesystem::path&, const std::string&);
 
 }  // namespace palpate

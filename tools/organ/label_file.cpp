@@ -22,7 +22,7 @@ struct Frame {
 
 Frame frame_of(const GreyVolume& v) {
   Frame f{v.shape.count, {}, {}, {}};
-  const Eigen::Vector3d origin = v.turn * v.shape.origin + v.shift;
+  const Eigen::Vector3d origin = v.in_world(v.shape.origin);
   for (int a = 0; a < 3; ++a) {
     f.spacing[a] = kMm * v.shape.spacing[a];
     f.origin[a] = kMm * origin[a];

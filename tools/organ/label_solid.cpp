@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 
+#include "tools/organ/thin_walls.hpp"
 #include "tools/organ/voxel_pieces.hpp"
 
 namespace palpate {
 namespace {
-
-constexpr int kRim = 8;  // voxels around the labels
 
 /// A distance whose level 0 encloses a volume of voxels.
 struct Field {
@@ -30,10 +28,6 @@ struct Field {
   }
 };
 
-double volume_of_voxels(const GridShape& shape, const std::vector<char>& inside) {
-  return static_cast<double>(std::ranges::count(inside, 1)) * shape.spacing.prod();
-}
-
 Field field_of(const GridShape& shape, const std::vector<char>& inside, double smoothing) {
   Field field{distance_to_border(shape, inside)};
   if (smoothing > 0) smooth(field.grid, smoothing * shape.spacing);
@@ -44,41 +38,6 @@ Field field_of(const GridShape& shape, const std::vector<char>& inside, double s
     (volume_below(field.grid, field.level) < volume ? low : high) = field.level;
   }
   return field;
-}
-
-/// The part of the image with labels, and a rim around it.
-GridShape crop_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels) {
-  std::array<int, 3> low = volume.shape.count, high{-1, -1, -1};
-  std::size_t at = 0;
-  for (int k = 0; k < volume.shape.count[2]; ++k)
-    for (int j = 0; j < volume.shape.count[1]; ++j)
-      for (int i = 0; i < volume.shape.count[0]; ++i, ++at) {
-        if (std::ranges::find(labels, volume.value[at], &NamedLabel::label) == labels.end()) continue;
-        const std::array<int, 3> place{i, j, k};
-        for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], place[a]), high[a] = std::max(high[a], place[a]);
-      }
-  if (high[0] < 0) throw std::runtime_error(fmt::format("no voxel has the label {}", labels[0].label));
-  GridShape crop = volume.shape;
-  for (int a = 0; a < 3; ++a) {
-    crop.count[a] = high[a] - low[a] + 1 + 2 * kRim;
-    crop.origin[a] += (low[a] - kRim) * crop.spacing[a];
-  }
-  return crop;
-}
-
-std::vector<char> voxels_of(const LabelVolume& volume, const GridShape& crop, const NamedLabel& label) {
-  std::vector<char> inside(crop.size(), 0);
-  const Eigen::Array3i shift = ((crop.origin - volume.shape.origin).array() / crop.spacing.array()).round().cast<int>();
-  bool any = false;
-  for (int k = kRim; k < crop.count[2] - kRim; ++k)
-    for (int j = kRim; j < crop.count[1] - kRim; ++j)
-      for (int i = kRim; i < crop.count[0] - kRim; ++i) {
-        const bool set = volume.value[volume.shape.index(i + shift[0], j + shift[1], k + shift[2])] == label.label;
-        inside[crop.index(i, j, k)] = set;
-        any = any || set;
-      }
-  if (!any) throw std::runtime_error(fmt::format("no voxel has the label {}", label.label));
-  return inside;
 }
 
 std::vector<Eigen::Vector3d> border_of(const GridShape& shape, const std::vector<char>& inside) {
@@ -136,38 +95,77 @@ struct Fields {
   }
 };
 
+/// Takes from a label what is nearer to the others' border than half the gap, evenly on both sides; returns what is
+/// left of its volume [m^3].
+double keep_apart(const LabelVoxels& voxels, int label, const LabelShape& wish, Field& field) {
+  for (std::size_t o = 0; o < voxels.labels.size(); ++o) {
+    if (static_cast<int>(o) == label) continue;
+    const Field other = field_of(voxels.shape, voxels.inside[o], wish.smoothing);
+    for (std::size_t i = 0; i < field.grid.value.size(); ++i) {
+      const double here = field.grid.value[i] - field.level, there = other.grid.value[i] - other.level;
+      field.grid.value[i] = static_cast<float>(field.level + std::max(here, 0.5 * (here - there + wish.gap)));
+    }
+  }
+  return volume_below(field.grid, field.level);
+}
+
+std::vector<char> union_of(const LabelVoxels& voxels, const std::vector<int>& labels) {
+  std::vector<char> all(voxels.shape.size(), 0);
+  for (const int l : labels)
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] || voxels.inside[l][i];
+  return all;
+}
+
+/// Some of the border's points, and which way is in.
+std::vector<SurfacePoint> points_of(const Field& field, const std::vector<Eigen::Vector3d>& border) {
+  std::vector<SurfacePoint> points;
+  const std::size_t step = 1 + border.size() / kWallPoints;
+  for (std::size_t i = 0; i < border.size(); i += step)
+    points.push_back({border[i], -field.slope(border[i]).normalized()});
+  return points;
+}
+
+/// Smoothing as wide as a wall makes holes in it: makes it a third of that, and says so.
+bool smooth_less(const ThinWall& wall, const GridShape& grid, double& smoothing, std::vector<Finding>& findings) {
+  constexpr double kOfWall = 1.0 / 3;
+  const double most = kOfWall * wall.thickness / grid.spacing.minCoeff();
+  if (smoothing <= most) return false;
+  smoothing = most;
+  findings.push_back({fmt::format("walls {:.3g} mm thick", 1e3 * wall.thickness),
+                      fmt::format("smoothed over {:.2g} voxels", most),
+                      {wall.place}});
+  return true;
+}
+
 }  // namespace
 
-LabelSolid solid_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels, double smoothing) {
+LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, LabelShape wish) {
   LabelSolid result;
-  const GridShape crop = crop_of(volume, labels);
+  const GridShape& grid = voxels.shape;
   auto fields = std::make_shared<Fields>();
-  std::vector<std::vector<char>> voxels;
-  std::vector<char> all(crop.size(), 0);
-  for (const NamedLabel& label : labels) {
-    voxels.push_back(voxels_of(volume, crop, label));
-    keep_largest_piece(crop, voxels.back(), label.name, result.findings);
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] || voxels.back()[i];
-  }
-  for (std::size_t l = 0; l < labels.size(); ++l) {
-    fill_cavities(crop, voxels[l], all, labels[l].name, result.findings);
-    result.volumes.push_back(volume_of_voxels(crop, voxels[l]));
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] || voxels[l][i];
-    if (labels.size() > 1) fields->of_label.push_back(field_of(crop, voxels[l], smoothing));
-  }
-  if (labels.size() > 1) fill_cavities(crop, all, all, "all of them", result.findings);
-  fields->all = field_of(crop, all, smoothing);
-  if (labels.size() == 1) fields->of_label.resize(1);
-  result.border = border_of(crop, all);
-  const auto sharp = std::make_shared<DistanceGrid>(distance_to_border(crop, all));
+  std::vector<char> all = union_of(voxels, labels);
+  if (labels.size() > 1) fill_cavities(grid, all, all, kSmallCavity, "all of them", result.findings);
+  result.border = border_of(grid, all);
+  const auto sharp = std::make_shared<DistanceGrid>(distance_to_border(grid, all));
   result.from_voxels = [sharp](const Eigen::Vector3d& x) { return std::abs(sharp->at(x)); };
+  fields->all = field_of(grid, all, wish.smoothing);
+  result.solid.wall =
+      thin_wall(points_of(fields->all, result.border), result.from_voxels, 0.25 * grid.spacing.minCoeff());
+  if (smooth_less(result.solid.wall, grid, wish.smoothing, result.findings))
+    fields->all = field_of(grid, all, wish.smoothing);
+  for (const int l : labels) {
+    result.volumes.push_back(volume_of_voxels(grid, voxels.inside[l]));
+    fields->of_label.emplace_back();
+    if (labels.size() > 1) fields->of_label.back() = field_of(grid, voxels.inside[l], wish.smoothing);
+  }
+  if (wish.gap > 0) result.volumes = {keep_apart(voxels, labels[0], wish, fields->all)};
   result.measures = {area_of(fields->all, result.border), result.volumes};
   Solid& solid = result.solid;
   solid.parts = static_cast<int>(labels.size());
   solid.part = [fields](const Eigen::Vector3d& x) { return fields->part(x); };
   solid.depth = [fields](const Eigen::Vector3d& x) { return fields->depth(x); };
   solid.nearest = [fields](const Eigen::Vector3d& x) { return fields->nearest(x); };
-  solid.low = crop.place(1, 1, 1), solid.high = crop.far_corner() - crop.spacing;
+  solid.low = grid.place(1, 1, 1), solid.high = grid.far_corner() - grid.spacing;
   return result;
 }
 

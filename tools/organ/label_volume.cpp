@@ -113,13 +113,15 @@ void take_fractions(gzFile in, double bits, bool swapped, Volume<T>& volume) {
 }
 
 template <class T>
-Volume<T> read_volume(const std::filesystem::path& file) try {
+Volume<T> read_volume(const std::filesystem::path& file, const std::string& series) try {
   if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
   const std::string name = file.filename();
+  if (!series.empty() && !std::filesystem::is_directory(file))
+    throw std::runtime_error("--series is of a folder of DICOM files");
   if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr<T>(file);
   for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
-    if (name.ends_with(ending)) return read_with_image_library<T>(file);
-  if (std::filesystem::is_directory(file)) return read_with_image_library<T>(file);
+    if (name.ends_with(ending)) return read_with_image_library<T>(file, series);
+  if (std::filesystem::is_directory(file)) return read_with_image_library<T>(file, series);
   throw std::runtime_error(
       "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");
 } catch (const std::runtime_error& error) {
@@ -151,12 +153,18 @@ Volume<T> read_inr(const std::filesystem::path& file) {
 template LabelVolume read_inr(const std::filesystem::path&);
 template GreyVolume read_inr(const std::filesystem::path&);
 
-LabelVolume read_label_volume(const std::filesystem::path& file) {
-  return read_volume<std::int32_t>(file);
+std::string say_size(const GridShape& image) {
+  const Eigen::Vector3d mm = 1e3 * image.spacing;
+  return fmt::format("{} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm", image.count[0], image.count[1],
+                     image.count[2], mm.x(), mm.y(), mm.z());
 }
 
-GreyVolume read_grey_volume(const std::filesystem::path& file) {
-  GreyVolume volume = read_volume<float>(file);
+LabelVolume read_label_volume(const std::filesystem::path& file, const std::string& series) {
+  return read_volume<std::int32_t>(file, series);
+}
+
+GreyVolume read_grey_volume(const std::filesystem::path& file, const std::string& series) {
+  GreyVolume volume = read_volume<float>(file, series);
   const auto bad = std::ranges::find_if_not(volume.value, [](float grey) { return std::isfinite(grey); });
   if (bad != volume.value.end())
     throw std::runtime_error(

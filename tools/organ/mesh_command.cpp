@@ -21,24 +21,33 @@ struct SurfaceOptions : MeshOptions {
   double hole = 0;
 };
 
-RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) try {
-  constexpr double kHole = 0.2;  // of the diagonal
-  return repair_surface(read.mesh, o.hole > 0 ? o.hole : kHole * diagonal(read.mesh));
+/// Says of which file an error is.
+template <class Work>
+auto of_file(const std::string& file, const Work& work) try {
+  return work();
 } catch (const std::runtime_error& error) {
-  throw std::runtime_error(fmt::format("{}: {}", o.surface, error.what()));
+  throw std::runtime_error(fmt::format("{}: {}", file, error.what()));
+}
+
+RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) {
+  constexpr double kHole = 0.2;  // of the diagonal
+  return of_file(o.surface,
+                 [&] { return repair_surface(read.mesh, o.hole > 0 ? o.hole : kHole * diagonal(read.mesh)); });
 }
 
 void make_mesh(const SurfaceOptions& o) {
-  const Fineness fineness = fineness_of(o);
+  Fineness fineness = fineness_of(o);
   const ReadSurface read = read_surface(o.surface, kUnits.at(o.unit));
   fmt::print("{}: {} triangles\n", o.surface, read.mesh.triangles.size());
-  for (const std::string& finding : read.findings) fmt::print("  found: {}\n", finding);
   say_progress("checking the surface");
   const RepairedSurface surface = repaired(read, o);
-  for (const std::string& finding : surface.findings) fmt::print("  found: {}\n", finding);
-  if (read.findings.empty() && surface.findings.empty()) fmt::print("  found: nothing to repair\n");
+  std::vector<Finding> findings = read.findings;
+  findings.insert(findings.end(), surface.findings.begin(), surface.findings.end());
+  tell_findings(findings, o.report);
+  if (findings.empty()) fmt::print("  found: nothing to repair\n");
+  add_touched_place(fineness, o, surface.mesh.nodes);
   std::fflush(stdout);
-  SurfaceSolid solid = solid_of(surface.mesh);
+  SurfaceSolid solid = of_file(o.surface, [&] { return solid_of(surface.mesh); });
   if (surface.crosses_itself) solid.measures.volumes.clear();
   finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o);
 }

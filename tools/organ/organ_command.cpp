@@ -8,22 +8,23 @@
 #include <set>
 #include <stdexcept>
 
-#include "common/mesh/quality.hpp"
-#include "common/mesh/surface.hpp"
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
-#include "tools/organ/label_solid.hpp"
-#include "tools/organ/surface_library.hpp"
-#include "tools/organ/surface_shells.hpp"
+#include "tools/organ/label_measures.hpp"
+#include "tools/organ/organ_pictures.hpp"
 
 namespace palpate {
 namespace {
 
+constexpr int kFewestNodes = 50;    // of a mesh that shares --nodes with others
+constexpr double kDeviation = 0.6;  // voxel diagonals
+
 struct OrganOptions : MeshOptions {
   OrganOptions() { nodes = 2500; }
-  std::string volume;
+  std::string volume, preview;
   std::vector<std::string> labels;
-  double smoothing = 1;
+  double smoothing = 1, gap_mm = 0;
+  std::string series;
 };
 
 /// "255" or "255=liver".
@@ -31,7 +32,8 @@ NamedLabel parse_label(const std::string& text) {
   const std::string number = text.substr(0, text.find('='));
   NamedLabel label{0, number.size() < text.size() ? text.substr(number.size() + 1) : "label" + number};
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label.label);
-  if (error != std::errc() || end != number.data() + number.size() || label.name.empty())
+  if (error != std::errc() || end != number.data() + number.size() || label.name.empty() ||
+      label.name.find('/') != std::string::npos)
     throw std::runtime_error(fmt::format("--label {}: NUMBER or NUMBER=NAME is asked for", text));
   return label;
 }
@@ -66,65 +68,121 @@ void name_parts(FilledSolid& filled, const std::vector<NamedLabel>& labels) {
   }
 }
 
-/// How far the mesh's surface and the voxels' border are apart, both ways.
-void print_distance(const LabelSolid& labels, const TetMesh& mesh, double diagonal) {
-  const Surface surface = extract_surface(mesh);
-  const SurfaceTree tree({mesh.nodes, surface.triangles});
-  double sum = 0, largest = 0;
-  Eigen::Vector3d where = mesh.nodes[0];
-  const auto note = [&](double distance, const Eigen::Vector3d& x) {
-    if (distance > largest) largest = distance, where = x;
-  };
-  for (const Eigen::Vector3d& x : labels.border) {
-    const double distance = tree.distance(x);
-    sum += distance;
-    note(distance, x);
-  }
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Eigen::Vector3d middle = (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
-    note(labels.from_voxels(middle), middle);
-  }
-  const double mean = sum / static_cast<double>(labels.border.size());
-  fmt::print(
-      "  surface to voxels: mean {:.3g} mm, largest {:.3g} mm, which are {:.2f} and {:.2f} voxel diagonals, at {}\n",
-      1e3 * mean, 1e3 * largest, mean / diagonal, largest / diagonal, place_in_mm(where));
+/// Of several meshes each has a file and a folder of pictures of its own, with its labels' names.
+OrganOptions options_of_one(const OrganOptions& o, const std::vector<NamedLabel>& labels) {
+  namespace fs = std::filesystem;
+  OrganOptions own = o;
+  std::string name = labels[0].name;
+  for (std::size_t l = 1; l < labels.size(); ++l) name += "_" + labels[l].name;
+  const fs::path file(o.output);
+  own.output = file.parent_path() / fmt::format("{}_{}{}", file.stem().string(), name, file.extension().string());
+  if (!o.preview.empty()) own.preview = fs::path(o.preview) / name;
+  return own;
 }
 
-void print_volumes(const LabelSolid& solid, const FilledSolid& filled, const std::vector<NamedLabel>& labels) {
-  std::vector<double> volumes(labels.size(), 0);
-  for (std::size_t t = 0; t < filled.part.size(); ++t)
-    volumes[filled.part[t] - 1] += tet_volume(filled.mesh, filled.mesh.tetrahedra[t]);
-  for (std::size_t l = 0; l < labels.size(); ++l)
-    fmt::print("  '{}': {:.4g} ml, of its voxels {:.4g} ml ({:+.2f} %)\n", labels[l].name, 1e6 * volumes[l],
-               1e6 * solid.volumes[l], 100 * (volumes[l] / solid.volumes[l] - 1));
+/// Labels that make one mesh: those that touch, unless a gap is asked for.
+std::vector<std::vector<int>> meshes_of(const LabelVoxels& voxels, double gap) {
+  if (gap == 0) return touching_labels(voxels);
+  std::vector<std::vector<int>> alone;
+  for (std::size_t l = 0; l < voxels.labels.size(); ++l) alone.push_back({static_cast<int>(l)});
+  return alone;
+}
+
+/// Why labels do not make one mesh.
+void say_apart(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<std::vector<int>>& meshes) {
+  if (meshes.size() < 2) return;
+  fmt::print("  {} bodies that share no border, a mesh each:\n", meshes.size());
+  for (const std::vector<int>& labels : meshes)
+    for (const int l : labels) {
+      const auto& inside = voxels.inside[l];
+      const auto first = static_cast<std::size_t>(std::ranges::find(inside, 1) - inside.begin());
+      fmt::print("    '{}' at {}\n", voxels.labels[l].name, place_in_mm(volume.in_world(voxels.shape.place_of(first))));
+    }
+}
+
+std::vector<NamedLabel> named_labels(const LabelVoxels& voxels, const std::vector<int>& labels) {
+  std::vector<NamedLabel> named;
+  for (const int l : labels) named.push_back(voxels.labels[l]);
+  return named;
+}
+
+void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<int>& labels,
+               const LabelSolid& solid, const Fineness& fineness, const OrganOptions& o) {
+  FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
+  const std::vector<NamedLabel> named = named_labels(voxels, labels);
+  name_parts(filled, named);
+  if (!o.preview.empty()) {
+    say_progress("drawing slices and surface");
+    write_organ_pictures(volume, named, solid.solid, filled, o.preview);
+  }
+  print_label_measures(voxels, labels, solid, filled);
+  for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.in_world(x);
+  finish_mesh(std::move(filled.mesh), o);
+}
+
+/// A place in the world's frame, in the image's; of a box that is turned the box around it.
+FinePlace in_image(const FinePlace& f, const LabelVolume& volume) {
+  FinePlace turned = f;
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d x;
+    for (int a = 0; a < 3; ++a) x[a] = corner >> a & 1 ? f.high[a] : f.low[a];
+    x = volume.in_image(x);
+    turned.low = corner == 0 ? x : turned.low.cwiseMin(x);
+    turned.high = corner == 0 ? x : turned.high.cwiseMax(x);
+  }
+  return turned;
+}
+
+/// What is asked of one of the meshes; places are told in the world's frame.
+Fineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share) {
+  Fineness fineness = fineness_of(o);
+  if (fineness.deviation == 0) fineness.deviation = kDeviation * volume.diagonal();
+  fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * share));
+  std::vector<Eigen::Vector3d> surface;
+  for (const Eigen::Vector3d& x : solid.border) surface.push_back(volume.in_world(x));
+  add_touched_place(fineness, o, surface);
+  for (FinePlace& place : fineness.fine) place = in_image(place, volume);
+  return fineness;
+}
+
+LabelVolume read(const OrganOptions& o) {
+  say_progress("reading the image");
+  LabelVolume volume = read_label_volume(o.volume, o.series);
+  fmt::print("{}: {}\n", o.volume, say_size(volume.shape));
+  return volume;
 }
 
 void make_organ(const OrganOptions& o) {
-  Fineness fineness = fineness_of(o);
+  fineness_of(o);  // what cannot be read is told at once
   const std::vector<NamedLabel> labels = labels_of(o);
-  say_progress("reading the image");
-  const LabelVolume volume = read_label_volume(o.volume);
-  const GridShape& shape = volume.shape;
-  const Eigen::Vector3d mm = 1e3 * shape.spacing;
-  fmt::print("{}: {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm\n", o.volume, shape.count[0], shape.count[1],
-             shape.count[2], mm.x(), mm.y(), mm.z());
+  const LabelVolume volume = read(o);
+  std::vector<Finding> findings;
   say_progress("measuring distances to the labels' borders");
-  const LabelSolid solid = [&] {
+  const LabelVoxels voxels = [&] {
     try {
-      return solid_of(volume, labels, o.smoothing);
+      return voxels_of(volume, labels, findings);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(fmt::format("{}: {}", o.volume, error.what()));
     }
   }();
-  for (const std::string& finding : solid.findings) fmt::print("  found: {}\n", finding);
+  const auto meshes = meshes_of(voxels, 1e-3 * o.gap_mm);
+  std::vector<LabelSolid> solids;
+  double area = 0;
+  for (const std::vector<int>& together : meshes) {
+    solids.push_back(solid_of(voxels, together, {o.smoothing, 1e-3 * o.gap_mm}));
+    area += solids.back().measures.area;
+    findings.insert(findings.end(), solids.back().findings.begin(), solids.back().findings.end());
+  }
+  for (Finding& finding : findings)
+    for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
+  tell_findings(findings, o.report);
+  say_apart(volume, voxels, meshes);
   std::fflush(stdout);
-  if (fineness.deviation == 0) fineness.deviation = 0.6 * volume.diagonal();
-  FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
-  name_parts(filled, labels);
-  print_volumes(solid, filled, labels);
-  print_distance(solid, filled.mesh, volume.diagonal());
-  for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.turn * x + volume.shift;
-  finish_mesh(std::move(filled.mesh), o);
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const OrganOptions own = meshes.size() == 1 ? o : options_of_one(o, named_labels(voxels, meshes[m]));
+    const Fineness fineness = fineness_for(volume, solids[m], o, solids[m].measures.area / area);
+    make_body(volume, voxels, meshes[m], solids[m], fineness, own);
+  }
 }
 
 }  // namespace
@@ -136,13 +194,18 @@ void add_organ_command(cli::Command& app) {
   command.add_option("VOLUME", o->volume, "Image file, or a folder with a DICOM series").required();
   command
       .add_option("--label", o->labels,
-                  "Value of the organ's voxels, and its name: NUMBER or NUMBER=NAME; several make one mesh of several "
-                  "groups that share their borders")
+                  "Value of the organ's voxels, and its name: NUMBER or NUMBER=NAME; several that "
+                  "touch make one mesh of several groups that share their borders, others a mesh each")
       .required()
       .one_value_each_time();
   command.add_option("--smoothing", o->smoothing, "Over how many voxels the border is smoothed")
       .between(0.0, 5.0)
       .show_default();
+  command.add_option("--gap", o->gap_mm, "Keep labels that touch apart by this much [mm], a mesh each").positive();
+  command.add_option("--series", o->series, kSeriesHelp);
+  command.add_option("--preview", o->preview,
+                     "Folder for pictures: each slice with the smoothed border and the tetrahedra cut there, the "
+                     "surface of the voxels and that of the mesh");
   add_mesh_options(command, *o);
   command.examples(
       {"palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o organ.msh"});

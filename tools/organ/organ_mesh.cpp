@@ -12,31 +12,49 @@
 #include "common/mesh/normals.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/organ/finding.hpp"
+#include "tools/organ/mesh_pieces.hpp"
 
 namespace palpate {
 namespace {
 
+constexpr double kNodesOfArea = 1.5;  // times the edge squared over the area of the surface
 constexpr int kTries = 4;             // for a number of nodes
 constexpr double kNearEnough = 0.08;  // of the number of nodes
 constexpr double kSameVolume = 1e-4;
-constexpr double kWorstAngle = 12;  // [degrees] that every mesh has
-constexpr double kKeptAngle = 14;   // [degrees] to which moving a node to the surface may lower one
-constexpr int kOtherEdges = 5;      // tried where a mesh is no good
+constexpr double kWorstAngle = 12;     // [degrees] that every mesh has
+constexpr double kKeptAngle = 14;      // [degrees] to which moving a node to the surface may lower one
+constexpr int kOtherEdges = 5;         // tried where a mesh is no good
+constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds both sides of a wall that is longer
+constexpr double kLongestOfGuess = 2;  // where the deviation asks for more nodes, longer edges do not help
+constexpr double kOfWall = 0.25;       // by how much of its thickness a wall's surfaces may be missed
+constexpr double kMissing = 0.3;       // of a part's volume: more than chords take
 
-MeshSizes sizes_at(const Fineness& f, double edge) {
+MeshSizes sizes_at(const Solid& solid, const Fineness& f, double edge) {
   const double inside = f.inside > 0 ? f.inside : 2.5 * edge;
-  return {edge, std::max(inside, edge), f.deviation > 0 ? f.deviation : edge / 12, f.fine};
+  const double deviation = f.deviation > 0 ? f.deviation : edge / 12;
+  return {edge, std::max(inside, edge), std::min(deviation, kOfWall * solid.wall.thickness), f.fine};
+}
+
+double nodes_at(const Solid& solid, const MeshSizes& sizes) {
+  return static_cast<double>(fill_solid(solid, sizes, false).mesh.nodes.size());
+}
+
+double first_guess(const SolidMeasures& measures, const Fineness& f) {
+  return std::sqrt(kNodesOfArea * measures.area / f.nodes);
 }
 
 /// The edge that gives about so many nodes, found on meshes that are not bettered.
 double edge_for(const Solid& solid, const SolidMeasures& measures, const Fineness& f,
                 const std::function<void(const std::string&)>& say) {
-  double edge = std::sqrt(1.5 * measures.area / f.nodes);
+  const double longest = kLongestOfGuess * first_guess(measures, f);
+  double edge = first_guess(measures, f);
   for (int i = 0; i < kTries; ++i) {
-    const auto nodes = static_cast<double>(fill_solid(solid, sizes_at(f, edge), false).mesh.nodes.size());
+    const auto nodes = nodes_at(solid, sizes_at(solid, f, edge));
     const double off = nodes / f.nodes;
     if (std::abs(off - 1) < kNearEnough) return edge;
-    edge *= std::pow(off, 0.45);
+    if (off > 1 && edge == longest) break;
+    edge = std::min(edge * std::pow(off, 0.45), longest);
   }
   say(fmt::format("{} nodes are not met: the deviation from the surface and fine places ask for others", f.nodes));
   return edge;
@@ -64,14 +82,22 @@ void project(const Solid& solid, TetMesh& mesh) {
   }
 }
 
+std::vector<double> volumes_of(const FilledSolid& filled, std::size_t parts) {
+  std::vector<double> volumes(parts, 0);
+  for (std::size_t t = 0; t < filled.part.size(); ++t)
+    volumes[filled.part[t] - 1] += tet_volume(filled.mesh, filled.mesh.tetrahedra[t]);
+  return volumes;
+}
+
 /// Adds to each part's nodes on the outer surface what brings its volume nearer; true once all are right.
 bool step_to_volumes(const Surface& surface, const std::vector<double>& volumes, FilledSolid& filled) {
   TetMesh& mesh = filled.mesh;
-  std::vector<double> missing = volumes, area(volumes.size(), 0);
-  for (std::size_t t = 0; t < filled.part.size(); ++t)
-    missing[filled.part[t] - 1] -= tet_volume(mesh, mesh.tetrahedra[t]);
+  std::vector<double> missing = volumes_of(filled, volumes.size()), area(volumes.size(), 0);
   bool right = true;
-  for (std::size_t p = 0; p < volumes.size(); ++p) right = right && std::abs(missing[p]) < kSameVolume * volumes[p];
+  for (std::size_t p = 0; p < volumes.size(); ++p) {
+    missing[p] = volumes[p] - missing[p];
+    right = right && std::abs(missing[p]) < kSameVolume * volumes[p];
+  }
   if (right) return true;
   std::vector<Eigen::Vector3d> normals(mesh.nodes.size());
   vertex_normals(mesh.nodes, surface.triangles, normals);
@@ -97,8 +123,31 @@ void match_volumes(const std::vector<double>& volumes, FilledSolid& filled) {
   for (int i = 0; i < kSteps && !step_to_volumes(surface, volumes, filled); ++i) continue;
 }
 
+/// Walls and necks that the edges are too long for are lost; nothing that comes later would tell.
+void check_complete(const SolidMeasures& measures, const FilledSolid& filled) {
+  const std::vector<double> volumes = volumes_of(filled, filled.part.empty() ? 0 : std::ranges::max(filled.part));
+  for (std::size_t p = 0; p < std::min(volumes.size(), measures.volumes.size()); ++p)
+    if (volumes[p] < (1 - kMissing) * measures.volumes[p])
+      throw std::runtime_error(
+          fmt::format("{:.0f} % of its volume were lost", 100 * (1 - volumes[p] / measures.volumes[p])));
+  const std::vector<MeshPiece> pieces = pieces_of(filled.mesh);
+  if (pieces.size() > 1)
+    throw std::runtime_error(fmt::format(
+        "the mesh falls into {} pieces, one of {:.3g} ml at {} and one of {:.3g} ml at {}", pieces.size(),
+        1e6 * pieces[0].volume, place_in_mm(pieces[0].place), 1e6 * pieces[1].volume, place_in_mm(pieces[1].place)));
+}
+
+std::string advice(const Solid& solid, const SolidMeasures& measures, double edge) {
+  const ThinWall& wall = solid.wall;
+  if (edge <= wall.thickness) return "ask for more nodes or a shorter edge";
+  return fmt::format("its walls are {:.3g} mm thick at {}: ask for --edge {:.2g}, which is about {:.2g} nodes",
+                     1e3 * wall.thickness, place_in_mm(wall.place), wall.thickness,
+                     kNodesOfArea * measures.area / (wall.thickness * wall.thickness));
+}
+
 FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   FilledSolid filled = fill_solid(solid, sizes);
+  check_complete(measures, filled);
   project(solid, filled.mesh);
   if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
   check_tet_mesh(filled.mesh, "the mesh that was made");
@@ -112,20 +161,23 @@ FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, cons
 
 FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, const Fineness& fineness,
                             const std::function<void(const std::string&)>& say) {
-  double edge = fineness.edge;
-  if (edge == 0) {
+  double edge = fineness.edge > 0 ? fineness.edge : first_guess(measures, fineness);
+  if (edge > kLongestOfWall * solid.wall.thickness)
+    throw std::runtime_error(
+        fmt::format("edges of {:.3g} mm are too long: {}", 1e3 * edge, advice(solid, measures, edge)));
+  if (fineness.edge == 0) {
     say(fmt::format("looking for the edge length that gives {} nodes", fineness.nodes));
     edge = edge_for(solid, measures, fineness, say);
   }
   std::string fault;
   for (int i = 0; i < kOtherEdges; ++i, edge *= 0.97) try {
       say(fmt::format("filling it with tetrahedra, at most {:.3g} mm along the surface", 1e3 * edge));
-      return fill_checked(solid, measures, sizes_at(fineness, edge));
+      return fill_checked(solid, measures, sizes_at(solid, fineness, edge));
     } catch (const std::runtime_error& error) {
       fault = error.what();
       say(fault);
     }
-  throw std::runtime_error(fmt::format("no good mesh was found: {}; ask for more nodes or a shorter edge", fault));
+  throw std::runtime_error(fmt::format("no good mesh was found: {}; {}", fault, advice(solid, measures, edge)));
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -109,6 +110,19 @@ void add_group(TetMesh& mesh, const std::string& text) {
   if (group.nodes.empty()) throw std::runtime_error(fmt::format("--group {}: no node of the surface lies there", text));
   if (!mesh.groups.emplace(name, group).second)
     throw std::runtime_error(fmt::format("--group {}: there are two groups of that name", text));
+}
+
+Eigen::Vector3d farthest_from_group(const std::string& text, const std::vector<Eigen::Vector3d>& surface) {
+  const auto [name, inside] = parse_group(text, {surface, {}, {}});
+  Eigen::Vector3d all = Eigen::Vector3d::Zero(), held = all;
+  int count = 0;
+  for (const Eigen::Vector3d& x : surface) {
+    all += x / static_cast<double>(surface.size());
+    if (inside(x)) held += x, ++count;
+  }
+  if (count == 0) throw std::runtime_error(fmt::format("--group {}: nothing of the surface lies there", text));
+  const Eigen::Vector3d away = all - held / count;
+  return *std::ranges::max_element(surface, {}, [&](const Eigen::Vector3d& x) { return away.dot(x); });
 }
 
 }  // namespace palpate

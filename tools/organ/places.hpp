@@ -22,4 +22,8 @@ void check_group(const std::string& text);
 /// Throws std::runtime_error where it says something else, where no node lies there, or the mesh has such a group.
 void add_group(TetMesh& mesh, const std::string& text);
 
+/// Of places on a surface [m] the one that lies farthest from those in a group (as add_group() has it): where
+/// `palpate scene` puts the tool of a body that is held there. Throws std::runtime_error where none is in the group.
+Eigen::Vector3d farthest_from_group(const std::string& group, const std::vector<Eigen::Vector3d>& surface);
+
 }  // namespace palpate

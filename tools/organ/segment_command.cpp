@@ -17,7 +17,7 @@ namespace {
 constexpr double kSureEnough = 0.6;  // share of a slice's contour on an edge, below which it is worth a look
 
 struct SegmentOptions {
-  std::string image, output, range, points, preview;
+  std::string image, series, output, range, points, preview;
   std::vector<std::string> seeds, seed_voxels;
   double smoothing = 1, neck = 0;
   ContourForces forces;
@@ -46,7 +46,7 @@ std::vector<std::size_t> seeds_of(const SegmentOptions& o, const GreyVolume& vol
   std::vector<std::size_t> seeds;
   for (const std::string& text : o.seeds) {
     const Eigen::Vector3d world = 1e-3 * Eigen::Vector3d(three_of("--seed", text).data());
-    const Eigen::Vector3d x = volume.turn.transpose() * (world - volume.shift) - volume.shape.origin;
+    const Eigen::Vector3d x = volume.in_image(world) - volume.shape.origin;
     seeds.push_back(voxel_at(volume.shape, x.cwiseQuotient(volume.shape.spacing), "--seed " + text));
   }
   for (const std::string& text : o.seed_voxels)
@@ -88,7 +88,7 @@ std::string doubtful_slices(const Segmentation& s) {
 void print_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
   fmt::print("  range: {:.4g} to {:.4g}{}\n", s.range.low, s.range.high,
              o.range.empty() ? ", from what lies around the seeds" : "");
-  for (const std::string& finding : s.findings) fmt::print("  found: {}\n", finding);
+  tell_findings(s.findings, "");
   int first = -1, last = 0, by_hand = 0;
   double on_edge = 0;
   int with_contour = 0;
@@ -100,7 +100,7 @@ void print_segmentation(const SegmentOptions& o, const GridShape& shape, const S
   }
   fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", first, last,
              by_hand, 100 * on_edge / with_contour);
-  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty())
+  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty() && o.forces.reach > 0)
     fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
                100 * kSureEnough, doubtful);
   const auto voxels = std::ranges::count(s.inside, 1);
@@ -110,11 +110,9 @@ void print_segmentation(const SegmentOptions& o, const GridShape& shape, const S
 
 void segment_image(const SegmentOptions& o) {
   say_progress("reading the image");
-  GreyVolume volume = read_grey_volume(o.image);
+  GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;
-  const Eigen::Vector3d mm = 1e3 * shape.spacing;
-  fmt::print("{}: {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm\n", o.image, shape.count[0], shape.count[1],
-             shape.count[2], mm.x(), mm.y(), mm.z());
+  fmt::print("{}: {}\n", o.image, say_size(shape));
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
@@ -122,7 +120,7 @@ void segment_image(const SegmentOptions& o) {
   say_progress("smoothing");
   if (o.smoothing > 0) smooth(smoothed, Eigen::Vector3d::Constant(o.smoothing * shape.spacing.head<2>().minCoeff()));
   say_progress("growing the region and moving contours");
-  const Segmentation segmentation = [&] {
+  Segmentation segmentation = [&] {
     try {
       return segment(smoothed, seeds, rules);
     } catch (const std::runtime_error& error) {
@@ -134,6 +132,8 @@ void segment_image(const SegmentOptions& o) {
     write_slice_pictures(image, smoothed, segmentation, o.preview);
   }
   write_label_volume(volume, segmentation.inside, o.output);
+  for (Finding& finding : segmentation.findings)
+    for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
   print_segmentation(o, shape, segmentation);
 }
 
@@ -144,6 +144,7 @@ void add_segment_command(cli::Command& app) {
       "segment", "Make a label of an organ's grey values, slice by slice (INR, NIfTI, MetaImage, NRRD, DICOM)");
   auto o = std::make_shared<SegmentOptions>();
   command.add_option("IMAGE", o->image, "Image file of grey values, or a folder with a DICOM series").required();
+  command.add_option("--series", o->series, kSeriesHelp);
   command.add_option("-o,--output", o->output, "Labels to write (.mha, .nrrd; .inr keeps no origin)")
       .required()
       .output_file();

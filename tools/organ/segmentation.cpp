@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "tools/organ/voxel_pieces.hpp"
 
 namespace palpate {
 namespace {
+
+constexpr double kEveryCavity = std::numeric_limits<double>::infinity();
 
 std::size_t layer_of(const GridShape& shape) {
   return static_cast<std::size_t>(shape.count[0]) * shape.count[1];
@@ -23,8 +26,8 @@ std::vector<char> start_of(const ScalarGrid& grey, const std::vector<std::size_t
       throw std::runtime_error(
           fmt::format("a seed lies outside of what is drawn by hand in slice {}", seed / layer_of(grey.shape)));
   keep_pieces_with(grey.shape, inside, seeds);
-  std::vector<std::string> holes_by_noise;
-  fill_cavities(grey.shape, inside, inside, "", holes_by_noise);
+  std::vector<Finding> holes_by_noise;
+  fill_cavities(grey.shape, inside, inside, kEveryCavity, "", holes_by_noise);
   return inside;
 }
 
@@ -76,7 +79,7 @@ Segmentation segment(const ScalarGrid& grey, const std::vector<std::size_t>& see
     s.slices.push_back(segment_slice(grey, k, level, rules, &s.inside[k * layer_of(grey.shape)]));
   agree_with_neighbours(grey.shape, rules.by_hand, s.inside);
   keep_largest_piece(grey.shape, s.inside, "organ", s.findings);
-  fill_cavities(grey.shape, s.inside, s.inside, "organ", s.findings);
+  fill_cavities(grey.shape, s.inside, s.inside, kEveryCavity, "organ", s.findings);
   return s;
 }
 

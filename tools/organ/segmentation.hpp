@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
-#include <string>
 
 #include "tools/organ/active_contour.hpp"
+#include "tools/organ/finding.hpp"
 #include "tools/organ/hand_contours.hpp"
 
 namespace palpate {
@@ -26,7 +26,7 @@ struct Segmentation {
   GreyRange range{};
   std::vector<char> inside;  ///< the organ's voxels
   std::vector<SegmentedSlice> slices;
-  std::vector<std::string> findings;
+  std::vector<Finding> findings;  ///< places in the image's frame
 };
 
 /// An organ's voxels from smoothed grey values (TVCG99 sec. 2-1): a region of a range grows from the seeds (indices of

@@ -77,6 +77,12 @@ void SliceCanvas::segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, co
   canvas_.line(pixel(a), pixel(b), colour);
 }
 
+void SliceCanvas::triangle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                           const Colour& colour) {
+  const auto flat = [&](const Eigen::Vector2d& x) { return Eigen::Vector3d(pixel(x).x(), pixel(x).y(), 0); };
+  canvas_.triangle(flat(a), flat(b), flat(c), colour);
+}
+
 void SliceCanvas::contour(const Contour& line, const Colour& colour) {
   for (std::size_t n = 0; n < line.size(); ++n) segment(line[n], line[(n + 1) % line.size()], colour);
 }

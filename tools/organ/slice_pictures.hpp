@@ -14,7 +14,9 @@ class SliceCanvas {
 
   void contour(const Contour& line, const Colour& colour);
   void segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Colour& colour);  ///< [voxels]
-  void ruler();  ///< marks at the upper and left border each ten voxels, longer ones each fifty
+  void triangle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                const Colour& colour);  ///< [voxels]
+  void ruler();                         ///< marks at the upper and left border each ten voxels, longer ones each fifty
   const Image& image() const { return canvas_.image(); }
 
  private:

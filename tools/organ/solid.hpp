@@ -1,8 +1,15 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 
 namespace palpate {
+
+/// Where a solid is thin.
+struct ThinWall {
+  double thickness = std::numeric_limits<double>::infinity();  ///< [m]
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();             ///< [m] on its surface
+};
 
 /// Parts of space, as a mesher asks for them. `part` and `depth` are called some million times.
 struct Solid {
@@ -11,6 +18,7 @@ struct Solid {
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> nearest;  ///< of the surface, exact; may be absent
   Eigen::Vector3d low, high;                                       ///< [m] a box around all parts, not touching them
   int parts = 1;
+  ThinWall wall;
 };
 
 }  // namespace palpate

@@ -26,11 +26,13 @@ std::size_t announced(std::string_view bytes) {
 ReadSurface read_binary(std::string_view bytes) {
   ReadSurface surface;
   const std::size_t count = (bytes.size() - kHeader) / kOfTriangle, told = announced(bytes);
-  if (bytes.starts_with("solid")) surface.findings.push_back("a binary file whose first line is that of a text file");
+  if (bytes.starts_with("solid"))
+    surface.findings.push_back({"a binary file whose first line is that of a text file", "", {}});
   if (told != count)
-    surface.findings.push_back(
-        fmt::format("its header announces {} triangles and the file holds {}{}: what it holds is taken", told, count,
-                    (bytes.size() - kHeader) % kOfTriangle == 0 ? "" : " and a part of one"));
+    surface.findings.push_back({fmt::format("its header announces {} triangles and the file holds {}{}", told, count,
+                                            (bytes.size() - kHeader) % kOfTriangle == 0 ? "" : " and a part of one"),
+                                "what it holds is taken",
+                                {}});
   for (std::size_t t = 0; t < count; ++t) {
     std::array<float, 12> numbers;
     std::memcpy(numbers.data(), bytes.data() + kHeader + t * kOfTriangle, sizeof numbers);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
+#include "tools/organ/polydata_file.hpp"
 #include "tools/organ/stl_file.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/vtp_file.hpp"
@@ -48,7 +49,7 @@ ReadSurface triangles_of(const Polygons& read) {
       surface.mesh.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
   }
   if (larger > 0)
-    surface.findings.push_back(fmt::format("{} polygons of more than three sides, cut into triangles", larger));
+    surface.findings.push_back({fmt::format("{} polygons of more than three sides", larger), "cut into triangles", {}});
   return surface;
 }
 
@@ -56,6 +57,8 @@ ReadSurface read(const fs::path& file) {
   const std::string ending = ending_of(file);
   if (ending == ".stl") return read_stl(text_of(file));
   if (ending == ".vtp") return triangles_of(read_vtp(text_of(file)));
+  if (ending == ".vtk")
+    if (const std::string text = text_of(file); is_polydata(text)) return triangles_of(read_polydata(text));
   if (ending == ".vtk") return {load_triangle_mesh(file, 1), {}};
   if (ending != ".obj" && ending != ".ply" && ending != ".off")
     refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");

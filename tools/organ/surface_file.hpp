@@ -1,16 +1,16 @@
 #pragma once
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "common/mesh/tet_mesh.hpp"
+#include "tools/organ/finding.hpp"
 
 namespace palpate {
 
 /// A surface as its file has it, not yet checked.
 struct ReadSurface {
-  TriangleMesh mesh;                  ///< [m]
-  std::vector<std::string> findings;  ///< what the file says of itself that is not so
+  TriangleMesh mesh;              ///< [m]
+  std::vector<Finding> findings;  ///< what the file says of itself that is not so
 };
 
 /// Reads STL (text or binary, whatever its first line or its count say), OBJ, PLY, OFF, legacy VTK and VTP. Polygons

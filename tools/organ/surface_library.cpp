@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include "common/mesh/child.hpp"
+#include "tools/organ/plain_words.hpp"
 
 namespace palpate {
 namespace {
@@ -75,7 +76,8 @@ int crossing(const Kernel::Triangle_3& t, const Eigen::Vector3d& x, const Eigen:
 }  // namespace
 
 Polygons read_with_surface_library(const std::filesystem::path& file) {
-  const std::string answer = run_in_child([&] { return read(file); });
+  const std::string answer = run_in_child(
+      [&] { return in_plain_words("it cannot be read: it is damaged or cut short", [&] { return read(file); }); });
   Polygons found;
   std::size_t at = 0;
   found.points.resize(take<std::size_t>(answer, at));
@@ -94,7 +96,8 @@ void orient_triangles(TriangleMesh& mesh) {
   std::vector<Point> points = points_of(mesh.nodes);
   std::vector<std::vector<std::size_t>> polygons;
   for (const auto& t : mesh.triangles) polygons.emplace_back(t.begin(), t.end());
-  processing::orient_polygon_soup(points, polygons);
+  in_plain_words("its triangles cannot be turned to agree",
+                 [&] { return processing::orient_polygon_soup(points, polygons); });
   for (std::size_t n = mesh.nodes.size(); n < points.size(); ++n) mesh.nodes.push_back(vector_of(points[n]));
   for (std::size_t i = 0; i < polygons.size(); ++i)
     for (int c = 0; c < 3; ++c) mesh.triangles[i][c] = static_cast<int>(polygons[i][c]);
@@ -102,7 +105,8 @@ void orient_triangles(TriangleMesh& mesh) {
 
 std::vector<std::array<int, 3>> close_loop(const std::vector<Eigen::Vector3d>& loop) {
   std::vector<CGAL::Triple<int, int, int>> patch;
-  processing::triangulate_hole_polyline(points_of(loop), std::back_inserter(patch));
+  in_plain_words("a hole cannot be closed",
+                 [&] { return processing::triangulate_hole_polyline(points_of(loop), std::back_inserter(patch)); });
   std::vector<std::array<int, 3>> triangles;
   for (const auto& t : patch) triangles.push_back({t.first, t.second, t.third});
   return triangles;
@@ -112,9 +116,11 @@ std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh) {
   CGAL::Surface_mesh<Point> surface;
   std::vector<std::vector<std::size_t>> polygons;
   for (const auto& t : mesh.triangles) polygons.emplace_back(t.begin(), t.end());
-  processing::polygon_soup_to_polygon_mesh(points_of(mesh.nodes), polygons, surface);
   std::vector<std::pair<CGAL::SM_Face_index, CGAL::SM_Face_index>> faces;
-  processing::self_intersections(surface, std::back_inserter(faces));
+  in_plain_words("its triangles do not make a surface", [&] {
+    processing::polygon_soup_to_polygon_mesh(points_of(mesh.nodes), polygons, surface);
+    return processing::self_intersections(surface, std::back_inserter(faces));
+  });
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [a, b] : faces) pairs.emplace_back(std::minmax(static_cast<int>(a), static_cast<int>(b)));
   std::sort(pairs.begin(), pairs.end());

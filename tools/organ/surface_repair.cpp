@@ -17,13 +17,20 @@
 namespace palpate {
 namespace {
 
-constexpr double kSamePlace = 1e-7;  // of the diagonal: corners that near are one
+constexpr double kSamePlace = 1e-7;  // of the diagonal: corners that near are one,
+constexpr double kSameEdge = 1e-3;   // unless it is more than that of the median edge
 constexpr double kNoArea = 1e-12;    // of the longest edge squared
 
 using Triangle = std::array<int, 3>;
 
-std::string place_of(const TriangleMesh& mesh, const Triangle& t) {
-  return place_in_mm((mesh.nodes[t[0]] + mesh.nodes[t[1]] + mesh.nodes[t[2]]) / 3);
+Eigen::Vector3d place_of(const TriangleMesh& mesh, const Triangle& t) {
+  return (mesh.nodes[t[0]] + mesh.nodes[t[1]] + mesh.nodes[t[2]]) / 3;
+}
+
+/// Many of one kind, if there are any: "3 triangles without area".
+void note(const std::string& what, const char* done, std::vector<Eigen::Vector3d> places,
+          std::vector<Finding>& findings) {
+  if (!places.empty()) findings.push_back({fmt::format("{} {}", places.size(), what), done, std::move(places)});
 }
 
 /// Corners at one place, by the cells of a grid and their neighbours.
@@ -56,6 +63,35 @@ class Places {
   std::unordered_map<std::uint64_t, std::vector<int>> in_cell_;
 };
 
+/// A node or a few far away do not make the diagonal of a body.
+double joined_distance(const TriangleMesh& mesh) {
+  std::vector<double> edges;
+  for (const Triangle& t : mesh.triangles)
+    for (int c = 0; c < 3; ++c)
+      if (const double edge = (mesh.nodes[t[c]] - mesh.nodes[t[(c + 1) % 3]]).norm(); edge > 0) edges.push_back(edge);
+  const double near = kSamePlace * diagonal(mesh);
+  if (edges.empty()) return near;
+  const auto median = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
+  std::ranges::nth_element(edges, median);
+  return std::min(near, kSameEdge * *median);
+}
+
+void leave_unused_nodes_out(TriangleMesh& mesh, std::vector<Finding>& findings) {
+  std::vector<int> number(mesh.nodes.size(), -1);
+  for (const Triangle& t : mesh.triangles)
+    for (const int n : t) number[n] = 0;
+  std::vector<Eigen::Vector3d> used, places;
+  for (std::size_t n = 0; n < number.size(); ++n) {
+    const bool is_used = number[n] == 0;
+    if (is_used) number[n] = static_cast<int>(used.size());
+    (is_used ? used : places).push_back(mesh.nodes[n]);
+  }
+  for (Triangle& t : mesh.triangles)
+    for (int& n : t) n = number[n];
+  mesh.nodes = used;
+  note("nodes that no triangle uses", "left out", std::move(places), findings);
+}
+
 TriangleMesh join_corners(const TriangleMesh& mesh, double near) {
   TriangleMesh joined;
   Places places(near);
@@ -65,63 +101,58 @@ TriangleMesh join_corners(const TriangleMesh& mesh, double near) {
   return joined;
 }
 
-/// Takes triangles away that `which` says, and notes how many and where the first is.
+/// Takes triangles away that `which` says, and notes them.
 template <class Which>
-void take_away(TriangleMesh& mesh, const char* what, std::vector<std::string>& findings, const Which& which) {
+void take_away(TriangleMesh& mesh, const char* what, std::vector<Finding>& findings, const Which& which) {
   std::vector<Triangle> kept;
-  std::size_t first = 0, count = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!which(mesh.triangles[t]))
-      kept.push_back(mesh.triangles[t]);
-    else if (count++ == 0)
-      first = t;
-  }
-  if (count > 0)
-    findings.push_back(
-        fmt::format("{} triangles {}, the first at {}: left out", count, what, place_of(mesh, mesh.triangles[first])));
+  std::vector<Eigen::Vector3d> places;
+  for (const Triangle& t : mesh.triangles)
+    if (which(t))
+      places.push_back(place_of(mesh, t));
+    else
+      kept.push_back(t);
+  note(what, "left out", std::move(places), findings);
   mesh.triangles = kept;
 }
 
-void take_repeated_away(TriangleMesh& mesh, std::vector<std::string>& findings) {
-  take_away(mesh, "without area", findings,
+void take_repeated_away(TriangleMesh& mesh, std::vector<Finding>& findings) {
+  take_away(mesh, "triangles without area", findings,
             [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   std::set<Triangle> known;
-  take_away(mesh, "that are there twice", findings, [&](Triangle t) {
+  take_away(mesh, "triangles that are there twice", findings, [&](Triangle t) {
     std::ranges::sort(t);
     return !known.insert(t).second;
   });
 }
 
 /// What cannot be taken away without a gap: it bounds nothing and stays.
-void note_needles(const TriangleMesh& mesh, std::vector<std::string>& findings) {
-  std::size_t count = 0;
-  const Triangle* first = nullptr;
+void note_needles(const TriangleMesh& mesh, std::vector<Finding>& findings) {
+  std::vector<Eigen::Vector3d> places;
   for (const Triangle& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.nodes[t[1]] - mesh.nodes[t[0]], b = mesh.nodes[t[2]] - mesh.nodes[t[0]];
     const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm()});
-    if (a.cross(b).norm() > kNoArea * longest) continue;
-    if (count++ == 0) first = &t;
+    if (a.cross(b).norm() <= kNoArea * longest) places.push_back(place_of(mesh, t));
   }
-  if (count > 0)
-    findings.push_back(fmt::format("{} triangles whose corners lie on a line, the first at {}: they bound nothing",
-                                   count, place_of(mesh, *first)));
+  note("triangles whose corners lie on a line", "they bound nothing", std::move(places), findings);
 }
 
-void note_crowded_edges(const TriangleMesh& mesh, std::vector<std::string>& findings) {
-  std::map<std::array<int, 2>, int> around;
+void note_crowded_edges(const TriangleMesh& mesh, std::vector<Finding>& findings) {
+  std::vector<std::array<int, 2>> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c) ++around[{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])}];
-  std::size_t count = 0;
-  std::array<int, 2> first{};
-  for (const auto& [edge, triangles] : around)
-    if (triangles > 2 && count++ == 0) first = edge;
-  if (count > 0)
-    findings.push_back(fmt::format("{} edges that more than two triangles share, the first at {}: parted there", count,
-                                   place_in_mm(0.5 * (mesh.nodes[first[0]] + mesh.nodes[first[1]]))));
+    for (int c = 0; c < 3; ++c) edges.push_back({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
+  std::ranges::sort(edges);
+  std::vector<Eigen::Vector3d> places;
+  for (auto edge = edges.begin(); edge != edges.end();) {
+    const auto next = std::find_if(edge, edges.end(), [&](const auto& e) { return e != *edge; });
+    if (next - edge > 2) places.push_back(0.5 * (mesh.nodes[(*edge)[0]] + mesh.nodes[(*edge)[1]]));
+    edge = next;
+  }
+  note("edges that more than two triangles share", "parted there", std::move(places), findings);
 }
 
 /// Turned triangles are the fewer ones of each shell.
-void orient(TriangleMesh& mesh, std::vector<std::string>& findings) {
+void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
   const std::vector<Triangle> before = mesh.triangles;
   const std::vector<Eigen::Vector3d> known = mesh.nodes;
   orient_triangles(mesh);
@@ -134,7 +165,7 @@ void orient(TriangleMesh& mesh, std::vector<std::string>& findings) {
     const Triangle& now = mesh.triangles[t];
     return normal(known[a], known[b], known[c]).dot(normal(place(now[0]), place(now[1]), place(now[2]))) < 0;
   };
-  std::size_t turned = 0, first = 0;
+  std::vector<Eigen::Vector3d> places;
   for (const std::vector<int>& shell : shells_of(mesh)) {
     std::vector<int> of_shell;
     for (const int t : shell)
@@ -144,18 +175,14 @@ void orient(TriangleMesh& mesh, std::vector<std::string>& findings) {
       std::ranges::set_difference(shell, of_shell, std::back_inserter(others));
       of_shell = others;
     }
-    if (!of_shell.empty() && turned == 0) first = of_shell.front();
-    turned += of_shell.size();
+    for (const int t : of_shell) places.push_back(place_of(mesh, mesh.triangles[t]));
   }
-  if (turned > 0)
-    findings.push_back(fmt::format("{} triangles turned against their neighbours, the first at {}: turned", turned,
-                                   place_of(mesh, mesh.triangles[first])));
-  if (mesh.nodes.size() > known.size())
-    findings.push_back(fmt::format("{} nodes where the surface is not manifold, the first at {}: parted there",
-                                   mesh.nodes.size() - known.size(), place_in_mm(mesh.nodes[known.size()])));
+  note("triangles turned against their neighbours", "turned", std::move(places), findings);
+  note("nodes where the surface is not manifold", "parted there",
+       {mesh.nodes.begin() + static_cast<std::ptrdiff_t>(known.size()), mesh.nodes.end()}, findings);
 }
 
-void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<std::string>& findings) {
+void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
   for (const std::vector<int>& rim : rims_of(mesh)) {
     std::vector<Eigen::Vector3d> loop;
     Eigen::Vector3d low = mesh.nodes[rim[0]], high = low;
@@ -164,37 +191,38 @@ void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<std::strin
       low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
     }
     const double across = (high - low).norm();
-    const std::string what = fmt::format("a hole of {:.3g} mm across with {} edges at {}", 1e3 * across, rim.size(),
-                                         place_in_mm(0.5 * (low + high)));
+    Finding hole{fmt::format("a hole of {:.3g} mm across with {} edges", 1e3 * across, rim.size()),
+                 "",
+                 {0.5 * (low + high)},
+                 "holes"};
     if (across > largest_hole)
       throw std::runtime_error(
           fmt::format("{}, larger than {:.3g} mm: close it in the program that the surface comes "
                       "from, or allow it by --hole",
-                      what, 1e3 * largest_hole));
+                      say(hole), 1e3 * largest_hole));
     const auto patch = close_loop(loop);
-    if (patch.empty()) throw std::runtime_error(what + " that cannot be closed");
+    if (patch.empty()) throw std::runtime_error(say(hole) + " cannot be closed");
     for (const Triangle& t : patch) mesh.triangles.push_back({rim[t[0]], rim[t[1]], rim[t[2]]});
-    findings.push_back(what + ": closed");
+    hole.done = "closed";
+    findings.push_back(std::move(hole));
   }
 }
 
 /// Whether there are any.
-bool note_crossings(const TriangleMesh& mesh, std::vector<std::string>& findings) {
-  const auto pairs = crossing_triangles(mesh);
-  if (pairs.empty()) return false;
-  findings.push_back(
-      fmt::format("{} pairs of triangles cross one another, the first at {}: the body is all that the "
-                  "surface goes round",
-                  pairs.size(), place_of(mesh, mesh.triangles[pairs[0].first])));
-  return true;
+bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
+  std::vector<Eigen::Vector3d> places;
+  for (const auto& [a, b] : crossing_triangles(mesh)) places.push_back(place_of(mesh, mesh.triangles[a]));
+  note("pairs of triangles cross one another", "the body is all that the surface goes round", places, findings);
+  return !places.empty();
 }
 
 }  // namespace
 
 RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole) {
   RepairedSurface repaired;
-  std::vector<std::string>& findings = repaired.findings;
-  mesh = join_corners(mesh, kSamePlace * diagonal(mesh));
+  std::vector<Finding>& findings = repaired.findings;
+  leave_unused_nodes_out(mesh, findings);
+  mesh = join_corners(mesh, joined_distance(mesh));
   take_repeated_away(mesh, findings);
   if (mesh.triangles.empty()) throw std::runtime_error("no triangle has an area");
   note_needles(mesh, findings);

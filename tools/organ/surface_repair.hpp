@@ -1,19 +1,20 @@
 #pragma once
-#include <string>
 #include <vector>
 
 #include "common/mesh/tet_mesh.hpp"
+#include "tools/organ/finding.hpp"
 
 namespace palpate {
 
 /// A closed surface, its normals outward; of a body with cavities, those of a cavity point into it.
 struct RepairedSurface {
   TriangleMesh mesh;
-  std::vector<std::string> findings;  ///< a sentence for everything that was found, with its place
+  std::vector<Finding> findings;  ///< all that was wrong, with its places
   bool crosses_itself = false;
 };
 
-/// Makes a closed surface of triangles as they come: joins corners at one place, takes away triangles that are there
+/// Makes a closed surface of triangles as they come: joins corners at one place, leaves nodes
+/// out that no triangle uses, takes away triangles that are there
 /// twice or have no area, turns those that are turned against their neighbours, parts what is not manifold, closes
 /// holes up to `largest_hole` [m] across, and leaves out shells apart from the largest. Surfaces that cross themselves
 /// stay as they are: the body is what they go round.

@@ -12,7 +12,8 @@ struct SurfaceSample {
   std::array<int, 2> parts;  ///< ascending; 0: outside
 };
 
-/// Points on every surface that lines `step` [m] apart cross, a few dozen of each piece, spread over it.
+/// Points on every surface that lines `step` [m] apart cross, or closer where the solid is thin: a few dozen of each
+/// surface, spread over it, and on thin walls as many as find their two sides.
 std::vector<SurfaceSample> surface_samples(const Solid& solid, double step);
 
 }  // namespace palpate

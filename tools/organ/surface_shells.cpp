@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "tools/organ/surface_library.hpp"
 
@@ -14,6 +15,25 @@ namespace palpate {
 namespace {
 
 using Triangle = std::array<int, 3>;
+
+struct EdgeUse {
+  std::array<int, 2> edge;  ///< ascending
+  int triangle;
+  bool forward;  ///< the triangle has the edge's nodes in this order
+};
+
+/// Those of one edge beside one another.
+std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (int c = 0; c < 3; ++c) {
+      const int a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
+      uses.push_back({{std::min(a, b), std::max(a, b)}, t, a < b});
+    }
+  std::ranges::stable_sort(uses, {}, &EdgeUse::edge);
+  return uses;
+}
 
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& shell) {
   TriangleMesh part;
@@ -56,35 +76,34 @@ std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
   return parts;
 }
 
-std::string sentence(const char* what, const TriangleMesh& part, const char* so) {
-  return fmt::format("{} of {} triangles and {:.3g} ml at {}: {}", what, part.triangles.size(),
-                     1e6 * std::abs(enclosed_volume(part)), place_in_mm(part.nodes[0]), so);
+Finding shell_found(const std::string& what, const TriangleMesh& part, const char* done) {
+  return {fmt::format("a {} of {} triangles and {:.3g} ml", what, part.triangles.size(),
+                      1e6 * std::abs(enclosed_volume(part))),
+          done,
+          {part.nodes[0]},
+          what + "s"};
 }
 
 /// Adds a closed shell to what is kept, or says why not.
-void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept,
-                 std::vector<std::string>& findings) {
+void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept, std::vector<Finding>& findings) {
   const auto inside = std::ranges::count_if(part.nodes, [&](const auto& x) { return largest.winding(x) != 0; });
   if (inside == 0) {
-    findings.push_back(sentence("a stray shell", part, "left out"));
+    findings.push_back(shell_found("stray shell", part, "left out"));
     return;
   }
   const bool cavity = inside == static_cast<std::ptrdiff_t>(part.nodes.size());
-  findings.push_back(cavity ? sentence("a shell inside the largest", part, "taken for a cavity")
-                            : sentence("a shell that crosses the largest", part, "joined to it"));
+  findings.push_back(cavity ? shell_found("shell inside the largest", part, "taken for a cavity")
+                            : shell_found("shell that crosses the largest", part, "joined to it"));
   if ((enclosed_volume(part) < 0) != cavity) turn(part);
   append(kept, part);
 }
 
 }  // namespace
 
-std::string place_in_mm(const Eigen::Vector3d& x) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
-}
-
 double diagonal(const TriangleMesh& mesh) {
-  Eigen::Vector3d low = mesh.nodes[0], high = low;
-  for (const Eigen::Vector3d& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  Eigen::Vector3d low = mesh.nodes[mesh.triangles[0][0]], high = low;
+  for (const Triangle& t : mesh.triangles)
+    for (const int n : t) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
   return (high - low).norm();
 }
 
@@ -95,13 +114,12 @@ std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
     while (leader[t] != t) t = leader[t] = leader[leader[t]];
     return t;
   };
-  std::map<std::array<int, 2>, int> seen;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
-    for (int c = 0; c < 3; ++c) {
-      const auto [a, b] = std::minmax(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]);
-      const auto [other, is_new] = seen.emplace(std::array{a, b}, t);
-      if (!is_new) leader[std::max(find(t), find(other->second))] = std::min(find(t), find(other->second));
-    }
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].edge != uses[i - 1].edge) continue;
+    const auto [low, high] = std::minmax({find(uses[i].triangle), find(uses[i - 1].triangle)});
+    leader[high] = low;
+  }
   std::map<int, std::vector<int>> shells;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) shells[find(t)].push_back(t);
   std::vector<std::vector<int>> all;
@@ -110,19 +128,21 @@ std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
 }
 
 std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh) {
-  std::map<int, std::map<int, int>> next;  // of an edge from a to b: how often it goes that way less the other
-  for (const Triangle& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c) {
-      const int a = t[c], b = t[(c + 1) % 3];
-      if (const auto back = next.find(b); back != next.end() && back->second.erase(a) > 0) continue;
-      ++next[a][b];
-    }
+  std::map<int, std::set<int>> next;  // along rims: edges that triangles use more often one way than the other
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (auto use = uses.begin(); use != uses.end();) {
+    const auto [a, b] = use->edge;
+    int forward = 0;
+    for (; use != uses.end() && use->edge == std::array{a, b}; ++use) forward += use->forward ? 1 : -1;
+    if (forward > 0) next[a].insert(b);
+    if (forward < 0) next[b].insert(a);
+  }
   std::vector<std::vector<int>> rims;
   for (auto& [start, ends] : next)
     while (!ends.empty()) {
       std::vector<int> rim;
       for (int n = start; !next[n].empty();) {
-        const int to = next[n].begin()->first;
+        const int to = *next[n].begin();
         next[n].erase(to);
         rim.push_back(n);
         n = to;
@@ -146,7 +166,7 @@ double enclosed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
-void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<std::string>& findings) {
+void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
   const std::vector<TriangleMesh> parts = parts_of(mesh);
   const auto largest = std::ranges::max_element(parts, {}, surface_area);
   TriangleMesh kept = *largest;
@@ -155,13 +175,15 @@ void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<
     if (widest_hole(*part) <= largest_hole && part->triangles.size() > 1)
       append(kept, *part);
     else
-      findings.push_back(fmt::format("an open sheet of {} triangles at {}: left out", part->triangles.size(),
-                                     place_in_mm(part->nodes[0])));
+      findings.push_back({fmt::format("an open sheet of {} triangles", part->triangles.size()),
+                          "left out",
+                          {part->nodes[0]},
+                          "open sheets"});
   }
   mesh = kept;
 }
 
-void keep_largest_shell(TriangleMesh& mesh, std::vector<std::string>& findings) {
+void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<TriangleMesh> parts = parts_of(mesh);
   std::ranges::stable_sort(parts, std::ranges::greater{}, [](const auto& p) { return std::abs(enclosed_volume(p)); });
   TriangleMesh kept = parts[0];

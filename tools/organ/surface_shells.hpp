@@ -1,15 +1,12 @@
 #pragma once
-#include <string>
 #include <vector>
 
 #include "common/mesh/tet_mesh.hpp"
+#include "tools/organ/finding.hpp"
 
 namespace palpate {
 
-/// "(1.5, -20, 3) mm" of a place in metres.
-std::string place_in_mm(const Eigen::Vector3d& x);
-
-/// [m] Of the box around all nodes.
+/// [m] Of the box around all triangles.
 double diagonal(const TriangleMesh& mesh);
 
 /// Triangles that hang together through edges, ascending in each shell.
@@ -23,12 +20,12 @@ double surface_area(const TriangleMesh& mesh);  ///< [m^2]
 /// [m^3] that a closed surface encloses; negative where its normals point inward.
 double enclosed_volume(const TriangleMesh& mesh);
 
-/// Leaves out open shells beside the one with the largest area whose holes are larger than `largest_hole` [m], with a
-/// sentence for each.
-void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<std::string>& findings);
+/// Leaves out open shells beside the one with the largest area whose holes are larger than `largest_hole` [m], and
+/// notes each.
+void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings);
 
 /// Of closed shells keeps the one that encloses most, its normals outward, with the cavities in it and what crosses it;
-/// a sentence for each of the others.
-void keep_largest_shell(TriangleMesh& mesh, std::vector<std::string>& findings);
+/// the others are noted.
+void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings);
 
 }  // namespace palpate

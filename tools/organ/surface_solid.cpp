@@ -1,26 +1,52 @@
 #include "tools/organ/surface_solid.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "tools/organ/distance_grid.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/surface_shells.hpp"
+#include "tools/organ/thin_walls.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr int kRim = 4;  // cells around the surface
+constexpr int kRim = 4;               // cells around the surface
+constexpr double kCells = 8e6;        // of the grid
+constexpr double kMostAlong = 1000;   // of these along the longest extent
+constexpr double kCellsOfWall = 1.5;  // at least, for the grid to tell its sides apart
 
-GridShape grid_around(const TriangleMesh& surface, int cells) {
-  Eigen::Vector3d low = surface.nodes[0], high = low;
-  for (const Eigen::Vector3d& x : surface.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  const double cell = (high - low).maxCoeff() / cells;
+/// A box is filled with about so many cells, or its longest extent cut into as many as that.
+GridShape grid_around(const TriangleMesh& surface) {
+  Eigen::Vector3d low = surface.nodes[surface.triangles[0][0]], high = low;
+  for (const auto& t : surface.triangles)
+    for (const int n : t) low = low.cwiseMin(surface.nodes[n]), high = high.cwiseMax(surface.nodes[n]);
+  const double longest = (high - low).maxCoeff();
+  const auto cells_of = [&](double cell) { return ((high - low).array() / cell + 2 * kRim).prod(); };
+  double cell = longest / kMostAlong;
+  while (cells_of(cell) > kCells) cell *= 1.05;
   GridShape shape{{}, low - Eigen::Vector3d::Constant((kRim + 0.3183) * cell), Eigen::Vector3d::Constant(cell)};
   for (int a = 0; a < 3; ++a) shape.count[a] = static_cast<int>(std::ceil((high - low)[a] / cell)) + 2 * kRim + 1;
   return shape;
+}
+
+/// Middles of triangles, evenly over the surface.
+std::vector<SurfacePoint> points_of(const TriangleMesh& surface) {
+  std::vector<SurfacePoint> points;
+  const double share = surface_area(surface) / static_cast<double>(kWallPoints);
+  double area = 0.5 * share;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Eigen::Vector3d x = surface.nodes[a], u = surface.nodes[b] - x, v = surface.nodes[c] - x;
+    const Eigen::Vector3d normal = u.cross(v);
+    for (area += 0.5 * normal.norm(); area > share; area -= share)
+      points.push_back({x + area / (area + share) * (u + v) / 2.01, -normal.normalized()});
+  }
+  return points;
 }
 
 /// What the surface goes round at least once; a line that meets an edge twice is set right by those beside it.
@@ -54,9 +80,17 @@ void make_exact_near_surface(DistanceGrid& grid, const SurfaceTree& tree) {
 
 }  // namespace
 
-SurfaceSolid solid_of(const TriangleMesh& surface, int cells) {
+SurfaceSolid solid_of(const TriangleMesh& surface) {
   const auto tree = std::make_shared<const SurfaceTree>(surface);
-  const GridShape shape = grid_around(surface, cells);
+  const GridShape shape = grid_around(surface);
+  const double cell = shape.spacing.x();
+  const ThinWall wall = thin_wall(
+      points_of(surface), [&](const Eigen::Vector3d& x) { return tree->distance(x); }, 0.01 * cell);
+  if (wall.thickness < kCellsOfWall * cell)
+    throw std::runtime_error(fmt::format(
+        "its walls are {:.3g} mm thick at {}, less than is told apart in a body of that size: {:.3g} mm; cut "
+        "it into smaller parts, or have it as a surface of shell elements",
+        1e3 * wall.thickness, place_in_mm(wall.place), 1e3 * kCellsOfWall * cell));
   auto distance = std::make_shared<DistanceGrid>(distance_to_border(shape, inside_of(*tree, shape)));
   make_exact_near_surface(*distance, *tree);
   SurfaceSolid result{{}, {surface_area(surface), {enclosed_volume(surface)}}};
@@ -65,6 +99,7 @@ SurfaceSolid solid_of(const TriangleMesh& surface, int cells) {
   solid.depth = [distance](const Eigen::Vector3d& x) { return std::abs(distance->at(x)); };
   solid.nearest = [tree](const Eigen::Vector3d& x) { return tree->nearest(x); };
   solid.low = shape.place(1, 1, 1), solid.high = shape.far_corner() - shape.spacing;
+  solid.wall = wall;
   return result;
 }
 

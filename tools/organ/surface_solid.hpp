@@ -9,8 +9,8 @@ struct SurfaceSolid {
   SolidMeasures measures;
 };
 
-/// Distances to the surface are kept on a grid of `cells` along its longest extent, and are exact near the surface.
-/// `surface` outlives the solid.
-SurfaceSolid solid_of(const TriangleMesh& surface, int cells = 200);
+/// Distances to the surface are kept on a grid of some million cells, and are exact near the surface. `surface`
+/// outlives the solid. Throws std::runtime_error(reason) where its walls are thinner than the grid can tell.
+SurfaceSolid solid_of(const TriangleMesh& surface);
 
 }  // namespace palpate

@@ -3,18 +3,27 @@
 #include <vector>
 
 #include "tools/organ/distance_grid.hpp"
+#include "tools/organ/finding.hpp"
+#include "tools/organ/mesh_pieces.hpp"
 
 namespace palpate {
 
 /// Keeps the largest piece of voxels that share faces, and says of the others where they are.
 void keep_largest_piece(const GridShape& shape, std::vector<char>& inside, const std::string& name,
-                        std::vector<std::string>& findings);
+                        std::vector<Finding>& findings);
 
 /// Keeps the pieces in which a seed lies; `seeds` are indices of voxels.
 void keep_pieces_with(const GridShape& shape, std::vector<char>& inside, const std::vector<std::size_t>& seeds);
 
-/// Fills what the voxels enclose, unless `other` voxels are there, and says where that is.
-void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std::vector<char>& other,
-                   const std::string& name, std::vector<std::string>& findings);
+/// A part of a label's voxels: larger cavities in it are meant.
+inline constexpr double kSmallCavity = 0.01;
+
+/// Fills what the voxels enclose, up to a part `largest` of them, unless `other` voxels are there, and says where that
+/// is.
+void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std::vector<char>& other, double largest,
+                   const std::string& name, std::vector<Finding>& findings);
+
+/// Of voxels that hang together through faces: pieces and cavities, and tunnels through them.
+Topology topology_of(const GridShape& shape, const std::vector<char>& inside);
 
 }  // namespace palpate

@@ -1,0 +1,111 @@
+#include "tools/organ/label_voxels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "tools/organ/voxel_pieces.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int kRim = 8;  // voxels around the labels
+constexpr std::size_t kMaxLabels = 255;
+
+/// The part of the image with labels, and a rim around it.
+GridShape crop_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels) {
+  std::array<int, 3> low = volume.shape.count, high{-1, -1, -1};
+  std::size_t at = 0;
+  for (int k = 0; k < volume.shape.count[2]; ++k)
+    for (int j = 0; j < volume.shape.count[1]; ++j)
+      for (int i = 0; i < volume.shape.count[0]; ++i, ++at) {
+        if (std::ranges::find(labels, volume.value[at], &NamedLabel::label) == labels.end()) continue;
+        const std::array<int, 3> place{i, j, k};
+        for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], place[a]), high[a] = std::max(high[a], place[a]);
+      }
+  if (high[0] < 0) throw std::runtime_error(fmt::format("no voxel has the label {}", labels[0].label));
+  GridShape crop = volume.shape;
+  for (int a = 0; a < 3; ++a) {
+    crop.count[a] = high[a] - low[a] + 1 + 2 * kRim;
+    crop.origin[a] += (low[a] - kRim) * crop.spacing[a];
+  }
+  return crop;
+}
+
+std::vector<char> all_voxels_of(const LabelVolume& volume, const GridShape& crop, const NamedLabel& label) {
+  std::vector<char> inside(crop.size(), 0);
+  const Eigen::Array3i shift = ((crop.origin - volume.shape.origin).array() / crop.spacing.array()).round().cast<int>();
+  bool any = false;
+  for (int k = kRim; k < crop.count[2] - kRim; ++k)
+    for (int j = kRim; j < crop.count[1] - kRim; ++j)
+      for (int i = kRim; i < crop.count[0] - kRim; ++i) {
+        const bool set = volume.value[volume.shape.index(i + shift[0], j + shift[1], k + shift[2])] == label.label;
+        inside[crop.index(i, j, k)] = set;
+        any = any || set;
+      }
+  if (!any) throw std::runtime_error(fmt::format("no voxel has the label {}", label.label));
+  return inside;
+}
+
+void add(const std::vector<char>& more, std::vector<char>& all) {
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] || more[i];
+}
+
+/// Of every voxel the number of its label, from 1; 0: none.
+std::vector<unsigned char> numbers_of(const LabelVoxels& voxels) {
+  std::vector<unsigned char> number(voxels.shape.size(), 0);
+  for (std::size_t l = 0; l < voxels.inside.size(); ++l)
+    for (std::size_t i = 0; i < number.size(); ++i)
+      if (voxels.inside[l][i]) number[i] = static_cast<unsigned char>(l + 1);
+  return number;
+}
+
+}  // namespace
+
+double volume_of_voxels(const GridShape& shape, const std::vector<char>& inside) {
+  return static_cast<double>(std::ranges::count(inside, 1)) * shape.spacing.prod();
+}
+
+LabelVoxels voxels_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels,
+                      std::vector<Finding>& findings) {
+  if (labels.size() > kMaxLabels)
+    throw std::runtime_error(fmt::format("{} labels: {} are taken at once", labels.size(), kMaxLabels));
+  LabelVoxels voxels{crop_of(volume, labels), labels, {}};
+  std::vector<char> all(voxels.shape.size(), 0);
+  for (const NamedLabel& label : labels) {
+    voxels.inside.push_back(all_voxels_of(volume, voxels.shape, label));
+    keep_largest_piece(voxels.shape, voxels.inside.back(), label.name, findings);
+    add(voxels.inside.back(), all);
+  }
+  for (std::size_t l = 0; l < labels.size(); ++l) {
+    fill_cavities(voxels.shape, voxels.inside[l], all, kSmallCavity, labels[l].name, findings);
+    add(voxels.inside[l], all);
+  }
+  return voxels;
+}
+
+std::vector<std::vector<int>> touching_labels(const LabelVoxels& voxels) {
+  const std::vector<unsigned char> number = numbers_of(voxels);
+  std::vector<int> leader(voxels.inside.size());
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int l) {
+    while (leader[l] != l) l = leader[l];
+    return l;
+  };
+  const std::size_t row = voxels.shape.count[0], layer = row * voxels.shape.count[1];
+  for (std::size_t i = layer; i < number.size(); ++i)
+    for (const std::size_t step : {std::size_t{1}, row, layer}) {
+      const int a = number[i], b = number[i - step];
+      if (a == 0 || b == 0 || a == b) continue;
+      const auto [low, high] = std::minmax({find(a - 1), find(b - 1)});
+      leader[high] = low;
+    }
+  std::vector<std::vector<int>> together(leader.size());
+  for (int l = 0; l < static_cast<int>(leader.size()); ++l) together[find(l)].push_back(l);
+  std::erase_if(together, [](const auto& labels) { return labels.empty(); });
+  return together;
+}
+
+}  // namespace palpate

@@ -1,0 +1,14 @@
+#pragma once
+#include <string_view>
+
+#include "tools/organ/surface_library.hpp"
+
+namespace palpate {
+
+/// Whether a legacy VTK file holds a surface, DATASET POLYDATA.
+bool is_polydata(std::string_view bytes);
+
+/// Its points and polygons, as text or binary. Throws std::runtime_error(reason).
+Polygons read_polydata(std::string_view bytes);
+
+}  // namespace palpate

@@ -1,0 +1,23 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "tools/organ/solid.hpp"
+
+namespace palpate {
+
+struct SurfacePoint {
+  Eigen::Vector3d place;   ///< [m]
+  Eigen::Vector3d inward;  ///< of length 1
+};
+
+/// So many points tell how thick a body is.
+inline constexpr std::size_t kWallPoints = 2000;
+
+/// How thick the thinnest twentieth of a surface's points find the body, going inward until `distance` to the surface
+/// [m] is below `near` [m] again; edges and tips are thinner. Needs a point.
+ThinWall thin_wall(const std::vector<SurfacePoint>& points,
+                   const std::function<double(const Eigen::Vector3d&)>& distance, double near);
+
+}  // namespace palpate
