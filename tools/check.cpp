@@ -13,10 +13,10 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
-#include "tools/mesh/check_mesh.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
+#include "tools/mesh/check_mesh.hpp"
 #include "tools/node_plan.hpp"
 #include "tools/tool_warnings.hpp"
 

@@ -167,11 +167,12 @@ TEST_P(SecuredScenes, RunWithKeys) {
   keys::make_folder(folder / "keys", this_month());
   const auto& [scene, topics] = GetParam();
   std::string said;
-  EXPECT_EQ(run_command(fmt::format("{} run {}/scenes/{}.toml --processes 2 --seconds {} --domain {} --keys {} --record {}",
-                                    program("palpate"), PALPATE_SOURCE, scene, kSanitized ? 4 : 1.7, own_domain(),
-                                    (folder / "keys").string(), (folder / "all.lcmlog").string()),
-                        &said),
-            0)
+  EXPECT_EQ(
+      run_command(fmt::format("{} run {}/scenes/{}.toml --processes 2 --seconds {} --domain {} --keys {} --record {}",
+                              program("palpate"), PALPATE_SOURCE, scene, kSanitized ? 4 : 1.7, own_domain(),
+                              (folder / "keys").string(), (folder / "all.lcmlog").string()),
+                  &said),
+      0)
       << said;
   std::set<std::string> recorded;
   LogReader log(folder / "all.lcmlog");
