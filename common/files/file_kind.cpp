@@ -21,8 +21,12 @@ constexpr Kind kKinds[] = {
     {".mcap", "an MCAP file", "\x89MCAP"},
     {".h5", "an HDF5 file", "\x89HDF"},
     {".msh", "a mesh", "$MeshFormat"},
+    {".inr", "an INR image", "#INRIMAGE"},
+    {".mha", "a MetaImage", "ObjectType"},
+    {".nrrd", "an NRRD image", "NRRD"},
     {".vtu", "XML", "<"},
     {".json", "JSON", "{"},
+    {".stl", "a surface", "solid "},
 };
 constexpr std::string_view kScene = ".toml", kText = ".csv";
 
@@ -44,6 +48,15 @@ bool is_toml(std::string_view text) {
   return false;
 }
 
+/// Binary STL has no mark, but says how many triangles of 50 bytes it has.
+bool is_binary_stl(std::string_view bytes, std::uintmax_t size) {
+  constexpr std::size_t kHead = 80, kTriangle = 50;
+  std::uint32_t triangles = 0;
+  if (bytes.size() < kHead + sizeof triangles) return false;
+  std::memcpy(&triangles, bytes.data() + kHead, sizeof triangles);
+  return size == kHead + sizeof triangles + kTriangle * std::uintmax_t{triangles};
+}
+
 }  // namespace
 
 std::string_view kind_of(const std::filesystem::path& file) {
@@ -53,6 +66,8 @@ std::string_view kind_of(const std::filesystem::path& file) {
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   for (const Kind& kind : kKinds)
     if (bytes.size() >= kind.at && std::string_view(bytes).substr(kind.at).starts_with(kind.mark)) return kind.ending;
+  std::error_code unknown;
+  if (is_binary_stl(bytes, std::filesystem::file_size(file, unknown))) return ".stl";
   if (bytes.empty() || !is_text(bytes)) return {};
   return is_toml(bytes) ? kScene : kText;
 }

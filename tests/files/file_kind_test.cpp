@@ -22,6 +22,10 @@ TEST(FileKind, IsToldByTheFirstBytes) {
   EXPECT_EQ(kind("\0\0\0 ftypisom"s), ".mp4");
   EXPECT_EQ(kind("\x89PNG\r\n"), ".png");
   EXPECT_EQ(kind("$MeshFormat\n4.1 0 8\n"), ".msh");
+  EXPECT_EQ(kind("#INRIMAGE-4#{\nXDIM=3\n"), ".inr");
+  EXPECT_EQ(kind("ObjectType = Image\n"), ".mha");
+  EXPECT_EQ(kind("NRRD0004\n"), ".nrrd");
+  EXPECT_EQ(kind(std::string(80, '\x7f') + "\1\0\0\0"s + std::string(50, '\1')), ".stl");
   EXPECT_EQ(kind("<?xml version=\"1.0\"?>"), ".vtu");
   EXPECT_EQ(kind("{\"a\": 1}\n"), ".json");
   EXPECT_EQ(kind("# a motion\ntime,yaw\n0,1\n"), ".csv");

@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   std::filesystem::path file;
   const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
     cli::Command shape = app.add_command(name, what);
-    shape.add_option("-o,--output", file, "File to write").required().output_file("", {".msh", ".csv"});
+    shape.add_option("-o,--output", file, "File to write").required().output_file("", {".msh", ".csv", ".stl"});
     shape.does(make);
     return shape;
   };

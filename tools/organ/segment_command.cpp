@@ -147,7 +147,7 @@ void add_segment_command(cli::Command& app) {
   command.add_option("--series", o->series, kSeriesHelp);
   command.add_option("-o,--output", o->output, "Labels to write (.mha, .nrrd; .inr keeps no origin)")
       .required()
-      .output_file();
+      .output_file("", {".inr", ".mha", ".nrrd"});
   command.add_option("--seed", o->seeds, "Point in the organ: x,y,z in the image's world [mm]; may be given again")
       .one_value_each_time();
   command.add_option("--seed-voxel", o->seed_voxels, "The same in voxels, from 0; may be given again")

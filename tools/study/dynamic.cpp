@@ -183,25 +183,28 @@ class Dynamic : public Method {
     auto still = as_kind<QuasiStaticSpec>(solid_->solid());
     still.offline = Offline{.element = FiniteElement::p1};
     scene.bodies[body()] = still;
-    const Archive archive = precompute(still, solid_->mesh());
+    const std::vector<Archive> archives{precompute(still, solid_->mesh())};
     const Presses& presses = solid_->presses();
     for (std::size_t p = 0; p < presses.patches.size(); ++p) {
       Scene alone = solid_->press_scene(scene, static_cast<int>(p));
-      BallPress press(alone, archive, presses.patches[p], presses.radius);
+      BallPress press(alone, archives[0], presses.patches[p], presses.radius);
       alone.contact.rule = ContactRule::barycentric;  // shows no dent that is finer than the nodes, as moving tissue
-      Deformer nodes(alone, {archive});
+      Deformer nodes(alone, archives);
       same_mesh_.emplace_back();
       for (const double depth : presses.depths) {
         PressAnswer& answer = same_mesh_.back().emplace_back(press.to(depth));
-        answer.displacement = shown_by(nodes, press.rig().simulator().contacts(0));
+        answer.displacement = shown_by(nodes, *press.rig().haptic().part(0));
       }
     }
     return same_mesh_;
   }
 
-  /// [m] of the surface's nodes under a tool's contacts.
-  static std::vector<Eigen::Vector3d> shown_by(Deformer& deformer, ContactState contacts) {
-    contacts.run = 1;
+  /// [m] of the surface's nodes under the forces on a body.
+  static std::vector<Eigen::Vector3d> shown_by(Deformer& deformer, const BodyPart& pressed) {
+    ContactState contacts{.run = 1};
+    pressed.for_each_force([&](int, int node, const Eigen::Vector3d& f) {
+      contacts.forces.push_back({.node = static_cast<std::uint32_t>(node), .force = {f.x(), f.y(), f.z()}});
+    });
     deformer.take(contacts);
     deformer.deform();
     std::vector<Eigen::Vector3d> u;
