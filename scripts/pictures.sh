@@ -17,7 +17,7 @@ jpeg() { ffmpeg -loglevel error -y -i "$work/$1.png" -q:v 2 "docs/pictures/$1.jp
 [ $# -gt 0 ] || set -- liver hepatectomy catheter_insertion live
 for name in "$@"; do
   case "$name" in
-    liver) draw liver liver 0 8 && cp "$work/liver.png" docs/pictures/liver.png ;;
+    liver) draw liver liver 0 8 && jpeg liver ;;
     hepatectomy) draw hepatectomy hepatectomy 13 13.2 && jpeg hepatectomy ;;
     catheter_insertion) draw catheter_insertion catheter_insertion 10.5 10.8 && jpeg catheter_insertion ;;
     live) /usr/bin/python3 scripts/live_view.py --rounds 1 --picture "$work/live.png" && jpeg live ;;

@@ -8,6 +8,7 @@
 #include "common/bus/log_reader.hpp"
 #include "idl/topics.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/child_process.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::comes_within;
 using testing::kLinear;
 using testing::LoopbackScene;
 using testing::program;
@@ -65,16 +67,6 @@ double film_seconds(const fs::path& film) {
   const json found = json::parse(probe.out);
   EXPECT_GT(std::stoi(found["streams"][0]["nb_read_frames"].get<std::string>()), 10);
   return std::stod(found["format"]["duration"].get<std::string>());
-}
-
-template <class Done>
-bool comes_within(std::chrono::seconds limit, Done&& done) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(50ms);
-  }
-  return true;
 }
 
 /// Processes whose command line names something in the folder.
@@ -325,125 +317,6 @@ TEST(SessionTest, OfTwoHapticNodesWithinASecondExactlyOneStays) {
     ASSERT_TRUE(stays.wait(30s));
     EXPECT_EQ(stays.status(), 0);
   }
-}
-
-/// Names in a list of JSON.
-std::set<std::string> names_in(const json& list) {
-  std::set<std::string> names;
-  for (const json& name : list) names.insert(name.get<std::string>());
-  return names;
-}
-
-TEST(ToolsRun, CheckNamesTheNodesThatRunStartsAndCountsTheirMemoryAlone) {
-  const LoopbackScene scene("planned", kLinear);
-  const std::string text = text_of(scene.scene());
-  const std::string bare = text.substr(0, text.find("[render]"));
-  for (const std::string& variant : {text, bare, bare + "[record]\nfile = \"log.lcmlog\"\n"}) {
-    scene.write("scene.toml", variant);
-    const json check = json::parse(run_program(program("palpate") + " check --json " + scene.scene()).out);
-    const std::set<std::string> told = names_in(check["nodes"]);
-    for (const json& part : check["bodies"][0]["memory"])
-      EXPECT_TRUE(part["owner"] == "disk" || told.contains(part["owner"].get<std::string>())) << part;
-
-    const std::string summary = scene.folder() / "summary.json";
-    const auto run = run_program(fmt::format("{} run {} --domain {} --seconds 0.3 --summary {}", program("palpate"),
-                                             scene.scene(), testing::own_domain(), summary));
-    ASSERT_EQ(run.status, 0) << run.err;
-    const json ended = json::parse(text_of(summary));
-    std::set<std::string> started;
-    for (const char* node : {"recorder", "deform_node", "render_node", "web_node", "haptic_node"})
-      if (ended.contains(node)) started.insert(node);
-    if (started.erase("render_node") > 0) started.insert("render_node --deform");
-    EXPECT_EQ(told, started);
-  }
-}
-
-TEST(ToolsRun, ASoundRunEndsWithoutAnAlarmAndPassesAsStrict) {
-  const LoopbackScene scene("calm", kLinear);
-  for (const int processes : {2, 3}) {
-    const auto run = run_program(fmt::format("{} run {} --domain {} --processes {} --seconds 2 --strict",
-                                             program("palpate"), scene.scene(), testing::own_domain(), processes));
-    EXPECT_EQ(run.status, 0) << run.err;
-    for (const char* alarm : {"gone", "lost", "network is cut", "guarded", "refus"})
-      EXPECT_EQ(run.err.find(alarm), std::string::npos) << run.err;
-  }
-}
-
-TEST(ToolsRun, AStrictRunFailsWhereTheHandHadToBeGuarded) {
-  const LoopbackScene scene("strict", kLinear);
-  scene.write("motion.csv",
-              "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n0.5,0,0,0.17,0,0\n0.501,0,0,0.1,0,0\n1,0,0,0.1,0,0\n");
-  const std::string command =
-      fmt::format("{} run {} --domain {} --seconds 0.8", program("palpate"), scene.scene(), testing::own_domain());
-  const auto run = run_program(command), strict = run_program(command + " --strict");
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("the hand was guarded: "), std::string::npos) << run.err;
-  EXPECT_EQ(strict.status, 1);
-  EXPECT_NE(strict.err.find("palpate: the hand was guarded: "), std::string::npos) << strict.err;
-}
-
-TEST(ToolsRun, TheHapticNodeIsGoneOnlyWhenItIs) {
-  const LoopbackScene scene("standing", kLinear);
-  scene.write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n60,0,0,0.199,0,0\n");
-  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
-  const fs::path said = scene.folder() / "said";
-  const auto node = [&](const std::string& name, const std::string& more) {
-    return ChildProcess(
-        name, {"/bin/sh", "-c",
-               fmt::format("exec {} {} --domain {} {}", program(name), scene.scene(), testing::own_domain(), more)});
-  };
-  ChildProcess render = node("render_node", "--deform 2>" + said.string());
-  ChildProcess haptic = node("haptic_node", "2>/dev/null");
-  const auto times_gone = [&] {
-    const std::string text = text_of(said);
-    int times = 0;
-    for (std::size_t at = text.find("node is gone"); at != text.npos; at = text.find("node is gone", at + 1)) ++times;
-    return times;
-  };
-  ASSERT_TRUE(comes_within(20s, [&] { return text_of(said).find("met haptic") != std::string::npos; }));
-  std::this_thread::sleep_for(3s);
-  for (int stop = 0; stop < 3; ++stop) {
-    kill(haptic.pid(), SIGSTOP);
-    std::this_thread::sleep_for(300ms);
-    kill(haptic.pid(), SIGCONT);
-    std::this_thread::sleep_for(500ms);
-  }
-  EXPECT_EQ(times_gone(), 0) << text_of(said);
-  kill(haptic.pid(), SIGKILL);
-  EXPECT_TRUE(comes_within(10s, [&] { return times_gone() > 0; })) << text_of(said);
-  std::this_thread::sleep_for(1s);
-  EXPECT_EQ(times_gone(), 1) << text_of(said);
-}
-
-TEST(ToolsRun, ADriverThatNeverSpeaksIsWaitedForAsLongAsTheRunIsToLast) {
-  const LoopbackScene scene("no-driver", kLinear);
-  scene.replace("device = \"scripted\"\ntrajectory = \"motion.csv\"", "device = \"bus\"");
-  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
-  const auto haptic = run_program(
-      fmt::format("{} {} --domain {} --seconds 1", program("haptic_node"), scene.scene(), testing::own_domain()));
-  EXPECT_EQ(haptic.status, 1);
-  EXPECT_NE(haptic.err.find("no driver on topic palpate/device_state has spoken for 1 s"), std::string::npos)
-      << haptic.err;
-}
-
-TEST(ToolsRun, ASceneTellsTheNetworkToCommandsThatJoinIt) {
-  const LoopbackScene scene("network", kLinear);
-  const int domain = testing::own_domain();
-  scene.replace("[render]\n", fmt::format("[network]\ndomain = {}\n[render]\n", domain));
-  const std::string log = scene.folder() / "a.lcmlog",
-                    record = program("palpate") + " record --seconds 0.3 --force -o ";
-  const auto recorded = run_program(record + log + " --scene " + scene.scene());
-  EXPECT_EQ(recorded.status, 0) << recorded.err;
-  EXPECT_NE(recorded.out.find(fmt::format("recording domain {} to", domain)), std::string::npos) << recorded.out;
-  const auto named = run_program(record + log + " --domain 120 --scene " + scene.scene());
-  EXPECT_NE(named.out.find("recording domain 120 to"), std::string::npos) << named.out;
-  const auto played = run_program(program("palpate") + " replay --json " + log + " --scene " + scene.scene());
-  EXPECT_EQ(played.status, 0) << played.err;
-  const auto top = run_program(program("palpate") + " top --once --json --scene " + scene.scene());
-  EXPECT_EQ(json::parse(top.out)["domain"], domain);
-  const json as_json = json::parse(run_program(record + log + " --json --scene " + scene.scene()).out);
-  EXPECT_EQ(as_json["file"], log);
-  EXPECT_EQ(as_json["scene"], false);
 }
 
 }  // namespace
