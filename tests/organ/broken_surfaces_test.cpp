@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <numbers>
 
 #include "common/mesh/measures.hpp"
@@ -120,6 +123,9 @@ std::vector<Broken> broken_surfaces() {
   TriangleMesh shell = ball, inner = make_sphere({0, 0, 0}, 48.5, 20);
   append(shell, inner);
   all.push_back({"shell.stl", stl(shell), mm, {"its walls are 1.", "mm thick at (", "ask for --edge 0.001"}});
+  constexpr std::array kLong{"doubled.stl", "at_edge.stl", "metres.stl", "ball.vtk", "many.stl"};
+  if (!std::getenv("PALPATE_LONG_TESTS"))
+    std::erase_if(all, [&](const Broken& broken) { return std::ranges::find(kLong, broken.name) != kLong.end(); });
   return all;
 }
 
