@@ -67,8 +67,6 @@ void run(const NodeOptions& o) {
   Stage stage = make_stage(loaded);
   const Render picture = loaded.scene.render.value_or(Render{});
   Renderer renderer(picture.width, picture.height, options.samples);
-  std::optional<Film> film;
-  if (!options.film.empty()) film.emplace(options.film, picture.width, picture.height, options.film_rate);
 
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(loaded.scene, o, "render"));
   Presence presence(*bus, "render", 0, loaded.scene_hash, loaded.archive_hash);
@@ -77,6 +75,8 @@ void run(const NodeOptions& o) {
   if (moves) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   catch_shutdown_signals();
+  std::optional<Film> film;  // from here on the file is not left half written
+  if (!options.film.empty()) film.emplace(options.film, picture.width, picture.height, options.film_rate);
   RenderLoop loop(loaded.scene, std::move(stage), *source, *bus, presence, renderer);
   if (topology) loop.set_topology(&*topology);
   if (film) loop.set_film(&*film);

@@ -19,6 +19,7 @@
 #include "tools/domain_claim.hpp"
 #include "tools/guard_summary.hpp"
 #include "tools/node_plan.hpp"
+#include "tools/say_stages.hpp"
 
 namespace palpate {
 namespace {
@@ -194,7 +195,8 @@ NodePlan plan_of(const Scene& scene, const RunOptions& o) {
                             .processes = o.processes});
 }
 
-void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
+/// False where it is stopped before all of them run.
+bool start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
   const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
@@ -214,11 +216,12 @@ void start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
   }
   if (plan.web) nodes.start("web_node", with(web_command(o)));
   nodes.wait_ready();
-  if (shutdown_requested()) return;
+  if (shutdown_requested()) return false;
   std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
   if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
   if (plan.web) haptic.push_back("--hands");
   nodes.start("haptic_node", haptic);
+  return true;
 }
 
 void print_summary(const nlohmann::json& s) {
@@ -283,18 +286,19 @@ void say_where_to_look(const Scene& scene, const RunOptions& o) {
 void run(const RunOptions& o) {
   const Scene scene = load_scene(o.scene);
   keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
-  for (const Body& body : scene.bodies) ensure_archive(scene, body);
+  for (const Body& body : scene.bodies) ensure_archive(scene, body, say_stages(body));
   catch_shutdown_signals();
   const auto begin = Clock::now();
   const DomainClaim claim = claim_domain(scene, o);
   Nodes nodes;
-  start_nodes(nodes, scene, claim.domain(), o);
+  const bool began = start_nodes(nodes, scene, claim.domain(), o);
   while (!shutdown_requested() && nodes.last_runs()) {
     nodes.read();
     nodes.check();
     std::this_thread::sleep_for(20ms);
   }
   nodes.stop();
+  if (!began) throw std::runtime_error("stopped before the run began: nothing has come of it");
 
   nlohmann::json summary = nodes.summary();
   summary["scene"] = o.scene;

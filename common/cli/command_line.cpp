@@ -44,20 +44,21 @@ std::string refuse_kind(const std::string& name, const std::vector<std::string>&
   std::string written;
   for (const std::string& one : kinds)
     written += fmt::format("{}{}", written.empty() ? "" : " or ", kind_in_words(one));
-  return fmt::format("{} is {}, and would be replaced by {}: give another name, or {}", name, kind_in_words(kind),
-                     written, kForce);
+  return fmt::format("{} is {}, and would be replaced by {}: give another name", name, kind_in_words(kind), written);
 }
 
-/// Nothing of another kind is written over unless that is asked for.
+/// Nothing of another kind is written over unless that is asked for, where --force asks for it.
 void keep_other_kinds(const CLI::App& app) {
   const CLI::Option* const force = app.get_option_no_throw(kForce);
-  if (!force || force->count() > 0) return;
+  const bool can_force = force && force->get_items_expected_max() == 0;
+  if (!force || (can_force && force->count() > 0)) return;
   for (CLI::Option* output : const_cast<CLI::App&>(app).get_options()) {
     if (output->get_type_name() != kOutput) continue;
     CLI::Validator kind = *output->get_validator(kKind);
     kind.active();
     for (std::string name : output->results())
-      if (const std::string why = kind(name); !why.empty()) throw CLI::ValidationError(output->get_name(), why);
+      if (const std::string why = kind(name); !why.empty())
+        throw CLI::ValidationError(output->get_name(), can_force ? fmt::format("{}, or {}", why, kForce) : why);
   }
 }
 

@@ -28,7 +28,7 @@ constexpr Kind kKinds[] = {
     {".json", "JSON", "{"},
     {".stl", "a surface", "solid "},
 };
-constexpr std::string_view kScene = ".toml", kText = ".csv";
+constexpr std::string_view kScene = ".toml", kMotion = "motion", kText = ".csv";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(
@@ -46,6 +46,15 @@ bool is_toml(std::string_view text) {
     return line[0] == '[' || (key != line.npos && line[key] == '=');
   }
   return false;
+}
+
+/// Whether the first line that is no comment names the columns of a trajectory.
+bool is_motion(std::string_view text) {
+  while (text.starts_with('#')) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+  }
+  return text.starts_with("time,yaw");
 }
 
 /// Binary STL has no mark, but says how many triangles of 50 bytes it has.
@@ -69,13 +78,13 @@ std::string_view kind_of(const std::filesystem::path& file) {
   std::error_code unknown;
   if (is_binary_stl(bytes, std::filesystem::file_size(file, unknown))) return ".stl";
   if (bytes.empty() || !is_text(bytes)) return {};
-  return is_toml(bytes) ? kScene : kText;
+  return is_motion(bytes) ? kMotion : is_toml(bytes) ? kScene : kText;
 }
 
 std::string_view kind_in_words(std::string_view kind) {
   const auto* known = std::ranges::find(kKinds, kind, &Kind::ending);
   if (known != std::end(kKinds)) return known->words;
-  return kind == kScene ? "TOML" : kind == kText ? "text" : "something else";
+  return kind == kScene ? "TOML" : kind == kMotion ? "a trajectory" : kind == kText ? "text" : "something else";
 }
 
 }  // namespace palpate

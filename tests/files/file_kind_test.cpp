@@ -28,7 +28,8 @@ TEST(FileKind, IsToldByTheFirstBytes) {
   EXPECT_EQ(kind(std::string(80, '\x7f') + "\1\0\0\0"s + std::string(50, '\1')), ".stl");
   EXPECT_EQ(kind("<?xml version=\"1.0\"?>"), ".vtu");
   EXPECT_EQ(kind("{\"a\": 1}\n"), ".json");
-  EXPECT_EQ(kind("# a motion\ntime,yaw\n0,1\n"), ".csv");
+  EXPECT_EQ(kind("# a motion\ntime,yaw\n0,1\n"), "motion");
+  EXPECT_EQ(kind("# of nodes\nnode,x\n0,1\n"), ".csv");
   EXPECT_EQ(kind("# of the liver\n\ntitle = \"x, y\"\n"), ".toml");
   EXPECT_EQ(kind("[[body]]\n"), ".toml");
   EXPECT_EQ(kind("\x7f"

@@ -17,6 +17,7 @@
 #include "tools/commands.hpp"
 #include "tools/drive/run.hpp"
 #include "tools/drive/sweep.hpp"
+#include "tools/say_stages.hpp"
 
 namespace palpate {
 namespace {
@@ -77,6 +78,8 @@ PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& cha
   try {
     const Scene scene = load_scene(o.scene, changes);
     keep_files_of(scene, {o.log, o.course, o.output});
+    for (const Body& body : scene.bodies) ensure_archive(scene, body, say_stages(body));
+    catch_shutdown_signals();  // until here Ctrl-C ends it at once
     return run_scene(scene, settings_of(o));
   } catch (const std::runtime_error& error) {
     if (o.point < 0) throw;
@@ -111,13 +114,16 @@ std::vector<std::string> command_of(const DriveOptions& o, const std::vector<Sce
 /// What is wrong with a point is said before the first one runs; what several need is computed once.
 void prepare(const DriveOptions& o, const std::vector<std::vector<SceneChange>>& points) {
   expectations_of(o.expect);
-  std::set<std::string> known;
+  std::vector<Scene> scenes;
   for (const auto& changes : points) {
-    const Scene scene = load_scene(o.scene, changes);
-    keep_files_of(scene, {o.output});
-    for (const Body& body : scene.bodies)
-      if (!o.tasks && !shutdown_requested() && known.insert(content_hash(body)).second) ensure_archive(scene, body);
+    scenes.push_back(load_scene(o.scene, changes));
+    keep_files_of(scenes.back(), {o.output});
   }
+  if (o.tasks) return;
+  std::set<std::string> known;
+  for (const Scene& scene : scenes)
+    for (const Body& body : scene.bodies)
+      if (known.insert(content_hash(body)).second) ensure_archive(scene, body, say_stages(body));
 }
 
 void print_tasks(const DriveOptions& o, const std::vector<std::vector<std::string>>& commands) {
@@ -131,6 +137,7 @@ void run_sweep(const DriveOptions& o) {
   for (const std::string& text : o.sweep) axes.push_back(parse_axis(text));
   const auto points = grid(changes_of(o.set), axes);
   prepare(o, points);
+  catch_shutdown_signals();  // until here Ctrl-C ends it at once
   std::vector<std::vector<std::string>> commands;
   for (std::size_t i = 0; i < points.size(); ++i) commands.push_back(command_of(o, points[i], i));
   if (o.tasks) return print_tasks(o, commands);
@@ -158,7 +165,6 @@ void merge(const DriveOptions& o) {
 void run(const DriveOptions& o) {
   if (!o.merge.empty()) return merge(o);
   if (o.scene.empty()) throw std::runtime_error("drive: give a scene, or results with --merge");
-  catch_shutdown_signals();
   if (o.sweep.empty() && !o.tasks) return run_one(o);
   if (!o.log.empty() || !o.course.empty())
     throw std::runtime_error("--log and --course are of one run: leave --sweep and --tasks out, or give --set");

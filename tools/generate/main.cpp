@@ -96,7 +96,9 @@ int main(int argc, char** argv) {
   std::filesystem::path file;
   const auto add_shape = [&](const char* name, const char* what, const std::function<void()>& make) {
     cli::Command shape = app.add_command(name, what);
-    shape.add_option("-o,--output", file, "File to write").required().output_file("", {".msh", ".csv", ".stl"});
+    shape.add_option("-o,--output", file, "File to write")
+        .required()
+        .output_file("", {".msh", ".csv", ".stl", "motion"});
     shape.does(make);
     return shape;
   };

@@ -76,7 +76,7 @@ void add_motion_command(cli::Command& app) {
   auto o = std::make_shared<MotionOptions>();
   command.add_option("SCENE", o->scene, "Scene file (TOML)").required();
   command.add_option("STEP", o->steps, "Steps, in their order; each is one word of the shell").required();
-  command.add_option("-o,--output", o->out, "Trajectory (CSV)").required().output_file(".csv");
+  command.add_option("-o,--output", o->out, "Trajectory (CSV)").required().output_file(".csv", {"motion"});
   command.add_option("--tool", o->tool, "Tool that moves (default: the only one)");
   command.add_option("--body", o->body, "Body that it touches (default: the only one)");
   command.add_option("--speed", o->manner.speed, "Of the tip [m/s], at most").between(1e-4, 1.0).show_default();
