@@ -298,7 +298,7 @@ void run(const RunOptions& o) {
     std::this_thread::sleep_for(20ms);
   }
   nodes.stop();
-  if (!began) throw std::runtime_error("stopped before the run began: nothing has come of it");
+  if (!began) throw std::runtime_error("stopped before the run began");
 
   nlohmann::json summary = nodes.summary();
   summary["scene"] = o.scene;

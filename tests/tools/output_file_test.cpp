@@ -80,13 +80,15 @@ TEST_F(ToolsOutputFile, ALinkUnderAForeseeableNameIsNotWrittenThrough) {
 
 TEST_F(ToolsOutputFile, WhatTheSceneNamesIsKept) {
   const std::string mesh = text_of(file("block.msh")), motion = text_of(file("motion.csv"));
-  const std::string palpate = program("palpate") + " ", solve = " --hold 0:0,0,-0.001 --csv ";
+  const std::string palpate = program("palpate") + " ";
   for (const std::string& command :
        {run("--record", file("block.msh")) + " --force", drive("--log", file("block.msh")) + " --force",
-        drive("--course", file("motion.csv")), palpate + "solve " + scene_.scene() + solve + file("motion.csv"),
+        drive("--course", file("motion.csv")) + " --force",
         palpate + "motion " + scene_.scene() + " \"press 1mm\" -o " + file("motion.csv"),
         drive("--log", file("../" + scene_.folder().filename().string() + "/block.msh")) + " --force"})
     testing::expect_refusal(command, {"needs this file"});
+  refused_at_once(palpate + "solve " + scene_.scene() + " --force 0:0,0,-0.001 --csv " + file("motion.csv"),
+                  {"is a trajectory"});
   EXPECT_EQ(text_of(file("block.msh")), mesh);
   EXPECT_EQ(text_of(file("motion.csv")), motion);
 }
