@@ -113,5 +113,17 @@ TEST_F(LabelImages, DamageIsRefused) {
   EXPECT_THROW(read_label_volume(folder_.path()), std::runtime_error);
 }
 
+TEST_F(LabelImages, WhatIsSaidOfAFileHasNoAddressesInIt) {
+  std::string said;
+  try {
+    read_label_volume(write_file(folder_ / "lacks.mha", replaced(mha("1"), "3 2 2", "3 2")));
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  EXPECT_NE(said.find("lacks.mha: ITK refuses it: "), std::string::npos) << said;
+  EXPECT_EQ(said.find("0x"), std::string::npos) << said;
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace palpate

@@ -171,6 +171,12 @@ TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {
     EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
   };
   refused(header() + voxels(), "5", "no voxel has the label 5");
+  std::string one = voxels();
+  std::ranges::replace(one, '\7', '\0');
+  one[voxel(20, 22, 11)] = 7;
+  refused(header() + one, "7", "the label 7 has 1 voxels that hang together: a body needs 27 at least");
+  refused(header() + voxels(), "7 --label 9 --gap 40", "a gap of 40 mm leaves");
+  refused(header() + voxels(), "7 --edge 1e-7", "edges of 0.0001 mm would be about");
   refused(header() + voxels(), "liver", "--label liver: NUMBER or NUMBER=NAME");
   refused(header() + voxels().substr(0, 5000), "7", "bad.inr: it ends before its last voxel");
   refused(header("XDIM=60000\nYDIM=60000\nZDIM=60000\n"), "7", "a billion in all");

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <stdexcept>
 
 #include "common/mesh/child.hpp"
@@ -87,13 +88,19 @@ typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std
   return read_image<T, itk::NrrdImageIO>(name);
 }
 
+/// What ITK says of a file, on one line and without the addresses of its objects.
+std::string in_plain_words(const itk::ExceptionObject& error) {
+  const std::string said = std::regex_replace(error.GetDescription(), std::regex(R"(\(0x[0-9a-f]+\))"), "");
+  return "ITK refuses it: " + std::regex_replace(said, std::regex(R"(\s+)"), " ");
+}
+
 template <class T>
 std::string packed(const std::filesystem::path& file, const std::string& series) {
   const typename Image<T>::Pointer image = [&] {
     try {
       return read_any<T>(file, series);
     } catch (const itk::ExceptionObject& error) {
-      throw std::runtime_error(std::string("ITK refuses it: ") + error.GetDescription());
+      throw std::runtime_error(in_plain_words(error));
     }
   }();
   std::string bytes;

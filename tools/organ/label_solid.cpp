@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "tools/organ/thin_walls.hpp"
 #include "tools/organ/voxel_pieces.hpp"
@@ -109,6 +110,14 @@ double keep_apart(const LabelVoxels& voxels, int label, const LabelShape& wish, 
   return volume_below(field.grid, field.level);
 }
 
+void check_left(const std::string& name, double left, double volume, double gap) {
+  constexpr double kLeft = 0.1;  // of its volume
+  if (left < kLeft * volume)
+    throw std::runtime_error(
+        fmt::format("a gap of {:.3g} mm leaves {:.3g} of the {:.3g} ml of '{}': ask for a smaller --gap", 1e3 * gap,
+                    1e6 * left, 1e6 * volume, name));
+}
+
 std::vector<char> union_of(const LabelVoxels& voxels, const std::vector<int>& labels) {
   std::vector<char> all(voxels.shape.size(), 0);
   for (const int l : labels)
@@ -158,7 +167,11 @@ LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, L
     fields->of_label.emplace_back();
     if (labels.size() > 1) fields->of_label.back() = field_of(grid, voxels.inside[l], wish.smoothing);
   }
-  if (wish.gap > 0) result.volumes = {keep_apart(voxels, labels[0], wish, fields->all)};
+  if (wish.gap > 0) {
+    const double left = keep_apart(voxels, labels[0], wish, fields->all);
+    check_left(voxels.labels[labels[0]].name, left, result.volumes[0], wish.gap);
+    result.volumes = {left};
+  }
   result.measures = {area_of(fields->all, result.border), result.volumes};
   Solid& solid = result.solid;
   solid.parts = static_cast<int>(labels.size());

@@ -23,7 +23,7 @@ struct LabelSolid {
 
 /// Surfaces are where a smoothed distance to the voxels' border has the level that keeps each label's volume. Several
 /// labels share their border; with a gap, `labels` is one. Walls thinner than three widths of the smoothing are
-/// smoothed over less, which is noted.
+/// smoothed over less, which is noted. Throws std::runtime_error where the gap leaves next to nothing of a label.
 LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, LabelShape wish);
 
 }  // namespace palpate

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kRim = 8;  // voxels around the labels
 constexpr std::size_t kMaxLabels = 255;
+constexpr int kFewestVoxels = 27;  // of a label: fewer have no shape
 
 /// The part of the image with labels, and a rim around it.
 GridShape crop_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels) {
@@ -77,6 +78,9 @@ LabelVoxels voxels_of(const LabelVolume& volume, const std::vector<NamedLabel>& 
   for (const NamedLabel& label : labels) {
     voxels.inside.push_back(all_voxels_of(volume, voxels.shape, label));
     keep_largest_piece(voxels.shape, voxels.inside.back(), label.name, findings);
+    if (const auto count = std::ranges::count(voxels.inside.back(), 1); count < kFewestVoxels)
+      throw std::runtime_error(fmt::format("the label {} has {} voxels that hang together: a body needs {} at least",
+                                           label.label, count, kFewestVoxels));
     add(voxels.inside.back(), all);
   }
   for (std::size_t l = 0; l < labels.size(); ++l) {

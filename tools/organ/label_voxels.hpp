@@ -20,7 +20,7 @@ struct LabelVoxels {
 };
 
 /// Of each label the largest piece, its cavities of up to a hundredth of it filled; what that changes is noted.
-/// Throws std::runtime_error where a label is not in the image.
+/// Throws std::runtime_error where a label is not in the image, or has too few voxels to have a shape.
 LabelVoxels voxels_of(const LabelVolume& volume, const std::vector<NamedLabel>& labels, std::vector<Finding>& findings);
 
 /// Labels that hang together through faces of voxels, ascending; each is in one of these.

@@ -6,6 +6,7 @@
 
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
+#include "tools/organ/surface_extent.hpp"
 #include "tools/organ/surface_file.hpp"
 #include "tools/organ/surface_repair.hpp"
 #include "tools/organ/surface_shells.hpp"
@@ -47,7 +48,10 @@ void make_mesh(const SurfaceOptions& o) {
   if (findings.empty()) fmt::print("  found: nothing to repair\n");
   add_touched_place(fineness, o, surface.mesh.nodes);
   std::fflush(stdout);
-  SurfaceSolid solid = of_file(o.surface, [&] { return solid_of(surface.mesh); });
+  SurfaceSolid solid = of_file(o.surface, [&] {
+    check_extent(surface.mesh);  // again: what made it large may be left out
+    return solid_of(surface.mesh);
+  });
   if (surface.crosses_itself) solid.measures.volumes.clear();
   finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o);
 }

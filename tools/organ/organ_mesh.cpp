@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "common/mesh/measures.hpp"
@@ -28,6 +29,7 @@ constexpr int kOtherEdges = 5;         // tried where a mesh is no good
 constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds both sides of a wall that is longer
 constexpr double kLongestOfGuess = 2;  // where the deviation asks for more nodes, longer edges do not help
 constexpr double kOfWall = 0.25;       // by how much of its thickness a wall's surfaces may be missed
+constexpr double kMostNodes = 3e6;     // of a mesh
 constexpr double kMissing = 0.3;       // of a part's volume: more than chords take
 
 MeshSizes sizes_at(const Solid& solid, const Fineness& f, double edge) {
@@ -145,6 +147,30 @@ std::string advice(const Solid& solid, const SolidMeasures& measures, double edg
                      kNodesOfArea * measures.area / (wall.thickness * wall.thickness));
 }
 
+/// About how many nodes edges ask for: on the surface, inside, and in fine places.
+double nodes_asked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
+  const Eigen::AlignedBox3d whole(solid.low, solid.high);
+  const std::vector<double>& parts = measures.volumes;
+  const double volume = parts.empty() ? whole.volume() : std::reduce(parts.begin(), parts.end());
+  double nodes = kNodesOfArea * measures.area / std::pow(sizes.edge, 2) + volume / std::pow(sizes.inside, 3);
+  for (const FinePlace& f : sizes.fine) {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(f.radius + f.edge);
+    const Eigen::AlignedBox3d place = whole.intersection({f.low - around, f.high + around});
+    if (!place.isEmpty()) nodes += place.volume() / std::pow(f.edge, 3);
+  }
+  return nodes;
+}
+
+void check_affordable(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
+  const double nodes = nodes_asked(solid, measures, sizes);
+  if (nodes <= kMostNodes) return;
+  double shortest = sizes.edge;
+  for (const FinePlace& f : sizes.fine) shortest = std::min(shortest, f.edge);
+  throw std::runtime_error(
+      fmt::format("edges of {:.3g} mm would be about {:.2g} nodes, and a mesh has {:.2g} at most: ask for longer ones",
+                  1e3 * shortest, nodes, kMostNodes));
+}
+
 FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   FilledSolid filled = fill_solid(solid, sizes);
   check_complete(measures, filled);
@@ -165,6 +191,7 @@ FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, c
   if (edge > kLongestOfWall * solid.wall.thickness)
     throw std::runtime_error(
         fmt::format("edges of {:.3g} mm are too long: {}", 1e3 * edge, advice(solid, measures, edge)));
+  check_affordable(solid, measures, sizes_at(solid, fineness, edge));
   if (fineness.edge == 0) {
     say(fmt::format("looking for the edge length that gives {} nodes", fineness.nodes));
     edge = edge_for(solid, measures, fineness, say);
@@ -174,8 +201,10 @@ FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, c
       say(fmt::format("filling it with tetrahedra, at most {:.3g} mm along the surface", 1e3 * edge));
       return fill_checked(solid, measures, sizes_at(solid, fineness, edge));
     } catch (const std::runtime_error& error) {
+      const bool again = fault == error.what();  // shorter edges do not help
       fault = error.what();
       say(fault);
+      if (again) break;
     }
   throw std::runtime_error(fmt::format("no good mesh was found: {}; {}", fault, advice(solid, measures, edge)));
 }

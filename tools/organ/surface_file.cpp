@@ -12,6 +12,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "tools/organ/polydata_file.hpp"
 #include "tools/organ/stl_file.hpp"
+#include "tools/organ/surface_extent.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/vtp_file.hpp"
 
@@ -68,22 +69,20 @@ ReadSurface read(const fs::path& file) {
 
 }  // namespace
 
-ReadSurface read_surface(const fs::path& file, double scale) {
-  ReadSurface surface;
-  try {
-    surface = read(file);
-  } catch (const std::runtime_error& error) {
-    const std::string said = error.what();
-    if (said.starts_with(file.string())) throw;
-    refuse(file, said);
-  }
+ReadSurface read_surface(const fs::path& file, double scale) try {
+  ReadSurface surface = read(file);
   if (surface.mesh.triangles.empty()) refuse(file, "it has no triangles");
   for (Eigen::Vector3d& x : surface.mesh.nodes) x *= scale;
   for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
     for (const int n : surface.mesh.triangles[t])
       if (!surface.mesh.nodes[n].allFinite())
         refuse(file, fmt::format("triangle {} has a coordinate that is not a finite number", t));
+  check_extent(surface.mesh);
   return surface;
+} catch (const std::runtime_error& error) {
+  const std::string said = error.what();
+  if (said.starts_with(file.string())) throw;
+  refuse(file, said);
 }
 
 }  // namespace palpate

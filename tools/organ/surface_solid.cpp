@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 #include "tools/organ/distance_grid.hpp"
@@ -19,6 +20,7 @@ namespace {
 constexpr int kRim = 4;               // cells around the surface
 constexpr double kCells = 8e6;        // of the grid
 constexpr double kMostAlong = 1000;   // of these along the longest extent
+constexpr double kNoVolume = 1e-9;    // of the area to the power of 1.5
 constexpr double kCellsOfWall = 1.5;  // at least, for the grid to tell its sides apart
 
 /// A box is filled with about so many cells, or its longest extent cut into as many as that.
@@ -35,16 +37,19 @@ GridShape grid_around(const TriangleMesh& surface) {
   return shape;
 }
 
-/// Middles of triangles, evenly over the surface.
+/// Evenly over the surface; of a triangle that has one, about its middle.
 std::vector<SurfacePoint> points_of(const TriangleMesh& surface) {
   std::vector<SurfacePoint> points;
   const double share = surface_area(surface) / static_cast<double>(kWallPoints);
-  double area = 0.5 * share;
+  double due = 0.5;  // points
   for (const auto& [a, b, c] : surface.triangles) {
     const Eigen::Vector3d x = surface.nodes[a], u = surface.nodes[b] - x, v = surface.nodes[c] - x;
     const Eigen::Vector3d normal = u.cross(v);
-    for (area += 0.5 * normal.norm(); area > share; area -= share)
-      points.push_back({x + area / (area + share) * (u + v) / 2.01, -normal.normalized()});
+    due += 0.5 * normal.norm() / share;
+    const double count = std::floor(due);
+    due -= count;
+    for (double i = 0.5, turn = 0.5; i < count; ++i, turn = std::fmod(turn + std::numbers::phi, 1))
+      points.push_back({x + std::sqrt(i / count) * ((1 - turn) * u + turn * v), -normal.normalized()});
   }
   return points;
 }
@@ -81,6 +86,8 @@ void make_exact_near_surface(DistanceGrid& grid, const SurfaceTree& tree) {
 }  // namespace
 
 SurfaceSolid solid_of(const TriangleMesh& surface) {
+  if (!(enclosed_volume(surface) > kNoVolume * std::pow(surface_area(surface), 1.5)))
+    throw std::runtime_error("the surface encloses no volume");
   const auto tree = std::make_shared<const SurfaceTree>(surface);
   const GridShape shape = grid_around(surface);
   const double cell = shape.spacing.x();

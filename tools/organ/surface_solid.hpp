@@ -10,7 +10,8 @@ struct SurfaceSolid {
 };
 
 /// Distances to the surface are kept on a grid of some million cells, and are exact near the surface. `surface`
-/// outlives the solid. Throws std::runtime_error(reason) where its walls are thinner than the grid can tell.
+/// outlives the solid. Throws std::runtime_error(reason) where it encloses no volume, or its walls are thinner than the
+/// grid can tell.
 SurfaceSolid solid_of(const TriangleMesh& surface);
 
 }  // namespace palpate

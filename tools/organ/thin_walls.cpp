@@ -1,22 +1,28 @@
 #include "tools/organ/thin_walls.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace palpate {
 namespace {
 
 constexpr double kThinnest = 0.05;  // of the points
+constexpr double kParallel = 0.8;   // cosine between the sides of a wall
+constexpr double kFarthest = 1e6;   // times what is near: the way misses the surface
 
+/// Infinite where it meets no surface that lies nearly parallel to that at the point: there is an edge, or a corner.
 double thickness_at(const SurfacePoint& point, const std::function<double(const Eigen::Vector3d&)>& distance,
                     double near) {
   constexpr int kSteps = 1000;
   double deep = 3 * near;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps && deep < kFarthest * near; ++i) {
     const double free = distance(point.place + deep * point.inward);
     if (free < near) break;
     deep += free;
   }
-  return deep;
+  const double middle = 0.5 * deep;
+  const bool wall = distance(point.place + middle * point.inward) > kParallel * middle;
+  return wall ? deep : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ struct SurfacePoint {
 inline constexpr std::size_t kWallPoints = 2000;
 
 /// How thick the thinnest twentieth of a surface's points find the body, going inward until `distance` to the surface
-/// [m] is below `near` [m] again; edges and tips are thinner. Needs a point.
+/// [m] is below `near` [m] again. Infinite where few points face a surface nearly parallel to theirs: edges and tips
+/// are no walls. Needs a point.
 ThinWall thin_wall(const std::vector<SurfacePoint>& points,
                    const std::function<double(const Eigen::Vector3d&)>& distance, double near);
 
