@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/sim/dynamic_world.hpp"
+#include "common/sim/felt_part.hpp"
 #include "common/sim/local_stiffness.hpp"
 #include "idl/messages.hpp"
 
@@ -31,21 +32,14 @@ class LocalModels {
  private:
   struct OfOrgan {
     std::unique_ptr<LocalStiffness> stiffness;
-    double look_ahead;                      ///< [m] beyond a sphere's surface
-    std::vector<Eigen::Matrix3d> contact;   ///< [N/m] per contact of the organ
-    std::vector<std::array<int, 5>> shape;  ///< what they were worked out for
+    std::vector<std::unique_ptr<FeltPart>> parts;
+    double look_ahead = 0;  ///< [m] beyond a sphere's surface
     std::vector<int> wanted;
-    int age = 0;
   };
-  void condense(OfOrgan& own, const DynamicOrgan& organ);
   void add_origin(int tool, LocalContactModel& model) const;
-  void add_contacts(int tool, int i, LocalContactModel& model);
-  void add_surface(int tool, int i, LocalContactModel& model);
-  void add_still_contacts(int tool, int i, LocalContactModel& model);
-  void add_still_surface(int tool, int i, LocalContactModel& model);
-
-  template <class Corners, class Fill>
-  void add_triangles(int i, Corners&& corners, Fill&& fill, LocalContactModel& model);
+  void add_contacts(int tool, int i, FeltPart& part, LocalContactModel& model);
+  void add_surface(int tool, int i, const FeltPart& part, LocalContactModel& model);
+  void add_triangles(int i, const FeltPart& part, LocalContactModel& model);
 
   const DynamicWorld& world_;
   std::vector<OfOrgan> organs_;

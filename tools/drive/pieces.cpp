@@ -20,8 +20,9 @@ Pieces pieces_of(const DynamicOrgan& organ) {
   for (std::size_t part = 0; part < size.size(); ++part)
     if (!hangs[part]) off.push_back(size[part]);
   std::ranges::sort(off, std::greater());
-  if (organ.still_part()) return {1 + static_cast<int>(off.size()), off.empty() ? 0 : off[0]};
-  return {static_cast<int>(off.size()), off.size() < 2 ? 0 : off[1]};
+  // The quasi-static part is the piece that has not come off; of a body without one it is the largest.
+  const std::size_t whole = organ.still_part() ? 0 : 1;
+  return {static_cast<int>(off.size() + 1 - whole), off.size() > whole ? off[whole] : 0};
 }
 
 }  // namespace palpate::drive

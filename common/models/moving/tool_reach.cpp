@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/arrays.hpp"
+
 namespace palpate {
-namespace {
-
-void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
-  std::copy_n(from.data(), 3, to.begin());
-}
-
-}  // namespace
 
 ToolReach::Ends ToolReach::ends(const MovingTool& tool) {
   Ends ends{};
