@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(mktemp -d /tmp/palpate-bare-XXXXXX)
 chmod 755 "$root"  # it is the / of those within
-mirror=${1:-http://deb.debian.org/debian}
+mirror=${1:-$(apt-get indextargets --format '$(REPO_URI)' "Codename: bookworm" "Created-By: Packages" | sed -n 1p)}  # as this machine has it
 leave() {
   umount "$root/proc" "$root/dev" 2>/dev/null || true
   rm -rf --one-file-system "$root"
