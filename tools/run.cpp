@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "common/files/atomic_file.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
@@ -285,9 +286,13 @@ void say_where_to_look(const Scene& scene, const RunOptions& o) {
 
 void run(const RunOptions& o) {
   const Scene scene = load_scene(o.scene);
+  if (!o.keep.empty() && log_of(scene, o).empty())
+    throw std::runtime_error("--keep: there is no log; --record names one, or `file` in the scene's [record]");
   keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
   for (const Body& body : scene.bodies) ensure_archive(scene, body, say_stages(body));
   catch_shutdown_signals();
+  std::optional<AtomicFile> summary_file;  // what cannot be written is found before the run
+  if (!o.summary.empty()) summary_file.emplace(o.summary);
   const auto begin = Clock::now();
   const DomainClaim claim = claim_domain(scene, o);
   Nodes nodes;
@@ -306,10 +311,11 @@ void run(const RunOptions& o) {
   summary["seconds"] = std::chrono::duration<double>(Clock::now() - begin).count();
   summary["version"] = PALPATE_VERSION;
   print_summary(summary);
-  if (!o.summary.empty()) {
-    std::ofstream file(o.summary);
+  if (summary_file) {
+    std::ofstream file(summary_file->handle());
     file << summary.dump(2) << "\n";
     if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot write the summary", o.summary));
+    summary_file->commit();
   }
   nodes.check();
   if (const std::string said = interventions_in(summary); !said.empty()) {

@@ -124,6 +124,12 @@ SceneChange parse_change(std::string_view argument) {
   return {std::string(argument.substr(0, equals)), std::string(argument.substr(equals + 1))};
 }
 
+std::vector<SceneChange> parse_changes(std::span<const std::string> arguments) {
+  std::vector<SceneChange> changes;
+  for (const std::string& argument : arguments) changes.push_back(parse_change(argument));
+  return changes;
+}
+
 void change_table(toml::table& scene, const SceneChange& change) {
   Walk(scene, change).put();
 }

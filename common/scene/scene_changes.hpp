@@ -2,6 +2,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/scene/scene.hpp"
 
@@ -19,6 +20,8 @@ struct SceneChange {
 
 /// Reads "body.young=8000". Throws std::runtime_error in one sentence.
 SceneChange parse_change(std::string_view argument);
+
+std::vector<SceneChange> parse_changes(std::span<const std::string> arguments);
 
 /// load_scene() of the file with these changes, which are checked as if the file had them; what is wrong with one is
 /// said as "--set body.young=-1: sentence".

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/stability/case.hpp"
+#include "tools/stability/guarded_run.hpp"
 
 namespace palpate::stability {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/stability/case.hpp"
+#include "tools/stability/guarded_run.hpp"
 
 /// The quick subset of the cases, each with the outcome that is expected of it.
 namespace palpate::stability {

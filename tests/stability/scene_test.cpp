@@ -9,7 +9,7 @@
 
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
-#include "tools/stability/case.hpp"
+#include "tools/stability/guarded_run.hpp"
 #include "tools/stability/subject.hpp"
 
 /// A scene of a user's, pushed beyond what it was made for.

@@ -62,12 +62,28 @@ TEST_F(StabilityTable, EachValueOfAParameterHasItsOwnRow) {
 TEST_F(StabilityTable, RunningSomeCasesAloneKeepsTheRowsOfTheOthers) {
   run_table({stable("wall", 1), stable("shell", 2), stable("wall of tissue", 3)}, folder_, "one");
   EXPECT_EQ(run_table({failing("wall"), stable("shell", 5), stable("wall of tissue", 6), stable("shell too", 7)},
-                      folder_, "one", "shell"),
+                      folder_, "one", {.only = "shell"}),
             0);
   std::vector<std::string> names;
   for (const Row& r : read_rows(csv())) names.push_back(r.name);
   EXPECT_EQ(names, (std::vector<std::string>{"wall", "shell", "wall of tissue", "shell too"}));
-  EXPECT_THROW(run_table({stable("wall", 1)}, folder_, "one", "nothing of that name"), std::runtime_error);
+  EXPECT_THROW(run_table({stable("wall", 1)}, folder_, "one", {.only = "nothing of that name"}), std::runtime_error);
+}
+
+TEST_F(StabilityTable, SeveralRunAtTheSameTimeAndStandInTheirOrder) {
+  const auto said = folder_ / "said by the second";
+  const Point first{.name = "first", .parameter = "p", .value = "1", .run = [said] {
+                      while (!std::filesystem::exists(said)) usleep(1000);
+                      return Result{.max_force = 1, .note = {}};
+                    }};
+  const Point second{.name = "second", .parameter = "p", .value = "1", .run = [said] {
+                       std::ofstream(said) << "go on";
+                       return Result{.max_force = 2, .note = {}};
+                     }};
+  EXPECT_EQ(run_table({first, second, stable("third", 3)}, folder_, "one", {.jobs = 2}), 0);
+  const auto rows = read_rows(csv());
+  ASSERT_EQ(rows.size(), 3u);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(rows[i].max_force, i + 1);
 }
 
 TEST_F(StabilityTable, AnInterruptionCostsNoRowThatWasThere) {

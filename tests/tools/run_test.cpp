@@ -55,6 +55,20 @@ TEST(ToolsRun, CheckNamesTheNodesThatRunStartsAndCountsTheirMemoryAlone) {
   }
 }
 
+TEST(ToolsRun, WhatCannotBeKeptIsSaidBeforeTheRun) {
+  const LoopbackScene scene("unkept", kLinear);
+  const std::string text = text_of(scene.scene());
+  scene.write("scene.toml", text.substr(0, text.find("[render]")));
+  const std::string begin =
+      fmt::format("{} run {} --domain {} --seconds 30", program("palpate"), scene.scene(), testing::own_domain());
+  const auto without_log = run_program(begin + " --keep enough");
+  EXPECT_NE(without_log.status, 0);
+  EXPECT_NE(without_log.err.find("--keep: there is no log"), std::string::npos) << without_log.err;
+  const auto below_a_file = run_program(begin + " --summary " + scene.scene() + "/summary.json");
+  EXPECT_NE(below_a_file.status, 0);
+  EXPECT_EQ(below_a_file.out.find("haptic"), std::string::npos) << below_a_file.out;
+}
+
 TEST(ToolsRun, ASoundRunEndsWithoutAnAlarmAndPassesAsStrict) {
   const LoopbackScene scene("calm", kLinear);
   for (const int processes : {2, 3}) {

@@ -36,12 +36,6 @@ bool terminal() {
   return isatty(STDERR_FILENO) != 0;
 }
 
-std::vector<SceneChange> changes_of(const std::vector<std::string>& arguments) {
-  std::vector<SceneChange> changes;
-  for (const std::string& argument : arguments) changes.push_back(parse_change(argument));
-  return changes;
-}
-
 std::vector<Expectation> expectations_of(const std::vector<std::string>& arguments) {
   std::vector<Expectation> all;
   for (const std::string& argument : arguments) all.push_back(parse_expectation(argument));
@@ -88,7 +82,7 @@ PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& cha
 }
 
 void run_one(const DriveOptions& o) {
-  const std::vector<SceneChange> changes = changes_of(o.set);
+  const std::vector<SceneChange> changes = parse_changes(o.set);
   PointResult result = result_of(o, changes);
   if (terminal() && o.point < 0) fmt::print(stderr, "\r{:60}\r", "");
   result.point = std::max(0, o.point);
@@ -135,7 +129,7 @@ void print_tasks(const DriveOptions& o, const std::vector<std::vector<std::strin
 void run_sweep(const DriveOptions& o) {
   std::vector<Axis> axes;
   for (const std::string& text : o.sweep) axes.push_back(parse_axis(text));
-  const auto points = grid(changes_of(o.set), axes);
+  const auto points = grid(parse_changes(o.set), axes);
   prepare(o, points);
   catch_shutdown_signals();  // until here Ctrl-C ends it at once
   std::vector<std::vector<std::string>> commands;

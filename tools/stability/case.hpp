@@ -50,10 +50,6 @@ inline double larger(double a, double b) {
   return a >= b || std::isnan(a) ? a : b;
 }
 
-/// Runs a point in a child process, so that a crash or hang becomes the outcome `failed`. The calling process must have
-/// no threads at work.
-Row run_guarded(const Point& point);
-
 /// The registry: every subject's points.
 std::vector<Point> all_points(const Extent& extent);
 /// What makes sense on a scene's own bodies and tools.

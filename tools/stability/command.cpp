@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/cli/command_line.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
 #include "tools/study/commands.hpp"
@@ -15,17 +16,19 @@ namespace palpate {
 namespace {
 
 struct StabilityOptions {
-  std::string scene, folder, only;
+  std::string scene, folder;
+  std::vector<std::string> set;
+  stability::TableRun run;
   bool quick = false;
 };
 
 void run(const StabilityOptions& o) {
   std::optional<Scene> scene;
-  if (!o.scene.empty()) scene = load_scene(o.scene);
+  if (!o.scene.empty()) scene = load_scene(o.scene, parse_changes(o.set));
   const stability::Extent extent{.quick = o.quick};
   const auto points = scene ? stability::scene_points(*scene, extent) : stability::all_points(extent);
   const int failed =
-      stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.only);
+      stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.run);
   const std::string missing = run_script("stability_page.py", o.folder);
   if (!missing.empty()) fmt::print(stderr, "stability: {}\n", missing);
   if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
@@ -37,11 +40,18 @@ void add_stability_command(cli::Command& app) {
   auto options = std::make_shared<StabilityOptions>();
   cli::Command command =
       app.add_command("stability", "Stiff and extreme cases, each with its outcome, as a table and a page");
-  command.add_option("SCENE", options->scene, "Scene file; without one, the general cases");
+  const cli::Option scene = command.add_option("SCENE", options->scene, "Scene file; without one, the general cases");
+  command
+      .add_option("--set", options->set,
+                  "KEY=VALUE in place of what the scene file says, such as body.young=8000; may be repeated")
+      .one_value_each_time()
+      .needs(scene);
   command.add_option("-o,--output", options->folder, "Folder for stability.csv, plots and page").required();
   command.add_flag("--quick", options->quick, "The subset that takes a minute");
-  command.add_option("--only", options->only, "Cases whose name contains this");
-  command.examples({"palpate stability --quick -o out/stability", "palpate stability scenes/plate.toml -o out/plate"});
+  command.add_option("--only", options->run.only, "Cases whose name contains this");
+  command.add_option("--jobs", options->run.jobs, "Cases at the same time").between(1, 1024).show_default();
+  command.examples({"palpate stability --quick -o out/stability",
+                    "palpate stability scenes/plate.toml --set contact.friction=0.5 --jobs 2 -o out/plate"});
   command.does([options] { run(*options); });
 }
 

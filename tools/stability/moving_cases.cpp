@@ -12,8 +12,8 @@ namespace palpate::stability {
 namespace {
 
 constexpr int kCombinations = 500, kQuickCombinations = 30;
-constexpr std::array kSlow{6, 14};  // seconds each
-constexpr int kTelling = 106;       // fails if the patch follows each swing of the tissue; no quick one does
+constexpr std::array kLongPoints{6, 14};  // seconds each
+constexpr int kTelling = 106;             // fails if the patch follows each swing of the tissue; no quick one does
 using Tried = TriedContact;
 
 std::string words_of(const MovingPress& p) {
@@ -114,7 +114,7 @@ std::vector<Point> moving_points(const Extent& extent) {
   std::mt19937 random(5);
   for (int i = 0; i < kCombinations; ++i) {
     const MovingPress p = any_press(random);
-    const bool quick = i < kQuickCombinations ? std::ranges::count(kSlow, i) == 0 : i == kTelling;
+    const bool quick = i < kQuickCombinations ? std::ranges::count(kLongPoints, i) == 0 : i == kTelling;
     if (extent.quick && !quick) continue;
     add("moving contact, any", "combination", fmt::format("{}: {}", i, words_of(p)), p);
   }

@@ -18,9 +18,9 @@ using Eigen::Vector3d;
 constexpr double kTick = 1e-3;  // [s]
 constexpr double kPivot = 1e3;  // [m] above the tissue: all of a tool so long moves as its tip does
 constexpr double kStabSpeed = TriedContact::kMaxSpeed, kSlideSpeed = 0.02;  // [m/s]
-constexpr double kStand = 1;    // [s] of standing before nothing but chatter is left
-constexpr double kDecay = 8;    // [1] time constants that slow tissue is given to come to rest
-constexpr double kSlow = 0.02;  // [s] period from which it swings on after the press
+constexpr double kStand = 1;         // [s] of standing before nothing but chatter is left
+constexpr double kDecay = 8;         // [1] time constants that slow tissue is given to come to rest
+constexpr double kSlowSwing = 0.02;  // [s] period from which it swings on after the press
 
 struct Stroke {
   Path path;
@@ -102,7 +102,7 @@ int standing_ticks(const MovingPress& p) {
   const double shear_modulus = p.young / (2 * (1 + p.poisson)), height = p.cells.z() * p.cell.z();
   const double frequency = 0.5 * M_PI / height * std::sqrt(shear_modulus / p.density);
   const double rate = std::min(0.5 * p.damping, frequency * frequency / p.damping);
-  const double rest = 2 * M_PI / frequency > kSlow ? kDecay / rate : 0;
+  const double rest = 2 * M_PI / frequency > kSlowSwing ? kDecay / rate : 0;
   return static_cast<int>((kStand + rest) / kTick);
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "common/fem/dense.hpp"
 #include "common/files/atomic_file.hpp"
+#include "tools/stability/guarded_run.hpp"
 #include "tools/study/output_folder.hpp"
 
 namespace palpate::stability {
@@ -81,9 +81,10 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
 }
 
 int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject,
-              const std::string& only) {
-  if (std::ranges::none_of(points, [&](const Point& p) { return p.name.find(only) != std::string::npos; }))
-    throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", only));
+              const TableRun& how) {
+  const auto asked = [&](const Point& p) { return p.name.find(how.only) != std::string::npos; };
+  if (std::ranges::none_of(points, asked))
+    throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", how.only));
   const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
   prepare_folder(folder, csv.filename(), kHeading);
   std::vector<Row> before;
@@ -91,22 +92,27 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
   std::ofstream(mark) << subject << "\n";
   set_linear_algebra_threads(1);  // as the nodes have it; threads that spin would only slow the others down
   std::vector<std::optional<Row>> rows;
+  std::vector<Point> to_run;
+  std::vector<std::size_t> places;
   for (const Point& p : points) {
     const auto kept = std::ranges::find_if(
         before, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
     rows.push_back(kept == before.end() ? std::nullopt : std::optional(*kept));
+    if (!asked(p) || (rows.back() && rows.back()->outcome != "failed")) continue;
+    places.push_back(rows.size() - 1);
+    to_run.push_back(p);
   }
-  int failed = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].name.find(only) == std::string::npos) continue;
-    const auto begin = std::chrono::steady_clock::now();
-    if (!rows[i] || rows[i]->outcome == "failed") rows[i] = run_guarded(points[i]);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    failed += rows[i]->outcome == "failed";
+  std::size_t done = 0;
+  run_guarded(to_run, how.jobs, [&](const GuardedRow& ended) {
+    const Row& row = ended.row;
+    rows[places[ended.point]] = row;
     write_rows(rows, csv);
-    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", i + 1, points.size(), rows[i]->name, rows[i]->parameter,
-               rows[i]->value, rows[i]->outcome, seconds, rows[i]->note);
-  }
+    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", ++done, to_run.size(), row.name, row.parameter,
+               row.value, row.outcome, ended.seconds, row.note);
+  });
+  write_rows(rows, csv);
+  int failed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) failed += asked(points[i]) && rows[i]->outcome == "failed";
   return failed;
 }
 

@@ -5,12 +5,17 @@
 
 namespace palpate::stability {
 
-/// Runs the points whose name contains `only`, one by one, and writes `folder`/stability.csv after each, in the order
-/// of `points`; rows that are there from an earlier run for the same `subject` stay, failed ones until they have been
-/// run again. Progress on stderr. Returns how many of those points failed. Throws std::runtime_error if the folder
-/// cannot be written or holds another table of that name.
+struct TableRun {
+  std::string only;  ///< the points whose name contains this
+  int jobs = 1;      ///< at the same time
+};
+
+/// Runs these points and writes `folder`/stability.csv after each, in the order of `points`; rows that are there from
+/// an earlier run for the same `subject` stay, failed ones until they have been run again. Progress on stderr. Returns
+/// how many of those points failed. Throws std::runtime_error if the folder cannot be written or holds another table of
+/// that name.
 int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject,
-              const std::string& only = "");
+              const TableRun& how = {});
 
 /// Rows of a stability.csv; empty if there is none. Throws std::runtime_error if it cannot be read.
 std::vector<Row> read_rows(const std::filesystem::path& file);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/scene/scene_changes.hpp"
 #include "tools/study/commands.hpp"
 #include "tools/study/growth.hpp"
 #include "tools/study/run_script.hpp"
@@ -12,7 +13,7 @@ namespace palpate {
 namespace {
 
 struct Arguments {
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, set;
   std::string out, budget;
   bool quick = false, growth = false;
 };
@@ -45,10 +46,10 @@ void make_page(const std::filesystem::path& folder) {
 }
 
 /// All of them before the first is studied. Throws std::runtime_error where two would share a folder.
-std::vector<Scene> load_scenes(const std::vector<std::string>& files) {
+std::vector<Scene> load_scenes(const std::vector<std::string>& files, const std::vector<SceneChange>& changes) {
   std::vector<Scene> scenes;
   for (const std::string& file : files) {
-    scenes.push_back(load_scene(file));
+    scenes.push_back(load_scene(file, changes));
     for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
       if (scenes[i].file.stem() == scenes.back().file.stem())
         throw std::runtime_error(fmt::format("study: two scenes are called {}", scenes.back().file.stem().string()));
@@ -64,7 +65,7 @@ void run(const Arguments& arguments) {
   if (arguments.scenes.empty() && !arguments.growth)
     throw std::runtime_error("study: name a scene, or ask for --growth");
   if (several) options.references = out / "references";
-  for (const Scene& scene : load_scenes(arguments.scenes)) {
+  for (const Scene& scene : load_scenes(arguments.scenes, parse_changes(arguments.set))) {
     const auto folder = several ? out / scene.file.stem() : out;
     study::run_study(scene, folder, options);
     make_page(folder);
@@ -79,6 +80,10 @@ void add_study_command(cli::Command& app) {
   cli::Command command = app.add_command("study", "Error against run time of all that can serve a scene");
   auto arguments = std::make_shared<Arguments>();
   command.add_option("SCENE", arguments->scenes, "Scene files (TOML)");
+  command
+      .add_option("--set", arguments->set,
+                  "KEY=VALUE in place of what the scene files say, such as body.young=8000; may be repeated")
+      .one_value_each_time();
   command
       .add_option("-o,--output", arguments->out,
                   "Folder for figures and page; with several scenes one folder each in it")
