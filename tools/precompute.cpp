@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/cli/progress.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/commands.hpp"
@@ -17,8 +18,8 @@ std::vector<std::string> lines_of(const Body& body, const Archive& archive) {
 }
 
 void show_stage(std::string_view stage, double seconds) {
-  constexpr double kWorthSaying = 0.1;
-  if (seconds >= kWorthSaying) fmt::print(stderr, "  {:<40} {:8.2f} s\n", stage, seconds);
+  const double worth = cli::telling() == cli::Telling::everything ? 0 : 0.1;  // [s]
+  if (seconds >= worth) cli::say(fmt::format("  {:<40} {:8.2f} s", stage, seconds));
 }
 
 void print_json(const Body& body, const ArchiveState& state) {
@@ -69,6 +70,7 @@ void add_precompute_command(cli::Command& app) {
   auto o = std::make_shared<Options>();
   command.add_option("SCENE", o->scene, "Scene file").required();
   command.add_flag("--json", o->json, "Print one line of JSON a body");
+  command.tells_progress();
   command.examples({"palpate precompute scenes/liver.toml"});
   command.does([o] {
     const Scene scene = load_scene(o->scene);

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
+#include "common/cli/progress.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "deform_node/verify_tissue.hpp"
@@ -68,12 +68,11 @@ void play(const ReplayOptions& o) {
   const auto bus = make_dds_bus(o.network);
   request_realtime(
       {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
-  const bool terminal = isatty(STDERR_FILENO);
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
-    if (terminal) fmt::print(stderr, "\r{:9.2f} s", seconds);
+    cli::say_in_place(fmt::format("{:9.2f} s", seconds));
     return !shutdown_requested();
   });
-  if (terminal) fmt::print(stderr, "\r");
+  cli::say_in_place("");
   if (o.json) {
     fmt::print("{}\n", json_of(o, report).dump());
     return;
@@ -110,6 +109,7 @@ void add_replay_command(cli::Command& app) {
       .add_option("--data", o->data,
                   "Folder for the files that the log brings along, and with those that are too large for it")
       .needs(verifies);
+  command.tells_progress();
   command.examples(
       {"palpate replay out/liver.lcmlog --verify", "palpate replay out/liver.lcmlog --speed 0.5 --topic force_state"});
   command.does([o, command] {

@@ -363,6 +363,7 @@ void add_run_command(cli::Command& app) {
                   "node of its own, which moving tissue always has (default: what --film, --still and --web need)")
       .one_of({2, 3});
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
+  run_command.tells_progress();
   run_command.examples({"palpate run scenes/liver.toml --web",
                         "palpate run scenes/hepatectomy.toml --record out/cut.lcmlog --film out/cut.mp4"});
   run_command.does([o, run_command] {

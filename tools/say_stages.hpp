@@ -1,18 +1,18 @@
 #pragma once
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <string>
 
+#include "common/cli/progress.hpp"
 #include "common/models/body.hpp"
 
 namespace palpate {
 
-/// Says on standard error which stages of a body's archive have taken long: it is not what was asked for.
+/// Says which stages of a body's archive have taken long, or each: it is not what was asked for.
 inline Progress say_stages(const Body& body) {
-  constexpr double kLong = 1;  // [s]
-  return [name = name_of(body)](std::string_view stage, double seconds) {
-    if (seconds > kLong) fmt::print(stderr, "archive of '{}': {}, {:.1f} s\n", name, stage, seconds);
+  const double worth = cli::telling() == cli::Telling::everything ? 0 : 1;  // [s]
+  return [name = name_of(body), worth](std::string_view stage, double seconds) {
+    if (seconds > worth) cli::say(fmt::format("archive of '{}': {}, {:.1f} s", name, stage, seconds));
   };
 }
 

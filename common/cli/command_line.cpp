@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "common/cli/progress.hpp"
 #include "common/describe/printable.hpp"
 #include "common/files/file_kind.hpp"
 
@@ -174,6 +175,14 @@ Option Command::add_flag(const std::string& name, bool& value, const std::string
 
 Command Command::add_command(const std::string& name, const std::string& meaning) {
   return Command(app_->add_subcommand(name, meaning));
+}
+
+void Command::tells_progress() {
+  app_->add_flag_callback(
+      "-q,--quiet", [] { set_telling(Telling::nothing); }, "Say nothing of how the work goes");
+  app_->add_flag_callback(
+          "-v,--verbose", [] { set_telling(Telling::everything); }, "Say more of how the work goes")
+      ->excludes("--quiet");
 }
 
 bool Command::given(const std::string& name) const {

@@ -56,6 +56,8 @@ class HapticStep {
   const Eigen::Isometry3d& pose(int tool) const { return rigs_[tool]->pose(); }
   double opening(int tool) const { return rigs_[tool]->end().opening(); }    ///< [rad] between a forceps' jaws
   double grip_torque(int tool) const { return rigs_[tool]->output().grip; }  ///< [N m] on the handle, opens the jaws
+  /// [N m, N m, N, N m] force() and torque() along the tool's yaw, pitch, depth and roll.
+  const Eigen::Vector4d& force_along_dofs(int tool) const { return rigs_[tool]->output().along; }
   const Eigen::Vector3d& trocar_force(int tool) const { return rigs_[tool]->output().trocar; }  ///< [N] on the shaft
 
   /// What the step knows of a body; null where the tissue moves, which tools feel by its local models.

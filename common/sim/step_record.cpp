@@ -50,6 +50,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
   r.contacts = r.forces = 0;
   for (int t = 0; t < r.tools; ++t) {
     const bool moving = haptic.has_moving_tissue();
+    const Eigen::Vector4d& along = haptic.force_along_dofs(t);
     r.of_tool[t] = {.dofs = samples[t].dofs,
                     .opening = haptic.opening(t),
                     .holding = haptic.rig(t).end().holding(),
@@ -58,6 +59,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
                     .torque = plain(haptic.torque(t)),
                     .press = plain(haptic.press(t)),
                     .trocar = plain(haptic.trocar_force(t)),
+                    .along = {along[0], along[1], along[2], along[3]},
                     .grip_torque = haptic.grip_torque(t),
                     .flags = haptic.flags(t),
                     .model_run = moving ? haptic.local(t).model().run : 0,

@@ -21,6 +21,7 @@ struct StepRecord {
     bool holding;
     std::uint64_t device_seq;
     std::array<double, 3> force, torque, press, trocar;
+    std::array<double, 4> along;  ///< [N m, N m, N, N m] force and torque along yaw, pitch, depth, roll
     double grip_torque;
     std::uint32_t flags;
     std::uint64_t model_run, model_seq;  ///< local contact model in use

@@ -93,6 +93,7 @@ void ToolRig::give(bool healthy) {
   output_.flags |= safety_.apply(given.force, given.torque, healthy);
   output_.force = given.force;
   output_.torque = given.torque;
+  output_.along = generalised_force(trocar_, dofs_, given.force, given.torque);
   output_.grip = given.grip;
   output_.trocar = trocar_reaction(trocar_, dofs_, shaft_length_, given.force, given.torque).trocar;
 }

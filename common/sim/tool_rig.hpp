@@ -16,7 +16,8 @@ class ToolRig {
   /// What the hand gets, and what is told of it.
   struct Output {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();  ///< [N], [N m] on the tool, tip
-    Eigen::Vector3d press = Eigen::Vector3d::Zero();                                    ///< unit or zero, on the tissue
+    Eigen::Vector4d along = Eigen::Vector4d::Zero();   ///< the same along yaw, pitch, depth, roll [N m, N m, N, N m]
+    Eigen::Vector3d press = Eigen::Vector3d::Zero();   ///< unit or zero, on the tissue
     Eigen::Vector3d trocar = Eigen::Vector3d::Zero();  ///< [N] of the trocar on the shaft
     double grip = 0;                                   ///< [N m] on the handle, opens the jaws
     std::uint32_t flags = 0;                           ///< ForceFlag bits

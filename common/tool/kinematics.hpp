@@ -30,8 +30,8 @@ Eigen::Isometry3d tip_pose(const Trocar& trocar, const ToolDofs& dofs);
 /// tip_pose.
 ToolDofs dofs_for_tip(const Trocar& trocar, const Eigen::Vector3d& tip, double roll);
 
-/// Force and torque [N, N m] at the tip turned into the reaction that the trocar and the hand feel (virtual
-/// work): generalised forces along yaw, pitch, depth, roll.
+/// Force and torque [N, N m] on the tool at its tip as generalised forces along yaw, pitch, depth, roll
+/// [N m, N m, N, N m], by virtual work: what motors at the trocar give to the tool.
 Eigen::Vector4d generalised_force(const Trocar& trocar, const ToolDofs& dofs, const Eigen::Vector3d& force,
                                   const Eigen::Vector3d& torque);
 

@@ -99,9 +99,9 @@ TEST(Print, ATaskRecordIsTwoLinesForTheTrainee) {
 
 TEST(Print, CsvHasAsManyCellsAsColumns) {
   EXPECT_EQ(csv_header<ForceState>(),
-            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,grip,trocar_0,trocar_1,"
-            "trocar_2,energy,flags,publish_ns");
-  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.04,7,-8,9,0.25,5,7");
+            "tool,run,seq,step,sense_ns,force_0,force_1,force_2,torque_0,torque_1,torque_2,yaw_torque,"
+            "pitch_torque,depth_force,roll_torque,grip,trocar_0,trocar_1,trocar_2,energy,flags,publish_ns");
+  EXPECT_EQ(csv_row(force_sample()), "2,3,4,5,6,0.5,-1,2,0.01,0.02,-0.03,0.1,0.2,0.3,0.4,0.04,7,-8,9,0.25,5,7");
   NodeStatus status;
   status.node = "a \"b\", c";
   EXPECT_EQ(csv_row(status).substr(0, 13), "\"a \"\"b\"\", c\",");

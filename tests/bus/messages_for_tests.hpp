@@ -49,7 +49,7 @@ inline SceneText scene_sample() {
 }
 
 inline ForceState force_sample() {
-  return {2, 3, 4, 5, 6, {0.5, -1, 2}, {0.01, 0.02, -0.03}, 0.04, {7, -8, 9}, 0.25, 5, 7};
+  return {2, 3, 4, 5, 6, {0.5, -1, 2}, {0.01, 0.02, -0.03}, 0.1, 0.2, 0.3, 0.4, 0.04, {7, -8, 9}, 0.25, 5, 7};
 }
 
 inline ClockProbe probe_sample() {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "common/cli/progress.hpp"
 #include "common/models/content_hash.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
@@ -31,10 +31,6 @@ struct DriveOptions {
   int jobs = 0, point = -1;
   bool csv = false, json = false, tasks = false;
 };
-
-bool terminal() {
-  return isatty(STDERR_FILENO) != 0;
-}
 
 std::vector<Expectation> expectations_of(const std::vector<std::string>& arguments) {
   std::vector<Expectation> all;
@@ -60,9 +56,9 @@ void put_out(const DriveOptions& o, const std::vector<PointResult>& results) {
 
 RunSettings settings_of(const DriveOptions& o) {
   RunSettings settings{.log = o.log, .course = o.course, .expected = expectations_of(o.expect), .seconds = o.seconds};
-  if (terminal() && o.point < 0)
+  if (o.point < 0)
     settings.progress = [](double time, double wall) {
-      fmt::print(stderr, "\r{:8.2f} s, {:.1f} times as fast as real time ", time, time / wall);
+      cli::say_in_place(fmt::format("{:8.2f} s, {:.1f} times as fast as real time", time, time / wall));
     };
   return settings;
 }
@@ -84,7 +80,7 @@ PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& cha
 void run_one(const DriveOptions& o) {
   const std::vector<SceneChange> changes = parse_changes(o.set);
   PointResult result = result_of(o, changes);
-  if (terminal() && o.point < 0) fmt::print(stderr, "\r{:60}\r", "");
+  cli::say_in_place("");
   result.point = std::max(0, o.point);
   result.changes = changes;
   if (o.csv || o.json)
@@ -141,7 +137,7 @@ void run_sweep(const DriveOptions& o) {
   std::vector<PointResult> results = run_points(commands, jobs, [&](const PointResult& result) {
     std::string set;
     for (const SceneChange& change : points[result.point]) set.append(" ").append(change.argument());
-    fmt::print(stderr, "[{}/{}]{}: {} {}\n", ++done, points.size(), set, result.outcome, result.reason);
+    cli::say(fmt::format("[{}/{}]{}: {} {}", ++done, points.size(), set, result.outcome, result.reason));
   });
   for (PointResult& result : results) result.changes = points[result.point];
   put_out(o, results);
@@ -198,6 +194,7 @@ void add_drive_command(cli::Command& app) {
   command.add_option("--merge", o->merge, "Files with what such commands printed, for one table")
       .excludes({"--set", "--sweep", "--tasks"});
   command.add_option("--point", o->point, "").hidden();
+  command.tells_progress();
   command.examples(
       {"palpate drive scenes/liver.toml --expect \"tool.force.max<3\" --expect finite==1",
        "palpate drive scenes/liver.toml --set body.young=8000 --course out/stiff.csv",

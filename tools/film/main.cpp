@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "common/cli/command_line.hpp"
+#include "common/cli/progress.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "tools/film/log_film.hpp"
 #include "tools/film/log_report.hpp"
@@ -11,12 +11,11 @@ namespace {
 
 void make_film(const LogFilmSettings& settings) {
   catch_shutdown_signals();
-  const bool terminal = isatty(STDERR_FILENO);
   const LogFilmReport report = film_log(settings, [&](long done, long due) {
-    if (terminal && done % 10 == 0) fmt::print(stderr, "\r{} of {} pictures", done, due);
+    if (done % 10 == 0) cli::say_in_place(fmt::format("{} of {} pictures", done, due));
     return !shutdown_requested();
   });
-  if (terminal) fmt::print(stderr, "\r");
+  cli::say_in_place("");
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   fmt::print("{}: {} pictures, {:.2f} s, largest force {:.2f} N\n", settings.film, report.frames, report.seconds,
              report.peak_force);
@@ -40,6 +39,7 @@ void add_film_command(cli::Command& app) {
       .show_default();
   command.add_option("--data", s->data,
                      "Folder for the files that the log brings along, and with those that are too large for it");
+  command.tells_progress();
   command.examples({"palpate film out/liver.lcmlog --speed 0.25 --from 2 --to 4 -o out/slow.mp4"});
   command.does([s] { make_film(*s); });
 }
@@ -55,9 +55,10 @@ void add_report_command(cli::Command& app) {
       .show_default();
   command.add_option("--data", s->data,
                      "Folder for the files that the logs bring along, and with those that are too large for them");
+  command.tells_progress();
   command.examples({"palpate report monday.lcmlog friday.lcmlog -o out/report"});
   command.does([s] {
-    const std::string missing = report_logs(*s, [](const std::string& log) { fmt::print(stderr, "{}\n", log); });
+    const std::string missing = report_logs(*s, [](const std::string& log) { cli::say(log); });
     if (!missing.empty()) fmt::print(stderr, "palpate: {}\n", missing);
   });
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "common/cli/progress.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "tools/logs/log_files.hpp"
@@ -9,7 +10,7 @@ namespace palpate {
 void LoggedScene::ensure_archives() const {
   for (const Body& body : scene_.bodies) {
     if (!archive_path(body).empty() && !std::filesystem::exists(archive_path(body)))
-      fmt::print(stderr, "body '{}': its archive is computed first\n", name_of(body));
+      cli::say(fmt::format("body '{}': its archive is computed first", name_of(body)));
     ensure_archive(scene_, body);
   }
 }

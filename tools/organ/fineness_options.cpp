@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "common/cli/progress.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -110,7 +111,7 @@ void finish_mesh(TetMesh mesh, const MeshOptions& o) {
 }
 
 void say_progress(const std::string& line) {
-  fmt::print(stderr, "{}\n", line);
+  cli::say(line);
 }
 
 }  // namespace palpate

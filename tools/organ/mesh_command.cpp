@@ -70,6 +70,7 @@ void add_mesh_command(cli::Command& app) {
       .add_option("--hole", o->hole, "Close holes of up to this size [m] (default: a fifth of the surface's diagonal)")
       .positive();
   add_mesh_options(command, *o);
+  command.tells_progress();
   command.examples({"palpate mesh liver.stl --unit mm --nodes 2000 --group attachment=above:z -o liver.msh"});
   command.does([o] { make_mesh(*o); });
 }

@@ -207,6 +207,7 @@ void add_organ_command(cli::Command& app) {
                      "Folder for pictures: each slice with the smoothed border and the tetrahedra cut there, the "
                      "surface of the voxels and that of the mesh");
   add_mesh_options(command, *o);
+  command.tells_progress();
   command.examples(
       {"palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o organ.msh"});
   command.does([o] { make_organ(*o); });

@@ -167,6 +167,7 @@ void add_segment_command(cli::Command& app) {
                      "Text file of lines SLICE X Y, in voxels: the contours of these slices are drawn through their "
                      "points, those of up to 15 slices between two of them start from both");
   command.add_option("--preview", o->preview, "Folder for a picture of each slice with its contours");
+  command.tells_progress();
   command.examples({"palpate segment ct.nii.gz --seed 60,-20,110 --preview slices -o liver.mha",
                     "palpate segment ct.nii.gz --seed 60,-20,110 --neck 6 --points mended.txt -o liver.mha"});
   command.does([o] { segment_image(*o); });

@@ -50,6 +50,7 @@ void add_stability_command(cli::Command& app) {
   command.add_flag("--quick", options->quick, "The subset that takes a minute");
   command.add_option("--only", options->run.only, "Cases whose name contains this");
   command.add_option("--jobs", options->run.jobs, "Cases at the same time").between(1, 1024).show_default();
+  command.tells_progress();
   command.examples({"palpate stability --quick -o out/stability",
                     "palpate stability scenes/plate.toml --set contact.friction=0.5 --jobs 2 -o out/plate"});
   command.does([options] { run(*options); });

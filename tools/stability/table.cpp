@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/cli/progress.hpp"
 #include "common/fem/dense.hpp"
 #include "common/files/atomic_file.hpp"
 #include "tools/stability/guarded_run.hpp"
@@ -107,8 +108,8 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
     const Row& row = ended.row;
     rows[places[ended.point]] = row;
     write_rows(rows, csv);
-    fmt::print(stderr, "[{}/{}] {}, {} {}: {} ({:.1f} s) {}\n", ++done, to_run.size(), row.name, row.parameter,
-               row.value, row.outcome, ended.seconds, row.note);
+    cli::say(fmt::format("[{}/{}] {}, {} {}: {} ({:.1f} s) {}", ++done, to_run.size(), row.name, row.parameter,
+                         row.value, row.outcome, ended.seconds, row.note));
   });
   write_rows(rows, csv);
   int failed = 0;
