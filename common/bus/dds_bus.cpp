@@ -132,19 +132,9 @@ class DdsInlet {
     dds_waitset_attach(waitset, condition_, 0);
   }
 
-  /// Hands the next sample that waits to `receive`, and to `end` the keys of streams without writers that it comes
-  /// upon. False if there is none.
+  /// As take_message() has it.
   bool take(const std::function<void(const void*)>& receive, const std::function<void(const void*)>& end) {
-    for (;;) {
-      void* sample = nullptr;
-      dds_sample_info_t info;
-      if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return false;
-      const bool is_message = info.valid_data;
-      if (is_message) receive(sample);
-      if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) end(sample);
-      dds_return_loan(reader_, &sample, 1);
-      if (is_message) return true;
-    }
+    return take_message(reader_, receive, end);
   }
 
   int writers() const {

@@ -62,6 +62,20 @@ Entity::Entity(dds_entity_t id, const std::string& what) : id_(id) {
       fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_), words.empty() ? "" : ", ", words));
 }
 
+bool take_message(dds_entity_t reader, const std::function<void(const void*)>& receive,
+                  const std::function<void(const void*)>& end) {
+  for (;;) {
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    if (dds_take(reader, &sample, &info, 1, 1) <= 0) return false;
+    const bool is_message = info.valid_data;
+    if (is_message) receive(sample);
+    if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) end(sample);
+    dds_return_loan(reader, &sample, 1);
+    if (is_message) return true;
+  }
+}
+
 dds_entity_t make_participant(const BusSettings& settings) {
   const auto id = static_cast<dds_domainid_t>(settings.domain);
   const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(), &dds_delete_qos);

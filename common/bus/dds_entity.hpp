@@ -1,6 +1,7 @@
 #pragma once
 #include <dds/dds.h>
 
+#include <functional>
 #include <string>
 
 #include "common/bus/dds_bus.hpp"
@@ -24,6 +25,11 @@ class Entity {
 /// Keeps what the middleware says for the sentence of an exception; it prints nothing of its own. Call it before the
 /// first entity is made.
 void listen_to_middleware();
+
+/// Hands the next sample that waits in a reader to `receive`, and to `end` the keys of streams without writers that it
+/// comes upon. False if there is none.
+bool take_message(dds_entity_t reader, const std::function<void(const void*)>& receive,
+                  const std::function<void(const void*)>& end);
 
 /// A participant of a domain that this process has joined, with the settings' keys if they name any. Throws
 /// std::runtime_error in one sentence.

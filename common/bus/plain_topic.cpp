@@ -97,15 +97,7 @@ PlainReader::PlainReader(PlainParticipant& participant, const std::string& topic
 }
 
 bool PlainReader::take(const std::function<void(const void*)>& receive) {
-  for (;;) {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    if (dds_take(reader_, &sample, &info, 1, 1) <= 0) return false;
-    const bool is_message = info.valid_data;
-    if (is_message) receive(sample);
-    dds_return_loan(reader_, &sample, 1);
-    if (is_message) return true;
-  }
+  return take_message(reader_, receive, [](const void*) {});
 }
 
 Guid PlainReader::guid() const {
