@@ -28,6 +28,7 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
           },
           tool.end)),
       safety_(tool.max_force, tool.max_force_rate, dt),
+      force_scale_(tool.force_scale),
       fade_step_(dt / kFade),
       return_step_(dt / kReturn),
       slide_step_(dt / kSlideOut) {}
@@ -68,7 +69,7 @@ void ToolRig::count_motion() {
 }
 
 void ToolRig::ask(const ToolLoad& load) {
-  port_.asked = {load.force, load.torque, end_->torque()};
+  port_.asked = {force_scale_ * load.force, force_scale_ * load.torque, force_scale_ * end_->torque()};
   slide_out(port_.asked);
   output_ = {.press = load.press, .flags = load.flags};
   output_.flags |= safety_.limit(port_.asked.force, port_.asked.torque);

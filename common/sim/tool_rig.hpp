@@ -68,6 +68,7 @@ class ToolRig {
   double jaw_length_;  ///< [m] 0 without jaws
   std::unique_ptr<ToolEnd> end_;
   SafetyChain safety_;
+  double force_scale_;
   ToolDofs dofs_{};
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
   double handle_ = 0;                ///< [rad] in the last step

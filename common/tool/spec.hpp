@@ -23,6 +23,7 @@ struct Tool {
   double compliance = 1e-4;     ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
   double max_force = 10;        ///< [N] limit of the safety chain
   double max_force_rate = 250;  ///< [N/s] at which the force rises at most; it falls 20 times as fast
+  double force_scale = 1;       ///< [1] of its forces that the hand gets, before the limits
   DeviceSpec device;
 };
 
@@ -55,6 +56,9 @@ inline void describe(Description& d, Tool& t) {
       t.max_force, above(0));
   d.number({"max_force_rate", "N/s", "at which it rises at most; it falls up to 20 times as fast"}, t.max_force_rate,
            above(0));
+  d.number({"force_scale", "",
+            "share of the tool's forces and torques that goes to the hand; the limits hold for what is left"},
+           t.force_scale, above(0));
   static const std::string ends = meanings(std::type_identity<ToolEndSpec>{});
   d.variant({"kind", "", ends}, t.end);
 }

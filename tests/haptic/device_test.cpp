@@ -75,5 +75,16 @@ TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
   EXPECT_EQ(devices[1]->read(0).seq, 5u);
 }
 
+TEST_F(DeviceTest, AToolDoesThePartOfItsDriversMotionThatTheSceneSays) {
+  const auto device = make_device(scene_with(BusDeviceSpec{.motion_scale = 0.5}), 0);
+  device->put({.dofs = {.yaw = 0.2, .pitch = -0.1, .depth = 0.12, .roll = 0.3, .grip = 0.4}, .seq = 1});
+  const ToolDofs dofs = device->read(0).dofs;
+  EXPECT_DOUBLE_EQ(dofs.yaw, 0.1);
+  EXPECT_DOUBLE_EQ(dofs.pitch, -0.05);
+  EXPECT_DOUBLE_EQ(dofs.depth, 0.06);
+  EXPECT_DOUBLE_EQ(dofs.roll, 0.3);
+  EXPECT_DOUBLE_EQ(dofs.grip, 0.4);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -46,5 +46,21 @@ TEST(ForceStateOfAStep, HasAlongTheDofsWhatForceAndTorqueDo) {
   EXPECT_LT(told.depth_force, 0) << "pushed out of what it presses";
 }
 
+TEST(ForceStateOfAStep, IsTheSharesOfTheForceThatTheSceneGivesTheHandAndNoMoreThanItsLimit) {
+  testing::BlockScene plain, scaled;
+  scaled.scene.tools[0].force_scale = 3;
+  HapticStep whole(plain.scene, plain.archives), more(scaled.scene, scaled.archives);
+  scaled.scene.tools[0].max_force = 0.2;
+  HapticStep limited(scaled.scene, scaled.archives);
+  const auto dofs_at = [&](int i) { return std::array{tip_at(plain.scene.tools[0], {0, 0, 0.02 - 8e-5 * i})}; };
+  for (HapticStep* step : {&whole, &more, &limited}) step->start(dofs_at(0));
+  for (int i = 0; i <= 200; ++i) {
+    for (HapticStep* step : {&whole, &more, &limited}) step->step(dofs_at(i));
+    EXPECT_LT((more.force(0) - 3 * whole.force(0)).norm(), 1e-12);
+  }
+  EXPECT_GT(more.force(0).norm(), 0.3);
+  EXPECT_NEAR(limited.force(0).norm(), 0.2, 1e-9);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -200,6 +200,7 @@ device = "scripted"
 trajectory = "move.csv"
 max_force = 8
 max_force_rate = 4000
+force_scale = 0.5
 
 [tool.cautery]
 radius = 0.002
@@ -226,6 +227,7 @@ kind = "forceps"
 pivot = [0, 0.1, 0.3]
 device = "bus"
 lease = 0.2
+motion_scale = 0.8
 compliance = 0.0002
 
 [tool.jaws]

@@ -59,6 +59,7 @@ TEST_F(SceneFile, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(std::get<ProbeSpec>(tool.end).radius, 0.006);
   EXPECT_EQ(std::get<ScriptedDeviceSpec>(tool.device).trajectory, folder / "move.csv");
   EXPECT_EQ(tool.max_force_rate, 4000);
+  EXPECT_EQ(tool.force_scale, 0.5);
   EXPECT_TRUE(std::holds_alternative<BusDeviceSpec>(scene.tools[1].device));
   EXPECT_EQ(std::get<LogDeviceSpec>(scene.tools[2].device).trajectory, folder / "session.lcmlog");
   EXPECT_EQ(scene.contact.rule, ContactRule::alpha);

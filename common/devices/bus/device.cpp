@@ -16,10 +16,12 @@ namespace {
 /// hand's pace and without force.
 class BusDevice : public Device {
  public:
-  BusDevice(double lease, double haptic_hz) : lease_(lease), way_back_({.delay = kLead}, 1 / haptic_hz) {}
+  BusDevice(const BusDeviceSpec& spec, double haptic_hz)
+      : lease_(spec.lease), scale_(spec.motion_scale), way_back_({.delay = kLead}, 1 / haptic_hz) {}
 
   DeviceSample read(double seconds) override {
     DeviceSample sample = newest_.get();
+    for (double ToolDofs::*dof : {&ToolDofs::yaw, &ToolDofs::pitch, &ToolDofs::depth}) sample.dofs.*dof *= scale_;
     if (sample.seq != seq_) lease_.heard(seconds);
     seq_ = sample.seq;
     const bool over = lease_.over(seconds);
@@ -57,6 +59,7 @@ class BusDevice : public Device {
   }
 
   Lease lease_;
+  double scale_;
   HandMotion way_back_;
   ToolDofs at_;
   std::uint64_t seq_ = 0;
@@ -68,7 +71,7 @@ class BusDevice : public Device {
 }  // namespace
 
 std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace& place) {
-  return std::make_unique<BusDevice>(spec.lease, place.haptic_hz);
+  return std::make_unique<BusDevice>(spec, place.haptic_hz);
 }
 
 std::optional<Trajectory> script(const BusDeviceSpec&) {

@@ -9,10 +9,14 @@ struct BusDeviceSpec {
   static constexpr std::string_view kMeaning = "a driver elsewhere publishes it";
 
   double lease = 0.1;
+  double motion_scale = 1;  ///< [1] of the driver's yaw, pitch and depth, about the trocar, that the tool does
 };
 
 inline void describe(Description& d, BusDeviceSpec& b) {
   describe_lease(d, b.lease);
+  d.number({"motion_scale", "",
+            "what the driver says of yaw, pitch and depth is multiplied by it: 0.5 halves the motion about the trocar"},
+           b.motion_scale, above(0));
 }
 
 std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace& place);
