@@ -19,7 +19,7 @@ void BusDevices::take() {
     const ToolDofs dofs{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal};
     for (const Target& target : targets_) {
       if (target.tool != sample->tool) continue;
-      if (MotionGuard::in_range(dofs))
+      if (MotionLimits{}.allow(dofs))
         target.device->put({dofs, sample->seq});
       else
         refused_.fetch_add(1, std::memory_order_relaxed);

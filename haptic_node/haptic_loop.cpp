@@ -32,9 +32,9 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
       local_feed_(bus, haptic, run),
       keyframe_interval_(static_cast<std::uint64_t>(std::lround(1 / haptic.dt()))),
       samples_(haptic.tools()),
-      guards_(haptic.tools(), MotionGuard(haptic.dt())),
       dofs_(haptic.tools()),
       ring_(kRingSlots) {
+  for (int t = 0; t < haptic.tools(); ++t) guards_.emplace_back(haptic.rig(t).motion_limits(), haptic.dt());
   ring_.for_each_slot([&](StepRecord& slot) { prepare_record(haptic, slot); });
   keyframe_.dt = haptic.dt();
   keyframe_.code_path = std::move(code_path);

@@ -29,6 +29,7 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
           tool.end)),
       safety_(tool.max_force, tool.max_force_rate, dt),
       force_scale_(tool.force_scale),
+      motion_limits_(tool.motion),
       fade_step_(dt / kFade),
       return_step_(dt / kReturn),
       slide_step_(dt / kSlideOut) {}

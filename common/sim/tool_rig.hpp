@@ -28,6 +28,7 @@ class ToolRig {
   const std::string& name() const { return name_; }
   const Trocar& trocar() const { return trocar_; }
   const ToolEnd& end() const { return *end_; }
+  const MotionLimits& motion_limits() const { return motion_limits_; }
   double max_force() const { return safety_.max_force(); }  ///< [N] that the hand gets
   /// Whether tissue can be held at a place [m] in a part's own frame, or between the jaws in the tip frame.
   bool can_hold(int part, const Eigen::Vector3d& at) const;
@@ -69,6 +70,7 @@ class ToolRig {
   std::unique_ptr<ToolEnd> end_;
   SafetyChain safety_;
   double force_scale_;
+  MotionLimits motion_limits_;
   ToolDofs dofs_{};
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();
   double handle_ = 0;                ///< [rad] in the last step

@@ -20,21 +20,21 @@ Distance distance(const ToolDofs& a, const ToolDofs& b) {
           std::max(std::abs(a.roll - b.roll), std::abs(a.grip - b.grip))};
 }
 
-bool close_by(const ToolDofs& a, const ToolDofs& b) {
-  const Distance d = distance(a, b);
-  return d.tip <= MotionGuard::kJump && d.turn <= MotionGuard::kJumpAngle;
-}
-
 }  // namespace
 
-bool MotionGuard::in_range(const ToolDofs& d) {
+bool MotionLimits::allow(const ToolDofs& d) const {
   const auto within = [](double value, double most) { return std::abs(value) <= most; };  // false for what is no number
-  return within(d.yaw, kMaxAngle) && within(d.pitch, kMaxAngle) && within(d.roll, kMaxAngle) &&
-         within(d.grip, kMaxAngle) && within(d.depth, kMaxDepth) && std::isfinite(d.pedal);
+  return within(d.yaw, max_angle) && within(d.pitch, max_angle) && within(d.roll, kMaxAngle) &&
+         within(d.grip, kMaxAngle) && d.depth >= min_depth && d.depth <= max_depth && std::isfinite(d.pedal);
+}
+
+bool MotionGuard::close_by(const ToolDofs& a, const ToolDofs& b) const {
+  const Distance d = distance(a, b);
+  return d.tip <= limits_.jump && d.turn <= limits_.jump_angle;
 }
 
 bool MotionGuard::plausible(const ToolDofs& sample) const {
-  return in_range(sample) && (close_by(sample, *at_) || (seen_ && close_by(sample, *seen_)));
+  return limits_.allow(sample) && (close_by(sample, *at_) || (seen_ && close_by(sample, *seen_)));
 }
 
 ToolDofs MotionGuard::follow(const ToolDofs& sample, std::uint64_t seq) {
@@ -43,13 +43,13 @@ ToolDofs MotionGuard::follow(const ToolDofs& sample, std::uint64_t seq) {
   if (anew) {
     accepted_ = plausible(sample);
     refused_ += !accepted_;
-    if (in_range(sample)) seen_ = sample;
+    if (limits_.allow(sample)) seen_ = sample;
     seq_ = seq;
   }
   at_->silent = sample.silent;
   if (!accepted_) return *at_;
   const Distance d = distance(*at_, sample);
-  const double share = std::min({1.0, kMaxSpeed * dt_ / d.tip, kMaxTurn * dt_ / d.turn});
+  const double share = std::min({1.0, limits_.max_speed * dt_ / d.tip, limits_.max_turn * dt_ / d.turn});
   if (share < 1 - kRounding) {
     ++followed_;
     const auto towards = [share](double& from, double to) { from += share * (to - from); };

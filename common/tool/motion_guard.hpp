@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/tool/kinematics.hpp"
+#include "common/tool/motion_limits.hpp"
 
 namespace palpate {
 
@@ -12,17 +12,7 @@ namespace palpate {
 /// speed. A motion within the bounds passes in all its bits.
 class MotionGuard {
  public:
-  static constexpr double kMaxAngle = 10;     ///< [rad] either way, of all angles
-  static constexpr double kMaxDepth = 2;      ///< [m] either way
-  static constexpr double kMaxSpeed = 2;      ///< [m/s] of the tip
-  static constexpr double kMaxTurn = 30;      ///< [rad/s] of roll and grip
-  static constexpr double kJump = 0.05;       ///< [m] of the tip, beyond which a sample must be confirmed
-  static constexpr double kJumpAngle = 0.75;  ///< [rad] of roll and grip, likewise
-
-  explicit MotionGuard(double dt) : dt_(dt) {}
-
-  /// Whether a tool can be there at all; false for what is not a number.
-  static bool in_range(const ToolDofs& sample);
+  MotionGuard(const MotionLimits& limits, double dt) : limits_(limits), dt_(dt) {}
 
   /// Where the tool goes in this step, for the device's newest sample. `seq`: of the sample; one that is seen again
   /// confirms nothing. A scripted motion has 0, and each step's pose is a sample.
@@ -32,8 +22,10 @@ class MotionGuard {
   std::uint64_t followed() const { return followed_; }  ///< steps in which the tool was slower than its device
 
  private:
+  bool close_by(const ToolDofs& a, const ToolDofs& b) const;
   bool plausible(const ToolDofs& sample) const;
 
+  MotionLimits limits_;
   double dt_;
   std::optional<ToolDofs> at_;    ///< where the tool is; none before the first sample, which is taken as it is
   std::optional<ToolDofs> seen_;  ///< the last sample that was new and within range

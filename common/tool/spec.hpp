@@ -8,6 +8,7 @@
 #include "common/devices/device_spec.hpp"
 #include "common/geometry/direction.hpp"
 #include "common/tool/ends/end_spec.hpp"
+#include "common/tool/motion_limits.hpp"
 
 namespace palpate {
 
@@ -24,6 +25,7 @@ struct Tool {
   double max_force = 10;        ///< [N] limit of the safety chain
   double max_force_rate = 250;  ///< [N/s] at which the force rises at most; it falls 20 times as fast
   double force_scale = 1;       ///< [1] of its forces that the hand gets, before the limits
+  MotionLimits motion;          ///< that its device must keep to
   DeviceSpec device;
 };
 
@@ -59,6 +61,7 @@ inline void describe(Description& d, Tool& t) {
   d.number({"force_scale", "",
             "share of the tool's forces and torques that goes to the hand; the limits hold for what is left"},
            t.force_scale, above(0));
+  d.table({"motion", "", "what its device may ask for", Need::optional, Use::agreed, "defaults"}, t.motion);
   static const std::string ends = meanings(std::type_identity<ToolEndSpec>{});
   d.variant({"kind", "", ends}, t.end);
 }

@@ -77,9 +77,9 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
     const double pedal = v.size() > 6 ? v[6] : 0;
     if (pedal != 0 && pedal != 1) table.fail(row.line, fmt::format("pedal must be 0 or 1, and is {}", pedal));
     dofs.push_back({.yaw = v[1], .pitch = v[2], .depth = v[3], .roll = v[4], .grip = v[5], .pedal = pedal});
-    if (!MotionGuard::in_range(dofs.back()))
+    if (!MotionLimits{}.allow(dofs.back()))
       table.fail(row.line, fmt::format("no tool can be there: angles are at most {} rad, the depth {} m",
-                                       MotionGuard::kMaxAngle, MotionGuard::kMaxDepth));
+                                       MotionLimits::kMaxAngle, MotionLimits::kMaxDepth));
   }
   return {std::move(time), dofs};
 }

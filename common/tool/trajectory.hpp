@@ -34,8 +34,8 @@ class Trajectory {
 };
 
 /// Reads a CSV file with the header `time,yaw,pitch,depth,roll,grip` [s, rad, rad, m, rad, rad], after which
-/// `pedal` (0 or 1) may follow, strictly increasing times and poses where a tool can be (MotionGuard); lines that begin
-/// with '#' and empty lines are skipped. Throws std::runtime_error("FILE:LINE: sentence").
+/// `pedal` (0 or 1) may follow, strictly increasing times and poses where a tool can be (MotionLimits); lines that
+/// begin with '#' and empty lines are skipped. Throws std::runtime_error("FILE:LINE: sentence").
 Trajectory load_trajectory(const std::filesystem::path& file);
 
 /// Refuses a trajectory whose grip leaves what jaws that turn allow, 0 .. max_open. Throws

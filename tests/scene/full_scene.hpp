@@ -202,6 +202,15 @@ max_force = 8
 max_force_rate = 4000
 force_scale = 0.5
 
+[tool.motion]
+max_angle = 1.2
+min_depth = 0.01
+max_depth = 0.25
+max_speed = 0.5
+max_turn = 9
+jump = 0.02
+jump_angle = 0.4
+
 [tool.cautery]
 radius = 0.002
 

@@ -8,10 +8,9 @@
 namespace palpate::drive {
 
 LockStep::LockStep(const Scene& scene, const std::vector<Archive>& archives)
-    : simulator_(scene, archives),
-      guards_(scene.tools.size(), MotionGuard(simulator_.dt())),
-      inputs_(scene.tools.size()) {
+    : simulator_(scene, archives), inputs_(scene.tools.size()) {
   for (int t = 0; t < simulator_.tools(); ++t) {
+    guards_.emplace_back(scene.tools[t].motion, simulator_.dt());
     devices_.push_back(make_device(scene, t));
     if (devices_.back()->on_bus())
       throw std::runtime_error(fmt::format(
