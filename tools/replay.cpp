@@ -24,30 +24,59 @@ struct ReplayOptions {
 
 constexpr int kPlayerPriority = 30;  // below a node's loop and its publisher
 
-void verify(const std::string& file, const std::string& data) {
-  const LoggedScene logged(file, data);
-  logged.ensure_archives();
-  const VerifyReport report = verify_log(file, logged.scene());
-  if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
-  for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
+nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& report, const TissueReport& tissue) {
+  std::vector<std::string> gaps = report.gaps;
+  gaps.insert(gaps.end(), tissue.gaps.begin(), tissue.gaps.end());
+  return {{"file", file},
+          {"verified", report.verified() && tissue.mismatch.empty() && tissue.gaps.empty()},
+          {"steps", report.steps},
+          {"forces", report.forces},
+          {"tasks", report.tasks},
+          {"tissue_ticks", tissue.ticks},
+          {"code_path", report.code_path},
+          {"mismatch", report.mismatch.empty() ? tissue.mismatch : report.mismatch},
+          {"gaps", gaps},
+          {"damage", report.damage}};
+}
+
+/// Throws std::runtime_error where the recorded forces are not all come to again.
+void require_forces(const std::string& file, const VerifyReport& report) {
   if (!report.mismatch.empty())
     throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
   if (!report.verified())
     throw std::runtime_error(fmt::format(
         "{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified", file,
         report.forces, report.steps, report.gaps.size()));
-  fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", file, report.forces,
-             report.steps, report.code_path);
-  if (report.tasks > 0) fmt::print("{}: verified: {} records of the task are equal bit for bit\n", file, report.tasks);
-  const TissueReport tissue = verify_tissue(file, logged.scene());  // on the code path that verify_log() took up
-  for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", file, gap);
+}
+
+void require_tissue(const std::string& file, const TissueReport& tissue) {
   if (!tissue.mismatch.empty())
     throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
   if (!tissue.gaps.empty())
     throw std::runtime_error(
         fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
-  if (tissue.ticks > 0)
-    fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", file, tissue.ticks);
+}
+
+void verify(const ReplayOptions& o) {
+  const LoggedScene logged(o.file, o.data);
+  logged.ensure_archives();
+  const VerifyReport report = verify_log(o.file, logged.scene());
+  if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
+  for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
+  TissueReport tissue;
+  if (report.verified()) tissue = verify_tissue(o.file, logged.scene());  // on the code path that verify_log() took up
+  for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
+  if (o.json) fmt::print("{}\n", json_of(o.file, report, tissue).dump());
+  require_forces(o.file, report);
+  if (!o.json) {
+    fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", o.file, report.forces,
+               report.steps, report.code_path);
+    if (report.tasks > 0)
+      fmt::print("{}: verified: {} records of the task are equal bit for bit\n", o.file, report.tasks);
+  }
+  require_tissue(o.file, tissue);
+  if (tissue.ticks > 0 && !o.json)
+    fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", o.file, tissue.ticks);
 }
 
 nlohmann::ordered_json json_of(const ReplayOptions& o, const PlayReport& report) {
@@ -98,13 +127,13 @@ void add_replay_command(cli::Command& app) {
   command.add_option("--speed", o->play.speed, "2 plays twice as fast").positive().show_default();
   command.add_option("--topic", o->play.topics, "Play this topic alone; may be repeated");
   add_system_options(command, o->network, "player");
-  command.add_flag("--json", o->json, "Print what was played, and how well paced, as JSON");
+  command.add_flag("--json", o->json, "Print what was played and how well paced, or what was verified, as JSON");
   const cli::Option verifies =
       command
           .add_flag(
               "--verify", o->verify,
               "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
-          .excludes({"--speed", "--topic", "--json"});
+          .excludes({"--speed", "--topic"});
   command
       .add_option("--data", o->data,
                   "Folder for the files that the log brings along, and with those that are too large for it")
@@ -113,7 +142,7 @@ void add_replay_command(cli::Command& app) {
   command.examples(
       {"palpate replay out/liver.lcmlog --verify", "palpate replay out/liver.lcmlog --speed 0.5 --topic force_state"});
   command.does([o, command] {
-    if (o->verify) return verify(o->file, o->data);
+    if (o->verify) return verify(*o);
     take_scene(command, o->network);
     play(*o);
   });

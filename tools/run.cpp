@@ -37,6 +37,7 @@ struct RunOptions {
   double seconds = 0;
   int processes = 0;  ///< 0: those that somebody looks at
   bool strict = false;
+  bool json = false;
   bool force = false;  ///< outputs may replace files of another kind
 };
 
@@ -52,12 +53,16 @@ struct Node {
 /// The nodes of one scene on this machine, in the order in which they start; the haptic node comes last.
 class Nodes {
  public:
+  /// `results_alone`: what nodes say beside their results goes to standard error.
+  explicit Nodes(bool results_alone) : results_alone_(results_alone) {}
+
   void start(const std::string& role, const std::vector<std::string>& arguments) {
     nodes_.push_back({ChildProcess(role, arguments), Clock::now()});
   }
 
   /// Reads what the nodes print: "ready", and at the end one JSON line each.
   void read() {
+    std::FILE* const to = results_alone_ ? stderr : stdout;
     for (Node& n : nodes_) {
       n.process.running();
       for (const std::string& line : n.process.take_lines()) {
@@ -66,7 +71,7 @@ class Nodes {
         else if (line.starts_with('{'))
           n.summary = nlohmann::json::parse(line, nullptr, false);
         else
-          fmt::print("{}\n", line), std::fflush(stdout);
+          fmt::print(to, "{}\n", line), std::fflush(to);
       }
     }
   }
@@ -139,6 +144,7 @@ class Nodes {
     if (statm >> pages >> resident) node.resident = resident * static_cast<double>(sysconf(_SC_PAGESIZE));
   }
 
+  const bool results_alone_;
   std::vector<Node> nodes_;
 };
 
@@ -295,7 +301,7 @@ void run(const RunOptions& o) {
   if (!o.summary.empty()) summary_file.emplace(o.summary);
   const auto begin = Clock::now();
   const DomainClaim claim = claim_domain(scene, o);
-  Nodes nodes;
+  Nodes nodes(o.json);
   const bool began = start_nodes(nodes, scene, claim.domain(), o);
   while (!shutdown_requested() && nodes.last_runs()) {
     nodes.read();
@@ -310,7 +316,10 @@ void run(const RunOptions& o) {
   summary["title"] = scene.title;
   summary["seconds"] = std::chrono::duration<double>(Clock::now() - begin).count();
   summary["version"] = PALPATE_VERSION;
-  print_summary(summary);
+  if (o.json)
+    fmt::print("{}\n", summary.dump());
+  else
+    print_summary(summary);
   if (summary_file) {
     std::ofstream file(summary_file->handle());
     file << summary.dump(2) << "\n";
@@ -322,7 +331,7 @@ void run(const RunOptions& o) {
     if (o.strict) throw std::runtime_error(said);
     fmt::print(stderr, "{}\n", said);
   }
-  if (const NodePlan plan = plan_of(scene, o); !plan.web && !plan.render) say_where_to_look(scene, o);
+  if (const NodePlan plan = plan_of(scene, o); !plan.web && !plan.render && !o.json) say_where_to_look(scene, o);
 }
 
 }  // namespace
@@ -362,6 +371,7 @@ void add_run_command(cli::Command& app) {
                   "deformation "
                   "node of its own, which moving tissue always has (default: what --film, --still and --web need)")
       .one_of({2, 3});
+  run_command.add_flag("--json", o->json, "Print rates, latencies and forces as one line of JSON");
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.tells_progress();
   run_command.examples({"palpate run scenes/liver.toml --web",

@@ -42,11 +42,10 @@ TEST(ToolsRun, CheckNamesTheNodesThatRunStartsAndCountsTheirMemoryAlone) {
     for (const json& part : check["bodies"][0]["memory"])
       EXPECT_TRUE(part["owner"] == "disk" || told.contains(part["owner"].get<std::string>())) << part;
 
-    const std::string summary = scene.folder() / "summary.json";
-    const auto run = run_program(fmt::format("{} run {} --domain {} --seconds 0.3 --summary {}", program("palpate"),
-                                             scene.scene(), testing::own_domain(), summary));
+    const auto run = run_program(fmt::format("{} run {} --domain {} --seconds 0.3 --json", program("palpate"),
+                                             scene.scene(), testing::own_domain()));
     ASSERT_EQ(run.status, 0) << run.err;
-    const json ended = json::parse(text_of(summary));
+    const json ended = json::parse(run.out);
     std::set<std::string> started;
     for (const char* node : {"recorder", "deform_node", "render_node", "web_node", "haptic_node"})
       if (ended.contains(node)) started.insert(node);

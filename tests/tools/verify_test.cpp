@@ -91,6 +91,11 @@ TEST_F(ToolsVerify, ALogThatKeepsEnoughIsVerifiedWithoutTheRest) {
 TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   rewrite(log(), changed(), [](LogEvent&) {});
   EXPECT_EQ(verify(changed()).status, 0) << "a log that was written anew as it was";
+  const auto in_json = [&] {
+    return nlohmann::json::parse(run_program(program("palpate") + " replay --verify --json " + changed().string()).out);
+  };
+  EXPECT_EQ(in_json()["verified"], true);
+  EXPECT_GT(in_json()["forces"], 1000);
 
   std::uint64_t altered = 0;
   rewrite(log(), changed(), [&](LogEvent& event) {
@@ -105,6 +110,8 @@ TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find(fmt::format("the forces differ: step {}, tool 0", altered)), std::string::npos)
       << result.err;
+  EXPECT_EQ(in_json()["verified"], false);
+  EXPECT_NE(in_json()["mismatch"], "");
 }
 
 TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
