@@ -208,5 +208,22 @@ TEST(LinearContact, AShallowPressOnALargeBlockComesToHertzAsTheMeshGetsFiner) {
   EXPECT_LT(last, 0.11);
 }
 
+TEST(LinearContact, QuadraticElementsComeNearerToHertzThanLinearOnesOnTheSameMesh) {
+  const double r = 0.05, e = 5000, nu = 0.3, d = 0.01 * r, a = std::sqrt(r * d);
+  const double hertz = 4.0 / 3 * e / (1 - nu * nu) * std::sqrt(r) * std::pow(d, 1.5);
+  const StaticProblem block =
+      make_static_problem(soft_block(), make_block({-0.3, -0.3, 0}, {0.3, 0.3, 0.3}, {4, 4, 2}));
+  const StaticProblem fine = refine_graded(block, around({0, 0, 0.3}, a, 0.5 * a, 1, 0.2), 100000);
+  const auto error = [&](FiniteElement element) {
+    const LinearContact contact(fine, std::array{Vector3d(0, 0, 0.3)}, 1.3 * a, element);
+    const PressState state = contact.press({{0.0003, 0.0002, 0.3 + r - d}, r});
+    EXPECT_LT(std::hypot(state.force.x(), state.force.y()), 0.02 * hertz);
+    return std::abs(-state.force.z() / hertz - 1);
+  };
+  const double quadratic = error(FiniteElement::p2);
+  EXPECT_LT(quadratic, 0.05);
+  EXPECT_GT(error(FiniteElement::p1), 3 * quadratic);
+}
+
 }  // namespace
 }  // namespace palpate::study

@@ -172,15 +172,15 @@ TEST(Study, ReferencesThatWereKeptAreTheSameNumbersAndAnotherPressHasItsOwn) {
   const auto say = [&](const std::string&) { ++solved; };
   SolidCase first(scene, 0, on_one(scene), true, cache, say), second(scene, 0, on_one(scene), true, cache, say);
   const double force = first.fine(0)[1].force;
-  EXPECT_EQ(solved, 2);  // two levels
+  EXPECT_EQ(solved, 1);
   EXPECT_EQ(second.fine(0)[1].force, force);
   EXPECT_EQ(second.fine(0)[1].displacement, first.fine(0)[1].displacement);
-  EXPECT_EQ(solved, 2);
+  EXPECT_EQ(solved, 1);
   Scene stiffer = scene;
   as<SolidSpec>(stiffer.bodies[0])->material.young *= 2;
   SolidCase other(stiffer, 0, on_one(stiffer), true, cache, say);
   EXPECT_NEAR(other.fine(0)[1].force, 2 * force, 1e-6 * force);
-  EXPECT_EQ(solved, 4);
+  EXPECT_EQ(solved, 2);
 }
 
 TEST(Study, ReferencesAreRefinedFromAMeshOfAnySize) {

@@ -21,8 +21,9 @@
 namespace palpate::study {
 namespace {
 
-constexpr Fineness kFineMesh{0.6, 1 / 9.0, 0.28, 40000}, neo_mesh{1, 1 / 5.0, 0.4, 4500};
-constexpr Fineness kQuickFine{0.8, 1 / 6.0, 0.35, 10500}, quick_neo{1, 1 / 4.0, 0.6, 4500};
+// Of quadratic elements those of fine_linear().
+constexpr Fineness kFineMesh{0.9, 1 / 4.0, 0.45, 8000}, neo_mesh{1, 1 / 5.0, 0.4, 4500};
+constexpr Fineness kQuickFine{1.1, 1 / 3.0, 0.6, 4500}, quick_neo{1, 1 / 4.0, 0.6, 4500};
 constexpr double kLevel = std::numbers::sqrt2;  // edges of a mesh against those of the next finer one
 
 void append_answer(const PressAnswer& answer, std::vector<double>& numbers) {
@@ -73,7 +74,7 @@ StaticProblem SolidCase::refined(std::span<const Patch> places, Fineness finenes
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,
 // the mesh.
 std::string SolidCase::key(std::span<const Patch> places, const Fineness& fineness) const {
-  constexpr int definitions = 3;  // changes with every change of how references are solved
+  constexpr int definitions = 4;  // changes with every change of how references are solved
   const Body plain = as_kind<QuasiStaticSpec>(solid());
   std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
                                  fineness.ball, fineness.growth);
@@ -93,13 +94,13 @@ std::vector<double> SolidCase::solve_fine(int patch, double coarser) const {
   int strides = 0;
   StaticProblem problem = refined(place(patch), finest, strides);
   if (coarser > 1) problem = refined(place(patch), finest.coarser(coarser), strides);
-  const LinearContact contact(std::move(problem), std::array{at.point}, reach(presses().deepest()));
+  const LinearContact contact(std::move(problem), std::array{at.point}, reach(presses().deepest()), FiniteElement::p2);
   std::vector<double> numbers;
   for (const double depth : presses().depths) {
     const PressState state = contact.press({centre_at(at, presses().radius, depth), presses().radius});
     append_answer({state.force.dot(at.inward), at_surface(state.displacement)}, numbers);
   }
-  say_(fmt::format("  linear reference, place {}: {} nodes, {} may touch the ball: {:.1f} s", patch,
+  say_(fmt::format("  linear reference, place {}: {} nodes and those between, {} may touch the ball: {:.1f} s", patch,
                    contact.problem().mesh.nodes.size(), contact.candidates(), seconds_since(begin)));
   return numbers;
 }
@@ -109,16 +110,6 @@ std::vector<PressAnswer> SolidCase::press_fine(int patch, double coarser) const 
   const auto numbers = cache_.get(key_of_mesh, [&] { return solve_fine(patch, coarser); });
   const double* at = numbers.data();
   return read_answers(at, presses().depths.size());
-}
-
-// What linear elements leave wrong in the force falls with the square of their size, which is halved from level to
-// level. Displacements under the ball change from mesh to mesh by where the nodes lie, so that they stay those of the
-// finer one.
-std::vector<PressAnswer> SolidCase::extrapolated(int patch, double coarser) const {
-  auto answers = press_fine(patch, coarser);
-  const auto next = press_fine(patch, coarser * kLevel);
-  for (std::size_t d = 0; d < answers.size(); ++d) answers[d].force += answers[d].force - next[d].force;
-  return answers;
 }
 
 std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t count) const {
@@ -133,7 +124,7 @@ std::vector<PressAnswer> SolidCase::read_answers(const double*& at, std::size_t 
 const std::vector<PressAnswer>& SolidCase::fine(int patch) {
   const auto found = fine_.find(patch);
   if (found != fine_.end()) return found->second;
-  return fine_[patch] = extrapolated(patch, 1);
+  return fine_[patch] = press_fine(patch, 1);
 }
 
 const PressAnswer& SolidCase::fine_linear(int patch, int depth) {
@@ -145,7 +136,7 @@ std::array<double, 2> SolidCase::fine_linear_rest() {
   int count = 0;
   for (std::size_t p = 0; p < presses().patches.size(); ++p) {
     const auto& best = fine(static_cast<int>(p));
-    const auto next = extrapolated(static_cast<int>(p), kLevel);
+    const auto next = press_fine(static_cast<int>(p), kLevel);
     for (std::size_t d = 0; d < best.size(); ++d, ++count) {
       square[0] += std::pow(errors_.of_field(next[d].displacement, best[d].displacement), 2);
       square[1] += std::pow(next[d].force / best[d].force - 1, 2);

@@ -47,10 +47,11 @@ class SolidCase {
   /// of the radius apart; constant over the run-up.
   const std::vector<double>& slide_reference(double depth);
 
-  /// Linear elasticity on a fine mesh around each patch, its force extrapolated, which stands for the exact solution.
+  /// Linear elasticity in quadratic elements on a mesh that is fine around each patch, which stands for the exact
+  /// solution.
   const PressAnswer& fine_linear(int patch, int depth);
-  /// [1] by how much fine_linear() differs from what meshes one level coarser give in the same way: an estimate of its
-  /// own error (u, f).
+  /// [1] by how much fine_linear() differs from what meshes one level coarser give: an estimate of its own error (u,
+  /// f).
   std::array<double, 2> fine_linear_rest();
 
   /// At the surface's nodes, of a field whose first nodes are the mesh's.
@@ -76,7 +77,6 @@ class SolidCase {
   void add_errors(const Row& cost, const PressAnswers& presses, Result& result);
 
  private:
-  std::vector<PressAnswer> extrapolated(int patch, double coarser) const;
   std::vector<PressAnswer> press_fine(int patch, double coarser) const;
   std::vector<double> solve_fine(int patch, double coarser) const;
   std::vector<double> solve_slide(std::span<const Patch> places, double depth) const;

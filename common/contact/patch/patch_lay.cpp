@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/contact/patch/overlap_normal.hpp"
 #include "common/contact/patch/patch.hpp"
+#include "common/contact/patch/surface_place.hpp"
 #include "common/geometry/barycentric.hpp"
 #include "common/geometry/direction.hpp"
 
@@ -21,6 +23,24 @@ constexpr double kFacing = 0.2;      // cosine between a facet's normal and the 
 // takes its z axis into the tissue.
 Vector3d across_of(const Eigen::Isometry3d& tool, const Vector3d& normal) {
   return turn_between(tool.linear().col(2), normal) * tool.linear().col(0);
+}
+
+/// The outermost place where the line through a point along `out` meets the surface; no triangle where it does not.
+TrianglePoint highest_along(const SmoothSurface& surface, std::span<const int> near, const Vector3d& point,
+                            const Vector3d& out) {
+  TrianglePoint highest{.triangle = -1, .weights = Vector3d::Zero()};
+  double most = -std::numeric_limits<double>::infinity();
+  for (const int t : near) {
+    const double facing = surface.facet_normal(t).dot(out);
+    if (facing < kFacing) continue;
+    const Triangle c = surface.corners(t);
+    const double s = surface.facet_normal(t).dot(c[0] - point) / facing;
+    const Vector3d w = plane_coordinates(c, point + s * out);
+    if (w.minCoeff() < -1e-9 || s < most) continue;
+    most = s;
+    highest = {t, w};
+  }
+  return highest;
 }
 
 }  // namespace
@@ -58,8 +78,9 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   return nodes_;
 }
 
-// The patch faces the surface where the line through the sphere's middle along its normal meets it: found from where it
-// faced a step ago, or from the nearest point of what comes within the sphere.
+// The patch faces what the sphere has passed of the surface. Above it, it faces the surface where the line through the
+// sphere's middle along its normal meets it: found from where it faced a step ago, or from the nearest point of what
+// comes within the sphere.
 bool Patch::find_below(const Ground& ground, const Vector3d& middle, double above) {
   const SmoothSurface& surface = ground.surface;
   Vector3d out = -normal_, weights;
@@ -77,23 +98,15 @@ bool Patch::find_below(const Ground& ground, const Vector3d& middle, double abov
     anchor_ = {surface.map().triangles[nearest], weights};
     out = surface.normal(nearest, weights);
   }
+  const Vector3d passed = overlap_normal(surface, near_, middle, grid_.radius(), out, kFacing);
+  const bool overlaps = passed.squaredNorm() > 0;
+  if (overlaps) out = passed.normalized();
   for (int turn = 0; turn < kTurns; ++turn) {
-    int below = -1;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const int t : near_) {
-      const double facing = surface.facet_normal(t).dot(out);
-      if (facing < kFacing) continue;
-      const Triangle c = surface.corners(t);
-      const double s = surface.facet_normal(t).dot(c[0] - middle) / facing;
-      const Vector3d w = plane_coordinates(c, middle + s * out);
-      if (w.minCoeff() < -1e-9 || s < highest) continue;
-      highest = s;
-      below = t;
-      weights = w;
-    }
-    if (below < 0) break;
-    anchor_ = {surface.map().triangles[below], weights};
-    const Vector3d next = surface.normal(below, weights);
+    const TrianglePoint below = highest_along(surface, near_, middle, out);
+    if (below.triangle < 0) break;
+    anchor_ = {surface.map().triangles[below.triangle], below.weights};
+    if (overlaps) break;
+    const Vector3d next = surface.normal(below.triangle, below.weights);
     const bool done = (next - out).squaredNorm() < 1e-20;
     out = next;
     if (done) break;
