@@ -133,13 +133,6 @@ void CompressedCompliance::check_values() const {
   }
 }
 
-Matrix3f CompressedCompliance::Tile::entry(int moved, int loaded) const {
-  const int p = mirrored ? loaded : moved, q = mirrored ? moved : loaded;
-  const auto at = static_cast<std::size_t>(q - block->column) * block->rows() + (p - block->row);
-  const Eigen::Map<const Matrix3f> c(values + 9 * at);
-  return mirrored ? Matrix3f(c.transpose()) : Matrix3f(c);
-}
-
 Eigen::Map<const MatrixXf> CompressedCompliance::Tile::factor(int place, bool of_rows) const {
   const int at = of_rows ? place - block->row : block->rows() + place - block->column;
   return {values + 3 * static_cast<std::size_t>(at) * block->rank, block->rank, 3};

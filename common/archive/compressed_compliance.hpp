@@ -61,13 +61,23 @@ class CompressedCompliance {
     const float* values;
     bool mirrored;
 
-    /// Of a dense one.
-    Eigen::Matrix3f entry(int moved, int loaded) const;
+    // Of a dense one: between two places, and what a force does.
+    Eigen::Matrix3f entry(int moved, int loaded) const {
+      return mirrored ? Eigen::Matrix3f(pair(loaded, moved).transpose()) : Eigen::Matrix3f(pair(moved, loaded));
+    }
+    Eigen::Vector3f under(int moved, int loaded, const Eigen::Vector3f& force) const {
+      return mirrored ? Eigen::Vector3f(pair(loaded, moved).transpose() * force)
+                      : Eigen::Vector3f(pair(moved, loaded) * force);
+    }
     /// Of one of low rank: rank x 3, of the node at a place that moves or is loaded.
     Eigen::Map<const Eigen::MatrixXf> moved_factor(int place) const { return factor(place, !mirrored); }
     Eigen::Map<const Eigen::MatrixXf> loaded_factor(int place) const { return factor(place, mirrored); }
 
    private:
+    Eigen::Map<const Eigen::Matrix3f> pair(int row, int column) const {
+      const auto at = static_cast<std::size_t>(column - block->column) * block->rows() + (row - block->row);
+      return Eigen::Map<const Eigen::Matrix3f>(values + 9 * at);
+    }
     Eigen::Map<const Eigen::MatrixXf> factor(int place, bool of_rows) const;
   };
   int leaves() const { return static_cast<int>(layout_->leaf_begin.size()) - 1; }

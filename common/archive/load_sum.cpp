@@ -53,6 +53,7 @@ LoadSum<Scalar>::LoadSum(const Compliance<Scalar>& compliance, std::size_t fores
   }
   loaded_.next.reserve(foreseen);
   moved_.next.reserve(rows);
+  places_.reserve(rows);
   all_.resize(rows);
   std::iota(all_.begin(), all_.end(), 0);
   shares_.assign(compressed->max_rank(), 0);
@@ -116,26 +117,25 @@ void LoadSum<Scalar>::compressed_at(std::span<const int> nodes, std::span<Scalar
   const CompressedCompliance& compressed = *compliance_.compressed();
   std::ranges::fill(displacement, Scalar{0});
   moved_.clear();
-  for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
-    if (const int place = compressed.place(nodes[i]); place >= 0) moved_.put(compressed.leaf(place), i);
+  places_.resize(nodes.size());
+  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+    places_[i] = compressed.place(nodes[i]);
+    if (places_[i] >= 0) moved_.put(compressed.leaf(places_[i]), i);
+  }
   for (const int moved : moved_.used)
-    for (const int loaded : loaded_.used) add_tile(moved, loaded, nodes, displacement);
+    for (const int loaded : loaded_.used) add_tile(moved, loaded, displacement);
 }
 
 template <class Scalar>
-void LoadSum<Scalar>::add_tile(int moved_leaf, int loaded_leaf, std::span<const int> nodes,
-                               std::span<Scalar> displacement) {
+void LoadSum<Scalar>::add_tile(int moved_leaf, int loaded_leaf, std::span<Scalar> displacement) {
   using Eigen::Map;
-  const CompressedCompliance& compressed = *compliance_.compressed();
-  const CompressedCompliance::Tile tile = compressed.tile(moved_leaf, loaded_leaf);
+  const CompressedCompliance::Tile tile = compliance_.compressed()->tile(moved_leaf, loaded_leaf);
   const auto at = [&](int i) { return Map<Vector3>(displacement.data() + 3 * i); };
   if (tile.block->dense()) {
-    for (int i = moved_.first[moved_leaf]; i >= 0; i = moved_.next[i]) {
-      const int place = compressed.place(nodes[i]);
-      Vector3 sum = Vector3::Zero();
-      for (int l = loaded_.first[loaded_leaf]; l >= 0; l = loaded_.next[l])
-        sum += tile.entry(place, loads_[l].place).template cast<Scalar>() * loads_[l].force;
-      at(i) += sum;
+    for (int l = loaded_.first[loaded_leaf]; l >= 0; l = loaded_.next[l]) {
+      const Eigen::Vector3f force = loads_[l].force.template cast<float>();
+      for (int i = moved_.first[moved_leaf]; i >= 0; i = moved_.next[i])
+        at(i) += tile.under(places_[i], loads_[l].place, force).template cast<Scalar>();
     }
     return;
   }
@@ -146,7 +146,7 @@ void LoadSum<Scalar>::add_tile(int moved_leaf, int loaded_leaf, std::span<const 
     for (int axis = 0; axis < 3; ++axis) shares += loads_[l].force[axis] * factor.col(axis).template cast<Scalar>();
   }
   for (int i = moved_.first[moved_leaf]; i >= 0; i = moved_.next[i]) {
-    const auto factor = tile.moved_factor(compressed.place(nodes[i]));
+    const auto factor = tile.moved_factor(places_[i]);
     for (int axis = 0; axis < 3; ++axis) at(i)[axis] += factor.col(axis).template cast<Scalar>().dot(shares);
   }
 }

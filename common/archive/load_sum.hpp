@@ -41,13 +41,14 @@ class LoadSum {
 
   void dense_at(std::span<const int> nodes, std::span<Scalar> displacement);
   void compressed_at(std::span<const int> nodes, std::span<Scalar> displacement);
-  void add_tile(int moved_leaf, int loaded_leaf, std::span<const int> nodes, std::span<Scalar> displacement);
+  void add_tile(int moved_leaf, int loaded_leaf, std::span<Scalar> displacement);
 
   const Compliance<Scalar>& compliance_;
   std::vector<const Scalar*> columns_;  // of a dense one
   std::vector<Scalar> coefficients_, whole_;
   std::vector<Load> loads_;  // of a compressed one
   ByLeaf loaded_, moved_;
+  std::vector<int> places_;     // of the nodes that are asked for
   std::vector<int> all_;        // row nodes
   std::vector<Scalar> shares_;  // of a block's rank
 };
