@@ -1,5 +1,6 @@
 #include "common/archive/archive.hpp"
 
+#include "common/archive/compressed_compliance.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "python/bindings.hpp"
@@ -22,6 +23,17 @@ py::array_t<int> dofs(const std::vector<Dof>& dofs) {
     *to++ = dof.axis;
   }
   return array;
+}
+
+/// The lower triangle of a compressed compliance by rows; a copy.
+py::array_t<double> packed(const Archive& archive) {
+  const std::vector<Dof>& dofs = archive.touchable_dofs;
+  py::array_t<double> triangle(static_cast<py::ssize_t>(dofs.size() * (dofs.size() + 1) / 2));
+  double* to = triangle.mutable_data();
+  for (std::size_t i = 0; i < dofs.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      *to++ = archive.compressed->block(dofs[i].node, dofs[j].node)(dofs[i].axis, dofs[j].axis);
+  return triangle;
 }
 
 template <class Row>
@@ -54,8 +66,15 @@ void bind_archive(py::module_& module) {
           "(k, 2) row of position and axis of each free dof of a touchable node; a copy")
       .def_property_readonly(
           "compliance",
-          [](const py::object& self) { return view_of(self.cast<const Archive&>().touchable_compliance, self); },
-          "(k (k + 1) / 2,) [m/N] among dofs, the lower triangle by rows: entry (i, j), j <= i, at i (i + 1) / 2 + j");
+          [](const py::object& self) {
+            const auto& archive = self.cast<const Archive&>();
+            return archive.compressed ? packed(archive) : view_of(archive.touchable_compliance, self);
+          },
+          "(k (k + 1) / 2,) [m/N] among dofs, the lower triangle by rows: entry (i, j), j <= i, at i (i + 1) / 2 + j; "
+          "of compressed tensors a copy, as large as the dense ones would be")
+      .def_property_readonly(
+          "compressed", [](const Archive& a) { return a.compressed != nullptr; },
+          "whether far blocks of the compliance are kept as products of low rank");
 }
 
 }  // namespace palpate::python

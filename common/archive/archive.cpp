@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/archive/archive_compressed.hpp"
 #include "common/archive/archive_dynamic.hpp"
 #include "common/archive/archive_modal.hpp"
 #include "common/archive/archive_presses.hpp"
@@ -27,7 +28,7 @@ std::size_t payload_bytes(const Archive& archive) {
                                2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
                                archive.material_of_element.size();
   return sizeof(double) * doubles + sizeof(std::int32_t) * integers + dynamic_payload_bytes(archive) +
-         modal_payload_bytes(archive) + presses_payload_bytes(archive);
+         modal_payload_bytes(archive) + presses_payload_bytes(archive) + compressed_payload_bytes(archive);
 }
 
 void write_header(Hdf5Writer& file, const Archive& archive) {
@@ -130,6 +131,7 @@ bool compliance_fits(const Archive& archive, ArchivePart part) {
   const std::size_t touchable = archive.touchable_dofs.size();
   if (!are_free_dofs(archive.touchable_dofs, surface, 0, surface.touchable)) return false;
   if (!are_free_dofs(archive.other_dofs, surface, surface.touchable, surface.size())) return false;
+  if (archive.compressed) return archive.touchable_compliance.empty() && archive.other_compliance.empty();
   if (part != ArchivePart::header && !is_packed_compliance(archive.touchable_compliance, touchable)) return false;
   return part != ArchivePart::surface || archive.other_compliance.size() == archive.other_dofs.size() * touchable;
 }
@@ -152,6 +154,7 @@ void write_archive(const Archive& archive, const std::filesystem::path& file) {
   write_surface(writer, archive.surface);
   write_material(writer, archive);
   write_compliance(writer, archive);
+  write_compressed(writer, archive);
   write_dynamic_part(writer, archive);
   write_modal_part(writer, archive);
   write_presses(writer, archive);
@@ -178,6 +181,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   archive.other_dofs = read_dofs(reader, "other/dofs");
   if (part != ArchivePart::header) archive.touchable_compliance = reader.doubles("touchable/compliance");
   if (part == ArchivePart::surface) archive.other_compliance = reader.doubles("other/compliance");
+  read_compressed(reader, part, archive);
   read_dynamic_part(reader, part, archive);
   read_modal_part(reader, part, archive);
   read_presses(reader, archive);

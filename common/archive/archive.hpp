@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "common/archive/pressed_place.hpp"
 
 namespace palpate {
+
+class CompressedCompliance;
 
 /// Geometry and numbering of the nodes in a body's archive. Nodes 0 .. touchable-1 are the touchable ones (on the
 /// surface, at least one free axis), the other surface nodes follow, and where a part of the body moves with inertia
@@ -51,9 +54,10 @@ struct Archive {
   std::string body;
   std::string model;  ///< the kind of tissue, as a scene names it
   ArchiveParts parts;
-  std::string content_hash;            ///< over mesh, material, boundary conditions, touchable set and format version
-  std::string software;                ///< version that computed it
-  int mesh_nodes = 0;                  ///< nodes in the mesh file
+  std::string content_hash;  ///< over mesh, material, boundary conditions, touchable set and format version; in a
+                             ///< file but for a factor common to all of `young`
+  std::string software;      ///< version that computed it
+  int mesh_nodes = 0;        ///< nodes in the mesh file
   std::vector<double> young, poisson;  ///< [Pa], [1]: the body's material, then one per material region
   std::vector<double> density;         ///< [kg/m^3] likewise; empty for a quasi-static body
   /// Index into those per tetrahedron (of the mesh; of `tetrahedra` where there are any); empty: all have the first.
@@ -69,6 +73,8 @@ struct Archive {
   std::vector<double> touchable_compliance;
   /// C_ot, row-major, other_dofs x touchable_dofs [m/N]; empty when every visible free node is touchable
   std::vector<double> other_compliance;
+  /// C_tt and C_ot in place of the two above, where that is smaller; else null.
+  std::shared_ptr<const CompressedCompliance> compressed;
   /// Slopes of the linear model's specimen curves where the scene names a specimen mesh, else 0.
   double specimen_force_slope = 0;    ///< [N/m]
   double specimen_radial_slope = 0;   ///< [1]
@@ -78,7 +84,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 9;
+constexpr int kArchiveFormat = 10;
 
 /// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either
 /// whole or as it was. Removes temporary files that killed writers of the same body left. Throws

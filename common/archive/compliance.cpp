@@ -84,13 +84,26 @@ Compliance<Scalar> Compliance<Scalar>::at_rest(const Archive& archive) {
 
 template <class Scalar>
 Compliance<Scalar>::Compliance(const Archive& archive, Rows rows)
-    : Compliance(rows == Rows::surface ? archive.surface.size() : archive.surface.touchable,
-                 archive.surface.touchable) {
+    : row_nodes_(rows == Rows::surface ? archive.surface.size() : archive.surface.touchable),
+      column_nodes_(archive.surface.touchable),
+      stride_(stride_of(row_nodes_)) {
+  if (!archive.compressed) {
+    expand(archive, rows);
+    return;
+  }
+  if (rows == Rows::surface && !archive.other_dofs.empty() && !archive.compressed->has_others())
+    throw std::runtime_error("the archive was read without the compliance of the untouchable surface");
+  compressed_ = *archive.compressed;
+}
+
+template <class Scalar>
+void Compliance<Scalar>::expand(const Archive& archive, Rows rows) {
   const std::size_t touchable = archive.touchable_dofs.size();
   if (archive.touchable_compliance.size() != touchable * (touchable + 1) / 2)
     throw std::runtime_error("the archive was read without its touchable compliance");
   if (rows == Rows::surface && archive.other_compliance.size() != archive.other_dofs.size() * touchable)
     throw std::runtime_error("the archive was read without the compliance of the untouchable surface");
+  data_.reset(static_cast<Scalar*>(allocate_zeroed(bytes())));
   const auto columns = places(archive.touchable_dofs);
   expand_triangle(archive.touchable_compliance, columns, data_.get(), stride_);
   if (rows == Rows::surface)
@@ -104,6 +117,10 @@ void Compliance<Scalar>::clear() {
 
 template <class Scalar>
 void Compliance<Scalar>::scale(double factor) {
+  if (compressed_) {
+    compressed_ = compressed_->scaled(factor);
+    return;
+  }
   const std::ptrdiff_t entries = 3 * stride_ * column_nodes_;
   for (std::ptrdiff_t i = 0; i < entries; ++i) data_[i] *= static_cast<Scalar>(factor);
 }

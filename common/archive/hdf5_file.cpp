@@ -81,6 +81,10 @@ hid_t native_type<double>() {
   return H5T_NATIVE_DOUBLE;
 }
 template <>
+hid_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
 hid_t native_type<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
@@ -161,6 +165,10 @@ void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<double>& v
   write(label, values, columns);
 }
 
+void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<float>& values, std::size_t columns) {
+  write(label, values, columns);
+}
+
 void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<std::int32_t>& values, std::size_t columns) {
   write(label, values, columns);
 }
@@ -238,6 +246,13 @@ std::vector<double> Hdf5Reader::doubles(const std::string& name, const Range& ea
   return values;
 }
 
+std::vector<float> Hdf5Reader::floats(const std::string& name) const {
+  auto values = read<float>(name);
+  if (!std::ranges::all_of(values, [](float x) { return kAnyNumber.contains(x); }))
+    fail("damaged: '" + name + "' has a number that cannot be");
+  return values;
+}
+
 template <class T>
 std::vector<T> Hdf5Reader::read(const std::string& name) const {
   // H5Lexists wants every group on the way to exist.
@@ -265,6 +280,7 @@ std::vector<T> Hdf5Reader::read(const std::string& name) const {
 }
 
 template std::vector<double> Hdf5Reader::read(const std::string&) const;
+template std::vector<float> Hdf5Reader::read(const std::string&) const;
 template std::vector<std::int32_t> Hdf5Reader::read(const std::string&) const;
 
 }  // namespace palpate

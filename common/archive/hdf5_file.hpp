@@ -36,6 +36,7 @@ class Hdf5Writer {
   /// `values` holds rows x columns entries, row by row; one column makes a vector. Nothing is written when
   /// empty.
   void dataset(const DatasetLabel& label, const std::vector<double>& values, std::size_t columns = 1);
+  void dataset(const DatasetLabel& label, const std::vector<float>& values, std::size_t columns = 1);
   void dataset(const DatasetLabel& label, const std::vector<std::int32_t>& values, std::size_t columns = 1);
   void close();
 
@@ -65,6 +66,8 @@ class Hdf5Reader {
   std::int64_t integer(const std::string& name) const;
   /// Empty if there is no such dataset. The payload is checked against its checksum, and each number against its range.
   std::vector<double> doubles(const std::string& name, const Range& each = kAnyNumber) const;
+  /// Likewise; each finite.
+  std::vector<float> floats(const std::string& name) const;
   std::vector<std::int32_t> integers(const std::string& name) const { return read<std::int32_t>(name); }
   [[noreturn]] void fail(const std::string& reason) const;
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/archive/compressed_compliance.hpp"
 #include "common/geometry/dense_solvers.hpp"
 
 namespace palpate {
@@ -40,9 +41,19 @@ class RowFinder {
   std::map<int, int> surface_;
 };
 
+double entry(const CompressedCompliance& compliance, const Dof& moved, const Dof& loaded) {
+  return compliance.block(moved.node, loaded.node)(moved.axis, loaded.axis);
+}
+
 double touchable_entry(const Archive& archive, std::size_t i, std::size_t j) {
+  if (archive.compressed) return entry(*archive.compressed, archive.touchable_dofs[i], archive.touchable_dofs[j]);
   if (i < j) std::swap(i, j);
   return archive.touchable_compliance[i * (i + 1) / 2 + j];
+}
+
+double other_entry(const Archive& archive, std::size_t i, std::size_t j) {
+  if (archive.compressed) return entry(*archive.compressed, archive.other_dofs[i], archive.touchable_dofs[j]);
+  return archive.other_compliance[i * archive.touchable_dofs.size() + j];
 }
 
 /// A touchable dof with a coefficient: a weight of a condition, or a force.
@@ -77,7 +88,7 @@ SurfaceSolution respond(const Archive& archive, const std::vector<Entry>& forces
           touchable_entry(archive, i, row) * force;
     for (std::size_t i = 0; i < archive.other_dofs.size(); ++i)
       solution.displacement[archive.other_dofs[i].node][archive.other_dofs[i].axis] +=
-          archive.other_compliance[i * columns + row] * force;
+          other_entry(archive, i, row) * force;
   }
   return solution;
 }
@@ -87,9 +98,10 @@ void check_complete(const Archive& archive) {
     throw std::runtime_error(fmt::format(
         "body '{}' moves with inertia: its archive holds no compliance of the whole surface", archive.body));
   const std::size_t t = archive.touchable_dofs.size();
-  if (archive.touchable_compliance.size() != t * (t + 1) / 2 ||
-      archive.other_compliance.size() != archive.other_dofs.size() * t)
-    throw std::runtime_error("the archive was read without the compliance of the whole surface");
+  const bool complete = archive.compressed ? archive.compressed->has_others() || archive.other_dofs.empty()
+                                           : archive.touchable_compliance.size() == t * (t + 1) / 2 &&
+                                                 archive.other_compliance.size() == archive.other_dofs.size() * t;
+  if (!complete) throw std::runtime_error("the archive was read without the compliance of the whole surface");
 }
 
 /// The held dofs of each held node.

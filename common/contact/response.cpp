@@ -8,7 +8,7 @@ double mean_diagonal(const Compliance<double>& c) {
   long count = 0;
   for (int node = 0; node < c.column_nodes(); ++node)
     for (int axis = 0; axis < 3; ++axis) {
-      const double d = c.column(node, axis)[3 * node + axis];
+      const double d = c.block(node, node)(axis, axis);
       sum += d;
       count += d > 0;
     }
@@ -27,10 +27,7 @@ Eigen::Matrix3d CompliantResponse::block(const Anchor& at, const Anchor& under) 
     for (int w = 0; w < 3; ++w) {
       if (at.weights[w] == 0 || at.nodes[w] >= compliance_.row_nodes()) continue;
       const double weight = under.weights[v] * at.weights[w];
-      for (int c = 0; c < 3; ++c) {
-        const double* from = compliance_.column(under.nodes[v], c) + 3 * at.nodes[w];
-        for (int r = 0; r < 3; ++r) b(r, c) += weight * from[r];
-      }
+      b += weight * compliance_.block(at.nodes[w], under.nodes[v]);
     }
   }
   return b;

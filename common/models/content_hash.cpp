@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 #include "common/archive/archive.hpp"
 #include "common/describe/digest.hpp"
 #include "common/describe/toml_writer.hpp"
@@ -34,7 +36,29 @@ class StoredText : public TomlWriter {
   bool inertia_;
 };
 
+/// Ratios that differ by rounding alone are one.
+double rounded(double ratio) {
+  return std::strtod(fmt::format("{:.12g}", ratio).c_str(), nullptr);
+}
+
+/// Young's moduli as multiples of the body's own. What has no mesh has no archive in a file.
+void leave_out_scale(NamedSpec&) {}
+void leave_out_scale(MeshedSpec& body) {
+  body.material.young = 1;
+}
+void leave_out_scale(SolidSpec& body) {
+  for (MaterialRegion& region : body.materials)
+    region.material.young = rounded(region.material.young / body.material.young);
+  leave_out_scale(static_cast<MeshedSpec&>(body));
+}
+
 }  // namespace
+
+std::string archive_hash(const Body& body) {
+  Body copy = body;
+  std::visit([](auto& spec) { leave_out_scale(spec); }, copy);
+  return content_hash(copy);
+}
 
 std::string content_hash(const Body& body) {
   Body copy = body;

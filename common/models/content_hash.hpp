@@ -10,4 +10,8 @@ namespace palpate {
 /// file cannot be read.
 std::string content_hash(const Body& body);
 
+/// The same but for a factor common to all its Young's moduli: of the file, whose numbers scale_young() brings to the
+/// body's own.
+std::string archive_hash(const Body& body);
+
 }  // namespace palpate

@@ -41,7 +41,7 @@ void check_guests(const Scene& scene, const ShellSpec& wall, const ShellMesh& me
 ArchiveState ensure_archive(const Scene& scene, const Body& body, const Progress& progress) {
   ArchiveState state{archive_path(body), false, {}, 0};
   if (state.file.empty()) return {{}, true, {}, 0};
-  const std::string hash = content_hash(body);
+  const std::string hash = archive_hash(body);
   if (std::filesystem::exists(state.file)) {
     state.refused = refusal(state.file, hash);
     state.up_to_date = state.refused.empty();

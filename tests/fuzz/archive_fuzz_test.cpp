@@ -10,6 +10,7 @@
 #include "tests/fuzz/hdf5_contents.hpp"
 #include "tests/fuzz/rounds.hpp"
 #include "tests/sim/played_scenes.hpp"
+#include "tests/tensors/compressed_copy.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
 namespace palpate {
@@ -94,6 +95,7 @@ class Spoiler {
         return any_of(testing::kExtremeNumbers, random_);
     }
   }
+  float extreme(float was) { return static_cast<float>(extreme(double{was})); }
   std::int32_t extreme(std::int32_t was) { return static_cast<std::int32_t>(whole_number(was)); }
 
   std::mt19937 random_;
@@ -168,6 +170,12 @@ class ArchiveFuzz : public ::testing::Test {
 
 TEST_F(ArchiveFuzz, OfTensors) {
   spoil(testing::pressed_block(), 150, 1);
+}
+
+TEST_F(ArchiveFuzz, OfCompressedTensors) {
+  auto played = testing::pressed_block();
+  played.archives[0] = testing::compressed_copy(played.archives[0]);
+  spoil(std::move(played), 150, 7);
 }
 
 TEST_F(ArchiveFuzz, OfTissueThatRelaxes) {

@@ -16,7 +16,7 @@ namespace palpate::testing {
 /// right.
 struct Hdf5Contents {
   struct Dataset {
-    std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+    std::variant<std::vector<double>, std::vector<float>, std::vector<std::int32_t>> values;
     std::size_t columns = 1;
   };
   std::map<std::string, std::variant<std::string, std::int64_t, double>> attributes;  ///< of the root
@@ -30,11 +30,7 @@ struct Hdf5Contents {
     const Hdf5Reader reader(file);
     for (auto& [name, value] : attributes) read(reader, name, value);
     for (auto& [name, dataset] : datasets)
-      if (std::holds_alternative<std::vector<double>>(dataset.values)) {
-        dataset.values = reader.doubles(name);
-      } else {
-        dataset.values = reader.integers(name);
-      }
+      std::visit([&, key = name](auto& values) { read(reader, key, values); }, dataset.values);
   }
 
   void write(const std::filesystem::path& file) const {
@@ -51,6 +47,15 @@ struct Hdf5Contents {
   }
 
  private:
+  static void read(const Hdf5Reader& reader, const std::string& name, std::vector<double>& values) {
+    values = reader.doubles(name);
+  }
+  static void read(const Hdf5Reader& reader, const std::string& name, std::vector<float>& values) {
+    values = reader.floats(name);
+  }
+  static void read(const Hdf5Reader& reader, const std::string& name, std::vector<std::int32_t>& values) {
+    values = reader.integers(name);
+  }
   static void read(const Hdf5Reader& reader, const std::string& name,
                    std::variant<std::string, std::int64_t, double>& value) {
     switch (value.index()) {
@@ -86,6 +91,7 @@ struct Hdf5Contents {
     hsize_t extent[2] = {0, 1};
     if (H5Sget_simple_extent_ndims(space) <= 2) H5Sget_simple_extent_dims(space, extent, nullptr);
     dataset.columns = extent[1];
+    if (H5Tget_size(H5Dget_type(data)) == sizeof(float)) dataset.values = std::vector<float>();
     if (class_of(H5Dget_type(data)) == H5T_INTEGER) dataset.values = std::vector<std::int32_t>();
     H5Sclose(space);
     H5Dclose(data);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/archive/compressed_compliance.hpp"
 
 namespace palpate::testing {
 
@@ -139,6 +140,7 @@ inline bool same(const Archive& a, const Archive& b) {
          a.surface.node_number == b.surface.node_number && a.surface.fixed == b.surface.fixed &&
          a.surface.triangles == b.surface.triangles && a.surface.touchable == b.surface.touchable &&
          same_dofs(a.touchable_dofs, b.touchable_dofs) && same_dofs(a.other_dofs, b.other_dofs) &&
+         !a.compressed == !b.compressed && (!a.compressed || a.compressed->tensors() == b.compressed->tensors()) &&
          a.touchable_compliance == b.touchable_compliance && a.other_compliance == b.other_compliance &&
          a.specimen_force_slope == b.specimen_force_slope && a.specimen_radial_slope == b.specimen_radial_slope;
 }

@@ -12,6 +12,7 @@
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/check/surface_check.hpp"
+#include "common/models/quasi_static/compress.hpp"
 #include "common/models/quasi_static/spec.hpp"
 #include "common/models/solid/precompute.hpp"
 #include "tools/human_bytes.hpp"
@@ -41,12 +42,12 @@ Work work_of(const TetMesh& mesh, const Offline& offline, const SurfaceMap& surf
   std::vector<char> used(space.nodes.size());
   for (std::size_t n = 0; n < used.size(); ++n) used[n] = graph.begin[n + 1] > graph.begin[n];
   const DofMap dofs = all_free(DofMap(used));
-  const bool finer = is_finer(offline);
+  const bool by_blocks = is_finer(offline) || form_of(surface.touchable) == TensorForm::compressed;
   const std::vector<Eigen::Matrix3d> blocks(graph.neighbour.size(), Eigen::Matrix3d::Identity());
-  const std::vector<int> last = finer ? std::vector<int>{} : surface.node_number;
+  const std::vector<int> last = by_blocks ? std::vector<int>{} : surface.node_number;
   const Factorisation factor(lower_triangle(blocks, dofs, graph), dof_order(dofs, interior_first_order(graph, last)));
   const auto entries = static_cast<double>(factor.factor_nonzeros());
-  const double rest = finer ? kBlockPenalty * 4 * entries * touchable : 2.0 / 3 * touchable * touchable * touchable;
+  const double rest = by_blocks ? kBlockPenalty * 4 * entries * touchable : 2.0 / 3 * touchable * touchable * touchable;
   return {factor.flops() + rest, sizeof(double) * entries};
 }
 
@@ -86,18 +87,19 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   out.say("  " + say_angles(measures));
   say_groups(mesh, out);
   const Offline offline = offline_of(body, surface.size());
+  const bool compressed = form_of(surface.touchable) == TensorForm::compressed;
   const Work work = work_of(mesh, offline, surface, 3.0 * surface.size());
-  out.say(
-      fmt::format("  as a quasi-static body, all of it touchable, tensors from {} elements: precompute takes about "
-                  "{:.2g} s on this machine ({:.3g} Gflop), and {} for its factor",
-                  offline.element == FiniteElement::p1 ? "linear" : "quadratic", work.operations / speed(),
-                  1e-9 * work.operations, human_bytes(static_cast<std::size_t>(work.factor))));
+  out.say(fmt::format(
+      "  as a quasi-static body, all of it touchable, {}tensors from {} elements: precompute takes about "
+      "{:.2g} s on this machine ({:.3g} Gflop), and {} for its factor",
+      compressed ? "compressed " : "", offline.element == FiniteElement::p1 ? "linear" : "quadratic",
+      work.operations / speed(), 1e-9 * work.operations, human_bytes(static_cast<std::size_t>(work.factor))));
   const std::vector<Tool> tools(1);
   const ContactSpec contact;
   constexpr int kFields = 3;  // position, displacement, normal
   const CheckSettings settings{
       .contact = contact, .tools = tools, .dt = 1e-3, .stored = {}, .find_wall = {}, .check_guests = {}};
-  out.memory(compliance_memory(settings, surface, 0, kFields));
+  out.memory(compliance_memory(settings, surface, 0, kFields, compressed ? compressed_bytes(surface) : 0));
 }
 
 }  // namespace palpate

@@ -174,10 +174,8 @@ class QuasiStatic : public Method {
     const Compliance<float> in_single(archive, Compliance<float>::Rows::surface);
     press.rig().haptic().part(0)->for_each_force([&](int, int node, const Eigen::Vector3d& f) {
       if (node >= in_double.column_nodes()) return;
-      for (int axis = 0; axis < 3; ++axis)
-        for (std::size_t n = 0; n < u.size(); ++n)
-          u[n] += f[axis] * (Eigen::Map<const Eigen::Vector3d>(in_double.column(node, axis) + 3 * n) -
-                             Eigen::Map<const Eigen::Vector3f>(in_single.column(node, axis) + 3 * n).cast<double>());
+      for (int n = 0; n < static_cast<int>(u.size()); ++n)
+        u[n] += (in_double.block(n, node) - in_single.block(n, node).cast<double>()) * f;
     });
   }
 

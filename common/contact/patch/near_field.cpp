@@ -82,7 +82,7 @@ Averages transposed(const Averages& averages) {
 /// [m/N] Adds C between two nodes; zero beyond those that can be touched.
 void add_compliance(const Compliance<double>& c, int i, int j, Matrix3d& to) {
   if (i >= c.row_nodes() || j >= c.column_nodes()) return;
-  for (int axis = 0; axis < 3; ++axis) to.col(axis) += Eigen::Map<const Vector3d>(c.column(j, axis) + 3 * i);
+  to += c.block(i, j);
 }
 
 /// [m/N] C - W^T G W between two nodes.
@@ -138,9 +138,7 @@ void NearField::subtract(const Compliance<double>& compliance) {
   compliance_ = nullptr;
   for (int i = 0; i < compliance.row_nodes(); ++i) {
     const std::span<const int> near = pairs_.lower(i);
-    for (std::size_t n = 0; n < near.size(); ++n)
-      for (int axis = 0; axis < 3; ++axis)
-        pairs_.lower_blocks(i)[n].col(axis) -= Eigen::Map<const Vector3d>(compliance.column(near[n], axis) + 3 * i);
+    for (std::size_t n = 0; n < near.size(); ++n) pairs_.lower_blocks(i)[n] -= compliance.block(i, near[n]);
   }
 }
 

@@ -11,10 +11,8 @@ using Eigen::Vector3d;
 
 // [m] of a node under a force on another one; zero beyond the touchable ones.
 Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3d& force) {
-  Vector3d sum = Vector3d::Zero();
-  if (node >= c.row_nodes() || from >= c.column_nodes()) return sum;
-  for (int axis = 0; axis < 3; ++axis) sum += force[axis] * Eigen::Map<const Vector3d>(c.column(from, axis) + 3 * node);
-  return sum;
+  if (node >= c.row_nodes() || from >= c.column_nodes()) return Vector3d::Zero();
+  return c.block(node, from) * force;
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::string letters(const std::array<bool, 3>& axes) {
 }
 
 std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const SurfaceMap& surface,
-                                          std::size_t elements, int fields) {
+                                          std::size_t elements, int fields, std::size_t compressed) {
   const DofCounts dofs = count_dofs(surface);
   const std::size_t nodes = surface.position.size(), triangles = surface.triangles.size();
   const std::size_t triangle_entries = dofs.touchable * (dofs.touchable + 1) / 2;
@@ -56,20 +56,24 @@ std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const S
   const auto add = [&](const char* owner, std::string what, std::size_t bytes) {
     parts.push_back({owner, std::move(what), bytes});
   };
-  add("disk", "archive: compliance among touchable dofs", sizeof(double) * triangle_entries);
-  if (dofs.other > 0)
+  const auto add_compliance = [&](const char* owner, std::string dense, std::size_t bytes) {
+    add(owner, compressed ? "compressed compliance, single precision" : std::move(dense),
+        compressed ? compressed : bytes);
+  };
+  add_compliance("disk", "archive: compliance among touchable dofs", sizeof(double) * triangle_entries);
+  if (dofs.other > 0 && !compressed)
     add("disk", "archive: compliance of the rest of the surface", sizeof(double) * dofs.other * dofs.touchable);
   add("disk", "archive: surface and numbering", numbering);
   if (!settings.tools.empty()) {
-    add("haptic_node", "compliance, double precision",
-        Compliance<double>::bytes_of(surface.touchable, surface.touchable));
+    add_compliance("haptic_node", "compliance, double precision",
+                   Compliance<double>::bytes_of(surface.touchable, surface.touchable));
     add("haptic_node", fmt::format("buckets of {:.3g} m, {} x {} x {}", size, cells[0], cells[1], cells[2]),
         buckets.bytes());
     add("haptic_node", "surface at rest, now and one step ago",
         3 * nodes * sizeof(Eigen::Vector3d) + triangles * (6 * sizeof(int) + sizeof(double)));
   }
-  add("render_node --deform", "compliance, single precision",
-      Compliance<float>::bytes_of(surface.size(), surface.touchable));
+  add_compliance("render_node --deform", "compliance, single precision",
+                 Compliance<float>::bytes_of(surface.size(), surface.touchable));
   add("render_node --deform", "visible surface",
       nodes * (fields * sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector3d)) + triangles * 3 * sizeof(int));
   return parts;

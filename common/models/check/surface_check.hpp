@@ -14,9 +14,9 @@ std::string letters(const std::array<bool, 3>& axes);
 
 /// What a body takes whose shape follows from a compliance of its surface, computed by the classes that take it or by
 /// their own formulas. `elements`: entries of the material field, 0 with one material; `fields`: what the deformation
-/// node keeps of each surface node.
+/// node keeps of each surface node; `compressed`: bytes of compressed tensors, 0 where they are dense.
 std::vector<MemoryPart> compliance_memory(const CheckSettings& settings, const SurfaceMap& surface,
-                                          std::size_t elements, int fields);
+                                          std::size_t elements, int fields, std::size_t compressed = 0);
 
 /// One sentence for bodies without patches, where the rule asks for them.
 void say_touched_by_mesh(const CheckSettings& settings, CheckReport& report);

@@ -13,6 +13,7 @@
 #include "common/fem/fine_space.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/quasi_static/compress.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 #include "common/models/quasi_static/precompute.hpp"
 #include "common/tool/instrument.hpp"
@@ -37,6 +38,16 @@ void say_offline(const QuasiStaticSpec& body, const TetMesh& mesh, int surface_n
                          why.empty() ? "" : "; chosen, " + why));
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("body '{}': [body.offline]: {}", body.name, error.what()));
+}
+
+/// [bytes] That compressed tensors will take; 0 where they stay dense.
+std::size_t say_form(const SurfaceMap& surface, CheckReport& report) {
+  if (form_of(surface.touchable) == TensorForm::dense) return 0;
+  report.say(
+      fmt::format("  tensors: compressed, since more than {} nodes can be touched: near blocks dense, far ones "
+                  "of low rank",
+                  kMaxDense));
+  return compressed_bytes(surface);
 }
 
 std::string say_law(const MeasuredLaw& law, const QuasiStaticSpec& body, const CheckSettings&) {
@@ -154,7 +165,8 @@ void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckRepo
   say_nonlinear(body, settings, report);
   say_relaxation(body, report);
   const int fields = body.nonlinear ? 5 : 3;  // position, displacement, normal; the linear sum and one tool's share
-  report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields);
+  report.memory = compliance_memory(settings, solid.surface, solid.materials.of_element.size(), fields,
+                                    say_form(solid.surface, report));
   add_near_field("haptic_node", settings, solid.surface, !body.relaxation, report);
   if (!body.relaxation) add_near_field("render_node --deform", settings, solid.surface, false, report);
   if (body.relaxation && !settings.tools.empty()) report.memory.push_back(memory_of_past(body, solid.surface));

@@ -27,14 +27,12 @@ void FadingField::take(const LoadTrace& trace) {
 void FadingField::advance(int more) {
   if (!busy()) return;
   const int end = std::min(nodes(), done_ + more);
-  const double* columns[3];
-  for (int axis = 0; axis < 3; ++axis) columns[axis] = softened_.column(taken_.node, axis);
   for (std::size_t k = 0; k < parts().size(); ++k) {
     if (taken_.lag[k].isZero(0)) continue;
     Part& part = parts_[k];
     const Vector3d by = taken_.lag[k] / (part.scale * step_.instant());
-    for (int row = 3 * done_; row < 3 * end; ++row)
-      part.displacement[row] += by[0] * columns[0][row] + by[1] * columns[1][row] + by[2] * columns[2][row];
+    for (int node = done_; node < end; ++node)
+      Eigen::Map<Vector3d>(part.displacement.data() + 3 * node) += softened_.block(node, taken_.node) * by;
     part.used = true;
   }
   done_ = end;
@@ -101,10 +99,7 @@ void FadingField::add(Moment moment, std::span<const int> at, std::span<double> 
   const Vector3d load = taken_.load(step_, moment) / step_.instant();
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (at[i] < done_ || at[i] >= nodes()) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double* column = softened_.column(taken_.node, axis) + 3 * at[i];
-      for (int r = 0; r < 3; ++r) displacement[3 * i + r] += load[axis] * column[r];
-    }
+    Eigen::Map<Vector3d>(displacement.data() + 3 * i) += softened_.block(at[i], taken_.node) * load;
   }
 }
 

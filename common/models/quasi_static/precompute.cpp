@@ -3,21 +3,54 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <new>
 #include <stdexcept>
 
 #include "common/fem/fine_problem.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/fem/stopwatch.hpp"
+#include "common/fem/surface_columns.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/models/quasi_static/compress.hpp"
 #include "common/models/quasi_static/press_by_laws.hpp"
 #include "common/models/solid/precompute.hpp"
 
 namespace palpate {
+namespace {
+
+PrecomputeCost add_dense(const QuasiStaticSpec& body, const StaticProblem& problem, Route route,
+                         const Progress& progress, Archive& archive) {
+  const auto& [mesh, materials, dofs] = problem;
+  const SurfaceMap& surface = archive.surface;
+  const auto split = surface.node_number.begin() + surface.touchable;
+  const std::vector<int> touchable(surface.node_number.begin(), split), other(split, surface.node_number.end());
+  auto compliance = is_finer(body.offline)
+                        ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name),
+                                             touchable, other, progress)
+                        : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
+  archive.touchable_compliance = std::move(compliance.touchable);
+  archive.other_compliance = std::move(compliance.other);
+  return {compliance.flops, compliance.condensed};
+}
+
+PrecomputeCost add_compressed(const QuasiStaticSpec& body, const StaticProblem& problem, const Progress& progress,
+                              Archive& archive) {
+  const auto& [mesh, materials, dofs] = problem;
+  const std::vector<int>& nodes = archive.surface.node_number;
+  const SurfaceColumns columns =
+      is_finer(body.offline) ? SurfaceColumns(make_fine_problem(mesh, *body.offline, materials, dofs, body.name), nodes,
+                                              3 * compressed_bytes(archive.surface), progress)
+                             : SurfaceColumns(mesh, materials, dofs, nodes, progress);
+  archive.compressed = compress(archive.surface, std::cref(columns), progress);
+  return {columns.flops(), false};
+}
+
+}  // namespace
 
 Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMesh* specimen, const Progress& progress,
-                   Route route, PrecomputeCost* cost) try {
+                   Route route, PrecomputeCost* cost, std::optional<TensorForm> form) try {
   Stopwatch watch(progress);
   const auto dofs = apply_boundary_conditions(mesh, body.fixed, "body '" + body.name + "'");
   const auto materials = material_field(body, mesh);
@@ -28,15 +61,11 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
   archive.other_dofs = free_dofs(surface, surface.touchable, surface.size());
   watch.lap("surface");
 
-  const auto split = surface.node_number.begin() + surface.touchable;
-  const std::vector<int> touchable(surface.node_number.begin(), split), other(split, surface.node_number.end());
-  auto compliance = is_finer(body.offline)
-                        ? surface_compliance(make_fine_problem(mesh, *body.offline, materials, dofs, body.name),
-                                             touchable, other, progress)
-                        : surface_compliance(mesh, materials, dofs, touchable, other, progress, route);
-  archive.touchable_compliance = std::move(compliance.touchable);
-  archive.other_compliance = std::move(compliance.other);
-  if (cost) *cost = {compliance.flops, compliance.condensed};
+  const StaticProblem problem{mesh, materials, dofs};
+  const PrecomputeCost spent = form.value_or(form_of(surface.touchable)) == TensorForm::compressed
+                                   ? add_compressed(body, problem, progress, archive)
+                                   : add_dense(body, problem, route, progress, archive);
+  if (cost) *cost = spent;
   if (specimen) {
     Stopwatch specimen_watch(progress);
     const auto slopes = press_specimen(*specimen, body.material, body.offline);
@@ -45,7 +74,7 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
     specimen_watch.lap("specimen");
   }
   if (const auto* law = law_of<NeoHookeanLaw>(body.nonlinear))
-    archive.presses = press_by_laws({mesh, materials, dofs}, surface, *law, body.name, progress);
+    archive.presses = press_by_laws(problem, surface, *law, body.name, progress);
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));

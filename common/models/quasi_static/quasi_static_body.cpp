@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "common/kernels/kernels.hpp"
 #include "common/models/quasi_static/resolution.hpp"
 
 namespace palpate {
@@ -12,8 +11,6 @@ namespace {
 bool by_patch(const StepSettings& settings) {
   return settings.contact.rule == ContactRule::patch;
 }
-
-constexpr int kWholeColumnsFrom = 6;  // part of the touchable nodes, one in so many, from which whole columns are read
 
 std::optional<CreepStep> creep_of(const QuasiStaticSpec& body, double dt) {
   if (!body.relaxation) return {};
@@ -43,15 +40,13 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
   const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->most_loads() : 0);
-  columns_.reserve(3 * forces);
-  coefficients_.reserve(3 * forces);
+  sum_.emplace(compliance(), forces);
   under_.reserve(3 * kMaxContacts);
   touchable_.reserve(3 * kMaxContacts);
   past_under_.reserve(9 * kMaxContacts);
   displacement_.reserve(3 * map().size());
   of_tool_.reserve(3 * map().size());
   held_.reserve(map().size());
-  whole_.assign(compliance().stride(), 0.0);
 }
 
 ToolContacts::Options QuasiStaticBody::beside_patches() {
@@ -95,22 +90,20 @@ bool QuasiStaticBody::is_held(int node) const {
 
 // u = sum C f over the contacts of one tool, or of all (-1), at the marked nodes.
 void QuasiStaticBody::superpose(int tool, std::vector<double>& displacement) {
-  columns_.clear();
-  coefficients_.clear();
+  sum_->clear();
   for_each_force([this, tool](int of_tool, int node, const Eigen::Vector3d& f) {
-    if (tool < 0 || of_tool == tool) add_column(node, f);
+    if (tool < 0 || of_tool == tool) sum_->add(node, f);
   });
   const std::span<const int> marked = surface().marked();
   displacement.resize(3 * marked.size());
-  combine(marked, displacement);
+  sum_->at(marked, displacement);
 }
 
 // What all forces up to now have done to nodes [m], three entries a node.
 void QuasiStaticBody::recall(Moment moment, std::span<const int> nodes, std::span<double> displacement) {
-  columns_.clear();
-  coefficients_.clear();
-  memory_->for_each_load(moment, [this](int node, const Eigen::Vector3d& load) { add_column(node, load); });
-  combine(nodes, displacement);
+  sum_->clear();
+  memory_->for_each_load(moment, [this](int node, const Eigen::Vector3d& load) { sum_->add(node, load); });
+  sum_->at(nodes, displacement);
   memory_->add_faded(moment, nodes, displacement);
 }
 
@@ -122,28 +115,6 @@ void QuasiStaticBody::recall_ahead(std::span<const int> nodes, std::span<double>
   if (!nodes.empty()) recall(Moment::ahead, touchable_, displacement);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (!touchable(nodes[i])) std::fill_n(displacement.begin() + 3 * i, 3, 0.0);
-}
-
-void QuasiStaticBody::add_column(int node, const Eigen::Vector3d& force) {
-  if (node >= compliance().column_nodes()) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    columns_.push_back(compliance().column(node, axis));
-    coefficients_.push_back(force[axis]);
-  }
-}
-
-// The sum of the columns at some of the touchable nodes.
-void QuasiStaticBody::combine(std::span<const int> nodes, std::span<double> displacement) {
-  const int count = static_cast<int>(columns_.size());
-  // Reading whole columns beats picking from them once a good part of the nodes is asked for.
-  if (nodes.size() * kWholeColumnsFrom < static_cast<std::size_t>(map().touchable)) {
-    kernels::active().combine_nodes_d(columns_.data(), coefficients_.data(), count, nodes.data(),
-                                      static_cast<int>(nodes.size()), displacement.data());
-    return;
-  }
-  kernels::active().combine_d(columns_.data(), coefficients_.data(), count, 3 * map().touchable, whole_.data());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    std::copy_n(whole_.data() + 3 * nodes[i], 3, displacement.data() + 3 * i);
 }
 
 // The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches and

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/archive/load_sum.hpp"
 #include "common/contact/patch/patch_touch.hpp"
 #include "common/contact/touch_body.hpp"
 #include "common/models/quasi_static/force_memory.hpp"
@@ -42,16 +43,14 @@ class QuasiStaticBody : public TouchBody {
   QuasiNonlinear correction_of(int tool) const;
   void recall(Moment moment, std::span<const int> nodes, std::span<double> displacement);
   void recall_ahead(std::span<const int> nodes, std::span<double> displacement);
-  void combine(std::span<const int> nodes, std::span<double> displacement);
-  void add_column(int node, const Eigen::Vector3d& force);
   void lay_ground();
   void remember();
 
   std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
   std::unique_ptr<PatchTouch> patch_;    ///< null: all parts touch by the mesh
-  std::vector<const double*> columns_;
-  std::vector<double> coefficients_, displacement_, of_tool_, whole_;
+  std::optional<LoadSum<double>> sum_;   ///< set by the constructor, behind the compliance
+  std::vector<double> displacement_, of_tool_;
   std::vector<int> held_;               ///< places among the marked nodes
   std::vector<int> under_, touchable_;  ///< nodes that contacts hold, or patches lie on
   std::vector<double> past_under_;      ///< [m] what the past has left of the contacts' displacement

@@ -108,6 +108,13 @@ Offline offline_of(const QuasiStaticSpec& body, int surface_nodes);
 /// Why it is that, in words; empty where the body says so itself.
 std::string why_offline(const QuasiStaticSpec& body, int surface_nodes);
 inline constexpr int kMaxQuadratic = 2000;
+/// How tensors are stored: whole, or compressed, near blocks dense and far ones of low rank. Which
+/// one follows from the number of touchable nodes.
+enum class TensorForm { dense, compressed };
+inline constexpr int kMaxDense = 2000;
+constexpr TensorForm form_of(int touchable) {
+  return touchable > kMaxDense ? TensorForm::compressed : TensorForm::dense;
+}
 
 ArchiveJob archive_job(const QuasiStaticSpec& body, const Progress& progress);
 
