@@ -16,7 +16,7 @@ constexpr double kNear = 1.2;  // radii about the ball's middle in which nodes a
 
 /// Those that may touch the ball come last, so that the last block of the factor is that of their compliance's inverse.
 Factorisation factorised(const StaticProblem& problem, const std::vector<int>& last) {
-  const NodeGraph graph = node_graph(problem.mesh);
+  const NodeGraph graph = node_graph(problem.mesh, problem.materials);
   const SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs, graph);
   Factorisation factor(stiffness, dof_order(problem.dofs, interior_first_order(graph, last)));
   factor.factorise(stiffness);
