@@ -33,7 +33,7 @@ void print_modes(const ModesArguments& arguments) {
   const Body& body = choose_body(scene, arguments.body);
   const FreeVibration free = std::visit([](const auto& spec) { return vibration(spec); }, body);
   const int count = std::min(arguments.count, static_cast<int>(free.mass.size()));
-  const Modes modes = lowest_modes(free.stiffness, free.mass, count);
+  const Modes modes = lowest_modes(free.stiffness, free.mass, count, free.shift);
   const std::vector<double> frequencies = in_hertz(modes.omega);
   if (arguments.json) {
     fmt::print("{}\n", nlohmann::json{{"body", name_of(body)}, {"frequency_hz", frequencies}}.dump());

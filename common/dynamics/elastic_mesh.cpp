@@ -6,11 +6,11 @@
 
 namespace palpate {
 
-ElasticMesh elastic_mesh(const Archive& archive) {
+ElasticMesh elastic_mesh(const Archive& archive, TetElement element) {
   if (archive.tetrahedra.empty())
     throw std::runtime_error("body '" + archive.body + "': no part of it moves with inertia");
   ElasticMesh mesh{
-      archive.surface.position, archive.tetrahedra, archive.surface.fixed, {}, archive.material_of_element};
+      archive.surface.position, archive.tetrahedra, archive.surface.fixed, {}, archive.material_of_element, element};
   for (std::size_t m = 0; m < archive.young.size(); ++m)
     mesh.materials.push_back({archive.young[m], archive.poisson[m], archive.density[m]});
   return mesh;

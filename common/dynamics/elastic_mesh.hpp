@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/fem/solid_spec.hpp"
+#include "common/fem/tet_element.hpp"
 
 namespace palpate {
 
@@ -18,6 +19,7 @@ struct ElasticMesh {
   std::vector<std::array<bool, 3>> fixed;      ///< per node and axis
   std::vector<Material> materials;             ///< the body's own first
   std::vector<std::uint16_t> material_of;      ///< index into materials per tetrahedron; empty: all have the first
+  TetElement element = TetElement::linear;     ///< of all tetrahedra, for solves of the same body
 
   const Material& material(int t) const { return materials[material_of.empty() ? 0 : material_of[t]]; }
   int nodes() const { return static_cast<int>(rest.size()); }
@@ -25,6 +27,6 @@ struct ElasticMesh {
 
 /// The part of a body that moves with inertia, from its archive (the header suffices). Throws
 /// std::runtime_error if no part does.
-ElasticMesh elastic_mesh(const Archive& archive);
+ElasticMesh elastic_mesh(const Archive& archive, TetElement element = TetElement::linear);
 
 }  // namespace palpate

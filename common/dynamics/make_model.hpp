@@ -22,7 +22,7 @@ std::unique_ptr<DynamicModel> make_in_precision(const ElasticMesh& mesh, const D
   return motion.precision == Precision::float64 ? make(double{}) : make(float{});
 }
 
-/// Moving tissue of elements: tensors, or elements that turn.
+/// Moving tissue of elements: tensors, elements that turn, or elements whose strain is averaged.
 std::unique_ptr<DynamicModel> make_element_model(const ElasticMesh& mesh, const Dynamic& motion);
 
 }  // namespace palpate

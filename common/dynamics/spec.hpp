@@ -6,6 +6,7 @@
 
 #include "common/dynamics/integrator.hpp"
 #include "common/fem/solid_spec.hpp"
+#include "common/fem/tet_element.hpp"
 
 namespace palpate {
 
@@ -24,7 +25,8 @@ struct Dynamic {
   double step = 0;                                    ///< [s] 0: chosen from the frequency bound
   double damping = 5;                                 ///< [1/s] proportional to mass: gamma_i = damping * m_i
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  bool corotational = false;                          ///< elements turn with the tissue
+  TetElement element = TetElement::linear;
+  bool corotational = false;  ///< elements turn with the tissue
 };
 
 inline void describe(Description& d, Dynamic& m) {
@@ -38,10 +40,18 @@ inline void describe(Description& d, Dynamic& m) {
   d.number({"damping", "1/s", "proportional to mass: a node of mass m is braked by damping · m · velocity"}, m.damping,
            at_least(0));
   d.vector({"gravity", "m/s²", "on both parts of a hybrid", Need::optional, Use::inertia}, m.gravity);
+  d.choice({"element", "",
+            "`\"linear\"`: tetrahedra of constant strain, too stiff in bending and near ν = 0.5; `\"nodal_strain\"`: "
+            "their strain is averaged at the nodes, for soft tissue that bends and hardly changes its volume; not for "
+            "springs, and not with `corotational`",
+            Need::optional, Use::stored},
+           m.element);
   d.flag({"corotational", "",
           "elements turn with the tissue, so that large rotations make no false force; not for "
           "springs, which turn by themselves"},
          m.corotational);
+  d.require(!m.corotational || m.element == TetElement::linear, "corotational",
+            "elements that turn with the tissue are linear: take either corotational or element = \"nodal_strain\"");
 }
 
 /// The three measures of RR3510 sec. 5.5 of how far a tetrahedron is deformed. A motion without deformation

@@ -38,6 +38,22 @@ double max_step_rk4(double bound, double damping) {
   return std::min(slow, max_scale_rk4({-0.5 * damping, std::sqrt(square)}));
 }
 
+constexpr double kRounding = 1 + 1e-12;
+
+/// Principal values of G = sum g_j g_j^T [1/m^2], ascending.
+Eigen::Vector3d principal_gram(const TetGradients& tet) {
+  const Eigen::Matrix3d gram = tet.gradient.transpose() * tet.gradient;
+  return principal_values(gram).cwiseMax(0);
+}
+
+/// [Pa/m^2] of the three F_aa in the principal axes.
+double largest_stretch(const Eigen::Vector3d& square, const Lame& lame) {
+  const Eigen::Vector3d root = square.cwiseSqrt();
+  Eigen::Matrix3d stretch = lame.lambda * root * root.transpose();
+  stretch.diagonal() += 2 * lame.mu * square;
+  return principal_values(stretch)[2];
+}
+
 }  // namespace
 
 double max_step(Integrator integrator, double bound, double damping) {
@@ -57,15 +73,20 @@ double max_step(Integrator integrator, double bound, double damping) {
 /// gives a certain F is least tr(F G^-1 F^T), G = sum g_j g_j^T. In the principal axes of G the isotropic
 /// energy couples the three F_aa with one another and each F_ab with F_ba alone.
 double element_frequency_squared(const TetGradients& tet, const Lame& lame, double density) {
-  const Eigen::Matrix3d gram = tet.gradient.transpose() * tet.gradient;
-  const Eigen::Vector3d square = principal_values(gram).cwiseMax(0);
-  const Eigen::Vector3d root = square.cwiseSqrt();
-  Eigen::Matrix3d stretch = lame.lambda * root * root.transpose();
-  stretch.diagonal() += 2 * lame.mu * square;
-  const double normal = principal_values(stretch)[2];
+  const Eigen::Vector3d square = principal_gram(tet);
   const double shear = lame.mu * (square[1] + square[2]);
-  constexpr double rounding = 1 + 1e-12;
-  return rounding * 4 * std::max(normal, shear) / density;
+  return kRounding * 4 * std::max(largest_stretch(square, lame), shear) / density;
+}
+
+/// With a turn's stiffness c the energy of F_ab and F_ba is (mu + c/2)/2 (F_ab^2 + F_ba^2) + (mu - c/2) F_ab F_ba.
+double averaged_frequency_squared(const TetGradients& tet, const Lame& lame, double stabilisation, double density) {
+  const Eigen::Vector3d square = principal_gram(tet);
+  const bool given_back = 3 * lame.lambda + 2 * lame.mu >= stabilisation;
+  const double own = lame.mu + 0.5 * stabilisation, mixed = lame.mu - 0.5 * stabilisation;
+  const double shear = 0.5 * (own * (square[1] + square[2]) +
+                              std::hypot(own * (square[2] - square[1]), 2 * mixed * std::sqrt(square[1] * square[2])));
+  const double rest = given_back ? 0 : stabilisation * square[2];
+  return kRounding * 4 * (std::max(largest_stretch(square, lame), shear) + rest) / density;
 }
 
 }  // namespace palpate

@@ -9,4 +9,10 @@ namespace palpate {
 /// assembled mesh, fixed or not, because energy and mass are both sums over its tetrahedra.
 double element_frequency_squared(const TetGradients& tet, const Lame& lame, double density);
 
+/// The same of a tetrahedron whose strain is averaged at its nodes (NodalPatches): the mean over a patch takes no more
+/// energy than its tetrahedra do by themselves, so that the largest one over a mesh bounds every frequency, whatever is
+/// removed. Beside its strain energy a tetrahedron counts with c/2 V |F|^2, of which the patches give back what is not
+/// a turn where 3 lambda + 2 mu >= c.
+double averaged_frequency_squared(const TetGradients& tet, const Lame& lame, double stabilisation, double density);
+
 }  // namespace palpate

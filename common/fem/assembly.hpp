@@ -16,8 +16,10 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 struct MaterialField {
   std::vector<Material> materials;        ///< the body's own first, then one per region
   std::vector<std::uint16_t> of_element;  ///< index into materials; empty: all elements have materials[0]
+  std::vector<char> nodal_strain;         ///< elements that are TetElement::nodal_strain; empty: none
 
   const Material& at(int element) const { return materials[of_element.empty() ? 0 : of_element[element]]; }
+  bool averages(std::size_t element) const { return !nodal_strain.empty() && nodal_strain[element]; }
 };
 
 /// The body's material and its regions; where regions overlap the later one holds. Throws std::runtime_error
@@ -32,6 +34,8 @@ struct NodeGraph {
 };
 
 NodeGraph node_graph(const TetMesh& mesh);
+/// Which nodes the stiffness couples: also those of one patch, where elements average their strain.
+NodeGraph node_graph(const TetMesh& mesh, const MaterialField& materials);
 
 /// Lower triangle over the free dofs of a matrix given by one 3 x 3 block (rows the greater node) per entry of the
 /// graph, with exact zeros of the pattern kept.

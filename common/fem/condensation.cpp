@@ -95,7 +95,7 @@ SurfaceCompliance surface_compliance(const TetMesh& mesh, const MaterialField& m
                                      const std::vector<int>& touchable, const std::vector<int>& other,
                                      const Progress& progress, Route route) {
   Stopwatch watch(progress);
-  const auto graph = node_graph(mesh);
+  const auto graph = node_graph(mesh, materials);
   const auto stiffness = assemble_stiffness(mesh, materials, dofs, graph);
   watch.lap("assembly");
   const auto touchable_dofs = free_indices(dofs, touchable), other_dofs = free_indices(dofs, other);

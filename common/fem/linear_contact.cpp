@@ -25,7 +25,7 @@ LinearContact::Space linear_space(const StaticProblem& problem) {
   const auto count = static_cast<Index>(problem.mesh.nodes.size());
   SparseMatrix own(count, count);
   own.setIdentity();
-  NodeGraph graph = node_graph(problem.mesh);
+  NodeGraph graph = node_graph(problem.mesh, problem.materials);
   SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs, graph);
   return {problem.mesh.nodes, problem.dofs, std::move(own), std::move(graph), std::move(stiffness)};
 }

@@ -50,7 +50,7 @@ class Splitter {
 
   StaticProblem finished(const StaticProblem& from) const {
     TetMesh mesh{nodes_, {}, {}};
-    MaterialField materials{from.materials.materials, {}};
+    MaterialField materials{from.materials.materials, {}, {}};
     for (std::size_t t = 0; t < tets_.size(); ++t) {
       if (tets_[t][0] < 0) continue;
       mesh.tetrahedra.push_back(tets_[t]);

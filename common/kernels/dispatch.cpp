@@ -15,8 +15,10 @@ namespace {
     name, level::combine_f, level::combine_d, level::combine_nodes_d, level::cholesky, level::cholesky_solve,        \
         level::cholesky_append, level::cholesky_remove, level::rk4_first_f, level::rk4_first_d, level::rk4_second_f, \
         level::rk4_second_d, level::semi_implicit_f, level::semi_implicit_d, level::forward_euler_f,                 \
-        level::forward_euler_d, level::springs_f, level::springs_d, level::corotated_f, level::corotated_d,          \
-        level::kernel_moments                                                                                        \
+        level::forward_euler_d, level::patch_rk4_first_f, level::patch_rk4_first_d, level::patch_rk4_second_f,       \
+        level::patch_rk4_second_d, level::patch_semi_implicit_f, level::patch_semi_implicit_d,                       \
+        level::patch_forward_euler_f, level::patch_forward_euler_d, level::springs_f, level::springs_d,              \
+        level::corotated_f, level::corotated_d, level::kernel_moments                                                \
   }
 
 constexpr Table kBase = PALPATE_TABLE("x86-64", base);

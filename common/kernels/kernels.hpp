@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/kernels/block_rows.hpp"
+#include "common/kernels/patch_rows.hpp"
 #include "common/kernels/quads.hpp"
 
 /// The hot dense loops, compiled once per vector width and chosen when the program starts. Nothing here
@@ -90,6 +91,18 @@ struct Table {
   void (*semi_implicit_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step);
   void (*forward_euler_f)(const EdgeBlocks<float>& k, const NodeArrays<float>& nodes, double damping, double step);
   void (*forward_euler_d)(const EdgeBlocks<double>& k, const NodeArrays<double>& nodes, double damping, double step);
+
+  /// The same steps with the stiffness of patches: `k` in place of the blocks.
+  void (*patch_rk4_first_f)(const PatchRows<float>& k, const NodeArrays<float>& nodes, double damping);
+  void (*patch_rk4_first_d)(const PatchRows<double>& k, const NodeArrays<double>& nodes, double damping);
+  void (*patch_rk4_second_f)(const PatchRows<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*patch_rk4_second_d)(const PatchRows<double>& k, const NodeArrays<double>& nodes, double damping, double step);
+  void (*patch_semi_implicit_f)(const PatchRows<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*patch_semi_implicit_d)(const PatchRows<double>& k, const NodeArrays<double>& nodes, double damping,
+                                double step);
+  void (*patch_forward_euler_f)(const PatchRows<float>& k, const NodeArrays<float>& nodes, double damping, double step);
+  void (*patch_forward_euler_d)(const PatchRows<double>& k, const NodeArrays<double>& nodes, double damping,
+                                double step);
 
   /// Adds the forces of springs [N] to `force` at displacements `u` [m], see SpringQuad.
   void (*springs_f)(const SpringQuad<float>* quads, int count, const float* u, float* force);

@@ -154,10 +154,11 @@ std::vector<std::string> locking_warnings(const MovingSpec& body);
 /// none of tetrahedra.
 DirectProblem direct_problem(const NamedSpec& body);
 DirectProblem direct_problem(const SolidSpec& body);
+DirectProblem direct_problem(const MovingSpec& body);
 
-/// vibration(spec): how it swings freely. Throws std::runtime_error for a body that has no modes.
-FreeVibration vibration(const NamedSpec& body);
+/// vibration(spec): how it swings freely about its rest shape.
 FreeVibration vibration(const SolidSpec& body);
+FreeVibration vibration(const MovingSpec& body);
 
 /// static_correction(spec): what is done to a linear static state with the archive's help; returns the factor of the
 /// forces. Empty: nothing.

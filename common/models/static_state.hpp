@@ -15,6 +15,9 @@ struct DirectProblem {
   std::function<StaticSolution(const std::vector<Constraint>&, const std::vector<NodalLoad>&)> solve;
 };
 
+/// Of tetrahedra.
+DirectProblem direct_problem_of(StaticProblem problem);
+
 /// A static state as lists with one entry a node.
 struct StaticField {
   const std::vector<int>& held;                  ///< places in the lists, ascending

@@ -7,9 +7,10 @@ namespace palpate {
 struct FreeVibration {
   SparseMatrix stiffness;  ///< [N/m] lower triangle over the free dofs, those without mass last
   Eigen::VectorXd mass;    ///< [kg] lumped, per dof with mass
+  double shift = 0;        ///< [1/s^2] > 0 where motions without elastic energy are free: see lowest_modes()
 };
 
-/// Of tetrahedra: linear elements, a quarter of each one's mass at each of its nodes.
+/// Of tetrahedra: their own elements, a quarter of each one's mass at each of its nodes.
 FreeVibration vibration_of(const StaticProblem& problem);
 
 }  // namespace palpate

@@ -133,12 +133,13 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
   std::vector<bool> gone(mesh_.tetrahedra.size(), false);
   for (int t : question.removed) gone[t] = true;
   TetMesh left{.nodes = mesh_.rest, .tetrahedra = {}, .groups = {}};
-  MaterialField materials{mesh_.materials, {}};
+  MaterialField materials{mesh_.materials, {}, {}};
   for (std::size_t t = 0; t < gone.size(); ++t) {
     if (gone[t]) continue;
     left.tetrahedra.push_back(mesh_.tetrahedra[t]);
     if (!mesh_.material_of.empty()) materials.of_element.push_back(mesh_.material_of[t]);
   }
+  if (mesh_.element == TetElement::nodal_strain) materials.nodal_strain.assign(left.tetrahedra.size(), 1);
   const auto n = static_cast<Eigen::Index>(answer.nodes.size());
   answer.compliance.setZero(3 * n, 3 * n);
   for (Eigen::Index i = 0; i < n; ++i)

@@ -112,6 +112,7 @@ poisson = 0.4
 fixed = [{ group = "edge" }]
 
 [body.dynamic]
+element = "linear"
 integrator = "semi_implicit"
 precision = "double"
 step = 0.0005

@@ -113,6 +113,7 @@ TEST_F(ContentHash, CoversWhatBodiesThatMoveWithInertiaStore) {
       tensor_mass([](MovingSpec& b) {
         b.dynamic.gravity = {0, 0, -9.81};
       }),
+      tensor_mass([](MovingSpec& b) { b.dynamic.element = TetElement::nodal_strain; }),
       tensor_mass([](MovingSpec& b) {
         b.materials.push_back({{{}, {}, "tumour"}, {5e4, 0.3, 1000}});
       }),

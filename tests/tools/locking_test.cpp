@@ -21,6 +21,10 @@ TEST(LockingWarning, NamesTheCureWhereLinearElementsAreTooStiff) {
   const auto moving = locking_warnings(body_of<TensorMassSpec>(0.49));
   ASSERT_EQ(moving.size(), 1u);
   EXPECT_EQ(moving[0].find("locking_free"), std::string::npos);
+  EXPECT_NE(moving[0].find("nodal_strain"), std::string::npos);
+  auto averaged = body_of<TensorMassSpec>(0.49);
+  averaged.dynamic.element = TetElement::nodal_strain;
+  EXPECT_TRUE(locking_warnings(averaged).empty());
   EXPECT_TRUE(locking_warnings(body_of<SpringMassSpec>(0.49)).empty()) << "springs have a Poisson's ratio of their own";
 }
 

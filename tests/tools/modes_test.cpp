@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "common/mesh/generators.hpp"
@@ -86,11 +87,65 @@ TEST(ToolsModes, AShellsAreThoseOfItsArchive) {
   EXPECT_NE(precomputed.out.find(fmt::format(" modes of {:.4g} to ", found[0])), std::string::npos) << precomputed.out;
 }
 
-TEST(ToolsModes, WhatHasNoneIsRefusedInWords) {
+/// Springs along the edges of a grid are another solid than the bar, stiffer or softer by no more than its edges say.
+TEST(ToolsModes, SpringsSwingByTheirOwnStiffness) {
   const OwnFolder folder("modes");
-  testing::expect_refusal(program("palpate") + " modes " + bar(folder, "spring_mass"), {"'bar'", "springs"});
-  testing::expect_refusal(
-      program("palpate") + " modes " PALPATE_SOURCE "/scenes/catheter_insertion.toml --body catheter", {"particles"});
+  const double first = std::sqrt(10000.0 / 1000) / (4 * 0.1);
+  const auto found = frequencies(bar(folder, "spring_mass") + " --count 2");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_GT(found[0], 0.5 * first);
+  EXPECT_LT(found[0], 2 * first);
+  EXPECT_NEAR(found[1] / found[0], 3, 0.05) << "a bar's, whatever its stiffness";
+}
+
+/// In its sleeve of 20 mm it slides freely and bends as a beam that is clamped about where the sleeve ends.
+TEST(ToolsModes, ACatheterSlidesAndBendsAsABeam) {
+  const OwnFolder folder("modes");
+  const std::string scene = folder / "catheter.toml";
+  std::ofstream(scene) << R"([[body]]
+name = "catheter"
+model = "catheter"
+young = 1e7
+density = 1000
+[body.catheter]
+tail = [0, 0, 0]
+tip = [0.12, 0, 0]
+radius = 0.001
+particles = 121
+sleeve = 0.02
+)";
+  const auto found = frequencies(scene + " --count 5");
+  const double radius = 0.001, length = 0.1, root = 1.8751;
+  const double beam = root * root / (2 * std::numbers::pi * length * length) * radius / 2 * std::sqrt(1e7 / 1000);
+  ASSERT_EQ(found.size(), 5u);
+  EXPECT_LT(found[0], 0.05 * beam);
+  EXPECT_NEAR(found[1], beam, 0.03 * beam);
+  EXPECT_NEAR(found[2], beam, 0.03 * beam) << "in both planes";
+  EXPECT_NEAR(found[3], 6.2669 * beam, 0.03 * 6.2669 * beam);
+}
+
+TEST(ToolsModes, AveragedStrainTakesTheLockingOutOfABeam) {
+  const OwnFolder folder("modes");
+  write_tet_mesh(make_block({0, 0, 0}, {0.1, 0.01, 0.01}, {20, 2, 2}), folder / "beam.msh");
+  const auto first = [&](const char* element) {
+    const std::string scene = folder / "beam.toml";
+    std::ofstream(scene) << fmt::format(R"([[body]]
+name = "beam"
+mesh = "beam.msh"
+model = "tensor_mass"
+young = 10000
+poisson = 0.49
+[body.dynamic]
+element = "{}"
+[[body.fixed]]
+box = [[-1, -1, -1], [1e-6, 1, 1]]
+)",
+                                        element);
+    return frequencies(scene + " --count 1").at(0);
+  };
+  const double beam = 1.8751 * 1.8751 / (2 * std::numbers::pi * 0.01) * std::sqrt(10.0 * 0.0001 / 12);
+  EXPECT_NEAR(first("nodal_strain"), beam, 0.04 * beam);
+  EXPECT_GT(first("linear"), 1.25 * beam);
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ class BandMatrix {
   /// block, which must be symmetric, the lower half is read.
   void add(int i, int apart, const Eigen::Matrix3d& block);
 
+  /// Of the lower triangle within the band; before factorise().
+  double entry(int row, int column) const { return this->column(column)[row - column]; }
+
   /// Replaces the matrix by its Cholesky factor. False if it is not positive definite; nothing is usable
   /// then.
   bool factorise();

@@ -87,6 +87,7 @@ constexpr bool has_static_states(const CatheterSpec&) {
 constexpr std::string_view absence(const CatheterSpec&) {
   return "no catheter: no particles and no task record";
 }
+FreeVibration vibration(const CatheterSpec& body);
 Appearance appearance(const CatheterSpec& body, const SurfaceMap& surface);
 
 /// The duct must be a wall of the scene.

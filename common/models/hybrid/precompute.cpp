@@ -99,21 +99,15 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
   archive.parts.hybrid = true;
 }
 
-/// The dynamic tetrahedra and, at a partial connection, what the two meshes make together.
-struct Parts {
-  TetMesh mesh;
-  std::vector<int> dynamic;
-};
+}  // namespace
 
-Parts find_parts(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse) {
+HybridParts find_parts(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse) {
   if (!coarse) return {mesh, dynamic_elements(body, mesh)};
-  Parts parts{join_meshes(mesh, *coarse, fmt::format("body '{}': [body.hybrid]", body.name)), {}};
+  HybridParts parts{join_meshes(mesh, *coarse, fmt::format("body '{}': [body.hybrid]", body.name)), {}};
   parts.dynamic.resize(coarse->tetrahedra.size());
   std::iota(parts.dynamic.begin(), parts.dynamic.end(), static_cast<int>(mesh.tetrahedra.size()));
   return parts;
 }
-
-}  // namespace
 
 Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse, const Progress& progress) try {
   Stopwatch watch(progress);
@@ -125,7 +119,8 @@ Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* c
   watch.lap("surface");
   const auto split = split_hybrid(body, parts.mesh, dofs, parts.dynamic);
   add_hybrid(body, parts.mesh, split, materials, index, progress, archive);
-  add_compliance_at_rest(parts.mesh, dofs, materials, progress, archive);
+  add_compliance_at_rest(parts.mesh, dofs, with_elements(body, parts.dynamic, parts.mesh, materials), progress,
+                         archive);
   if (coarse) add_gap(parts.mesh, split, index, *archive.hybrid);
   return archive;
 } catch (const std::bad_alloc&) {

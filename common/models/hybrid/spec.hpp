@@ -41,6 +41,7 @@ inline void describe(Description& d, HybridSpec& b) {
 }
 
 FreeVibration vibration(const HybridSpec& body);
+DirectProblem direct_problem(const HybridSpec& body);
 std::vector<std::string> archive_lines(const HybridSpec& body, const Archive& archive);
 ArchiveJob archive_job(const HybridSpec& body, const Progress& progress);
 

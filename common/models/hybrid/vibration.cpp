@@ -1,20 +1,29 @@
 #include "common/models/vibration.hpp"
 
-#include <fmt/format.h>
+#include <optional>
 
 #include "common/mesh/mesh_file.hpp"
-#include "common/models/hybrid/join_meshes.hpp"
-#include "common/models/hybrid/spec.hpp"
+#include "common/models/hybrid/hybrid_split.hpp"
+#include "common/models/hybrid/precompute.hpp"
+#include "common/models/moving/static_problem.hpp"
+#include "common/models/static_state.hpp"
 
 namespace palpate {
 
 // Both parts as one elastic body.
 FreeVibration vibration(const HybridSpec& body) {
+  const TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
+  std::optional<TetMesh> coarse;
+  if (has_own_mesh(body)) coarse = load_tet_mesh(body.hybrid.mesh, body.hybrid.scale);
+  HybridParts parts = find_parts(body, mesh, coarse ? &*coarse : nullptr);
+  return vibration_of(moving_problem(body, std::move(parts.mesh), parts.dynamic));
+}
+
+// Where the part that moves has a mesh of its own, the body's mesh alone.
+DirectProblem direct_problem(const HybridSpec& body) {
   TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
-  if (has_own_mesh(body))
-    mesh = join_meshes(mesh, load_tet_mesh(body.hybrid.mesh, body.hybrid.scale),
-                       fmt::format("body '{}': [body.hybrid]", body.name));
-  return vibration_of(make_static_problem(body, std::move(mesh)));
+  const std::vector<int> moving = has_own_mesh(body) ? std::vector<int>() : dynamic_elements(body, mesh);
+  return direct_problem_of(moving_problem(body, std::move(mesh), moving));
 }
 
 }  // namespace palpate

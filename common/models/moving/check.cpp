@@ -12,6 +12,7 @@
 #include "common/dynamics/hybrid_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
 #include "common/models/moving/predict.hpp"
+#include "common/models/moving/static_problem.hpp"
 #include "common/models/moving_kind.hpp"
 
 namespace palpate {
@@ -55,7 +56,11 @@ void predict(const MovingSpec& body, const MovingKind& kind, const CheckSettings
   say_steps(body, *organ, archive, settings, report);
   const int steps = organ->steps_in(settings.dt, true);
   if (!settings.tools.empty()) say_tried_contact(body, settings, mean_edge(archive.surface), steps, report);
-  if (!kind.own_mesh) say_sag(body, {solid.mesh, solid.materials, solid.dofs}, report);
+  if (kind.own_mesh) return;
+  if (archive.hybrid)
+    say_sag(body, {solid.mesh, solid.materials, solid.dofs}, report);
+  else
+    say_sag(body, moving_problem(body, solid.mesh), report);
 }
 
 /// Bytes that the process has from its heap.
@@ -119,7 +124,9 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   const Dynamic& d = body.dynamic;
   report.say(fmt::format("  motion: {}, {} precision, damping {} 1/s, gravity {} {} {} m/s2{}", word_of(d.integrator),
                          word_of(d.precision), d.damping, d.gravity.x(), d.gravity.y(), d.gravity.z(),
-                         d.corotational ? ", corotational" : ""));
+                         d.corotational                          ? ", corotational"
+                         : d.element == TetElement::nodal_strain ? ", strain averaged at the nodes"
+                                                                 : ""));
   predict(body, kind, settings, solid, archive, report);
   say_patches(settings, body.name, false, report);
   const std::vector<std::string> of_material = material_warnings(body);
@@ -144,9 +151,11 @@ void warn_of_locking(const std::vector<std::string>& sentences, CheckReport& rep
 }
 
 std::vector<std::string> locking_warnings(const MovingSpec& body) {
-  return locking_warnings(
-      body,
-      fmt::format("take {} for tissue that moves, which true incompressibility stiffens by 4 % only", kLockingPoisson));
+  if (body.dynamic.element == TetElement::nodal_strain) return {};
+  return locking_warnings(body,
+                          fmt::format("give it element = \"nodal_strain\" in [body.dynamic], or take {}, which true "
+                                      "incompressibility stiffens by 4 % only",
+                                      kLockingPoisson));
 }
 
 }  // namespace palpate

@@ -28,7 +28,7 @@ constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes aw
 DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings,
                            const MakeModel& make)
     : name_(body.name),
-      mesh_(elastic_mesh(archive)),
+      mesh_(elastic_mesh(archive, body.dynamic.element)),
       topology_(mesh_.tetrahedra, mesh_.nodes()),
       shown_(archive.surface.triangles, topology_),
       surface_(topology_, mesh_.rest, bucket_size(settings.contact, archive.surface)),

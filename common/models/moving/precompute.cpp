@@ -24,10 +24,18 @@ std::vector<int> index_of_nodes(const SurfaceMap& surface, std::size_t nodes) {
 }  // namespace
 
 MaterialField materials_of(const MaterialField& whole, const std::vector<int>& elements) {
-  MaterialField part{whole.materials, {}};
+  MaterialField part{whole.materials, {}, {}};
   if (whole.of_element.empty()) return part;
   for (int e : elements) part.of_element.push_back(whole.of_element[e]);
   return part;
+}
+
+MaterialField with_elements(const MovingSpec& body, const std::vector<int>& moving, const TetMesh& mesh,
+                            MaterialField materials) {
+  if (body.dynamic.element == TetElement::linear) return materials;
+  materials.nodal_strain.assign(mesh.tetrahedra.size(), 0);
+  for (const int e : moving) materials.nodal_strain[e] = 1;
+  return materials;
 }
 
 std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,
@@ -66,7 +74,7 @@ Archive precompute_moving(const MovingSpec& body, std::string_view kind, const T
   std::iota(all.begin(), all.end(), 0);
   add_moving_part(body, mesh, dofs, materials, all, archive);
   watch.lap("surface");
-  add_compliance_at_rest(mesh, dofs, materials, progress, archive);
+  add_compliance_at_rest(mesh, dofs, with_elements(body, all, mesh, materials), progress, archive);
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));

@@ -14,6 +14,10 @@ namespace palpate {
 /// The materials of some of the mesh's tetrahedra, in their order.
 MaterialField materials_of(const MaterialField& whole, const std::vector<int>& elements);
 
+/// Of the tetrahedra `moving` the body's own element, of all others the linear one.
+MaterialField with_elements(const MovingSpec& body, const std::vector<int>& moving, const TetMesh& mesh,
+                            MaterialField materials);
+
 /// Fills in the surface map, the tetrahedra and the densities, for the tetrahedra `elements` that move with
 /// inertia. Returns the archive's node per mesh node.
 std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, const DofMap& dofs,

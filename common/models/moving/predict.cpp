@@ -151,9 +151,10 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
   for (const Eigen::Vector3d& p : problem.mesh.nodes) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double diagonal = (high - low).norm(), share = most->norm() / diagonal;
   report.say(
-      fmt::format("  sag: {:.3g} mm at node {} at rest under its gravity, {:.2g} % of its diagonal, by linear "
+      fmt::format("  sag: {:.3g} mm at node {} at rest under its gravity, {:.2g} % of its diagonal, by {} "
                   "elements",
-                  1e3 * most->norm(), most - u.begin(), 100 * share));
+                  1e3 * most->norm(), most - u.begin(), 100 * share,
+                  problem.materials.nodal_strain.empty() ? "linear" : "its own"));
   if (share > kMuchSag)
     report.warnings.push_back(
         fmt::format("body '{}' sinks by {:.2g} of its diagonal under its own gravity: linear "

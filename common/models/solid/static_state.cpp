@@ -15,7 +15,10 @@ DirectProblem direct_problem(const NamedSpec& body) {
 }
 
 DirectProblem direct_problem(const SolidSpec& body) {
-  StaticProblem problem = make_static_problem(body, load_tet_mesh(body.mesh, body.scale));
+  return direct_problem_of(make_static_problem(body, load_tet_mesh(body.mesh, body.scale)));
+}
+
+DirectProblem direct_problem_of(StaticProblem problem) {
   TetMesh mesh = problem.mesh;
   auto mass = lumped_mass(mesh, problem.materials);
   return {std::move(mesh), std::move(mass), [problem = std::move(problem)](const auto& constraints, const auto& loads) {

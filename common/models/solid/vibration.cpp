@@ -1,18 +1,10 @@
 #include "common/models/vibration.hpp"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/models/kind.hpp"
 
 namespace palpate {
-
-FreeVibration vibration(const NamedSpec& body) {
-  throw std::runtime_error(fmt::format("body '{}' is a chain of particles, whose modes are not computed", body.name));
-}
 
 FreeVibration vibration(const SolidSpec& body) {
   return vibration_of(make_static_problem(body, load_tet_mesh(body.mesh, body.scale)));

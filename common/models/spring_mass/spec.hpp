@@ -14,6 +14,8 @@ inline void describe(Description& d, SpringMassSpec& b) {
   describe(d, static_cast<MovingSpec&>(b));
   d.require(!b.dynamic.corotational, "dynamic.corotational",
             "corotational is for elements, and springs turn with the tissue by themselves");
+  d.require(b.dynamic.element == TetElement::linear, "dynamic.element",
+            "nodal_strain is for elements, and springs have no strain to average");
 }
 
 std::unique_ptr<DynamicModel> make_model(const SpringMassSpec& body, const ElasticMesh& mesh);
