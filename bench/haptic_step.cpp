@@ -4,6 +4,7 @@
 #include "bench/report.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/tool/motion_guard.hpp"
 #include "tools/rig/press_rig.hpp"
 #include "tools/rig/scripted_tools.hpp"
 
@@ -97,6 +98,49 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
   bench::report("held_nodes", "liver1400_64", "p999", 1e6 * samples.p999(), "us");
 }
 
+/// What stands between the device's sample and the tool, and between the tissue's force and the hand, over the scripted
+/// motion. The step cannot be run without it, so that it is timed apart, a hundred ticks at a time.
+void guards(const Scene& scene, const std::vector<Archive>& archives, bool quick) {
+  constexpr int kTogether = 100;
+  PressRig rig(scene, archives);
+  ScriptedTools tools(scene);
+  const Tool& tool = scene.tools[0];
+  Port port;
+  MotionGuard motion(rig.dt());
+  PassivityGuard watch(scene.passivity, {&port}, tool.max_force, rig.dt());
+  SafetyChain chain(tool.max_force, tool.max_force_rate, rig.dt());
+  struct Tick {
+    ToolDofs dofs;
+    PortMotion motion;
+    PortForce asked;
+  };
+  std::vector<Tick> ticks;
+  rig.start(tools.at(0));
+  for (double t = 0; t < tools.duration(); t += rig.dt()) {
+    const Eigen::Isometry3d before = rig.haptic().pose(0);
+    rig.press(tools.at(t));
+    ticks.push_back({tools.at(t)[0],
+                     motion_between(before, rig.haptic().pose(0), 0),
+                     {rig.haptic().force(0), rig.haptic().torque(0), 0}});
+  }
+  bench::Samples samples;
+  std::uint64_t seq = 0;
+  samples.measure(20, quick ? 200 : 2000, [&](int i) {
+    for (int k = 0; k < kTogether; ++k) {
+      const Tick& tick = ticks[((i + 20) * kTogether + k) % ticks.size()];
+      bench::keep(motion.follow(tick.dofs, ++seq));
+      port.motion = tick.motion;
+      watch.observe();
+      port.asked = tick.asked;
+      chain.limit(port.asked.force, port.asked.torque);
+      watch.control();
+      port.held = port.asked;
+      chain.apply(port.held.force, port.held.torque, {port.motion, port.spare});
+    }
+  });
+  bench::report("haptic_step", "guards", "p50", 1e6 * samples.median() / kTogether, "us");
+}
+
 }  // namespace
 }  // namespace palpate
 
@@ -107,6 +151,7 @@ int main(int argc, char** argv) {
   const auto pushes = palpate::one_contact(scene, archives, "liver1400_contact1", quick);
   palpate::bench::report("publish", "haptic_step", "p50", 1e6 * pushes.median(), "us");
   palpate::bench::report("publish", "haptic_step", "p999", 1e6 * pushes.p999(), "us");
+  palpate::guards(scene, archives, quick);
   palpate::one_contact(palpate::relaxing(scene), archives, "liver1400_relaxing", quick);
   palpate::one_contact(palpate::by_nodes(scene), archives, "liver1400_nodes", quick);
   palpate::one_contact(palpate::by_nodes(palpate::relaxing(scene)), archives, "liver1400_nodes_relaxing", quick);

@@ -38,21 +38,19 @@ void DynamicWorld::tick() {
   if (ticks_ % keyframe_interval() == 0)
     for (auto& organ : organs_) organ->forget_factors();
   for (TissueTool& tool : tools_) tool.tick(ticks_);
-  tick_organs();
+  see_tools();
+  for (auto& organ : organs_) organ->tick(in_tick_, dt_);
   ++ticks_;
 }
 
-void DynamicWorld::tick_organs() {
+void DynamicWorld::see_tools() {
   for (int t = 0; t < tools(); ++t) in_tick_[t] = tools_[t].in_tick();
-  for (auto& organ : organs_) organ->tick(in_tick_, dt_);
 }
 
 // Where they are in truth.
 void DynamicWorld::meet_tools() {
-  for (int t = 0; t < tools(); ++t) {
-    tools_[t].enter(1);
-    in_tick_[t] = tools_[t].in_tick();
-  }
+  for (TissueTool& tool : tools_) tool.enter(1);
+  see_tools();
   for (auto& organ : organs_) organ->meet(in_tick_);
 }
 
@@ -68,8 +66,8 @@ bool DynamicWorld::settle() {
   if (entering == 0) meet_tools();
   if (entering >= 0)
     for (int t = 0; t < tools(); ++t) tools_[t].enter(presses(t) ? 1 - left * left : 1);
-  tick_organs();
-  for (auto& organ : organs_) organ->calm();
+  see_tools();
+  for (auto& organ : organs_) organ->settle(in_tick_, dt_);
   return ++settled_ >= kRestTicks + kEnterTicks + kCalmTicks;
 }
 

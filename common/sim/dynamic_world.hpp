@@ -38,8 +38,8 @@ class DynamicWorld {
   /// Before the first tick, in a node that comes when tools are in the tissue already: one tick's length of coming to
   /// rest, first under the tissue's own weight, then with the tools. These enter whole tissue along their shafts to
   /// where their newest states say; where they would run through it, or something has been cut, they are there at once,
-  /// and pass through what they touch. They cut nothing on their way; what they tear is gone. True when it is over;
-  /// call until then, after taking the newest states.
+  /// and pass through it (DynamicOrgan::passes). They cut nothing on their way; what they tear is gone. True when it is
+  /// over; call until then, after taking the newest states.
   bool settle();
 
   std::uint64_t ticks() const { return ticks_; }
@@ -52,7 +52,7 @@ class DynamicWorld {
   std::uint64_t hash() const;
 
  private:
-  void tick_organs();
+  void see_tools();
   void meet_tools();
   bool presses(int tool) const;
 

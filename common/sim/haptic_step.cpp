@@ -17,13 +17,6 @@ double sum_of_force_limits(const Scene& scene) {
   return sum;
 }
 
-// [N/s] at which a force falls.
-double min_slew(const Scene& scene) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Tool& tool : scene.tools) least = std::min(least, SafetyChain::kFall * tool.max_force_rate);
-  return least;
-}
-
 using Rigs = std::vector<std::unique_ptr<ToolRig>>;
 
 Rigs make_rigs(const Scene& scene, double dt) {
@@ -45,7 +38,7 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
     : dt_(1.0 / scene.rates.haptic_hz),
       bodies_(static_cast<int>(scene.bodies.size())),
       rigs_(make_rigs(scene, dt_)),
-      passivity_(scene.passivity, ports_of(rigs_), sum_of_force_limits(scene), min_slew(scene), dt_) {
+      passivity_(scene.passivity, ports_of(rigs_), sum_of_force_limits(scene), dt_) {
   const StepSettings settings{scene.contact, scene.tools, dt_};
   std::vector<std::uint8_t> moving;
   std::vector<Eigen::Vector3d> gravity;

@@ -77,7 +77,6 @@ void TissueTool::enter(double share) {
   if (!waiting_ && !present_) return;
   consumed_ = newest_;
   consumed_.depth *= share;
-  consumed_.pedal = 0;
   playback_.begin(consumed_);
   begins_ = !std::exchange(present_, true);
   move();

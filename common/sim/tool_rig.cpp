@@ -92,7 +92,7 @@ void ToolRig::give(bool healthy) {
   PortForce& given = port_.held = port_.asked;
   if (port_.limited) output_.flags |= passivity_limited;
   fade(given);
-  output_.flags |= safety_.apply(given.force, given.torque, healthy);
+  output_.flags |= safety_.apply(given.force, given.torque, {port_.motion, port_.spare, healthy});
   output_.force = given.force;
   output_.torque = given.torque;
   output_.along = generalised_force(trocar_, dofs_, given.force, given.torque);

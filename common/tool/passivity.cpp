@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palpate {
@@ -45,18 +46,9 @@ double grown(double reach, double fade, double least, double change) {
 
 }  // namespace
 
-PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double opening) {
-  const Eigen::Matrix3d turn = now.linear() * before.linear().transpose();
-  // Twice the sine of the angle along the axis: for the small turn of a tick, the rotation vector to third order.
-  const Eigen::Vector3d twice(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
-  return {now.translation() - before.translation(), 0.5 * twice, opening};
-}
-
-PassivityGuard::PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double slew,
-                               double dt)
+PassivityGuard::PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double dt)
     : controller_(settings.controller),
       reserve_(settings.reserve),
-      slew_(slew * dt),
       max_per_shift_(kMaxDamping / (dt * dt)),
       fade_(std::exp(-dt / kMemory)),
       ports_(std::move(ports)) {
@@ -85,9 +77,7 @@ void PassivityGuard::observe() {
 double PassivityGuard::risk(const Port& port) const {
   const PortForce& f = port.asked;
   const Port::Reach& r = port.reach;
-  const double size = f.force.norm();
-  const double next = work(f, port.motion) + size * r.shift + f.torque.norm() * r.turn + std::abs(f.grip) * r.opening;
-  return next > 0 ? next * (1 + size / (2 * slew_)) : next;
+  return work(f, port.motion) + f.force.norm() * r.shift + f.torque.norm() * r.turn + std::abs(f.grip) * r.opening;
 }
 
 PassivityGuard::Outlook PassivityGuard::outlook() const {
@@ -101,7 +91,10 @@ PassivityGuard::Outlook PassivityGuard::outlook() const {
 }
 
 void PassivityGuard::control() {
-  for (Port* port : ports_) port->limited = false;
+  for (Port* port : ports_) {
+    port->limited = false;
+    port->spare = controller_ ? std::max(0.0, energy_ + reserve_ / 2) : std::numeric_limits<double>::infinity();
+  }
   if (!controller_) return;
   const double left = energy_ + reserve_, spare = left - kForResisting * reserve_;
   const Outlook before = outlook();
@@ -110,6 +103,7 @@ void PassivityGuard::control() {
   for (Port* port : ports_) {
     if (!finite(port->asked) || !(risk(*port) > 0)) continue;
     port->limited = true;
+    port->spare = 0;
     port->resisting *= affordable;
     const double along = work(port->asked.force, port->motion.shift);
     // What stands against the motion may go on doing so, and what pushes makes good what has been taken too much.
@@ -128,7 +122,7 @@ double PassivityGuard::affordable_resistance(double left) const {
   double worst = 0;
   for (const Port* port : ports_) {
     const double shift = port->reach.shift;
-    worst += max_per_shift_ * shift * shift / 4 * (1 + max_per_shift_ * shift / (2 * slew_));
+    worst += max_per_shift_ * shift * shift / 4;
   }
   const double kept = std::min(left, kForResisting * reserve_);
   return worst > kept ? kept / worst : 1;

@@ -1,5 +1,4 @@
 #pragma once
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,25 +6,9 @@
 
 #include "common/describe/state.hpp"
 #include "common/tool/passivity_spec.hpp"
+#include "common/tool/port.hpp"
 
 namespace palpate {
-
-/// What the hand gets of one tool at its tip, world frame, and at its handle.
-struct PortForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N] on the tool
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the tool
-  double grip = 0;                                   ///< [N m] on the handle, opens the jaws
-};
-
-/// How one tool moved from the last tick to this one.
-struct PortMotion {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< [m] of the tip
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< [rad] rotation vector
-  double opening = 0;                               ///< [rad] of the handle
-};
-
-/// The motion between two poses of the tip frame.
-PortMotion motion_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double opening);
 
 /// The port of one tool under the watch: what its tool and the guard say to each other within a tick, and what the
 /// guard remembers of it.
@@ -38,6 +21,7 @@ struct Port {
   PortForce asked;       ///< before PassivityGuard::control(), which leaves of it what may be given
   PortForce held;        ///< what the hand really gets until the next tick
   bool limited = false;  ///< by the last control()
+  double spare = 0;      ///< [J] after it: what a force that is held on to may put into the hand; 0 where it limited
 
   PortMotion last;  ///< the motion that was observed before
   Reach reach;
@@ -50,12 +34,12 @@ struct Port {
 ///
 /// Observer: the force given at a tick is held until the next, so the energy put into the tissue grows by -F_k .
 /// (x_{k+1} - x_k), exactly, however the hand moves in between. Controller: the next motion is unknown, but differs
-/// from the last one by no more than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach, times the ticks
-/// that the slew limit needs to let it fall. If that could bring the energy below -reserve, first the parts that push
-/// along their motion are damped, then the whole force is made smaller. A force that resists is left at least as large
-/// as a sampled damper of max_damping / dt, as far as a share of the reserve that is kept for it allows; so a force
-/// that was taken away earns its return. The energy falls below -reserve only where a motion changes by more than the
-/// reach, by that jump times the force. Never allocates after construction.
+/// from the last one by no more than a reach, so that F_k takes out at most F_k . dx_k + |F_k| reach. If that
+/// could bring the energy below -reserve, first the parts that push along their motion are damped, then the whole force
+/// is made smaller; the slew limit does not hold on to what is taken away so (SafetyChain). A force that resists is
+/// left at least as large as a sampled damper of max_damping / dt, as far as a share of the reserve that is kept for it
+/// allows; so a force that was taken away earns its return. The energy falls below -reserve only where a motion changes
+/// by more than the reach, by that jump times the force. Never allocates after construction.
 class PassivityGuard : public Stateful<PassivityGuard> {
  public:
   static constexpr double kMaxDamping =
@@ -68,10 +52,10 @@ class PassivityGuard : public Stateful<PassivityGuard> {
       0.05;                                ///< share of the reserve that is kept for resisting while all else is gone
   static constexpr double kStill = 1e-12;  ///< [m, rad] less is no motion
 
-  /// `ports`: of all tools, which outlive the guard. Of all together: the sum of the force limits [N] and the least
-  /// slew limit [N/s]. The reach is max_acceleration dt^2, or less where that times max_force were over half the
-  /// reserve, or the largest change seen lately.
-  PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double slew, double dt);
+  /// `ports`: of all tools, which outlive the guard. max_force: the sum of all their limits [N]. The reach is
+  /// max_acceleration dt^2, or less where that times max_force were over half the reserve, or the largest change seen
+  /// lately.
+  PassivityGuard(const Passivity& settings, std::vector<Port*> ports, double max_force, double dt);
 
   /// A tick begins: counts the energy of what the ports held over their motion.
   void observe();
@@ -97,8 +81,7 @@ class PassivityGuard : public Stateful<PassivityGuard> {
   void resist();
 
   bool controller_;
-  double reserve_, slew_, max_per_shift_, fade_,
-      energy_ = 0;  ///< slew_ [N] per tick; max_per_shift_ [N/m] on the motion of a tick
+  double reserve_, max_per_shift_, fade_, energy_ = 0;  ///< max_per_shift_ [N/m] on the motion of a tick
   Port::Reach min_reach_;
   std::vector<Port*> ports_;
 };

@@ -1,30 +1,38 @@
 #pragma once
-#include <Eigen/Core>
 #include <cstdint>
+
+#include "common/tool/port.hpp"
 
 namespace palpate {
 
-/// The last thing before the hand: finite check, limits of force and torque, slew limits. A force that rises, or turns
-/// elsewhere, is what a hand is startled by; one that falls is let go faster, since a force that is held on to pushes
-/// a hand that has turned round. After a fault the force ramps to zero within ramp_seconds and stays there.
+/// The last thing before the hand: finite check, limits of force and torque, slew limits. No tick changes the force by
+/// more than the slew limit lets it, whether it rises, falls or turns. What is held on to so pushes a hand that moves
+/// away: where it were to put more than kMaxHeldOn into the hand until it is gone, it is let go faster, and at once
+/// where the watch over the energy has nothing to spare. After a fault the force ramps to zero within kRampSeconds and
+/// stays there.
 class SafetyChain {
  public:
-  static constexpr double kFall = 20;  ///< times the slew limit of a force that rises
+  static constexpr double kMaxHeldOn = 1e-3;  ///< [J], and half as much again where the last tick of it is felt
   static constexpr double kRampSeconds = 0.005;
   /// [m] at which the largest force makes the largest torque: a long instrument's shaft. Contacts that pull against
   /// one another make torque without force.
   static constexpr double kMaxLever = 0.3;
 
-  /// Limits: force [N], rate at which the force rises [N/s]; dt [s] is the step.
+  struct Tick {
+    PortMotion motion;          ///< of the tool since the last one
+    double spare = kMaxHeldOn;  ///< [J] that what is held on to may put into the hand, as the watch over it says
+    bool healthy = true;        ///< false: a fault of this step
+  };
+
+  /// Limits: force [N], rate at which the force changes [N/s]; dt [s] is the step.
   SafetyChain(double max_force, double max_force_rate, double dt);
 
   /// The limits of force and torque alone, for what must know them before the slew limits: both shrink together.
   /// Returns force_limited or 0; what is not finite is left.
   std::uint32_t limit(Eigen::Vector3d& force, Eigen::Vector3d& torque) const;
 
-  /// Turns what the tissue asks for into what the hand gets; force and torque are scaled alike.
-  /// `healthy` false reports a fault of this step. Returns ForceFlag bits.
-  std::uint32_t apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, bool healthy);
+  /// Turns what the tissue asks for into what the hand gets; force and torque are scaled alike. Returns ForceFlag bits.
+  std::uint32_t apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, const Tick& tick);
 
   double max_force() const { return max_force_; }  ///< [N]
   bool faulted() const { return state_.faulted; }
@@ -40,9 +48,9 @@ class SafetyChain {
   void set_state(const State& state) { state_ = state; }
 
  private:
-  std::uint32_t limit_change(Eigen::Vector3d& force, Eigen::Vector3d& torque);
+  std::uint32_t limit_change(Eigen::Vector3d& force, Eigen::Vector3d& torque, const Tick& tick);
 
-  double max_force_, max_rise_, dt_;
+  double max_force_, max_change_, dt_;  ///< max_change_ [N] in a step
   State state_;
 };
 

@@ -23,7 +23,7 @@ struct Tool {
   ToolEndSpec end;
   double compliance = 1e-4;     ///< [m/N] of the instrument itself, against bodies with inertia in the haptic node
   double max_force = 10;        ///< [N] limit of the safety chain
-  double max_force_rate = 250;  ///< [N/s] at which the force rises at most; it falls 20 times as fast
+  double max_force_rate = 250;  ///< [N/s] at which the force changes at most
   double force_scale = 1;       ///< [1] of its forces that the hand gets, before the limits
   MotionLimits motion;          ///< that its device must keep to
   DeviceSpec device;
@@ -56,8 +56,9 @@ inline void describe(Description& d, Tool& t) {
       {"max_force", "N",
        "limit of the force that goes to the hand; 0.3 m times it is that of the torque, and both are scaled alike"},
       t.max_force, above(0));
-  d.number({"max_force_rate", "N/s", "at which it rises at most; it falls up to 20 times as fast"}, t.max_force_rate,
-           above(0));
+  d.number({"max_force_rate", "N/s",
+            "at which it rises, falls or turns at most; one that pushes a hand which moves away falls faster"},
+           t.max_force_rate, above(0));
   d.number({"force_scale", "",
             "share of the tool's forces and torques that goes to the hand; the limits hold for what is left"},
            t.force_scale, above(0));

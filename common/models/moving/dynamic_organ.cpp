@@ -21,6 +21,7 @@ namespace {
 constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
 constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
 constexpr double kMeeting = 1e-9;           // [m] within which a line meets a facet
+constexpr double kWithdrawn = 0.01;         // [m] of free air about a tool that passed, after which it is felt again
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 }  // namespace
@@ -80,11 +81,14 @@ void DynamicOrgan::take_tools(std::span<const ToolInTick> tools) {
 }
 
 // Tissue that is whole can be pressed to where a tool is; between the flaps of a cut nobody knows what is on which side
-// of it.
+// of it, nor, where forceps drew them apart, do they lie as they did; of a stroke that goes on nobody knows what the
+// last ones should have cut. A tool in the midst of that stays unfelt until it has been withdrawn.
 void DynamicOrgan::meet(std::span<const ToolInTick> tools) {
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
     const MovingTool& tool = tools[t].moving;
-    if (tools[t].begins) hands_[t].passing = !holds(t) && (removed_.empty() ? runs_through(tool) : touches(tool));
+    if (!tools[t].begins) continue;
+    const bool within = removed_.empty() ? runs_through(tool) : is_near(tool);
+    hands_[t].passing = !holds(t) && (within || glows(t, tools[t]));
   }
 }
 
@@ -92,7 +96,7 @@ void DynamicOrgan::let_pass(std::span<const ToolInTick> tools) {
   meet(tools);
   for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
     bool& passing = hands_[t].passing;
-    passing = passing && tools[t].present && !holds(t) && touches(tools[t].moving);
+    passing = passing && tools[t].present && !holds(t) && (glows(t, tools[t]) || is_near(tools[t].moving));
     if (passing) in_tick_[t].parts = in_tick_[t].parts_before = {};
   }
 }
@@ -111,14 +115,18 @@ bool DynamicOrgan::runs_through(const MovingTool& tool) const {
   return false;
 }
 
-bool DynamicOrgan::touches(const MovingTool& tool) const {
+bool DynamicOrgan::is_near(const MovingTool& tool) const {
   for (int p = 0; p < tool.size(); ++p) {
     const Segment axis = tool.axis(p);
-    const double radius = tool.radius(p);
-    for (const int facet : surface_.find(axis.start, axis.end, radius))
-      if (closest_points(axis, surface_.corners(facet)).squared_distance < radius * radius) return true;
+    const double reach = tool.radius(p) + kWithdrawn;
+    for (const int facet : surface_.find(axis.start, axis.end, reach))
+      if (closest_points(axis, surface_.corners(facet)).squared_distance < reach * reach) return true;
   }
   return false;
+}
+
+bool DynamicOrgan::glows(int tool, const ToolInTick& with) const {
+  return hands_[tool].cautery && with.dofs.pedal >= 0.5;
 }
 
 // By one step, to a share of their way in the tick.
@@ -133,6 +141,20 @@ void DynamicOrgan::move_tools(double share) {
 }
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
+  advance(tools, dt);
+  cut(tools);
+  tear();
+  drop_fallen();
+}
+
+void DynamicOrgan::settle(std::span<const ToolInTick> tools, double dt) {
+  advance(tools, dt);
+  tear();
+  drop_fallen();
+  calm();
+}
+
+void DynamicOrgan::advance(std::span<const ToolInTick> tools, double dt) {
   changes_.clear();
   take_tools(tools);
   work_jaws(tools);
@@ -157,9 +179,6 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   contacts_.end_tick(in_tick_, dt);
   if (still_) still_->end_tick(in_tick_);
   update_positions();
-  cut(tools);
-  tear();
-  drop_fallen();
 }
 
 bool DynamicOrgan::begin_without(std::span<const std::uint32_t> removed) {
@@ -233,7 +252,7 @@ void DynamicOrgan::cut(std::span<const ToolInTick> tools) {
   const std::size_t first = removed_.size();
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const auto& cautery = hands_[t].cautery;
-    if (!cautery || !tools[t].present || tools[t].dofs.pedal < 0.5) continue;
+    if (!tools[t].present || !glows(static_cast<int>(t), tools[t])) continue;
     for (int i = 0; i < kMaxCuts; ++i) {
       const Eigen::Vector3d tip = in_tick_[t].now.translation();
       double least = cautery->radius * cautery->radius;

@@ -44,6 +44,10 @@ class DynamicOrgan {
 
   /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
   void tick(std::span<const ToolInTick> tools, double dt);
+  /// The same without a cut, and with all motion stopped once it has begun to slow down: one after another lead to
+  /// rest, as each stop finds the tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic
+  /// relaxation by kinetic damping).
+  void settle(std::span<const ToolInTick> tools, double dt);
 
   /// Before the first tick: these tetrahedra have gone before, and `changes` is what they are. False, and nothing has
   /// happened, if one of them is not of this body.
@@ -51,13 +55,10 @@ class DynamicOrgan {
 
   /// Which of the tools that begin pass through the tissue as it is, as after a tick that they begin in.
   void meet(std::span<const ToolInTick> tools);
-  /// The tool began run through the tissue, as where a cut was missed, or touching tissue that had been cut: neither
-  /// feels the other until they are clear of one another, or its jaws take hold. What glows cuts all the same.
+  /// The tool began glowing, near tissue that had been cut, or run through what is whole, as where a cut was missed:
+  /// neither feels the other until it glows no more and has been withdrawn by a centimetre, or its jaws take hold. What
+  /// glows cuts all the same.
   bool passes(int tool) const { return hands_[tool].passing; }
-
-  /// Stops all motion once it has begun to slow down: ticks with this after each lead to rest, as each stop finds the
-  /// tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic relaxation by kinetic damping).
-  void calm();
 
   /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
   void forget_factors() {
@@ -124,12 +125,15 @@ class DynamicOrgan {
   Memory memory() const;
   bool fits(const Memory& memory) const;
   void recall(const Memory& memory);
+  void advance(std::span<const ToolInTick> tools, double dt);
+  void calm();
   void take_tools(std::span<const ToolInTick> tools);
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
   void let_pass(std::span<const ToolInTick> tools);
   bool runs_through(const MovingTool& tool) const;
-  bool touches(const MovingTool& tool) const;
+  bool is_near(const MovingTool& tool) const;
+  bool glows(int tool, const ToolInTick& with) const;
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);
