@@ -145,7 +145,7 @@ void LocalModels::add_contacts(int tool, int i, LocalContactModel& model) {
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;
-    copy(position_of(c.anchor, world_.organ(i)), out.position);
+    copy(c.touch == Touch::open ? c.at : position_of(c.anchor, world_.organ(i)), out.position);
     copy(c.normal, out.normal);
     copy(c.force, out.force);
     copy(own.contact[k], out.stiffness);

@@ -16,23 +16,15 @@
 #include "common/dynamics/spec.hpp"
 #include "common/dynamics/tearing.hpp"
 #include "common/mesh/shown_surface.hpp"
+#include "common/models/moving/fading_loads.hpp"
 #include "common/models/moving/floating_part.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
+#include "common/models/moving/passing_tools.hpp"
 #include "common/models/moving/tissue_touch.hpp"
-#include "common/tool/kinematics.hpp"
+#include "common/models/moving/tool_in_tick.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
-
-/// One tool as an organ meets it within a tick.
-struct ToolInTick {
-  MovingTool moving;
-  ToolDofs dofs;
-  double opening = 0;    ///< [rad] between a forceps' jaws
-  bool holding = false;  ///< its jaws are shut on what is between them
-  bool present = false;  ///< its pose is known
-  bool begins = false;   ///< no motion has led it to where it is: it has come anew, or its haptic node has
-};
 
 /// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a
 /// time; the same inputs from the same state give the same bits.
@@ -51,9 +43,8 @@ class DynamicOrgan {
 
   /// Which of the tools that begin pass through the tissue as it is, as after a tick that they begin in.
   void meet(std::span<const ToolInTick> tools);
-  /// The tool began run through the tissue, as where a cut was missed, or touching tissue that had been cut: neither
-  /// feels the other until they are clear of one another, or its jaws take hold. What glows cuts all the same.
-  bool passes(int tool) const { return hands_[tool].passing; }
+  /// Whether a tool and the tissue pass through one another (PassingTools). What glows cuts all the same.
+  bool passes(int tool) const { return passing_.passes(tool); }
 
   /// Stops all motion once it has begun to slow down: ticks with this after each lead to rest, as each stop finds the
   /// tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic relaxation by kinetic damping).
@@ -99,25 +90,18 @@ class DynamicOrgan {
   std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
-  /// What a tool can do to it, whether its jaws are shut, and whether it passes through. It takes hold by one of the
-  /// two at most.
+  /// What a tool can do to it, and whether its jaws are shut. It takes hold by one of the two at most.
   struct Hand {
     std::optional<ClosingJaws> closing;
     std::optional<ForcepsShape> turning;
     std::optional<Cautery> cautery;
-    bool holding = false, passing = false;
-  };
-  /// What tetrahedra that have been cut away did to a node that stays.
-  struct Fading {
-    int node, ticks_left;
-    Eigen::Vector3d force;  ///< [N] when they went
+    bool holding = false;
   };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
     std::vector<int> removed;
-    std::vector<Fading> fading;
     std::vector<std::uint8_t> motion;
-    std::vector<char> holding, passing;
+    std::vector<char> holding;
     std::vector<Eigen::Vector3d> previous, present;
   };
   std::vector<std::uint8_t> motion() const;  ///< what the model remembers
@@ -128,14 +112,13 @@ class DynamicOrgan {
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
   void let_pass(std::span<const ToolInTick> tools);
-  bool runs_through(const MovingTool& tool) const;
-  bool touches(const MovingTool& tool) const;
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);
   void tear();
   void drop_fallen();
   void remove(int tetrahedron);
+  bool fades(int node) const;  ///< what pressed it can: it is the moving part's alone, and there
   void cut_from_model(std::span<const int> gone);
   void load();
   void note_change(RemovalCause cause, std::size_t first);
@@ -150,13 +133,13 @@ class DynamicOrgan {
   std::unique_ptr<DynamicModel> model_;
   std::unique_ptr<HybridTouch> still_;
   TissueTouch contacts_;
+  PassingTools passing_;
   std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
   double damping_;          ///< [1/s]
   double diagonal_;         ///< [m] of the body at rest
   Eigen::Vector3d middle_;  ///< [m] of the body at rest
-  int fading_ticks_;
-  std::vector<Fading> fading_;
+  FadingLoads fading_;
   std::vector<Eigen::Vector3d> position_;      ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<int> removed_, part_of_;
