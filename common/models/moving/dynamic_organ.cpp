@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/geometry/segment.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving_kind.hpp"
