@@ -24,8 +24,6 @@ struct TouchContact {
   bool face = false;     ///< anchored within a triangle; otherwise at the vertex anchor.nodes[0]
   bool grasped = false;  ///< held between jaws: sticks on all sides, pulls as well as pushes
   Touch touch = Touch::open;
-  bool leaving = false;  ///< its triangle has been cut away: it stays on the nodes, and gives way until it is open
-  double receded = 0, receding = 0;  ///< [m], [m/s] by which one that leaves lets its nodes into the tool
   Anchor anchor;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, world, from the tool into the tissue
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();     ///< unit or zero: direction of friction on the tissue

@@ -11,7 +11,8 @@ namespace palpate {
 struct ToolPoint {
   int tool = 0;
   int part = 0;                                      ///< which part of the tool
-  double softness = 0;                               ///< [m/N] by which what holds the point gives way to the force
+  double softness = 0;                               ///< [m/N] by which what holds the point gives way to the force,
+                                                     ///< and the tissue there beyond what its nodes do
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m] in the part's own frame; of jaws' hold, in the tip frame
 };
 

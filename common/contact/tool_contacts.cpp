@@ -119,7 +119,7 @@ void ToolContacts::aim(TouchContact& c, const MovingTool& moving) const {
   c.target = moving.to_world(by.part, by.offset);
   Touching touch{nearest_point(axis, c.target), Eigen::Vector3d::Zero()};
   touch.normal = (c.target - touch.centre).normalized();
-  if (!c.leaving && (c.touch != Touch::sticking || touch.normal.dot(into) <= kMinFacing)) {
+  if (c.touch != Touch::sticking || touch.normal.dot(into) <= kMinFacing) {
     if (c.touch == Touch::sticking) c.touch = Touch::sliding;  // the tool has turned away from its anchor
     touch = touch_of(c, moving, axis, into);
     if (c.touch == Touch::open) c.target = touch.centre + size * touch.normal;
@@ -134,7 +134,7 @@ void ToolContacts::aim(std::span<const MovingTool> tools) {
 }
 
 void ToolContacts::slide(TouchContact& c, const MovingTool& moving) const {
-  if (c.grasped || c.leaving || c.touch == Touch::open) return;
+  if (c.grasped || c.touch == Touch::open) return;
   ToolPoint& by = c.tool_point();
   Eigen::Vector3d touched = c.target;
   if (c.touch == Touch::sliding) {
@@ -150,7 +150,7 @@ void ToolContacts::slide(std::span<const MovingTool> tools) {
   int at = 0;
   for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
     const TouchContact& c = law_.contacts()[at];
-    if (!c.face || c.grasped || c.leaving || c.touch == Touch::sticking)
+    if (!c.face || c.grasped || c.touch == Touch::sticking)
       ++at;
     else
       follow(at, standing(tools[c.tool_point().tool]), {});
@@ -168,7 +168,7 @@ void ToolContacts::settle(std::span<const MovingTool> tools) {
       const bool gone = (anchor - nearest_point(moving.axis(part), anchor)).norm() >
                         reach(moving, part) + margin(radius(moving, part));
       if (c.face || gone) law_.remove(i);
-    } else if (moving.parts[part].length > 0 && !c.leaving && inside_out(c)) {
+    } else if (moving.parts[part].length > 0 && inside_out(c)) {
       law_.remove(i);
     } else {
       slide(c, moving);

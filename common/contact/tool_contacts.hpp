@@ -26,6 +26,9 @@ class ToolContacts {
   struct Options {
     double offset = 0;  ///< [m] half the thickness of a wall whose middle surface this is: added to all radii
     std::vector<double> softness;  ///< [m/N] per tool; empty: tools are rigid
+    /// [m/N] By which the tissue gives way under a part of a radius [m] that rests on a point of a triangle, beyond
+    /// what its nodes do. Empty: not at all.
+    std::function<double(double radius)> face_give;
     /// Whether a part of a tool touches a triangle otherwise. Empty: none does.
     std::function<bool(int tool, int part, int triangle)> elsewhere;
   };
@@ -144,6 +147,9 @@ class ToolContacts {
     return options_.elsewhere && options_.elsewhere(tool, part, triangle);
   }
   double softness(int tool) const { return options_.softness.empty() ? 0.0 : options_.softness[tool]; }
+  double face_softness(int tool, double radius) const {
+    return softness(tool) + (options_.face_give ? options_.face_give(radius) : 0.0);
+  }
 
   ContactLaw& law_;
   const ContactSurface& surface_;

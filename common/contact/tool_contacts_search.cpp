@@ -92,7 +92,8 @@ bool ToolContacts::add_at(const Crossing& crossing, const MovingTool& moving, in
   const TouchContact* held =
       held_near(moving, tool, part, place, std::max(radius(moving, part), mean_edge_[crossing.triangle]));
   if (held && held->normal.dot(into) > 0) return false;
-  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
+  const double soft = face_softness(tool, radius(moving, part));
+  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = soft}, .face = true};
   c.anchor = {surface_.triangle(crossing.triangle), crossing.weights};
   c.tool_point().offset = {0, 0, place};
   c.normal = into;
@@ -143,7 +144,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
   bool vertices_carry = false;
   for (int i = 0; i < static_cast<int>(law_.contacts().size()); ++i) {
     const TouchContact& c = law_.contacts()[i];
-    if (!c.is_by(tool, part) || c.grasped || c.leaving) continue;
+    if (!c.is_by(tool, part) || c.grasped) continue;
     if (c.face) face = i;
     vertices_carry |= !c.face && c.touch != Touch::open;
   }
@@ -168,7 +169,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
     weights = p.weights;
   }
   if (nearest < 0) return;
-  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
+  TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = face_softness(tool, size)}, .face = true};
   c.anchor = {surface_.triangle(nearest), weights};
   c.normal = -surface_.triangle_normal(nearest).normalized();
   law_.add(c);

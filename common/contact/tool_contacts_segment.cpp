@@ -119,7 +119,7 @@ bool ToolContacts::add_crossings(const MovingTool& moving, int tool, int part) {
 bool ToolContacts::place_taken(const MovingTool& moving, int tool, int part, const Place& place) const {
   const bool wall = options_.offset > 0;
   return std::any_of(law_.contacts().begin(), law_.contacts().end(), [&](const TouchContact& c) {
-    if (!c.is_by(tool, part) || c.grasped || c.leaving || (!c.face && c.touch == Touch::open)) return false;
+    if (!c.is_by(tool, part) || c.grasped || (!c.face && c.touch == Touch::open)) return false;
     const double along = std::clamp(c.tool_point().offset.z(), 0.0, moving.parts[part].length);
     const bool same_side = wall || c.normal.dot(place.into) > 0;
     return std::abs(along - place.along) < place.within && same_side;
@@ -140,7 +140,7 @@ void ToolContacts::add_faces(const MovingTool& moving, int tool, int part, std::
     const Eigen::Vector3d into = -outward(surface_.triangle(candidate.triangle));
     const double within = std::max(size, kApartShare * mean_edge_[candidate.triangle]);
     if (place_taken(moving, tool, part, {share * length, into, within})) continue;
-    TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = softness(tool)}, .face = true};
+    TouchContact c{.by = ToolPoint{.tool = tool, .part = part, .softness = face_softness(tool, size)}, .face = true};
     c.anchor = {surface_.triangle(candidate.triangle), closest_point(axis.at(share), corners).weights};
     c.tool_point().offset = {0, 0, share * length};
     c.normal = into;
@@ -162,7 +162,7 @@ void ToolContacts::keep_faces(const MovingTool& moving, int tool, int part, std:
   int at = 0;
   for (int left = static_cast<int>(law_.contacts().size()); left > 0; --left) {
     const TouchContact& c = law_.contacts()[at];
-    const bool own = c.is_by(tool, part) && c.face && !c.grasped && !c.leaving;
+    const bool own = c.is_by(tool, part) && c.face && !c.grasped;
     const double place = std::clamp(c.tool_point().offset.z(), 0.0, length);
     if (own && vertex_carries(place)) {
       law_.remove(at);

@@ -17,9 +17,8 @@ void walk(State& s, KeptContact& kept) {
   TouchContact& c = kept.contact;
   palpate::state(s, c.tool_point());
   palpate::state(s, c.anchor);
-  for (bool* flag : {&c.face, &c.grasped, &c.leaving}) s.value(*flag);
+  for (bool* flag : {&c.face, &c.grasped}) s.value(*flag);
   s.value(c.touch);
-  for (double* pace : {&c.receded, &c.receding}) s.value(*pace);
   for (Eigen::Vector3d* v : {&c.normal, &c.slip, &c.force}) s.value(*v);
   s.value(kept.forces);
   s.value(kept.points);
@@ -58,7 +57,9 @@ void ToolContacts::state(State& s, std::span<const MovingTool> tools) {
     walk(s, kept);
     if (!s.restoring()) continue;
     s.require(can_be(kept, tools, surface_.nodes()), "the state holds a contact that this scene cannot have");
-    kept.contact.tool_point().softness = softness(kept.contact.tool_point().tool);
+    ToolPoint& by = kept.contact.tool_point();
+    const bool point = kept.contact.face && !kept.contact.grasped;
+    by.softness = point ? face_softness(by.tool, radius(tools[by.tool], by.part)) : softness(by.tool);
     law_.add(kept.contact, std::span(kept.forces).first(3 * kept.points));
   }
   s.skip(static_cast<std::size_t>(law_.capacity() - count) * size_of_one());

@@ -54,7 +54,8 @@ std::vector<Eigen::Matrix3d> contact_stiffness(const LocalStiffness::Answer& kno
           q.of_force.transpose();
   for (const Rows& p : all)
     a.block(p.first, p.first, p.of_force.rows(), p.of_force.rows()) +=
-        p.of_force * contacts[p.contact].give * p.of_force.transpose();
+        p.of_force * (contacts[p.contact].give + contacts[p.contact].softness() * Eigen::Matrix3d::Identity()) *
+        p.of_force.transpose();
   const double typical = rows > 0 ? a.trace() / rows : 0;
   if (!(typical > 0)) return stiffness;
   a.diagonal().array() += kSoftening * typical;

@@ -114,7 +114,7 @@ void LocalModels::add_contacts(int tool, int i, FeltPart& part, LocalContactMode
     LocalContact& out = model.contacts.emplace_back();
     out.body = static_cast<std::uint32_t>(world_.bodies()[i]);
     out.grasped = c.grasped;
-    copy(part.position(c.anchor), out.position);
+    copy(c.touch == Touch::open ? c.at : part.position(c.anchor), out.position);
     copy(c.normal, out.normal);
     copy(force, out.force);
     copy(part.stiffness(k), out.stiffness);

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "common/models/hybrid/precompute.hpp"
 #include "tools/rig/example_bodies.hpp"
 #include "tools/rig/kinds.hpp"
@@ -6,6 +8,13 @@
 
 /// A soft block on a fixed base with a tool above it, for the tests of the deformation node.
 namespace palpate::testing {
+
+inline constexpr double kTop = 0.03, kRadius = 0.006;  ///< [m] of the block, z; of the tip
+
+/// [m] A height that goes evenly from one to another in so many ticks, and stays there.
+inline double from_above(int tick, int ticks, double from, double to) {
+  return from + (to - from) * std::min(1.0, static_cast<double>(tick) / ticks);
+}
 
 /// `body`: of the kind that is wanted.
 template <class Spec = TensorMassSpec>

@@ -35,7 +35,7 @@ const std::vector<Example> kExamples{
     {"brain_cylinder", 0, {"tool.ball.force.max>0.03", "body.specimen.displacement.max>0.003"}},
     {"plate_cut",
      3.5,
-     {"body.plate.cut>0", "body.plate.torn==0"},
+     {"body.plate.cut>0", "body.plate.torn==0", "tool.scalpel.force.change<0.06"},
      true,
      {"body.plate.pieces==2", "body.plate.off>900"}},
     {"cylinder_tear",
@@ -56,7 +56,8 @@ const std::vector<Example> kExamples{
      {"body.block.displacement.end<0.0009"}},
     {"hepatectomy",
      10.5,
-     {"body.liver.cut>200", "body.liver.torn==0", "body.liver.fallen==0", "body.liver.pieces==2", "body.liver.off>200"},
+     {"body.liver.cut>200", "body.liver.torn==0", "body.liver.fallen==0", "body.liver.pieces==2", "body.liver.off>200",
+      "tool.scalpel.force.change<0.03"},
      true,
      // the 216 tetrahedra that the forceps carry weigh 0.0621 N
      {"tool.forceps.force.end>0.056", "tool.forceps.force.end<0.068"}},

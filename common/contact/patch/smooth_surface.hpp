@@ -38,6 +38,7 @@ class SmoothSurface {
   std::span<int> near(const Segment& segment, double radius) const;
   /// A triangle that is no longer there: near() leaves it out.
   void leave_out(int t) { left_out_[t] = 1; }
+  bool is_left_out(int t) const { return left_out_[t] != 0; }
 
  private:
   const SurfaceMap& map_;

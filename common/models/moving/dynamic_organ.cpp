@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/geometry/segment.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving_kind.hpp"
@@ -19,9 +18,6 @@ namespace palpate {
 namespace {
 
 constexpr double kLostBeyond = 3;           // diagonals from its place, beyond which a part that floats is taken away
-constexpr double kFading = 0.02;            // [s] in which the stress of what has been cut away fades
-constexpr double kMeeting = 1e-9;           // [m] within which a line meets a facet
-constexpr double kWithdrawn = 0.01;         // [m] of free air about a tool that passed, after which it is felt again
 constexpr int kMaxCuts = 4, kMaxTears = 8;  // tetrahedra that one tick takes away, conformity's apart
 
 }  // namespace
@@ -38,7 +34,8 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
                                                             body.dynamic.precision == Precision::float32, *model_)
                             : nullptr),
       contacts_(archive, mesh_, topology_, surface_, *model_, still_.get(), settings),
-      fading_ticks_(std::max(1, static_cast<int>(std::lround(kFading / settings.dt)))),
+      passing_(surface_, settings.tools.size()),
+      fading_(settings.dt),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
       in_step_(settings.tools.size()) {
@@ -80,49 +77,15 @@ void DynamicOrgan::take_tools(std::span<const ToolInTick> tools) {
   }
 }
 
-// Tissue that is whole can be pressed to where a tool is; between the flaps of a cut nobody knows what is on which side
-// of it, nor, where forceps drew them apart, do they lie as they did; of a stroke that goes on nobody knows what the
-// last ones should have cut. A tool in the midst of that stays unfelt until it has been withdrawn.
 void DynamicOrgan::meet(std::span<const ToolInTick> tools) {
-  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-    const MovingTool& tool = tools[t].moving;
-    if (!tools[t].begins) continue;
-    const bool within = removed_.empty() ? runs_through(tool) : is_near(tool);
-    hands_[t].passing = !holds(t) && (within || glows(t, tools[t]));
-  }
+  passing_.meet(tools, !removed_.empty(), [&](int t) { return ToolDeed{holds(t), glows(t, tools[t])}; });
 }
 
 void DynamicOrgan::let_pass(std::span<const ToolInTick> tools) {
   meet(tools);
-  for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-    bool& passing = hands_[t].passing;
-    passing = passing && tools[t].present && !holds(t) && (glows(t, tools[t]) || is_near(tools[t].moving));
-    if (passing) in_tick_[t].parts = in_tick_[t].parts_before = {};
-  }
-}
-
-// The line from a tool's tip along its parts meets the surface.
-bool DynamicOrgan::runs_through(const MovingTool& tool) const {
-  const auto meets = [&](const Segment& line) {
-    return std::ranges::any_of(surface_.find(line.start, line.end, kMeeting), [&](int facet) {
-      return closest_points(line, surface_.corners(facet)).squared_distance < kMeeting * kMeeting;
-    });
-  };
-  for (int p = 0; p < tool.size(); ++p) {
-    const Segment axis = tool.axis(p);
-    if (meets({tool.now.translation(), axis.start}) || meets(axis)) return true;
-  }
-  return false;
-}
-
-bool DynamicOrgan::is_near(const MovingTool& tool) const {
-  for (int p = 0; p < tool.size(); ++p) {
-    const Segment axis = tool.axis(p);
-    const double reach = tool.radius(p) + kWithdrawn;
-    for (const int facet : surface_.find(axis.start, axis.end, reach))
-      if (closest_points(axis, surface_.corners(facet)).squared_distance < reach * reach) return true;
-  }
-  return false;
+  passing_.clear(tools, [&](int t) { return ToolDeed{holds(t), glows(t, tools[t])}; });
+  for (int t = 0; t < static_cast<int>(tools.size()); ++t)
+    if (passes(t)) in_tick_[t].parts = in_tick_[t].parts_before = {};
 }
 
 bool DynamicOrgan::glows(int tool, const ToolInTick& with) const {
@@ -291,8 +254,13 @@ void DynamicOrgan::note_change(RemovalCause cause, std::size_t first) {
   else
     model_->remove(changes_.back().removed);
   if (tearing_) tearing_->remove(changes_.back().removed);
-  contacts_.follow_cut(topology_, in_tick_);
+  for (const auto& [node, force] : contacts_.follow_cut(topology_))
+    if (fades(node)) fading_.add(node, force);
   follow_change();
+}
+
+bool DynamicOrgan::fades(int node) const {
+  return topology_.has_node(node) && !(still_ && std::ranges::count(still_->part().connection(), node) > 0);
 }
 
 // What the tetrahedra did to the nodes that stay fades; gone at once, it would be a blow to what presses them.
@@ -301,21 +269,17 @@ void DynamicOrgan::cut_from_model(std::span<const int> gone) {
   for (const int t : gone) nodes.insert(nodes.end(), mesh_.tetrahedra[t].begin(), mesh_.tetrahedra[t].end());
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const auto joined = [&](int n) { return still_ && std::ranges::count(still_->part().connection(), n) > 0; };
-  std::erase_if(nodes, [&](int n) { return !topology_.has_node(n) || joined(n); });
-  const std::size_t first = fading_.size();
-  for (const int n : nodes) fading_.push_back({n, fading_ticks_, model_->elastic_force(n)});
+  std::erase_if(nodes, [&](int n) { return !fades(n); });
+  std::vector<Eigen::Vector3d> before;
+  for (const int n : nodes) before.push_back(model_->elastic_force(n));
   model_->remove(gone);
-  for (std::size_t i = first; i < fading_.size(); ++i) fading_[i].force -= model_->elastic_force(fading_[i].node);
+  for (std::size_t i = 0; i < nodes.size(); ++i) fading_.add(nodes[i], before[i] - model_->elastic_force(nodes[i]));
 }
 
 // What has been cut away fades, and what floats is damped for its swinging alone.
 void DynamicOrgan::load() {
   for (const FloatingPart& part : floating_) part.unload(*model_);
-  for (const Fading& f : fading_) model_->set_load(f.node, Eigen::Vector3d::Zero());
-  std::erase_if(fading_, [](Fading& f) { return --f.ticks_left <= 0; });
-  for (const Fading& f : fading_)
-    model_->set_load(f.node, model_->load(f.node) + static_cast<double>(f.ticks_left) / fading_ticks_ * f.force);
+  fading_.fade(*model_);
   for (FloatingPart& part : floating_) part.keep_loads(*model_);
 }
 
@@ -371,13 +335,11 @@ std::vector<std::uint8_t> DynamicOrgan::motion() const {
 }
 
 DynamicOrgan::Memory DynamicOrgan::memory() const {
-  std::vector<char> holding, passing;
-  for (const Hand& hand : hands_) holding.push_back(hand.holding), passing.push_back(hand.passing);
+  std::vector<char> holding;
+  for (const Hand& hand : hands_) holding.push_back(hand.holding);
   return {removed_,
-          fading_,
           motion(),
           holding,
-          passing,
           {surface_.previous().begin(), surface_.previous().end()},
           {surface_.positions().begin(), surface_.positions().end()}};
 }
@@ -385,10 +347,10 @@ DynamicOrgan::Memory DynamicOrgan::memory() const {
 void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   Memory m = s.restoring() ? Memory{} : memory();
   s.list(m.removed);
-  s.list(m.fading);
+  fading_.state(s);
   s.list(m.motion);
   s.list(m.holding);
-  s.list(m.passing);
+  passing_.state(s);
   s.list(m.previous);
   s.list(m.present);
   if (s.restoring()) recall(m);
@@ -399,31 +361,26 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
 // Whether what was read can be of this body and these tools.
 bool DynamicOrgan::fits(const Memory& m) const {
   const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == hands_.size() &&
-                     m.passing.size() == hands_.size() && m.previous.size() == position_.size() &&
+                     passing_.fits(hands_.size()) && m.previous.size() == position_.size() &&
                      m.present.size() == position_.size();
-  const auto known = [&](const Fading& f) {
-    return f.node >= 0 && f.node < mesh_.nodes() && f.ticks_left > 0 && f.ticks_left <= fading_ticks_;
-  };
-  return sizes && std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); }) &&
-         std::ranges::all_of(m.fading, known);
+  return sizes && fading_.fits(mesh_.nodes()) &&
+         std::ranges::all_of(m.removed, [&](int t) { return t >= 0 && t < topology_.size(); });
 }
 
 void DynamicOrgan::recall(const Memory& m) {
   if (!fits(m) || !removed_.empty())
     throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
   removed_ = m.removed;
-  fading_ = m.fading;
   topology_.erase(removed_);
   surface_.follow();
   model_->remove(removed_);
   if (tearing_) tearing_->remove(removed_);
   model_->restore(m.motion.data());
-  for (std::size_t t = 0; t < hands_.size(); ++t)
-    hands_[t].holding = m.holding[t] != 0, hands_[t].passing = m.passing[t] != 0;
+  for (std::size_t t = 0; t < hands_.size(); ++t) hands_[t].holding = m.holding[t] != 0;
   surface_.set_positions(m.previous);
   surface_.set_positions(m.present);
   position_ = m.present;
-  contacts_.follow_cut(topology_, in_tick_);
+  contacts_.follow_cut(topology_);
   follow_change();
 }
 

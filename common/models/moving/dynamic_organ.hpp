@@ -16,23 +16,15 @@
 #include "common/dynamics/spec.hpp"
 #include "common/dynamics/tearing.hpp"
 #include "common/mesh/shown_surface.hpp"
+#include "common/models/moving/fading_loads.hpp"
 #include "common/models/moving/floating_part.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
+#include "common/models/moving/passing_tools.hpp"
 #include "common/models/moving/tissue_touch.hpp"
-#include "common/tool/kinematics.hpp"
+#include "common/models/moving/tool_in_tick.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
-
-/// One tool as an organ meets it within a tick.
-struct ToolInTick {
-  MovingTool moving;
-  ToolDofs dofs;
-  double opening = 0;    ///< [rad] between a forceps' jaws
-  bool holding = false;  ///< its jaws are shut on what is between them
-  bool present = false;  ///< its pose is known
-  bool begins = false;   ///< no motion has led it to where it is: it has come anew, or its haptic node has
-};
 
 /// One dynamic body in the deformation node: its tissue and what tools do to it: touch, hold, cut. One tick at a
 /// time; the same inputs from the same state give the same bits.
@@ -55,10 +47,8 @@ class DynamicOrgan {
 
   /// Which of the tools that begin pass through the tissue as it is, as after a tick that they begin in.
   void meet(std::span<const ToolInTick> tools);
-  /// The tool began glowing, near tissue that had been cut, or run through what is whole, as where a cut was missed:
-  /// neither feels the other until it glows no more and has been withdrawn by a centimetre, or its jaws take hold. What
-  /// glows cuts all the same.
-  bool passes(int tool) const { return hands_[tool].passing; }
+  /// Whether a tool and the tissue pass through one another (PassingTools). What glows cuts all the same.
+  bool passes(int tool) const { return passing_.passes(tool); }
 
   /// Factors are made anew: at each keyframe, so that a replay from there gives the same bits.
   void forget_factors() {
@@ -100,25 +90,18 @@ class DynamicOrgan {
   std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
-  /// What a tool can do to it, whether its jaws are shut, and whether it passes through. It takes hold by one of the
-  /// two at most.
+  /// What a tool can do to it, and whether its jaws are shut. It takes hold by one of the two at most.
   struct Hand {
     std::optional<ClosingJaws> closing;
     std::optional<ForcepsShape> turning;
     std::optional<Cautery> cautery;
-    bool holding = false, passing = false;
-  };
-  /// What tetrahedra that have been cut away did to a node that stays.
-  struct Fading {
-    int node, ticks_left;
-    Eigen::Vector3d force;  ///< [N] when they went
+    bool holding = false;
   };
   /// What it remembers, the quasi-static part's apart.
   struct Memory {
     std::vector<int> removed;
-    std::vector<Fading> fading;
     std::vector<std::uint8_t> motion;
-    std::vector<char> holding, passing;
+    std::vector<char> holding;
     std::vector<Eigen::Vector3d> previous, present;
   };
   std::vector<std::uint8_t> motion() const;  ///< what the model remembers
@@ -131,8 +114,6 @@ class DynamicOrgan {
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
   void let_pass(std::span<const ToolInTick> tools);
-  bool runs_through(const MovingTool& tool) const;
-  bool is_near(const MovingTool& tool) const;
   bool glows(int tool, const ToolInTick& with) const;
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
@@ -140,6 +121,7 @@ class DynamicOrgan {
   void tear();
   void drop_fallen();
   void remove(int tetrahedron);
+  bool fades(int node) const;  ///< what pressed it can: it is the moving part's alone, and there
   void cut_from_model(std::span<const int> gone);
   void load();
   void note_change(RemovalCause cause, std::size_t first);
@@ -154,13 +136,13 @@ class DynamicOrgan {
   std::unique_ptr<DynamicModel> model_;
   std::unique_ptr<HybridTouch> still_;
   TissueTouch contacts_;
+  PassingTools passing_;
   std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
   double damping_;          ///< [1/s]
   double diagonal_;         ///< [m] of the body at rest
   Eigen::Vector3d middle_;  ///< [m] of the body at rest
-  int fading_ticks_;
-  std::vector<Fading> fading_;
+  FadingLoads fading_;
   std::vector<Eigen::Vector3d> position_;      ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<int> removed_, part_of_;

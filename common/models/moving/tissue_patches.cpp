@@ -6,6 +6,7 @@
 #include "common/contact/patch/local_motion.hpp"
 #include "common/contact/patch/patch_parts.hpp"
 #include "common/geometry/triangle.hpp"
+#include "common/models/moving/hybrid_nodes.hpp"
 
 namespace palpate {
 namespace {
@@ -40,10 +41,6 @@ Eigen::Isometry3d followed(const Eigen::Isometry3d& before, const Eigen::Isometr
   return motion;
 }
 
-HalfSpace material_of(const Archive& archive) {
-  return {archive.young[0], archive.poisson[0]};
-}
-
 }  // namespace
 
 TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology,
@@ -56,7 +53,8 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
       longest_edge_(std::ranges::max(longest_edges(map_))),
       triangle_of_facet_(4 * topology.size(), -1),
       facet_of_triangle_(map_.triangles.size(), -1),
-      grids_(material_of(archive)),
+      material_{archive.young[0], archive.poisson[0]},
+      grids_(material_),
       ground_of_node_(mesh.rest.size(), 0),
       position_(mesh.rest) {
   std::map<std::array<int, 3>, int> facets;
@@ -92,22 +90,40 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   }
   if (tips_.empty()) return;
   const auto compliance = Compliance<double>::at_rest(archive);
-  near_field_ = std::make_unique<NearField>(surface_, compliance, material_of(archive), largest, kResolved);
+  near_field_ = std::make_unique<NearField>(surface_, compliance, material_, largest, kResolved);
   near_field_->subtract(compliance);
-  follow_cut(topology, {});
+  leave_out(topology);
 }
 
-void TissuePatches::follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave) {
-  const auto has_gone = [&](std::size_t triangle) {
-    return facet_of_triangle_[triangle] >= 0 && !topology.is_visible(facet_of_triangle_[triangle]);
-  };
+bool TissuePatches::has_gone(int triangle, const CutMesh& topology) const {
+  return facet_of_triangle_[triangle] >= 0 && !topology.is_visible(facet_of_triangle_[triangle]);
+}
+
+// Of the triangles that share nodes with it, in the last cut.
+bool TissuePatches::loses(const Tip& tip, const CutMesh& topology) const {
+  const auto under = [&](int node) { return std::ranges::count(tip.nodes, node) > 0; };
+  for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t)
+    if (!surface_.is_left_out(t) && has_gone(t, topology) && std::ranges::any_of(map_.triangles[t], under)) return true;
+  return false;
+}
+
+void TissuePatches::leave_out(const CutMesh& topology) {
+  for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t)
+    if (has_gone(t, topology)) surface_.leave_out(t);
+}
+
+void TissuePatches::follow_cut(const CutMesh& topology, std::vector<PatchForce>& loose,
+                               const std::function<void(const TouchContact&)>& leave) {
   for (Tip& tip : tips_) {
-    const auto under = std::ranges::find(map_.triangles, tip.contact.anchor.nodes);
-    if (tip.contact.touch != Touch::open && (under == map_.triangles.end() || has_gone(under - map_.triangles.begin())))
-      leave(tip.contact);
+    if (tip.contact.touch == Touch::open || !loses(tip, topology)) continue;
+    const std::span<const PatchForce> forces = seen_from_world(tip);
+    loose.insert(loose.end(), forces.begin(), forces.end());
+    leave(tip.contact);
+    lift(tip);
+    tip.contact.touch = Touch::open;
+    tip.cut = true;
   }
-  for (std::size_t t = 0; t < facet_of_triangle_.size(); ++t)
-    if (has_gone(t)) surface_.leave_out(static_cast<int>(t));
+  leave_out(topology);
   follow_response();
 }
 
@@ -117,6 +133,11 @@ void TissuePatches::follow_response() {
 
 bool TissuePatches::has(int tool, int part) const {
   return part == kTip && std::ranges::find(tips_, tool, &Tip::tool) != tips_.end();
+}
+
+double TissuePatches::give_of_point(double radius) const {
+  const double width = 2 * radius;
+  return material_.pressed(0, 0, width) / (width * width);
 }
 
 bool TissuePatches::laid() const {
@@ -226,9 +247,10 @@ void TissuePatches::press(Tip& tip, const MovingTool& tool, double dt) {
                    .went = went_,
                    .give = tip.give};
   if (!tip.met) {
-    const double deep = tip.patch.depth(step) - 2 * tip.approach - kFoundDeep * tip.radius;
-    tip.ease = std::max(deep, 0.0);
+    const double due = tip.cut ? 0 : 2 * tip.approach + kFoundDeep * tip.radius;
+    tip.ease = std::max(tip.patch.depth(step) - due, 0.0);
     tip.met = true;
+    tip.cut = false;
   }
   step.ease = tip.ease;
   tip.ease = std::max(tip.ease - kWayOut * dt, 0.0);
@@ -284,6 +306,7 @@ void TissuePatches::state(State& s) {
     s.require(tip.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
     s.value(tip.motion.matrix());
     s.value(tip.ease);
+    s.value(tip.cut);
     s.value(tip.contact.touch);
     palpate::state(s, tip.contact.anchor);
     for (Vector3d* v : {&tip.contact.normal, &tip.contact.force, &tip.contact.at}) s.value(*v);

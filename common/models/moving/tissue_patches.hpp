@@ -24,7 +24,8 @@ namespace palpate {
 ///   L = G + Phi (K - C) Phi^T,
 /// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
 /// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
-/// patch lies on both parts of a hybrid alike. What has been cut open is left to contacts by nodes.
+/// patch lies on both parts of a hybrid alike. What has been cut open, and shafts and jaws, are left to contacts by
+/// points.
 class TissuePatches {
  public:
   /// [m/s] At which tissue that is found deep within a tool is led out of it.
@@ -44,6 +45,9 @@ class TissuePatches {
   bool has(int tool, int part) const;
   /// Whether a facet of the CutMesh is theirs.
   bool covers(int facet) const { return triangle_of_facet_[facet] >= 0; }
+  /// [m/N] By which tissue gives way, beyond what its nodes do, where a part of a radius [m] has none and rests on a
+  /// point of a triangle: as under one square as wide as the part.
+  double give_of_point(double radius) const;
   /// After a step of `dt` [s] of the tissue without them: their forces put it right. `tools`: as they are at its
   /// beginning and end.
   void step(std::span<const MovingTool> tools, double dt);
@@ -57,8 +61,10 @@ class TissuePatches {
   /// Steps are of another length from now on.
   void follow_response();
   void drop_tool(int tool);
-  /// After a cut. `leave`: what becomes of the contact of a patch whose triangle has gone.
-  void follow_cut(const CutMesh& topology, const std::function<void(const TouchContact&)>& leave);
+  /// After a cut. A patch that has lost tissue under it is laid anew: adds what it did to nodes to `loose`. `leave`:
+  /// what becomes of its contact.
+  void follow_cut(const CutMesh& topology, std::vector<PatchForce>& loose,
+                  const std::function<void(const TouchContact&)>& leave);
   void state(State& s);
 
  private:
@@ -73,6 +79,7 @@ class TissuePatches {
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
     double ease = 0;                                           ///< [m] that it stands too deep, and is led out of
     bool met = false;                                          ///< it has been so since before this tick
+    bool cut = false;                                          ///< what it lay on has gone
     double approach = 0;                                       ///< [m] that it moves in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
@@ -84,6 +91,9 @@ class TissuePatches {
     std::vector<int> triangle;  ///< per triangle of it; -1: none
   };
 
+  bool has_gone(int triangle, const CutMesh& topology) const;
+  bool loses(const Tip& tip, const CutMesh& topology) const;
+  void leave_out(const CutMesh& topology);
   bool find_place(const Tip& tip, const MovingTool& tool, Eigen::Vector3d& place) const;
   Eigen::Isometry3d motion_about(const Eigen::Vector3d& place, double within);
   void find_give(Tip& tip);
@@ -103,6 +113,7 @@ class TissuePatches {
   std::vector<Ground> grounds_;
   std::unique_ptr<TissueNodes> nodes_;
   std::unique_ptr<NearField> near_field_;
+  HalfSpace material_;
   PatchGrids grids_;
   std::vector<Tip> tips_;
   std::vector<Eigen::Vector3d> moved_, went_;

@@ -2,17 +2,19 @@
 
 #include <algorithm>
 
+#include "common/models/moving/fading_loads.hpp"
+
 namespace palpate {
 namespace {
 
-constexpr double kGivingWay = 10;  // [m/s^2] at which what has been cut away gives way, faster and faster
-
-ToolContacts::Options tips_beside(const TissuePatches* patches) {
+// What is not a patch's rests on points, under each of which the tissue gives way as under a patch of one square.
+ToolContacts::Options beside_patches(const TissuePatches* patches) {
   ToolContacts::Options options;
-  if (patches)
-    options.elsewhere = [patches](int tool, int part, int facet) {
-      return patches->has(tool, part) && patches->covers(facet);
-    };
+  if (!patches) return options;
+  options.elsewhere = [patches](int tool, int part, int facet) {
+    return patches->has(tool, part) && patches->covers(facet);
+  };
+  options.face_give = [patches](double radius) { return patches->give_of_point(radius); };
   return options;
 }
 
@@ -38,9 +40,11 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
           settings.contact.rule == ContactRule::patch
               ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
               : nullptr),
-      contacts_(surface, law_, parts_of(settings.tools), tips_beside(patches_.get())) {
+      contacts_(surface, law_, parts_of(settings.tools), beside_patches(patches_.get())),
+      fading_ticks_(fading_ticks(settings.dt)) {
   aimed_.reserve(kMaxContacts);
-  all_.reserve(kMaxContacts + settings.tools.size());
+  all_.reserve(2 * kMaxContacts + settings.tools.size());
+  leavers_.reserve(kMaxContacts);
 }
 
 void TissueTouch::find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds) {
@@ -54,11 +58,13 @@ void TissueTouch::drop_tool(int tool) {
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i)
     if (law_.contacts()[i].is_by(tool)) law_.remove(i);
   if (patches_) patches_->drop_tool(tool);
+  std::erase_if(leavers_, [&](const Leaver& l) { return l.by.tool == tool; });
   gather();
 }
 
 void TissueTouch::gather() {
   all_.assign(law_.contacts().begin(), law_.contacts().end());
+  for (const Leaver& l : leavers_) tell(l);
   if (patches_) patches_->add_contacts(all_);
 }
 
@@ -66,45 +72,56 @@ bool TissueTouch::grasping(int tool) const {
   return law_.grasps(tool);
 }
 
-// What pressed a triangle that has been cut away goes on pressing the nodes that are left of it, and gives way from
-// then on: gone at once, its force would be a blow.
-void TissueTouch::leave(TouchContact c, std::span<const MovingTool> tools, const CutMesh& topology) {
-  if (c.touch == Touch::open || law_.full()) return;
-  const Anchor pressed = c.anchor;
-  for (int v = 0; v < 3; ++v) c.anchor.weights[v] *= topology.has_node(pressed.nodes[v]);
-  if (c.anchor.weights.isZero(0))
-    for (int v = 0; v < 3; ++v) c.anchor.weights[v] = topology.has_node(pressed.nodes[v]);
-  if (c.anchor.weights.isZero(0)) return;
-  c.anchor.weights /= c.anchor.weights.sum();
-  ToolPoint& by = c.tool_point();
-  const MovingTool& tool = tools[by.tool];
-  const Eigen::Vector3d on_tool = nearest_point(tool.axis(by.part), c.at) + tool.radius(by.part) * c.normal;
-  by.offset = tool.to_part(by.part, on_tool);
-  if (c.touch == Touch::sticking) c.slip.setZero();
-  c.touch = Touch::sliding;
-  c.leaving = true;
-  c.give.setZero();  // of a patch
-  c.receded = c.normal.dot(on_tool - anchor_position(c.anchor, surface_.positions()));
-  law_.add(c);
+// Gone at once, its force would be a blow to the hand.
+void TissueTouch::leave(const TouchContact& c) {
+  std::erase_if(all_, [&](const TouchContact& told) {
+    return told.is_by(c.tool_point().tool, c.tool_point().part) && told.touch == c.touch &&
+           told.anchor.nodes == c.anchor.nodes;
+  });
+  if (c.force.isZero(0)) return;
+  leavers_.push_back({c.tool_point(), c.anchor, c.grasped, fading_ticks_, c.normal, c.force, c.at});
+  tell(leavers_.back());
 }
 
-void TissueTouch::follow_cut(const CutMesh& topology, std::span<const MovingTool> tools) {
+void TissueTouch::tell(const Leaver& l) {
+  TouchContact& told = all_.emplace_back();
+  told.by = l.by;
+  told.anchor = l.anchor;
+  told.face = true;
+  told.grasped = l.grasped;
+  told.normal = l.normal;
+  told.force = static_cast<double>(l.ticks_left) / fading_ticks_ * l.force;
+  told.at = told.position = l.at;
+}
+
+void TissueTouch::fade(std::span<const MovingTool> tools) {
+  std::erase_if(leavers_, [](Leaver& l) { return --l.ticks_left <= 0; });
+  for (Leaver& l : leavers_) {
+    const MovingTool& tool = tools[l.by.tool];
+    l.at = l.grasped ? tool.now * l.by.offset : tool.to_world(l.by.part, l.by.offset);
+    tell(l);
+  }
+}
+
+std::span<const PatchForce> TissueTouch::follow_cut(const CutMesh& topology) {
   const auto is_there = [&](int node) { return topology.has_node(node) || (still_ && still_->part().owns(node)); };
-  const auto node_gone = [&](const TouchContact& c) {
+  const auto has_gone = [&](const TouchContact& c) {
     for (int v = 0; v < 3; ++v)
       if (c.anchor.weights[v] != 0 && !is_there(c.anchor.nodes[v])) return true;
-    return false;
+    return c.face && !c.grasped && surface_.facet_of(c.anchor.nodes) < 0;
   };
+  loose_.clear();
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
     const TouchContact c = law_.contacts()[i];
-    const bool on_triangle = c.face && !c.grasped;
-    if (!node_gone(c) && (!on_triangle || c.leaving || surface_.facet_of(c.anchor.nodes) >= 0)) continue;
+    if (!has_gone(c)) continue;
     law_.remove(i);
-    if (on_triangle) leave(c, tools, topology);
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0) loose_.push_back({c.anchor.nodes[v], c.anchor.weights[v] * c.force});
+    leave(c);
   }
-  std::erase_if(all_, node_gone);
-  if (patches_) patches_->follow_cut(topology, [&](const TouchContact& c) { leave(c, tools, topology); });
+  if (patches_) patches_->follow_cut(topology, loose_, [&](const TouchContact& c) { leave(c); });
   follow_response(dt_);
+  return loose_;
 }
 
 void TissueTouch::follow_response(double dt) {
@@ -130,10 +147,8 @@ void TissueTouch::solve(std::span<const MovingTool> tools) {
 // within one step, that would be a blow.
 void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
-  c.plane -= c.receded;
-  c.target -= c.receded * c.normal;
   const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
-  const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + motion;
+  const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + c.softness() * c.force + motion;
   const double depth = c.plane - c.normal.dot(carried), led = TissuePatches::kWayOut * dt_;
   if (depth <= led) return;
   const double share = led / depth;
@@ -151,11 +166,6 @@ void TissueTouch::put_right(double dt) {
 
 void TissueTouch::step(std::span<const MovingTool> tools, double dt) {
   model_.step_semi_implicit(dt);
-  for (TouchContact& c : law_.contacts()) {
-    if (!c.leaving) continue;
-    c.receding += kGivingWay * dt;
-    c.receded += c.receding * dt;
-  }
   solve(tools);
   put_right(dt);
   for (TouchContact& c : law_.contacts()) {
@@ -175,6 +185,7 @@ void TissueTouch::end_tick(std::span<const MovingTool> tools, double dt) {
     c.impulse.setZero();
     c.pressed.setZero();
   }
+  fade(tools);
   contacts_.settle(tools);
   if (!patches_) return;
   patches_->end_tick(tools, dt);
@@ -189,7 +200,27 @@ void TissueTouch::forget_factor() {
 void TissueTouch::state(State& s, std::span<const MovingTool> tools) {
   contacts_.state(s, tools);
   if (patches_) patches_->state(s);
+  leavers_state(s, tools);
   if (s.restoring()) gather();
+}
+
+void TissueTouch::leavers_state(State& s, std::span<const MovingTool> tools) {
+  int count = static_cast<int>(leavers_.size());
+  s.value(count);
+  s.require(count >= 0 && count <= kMaxContacts * fading_ticks_, "the state names an impossible number of contacts");
+  leavers_.resize(count);
+  for (Leaver& l : leavers_) {
+    palpate::state(s, l.by);
+    palpate::state(s, l.anchor);
+    s.value(l.grasped);
+    s.value(l.ticks_left);
+    for (Eigen::Vector3d* v : {&l.normal, &l.force, &l.at}) s.value(*v);
+    if (!s.restoring()) continue;
+    const int known = static_cast<int>(tools.size());
+    const bool tool = l.by.tool >= 0 && l.by.tool < known && l.by.part >= 0 && l.by.part < tools[l.by.tool].size();
+    const bool nodes = std::ranges::all_of(l.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
+    s.require(tool && nodes, "the state holds a contact that this scene cannot have");
+  }
 }
 
 }  // namespace palpate

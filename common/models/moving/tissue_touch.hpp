@@ -46,14 +46,27 @@ class TissueTouch {
   /// After the last step of a tick of `dt` [s]: the contacts' forces become the tick's own, their impulses over its
   /// length; a single step's force of an impact grows as the step gets shorter. Contacts that have gone are dropped.
   void end_tick(std::span<const MovingTool> tools, double dt);
-  /// After a cut: contacts on what is gone leave; the masses of what is left have changed. `tools`: of the last tick.
-  void follow_cut(const CutMesh& topology, std::span<const MovingTool> tools);
+  /// After a cut: contacts on what is gone leave, and the tools feel less and less of what they were; the masses of
+  /// what is left have changed. Returns what they did to nodes, until the next call: to let it fade is for the caller.
+  std::span<const PatchForce> follow_cut(const CutMesh& topology);
 
   void forget_factor();
   void state(State& s, std::span<const MovingTool> tools);
 
  private:
-  void leave(TouchContact contact, std::span<const MovingTool> tools, const CutMesh& topology);
+  /// What pressed tissue that has been cut away.
+  struct Leaver {
+    ToolPoint by;
+    Anchor anchor;
+    bool grasped = false;
+    int ticks_left = 0;
+    Eigen::Vector3d normal, force, at;  ///< force [N] on the tissue when it went, at [m] the place on the tool now
+  };
+
+  void leave(const TouchContact& contact);
+  void tell(const Leaver& leaver);
+  void fade(std::span<const MovingTool> tools);
+  void leavers_state(State& s, std::span<const MovingTool> tools);
   void follow_response(double dt);
   void gather();
   void solve(std::span<const MovingTool> tools);
@@ -71,7 +84,10 @@ class TissueTouch {
   std::unique_ptr<TissuePatches> patches_;  ///< null: tips touch as everything else does
   ToolContacts contacts_;
   std::vector<TouchContact> all_;
-  double dt_ = 0;  ///< [s] of the step that the response is for
+  int fading_ticks_;
+  std::vector<Leaver> leavers_;
+  std::vector<PatchForce> loose_;  ///< [N] of the last cut
+  double dt_ = 0;                  ///< [s] of the step that the response is for
 };
 
 }  // namespace palpate

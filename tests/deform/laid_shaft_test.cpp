@@ -1,0 +1,150 @@
+// A shaft laid on tissue that moves rests on points of its triangles, each of which gives way as under a patch.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tests/deform/block_bench.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using testing::block_scene;
+
+constexpr double kSurface = 0.03, kShaftRadius = 0.003, kLaid = 0.002;  // [m]
+
+/// The shaft lies level along x over all of the block, its tip beyond it.
+Scene laid_scene(double friction) {
+  Scene scene = block_scene();
+  Tool& tool = scene.tools[0];
+  tool.pivot = {-20, 0, kSurface + kShaftRadius};
+  tool.axis = Vector3d::UnitX();
+  tool.up = Vector3d::UnitZ();
+  tool.shaft_radius = kShaftRadius;
+  tool.shaft_length = 0.12;
+  scene.contact.friction = friction;
+  return scene;
+}
+
+PressRig laid_rig(const Scene& scene) {
+  return {scene, {precompute_on(scene.bodies[0], middle_block_mesh(6))}};
+}
+
+Vector3d laid_tip(double aside, double depth) {
+  return {0.06, 0.0013 + aside, kSurface + kShaftRadius - depth};
+}
+
+void lay_down(PressRig& rig, double aside, int ticks = 600) {
+  for (int i = 0; i < ticks; ++i) rig.press(laid_tip(aside, -0.001 + (kLaid + 0.001) * std::min(1.0, i / 300.0)));
+}
+
+double felt_when_laid(const Scene& scene, double aside) {
+  PressRig rig = laid_rig(scene);
+  lay_down(rig, aside);
+  return rig.force().norm();
+}
+
+TEST(LaidShaft, FeelsAtRestWhatItsStripDoesOnTissueWithoutInertia) {
+  const Scene moving = laid_scene(0);
+  Scene still = moving;
+  auto body = as_kind<QuasiStaticSpec>(moving.bodies[0]);
+  body.offline = Offline{};
+  still.bodies[0] = body;
+  for (const double aside : {-0.004, 0.0, 0.003}) {
+    const double wanted = felt_when_laid(still, aside), felt = felt_when_laid(moving, aside);
+    EXPECT_NEAR(felt, wanted, 0.3 * wanted) << "at y = " << aside;
+  }
+}
+
+TEST(LaidShaft, AStrikeIsNoBlow) {
+  for (const double speed : {0.05, 0.2}) {
+    PressRig rig = laid_rig(laid_scene(0));
+    double largest = 0;
+    const auto press = [&](double depth) {
+      const Vector3d before = rig.force();
+      rig.press(laid_tip(0, depth));
+      largest = std::max(largest, (rig.force() - before).norm());
+    };
+    for (double depth = -0.002; depth < kLaid; depth += speed * rig.dt()) press(depth);
+    for (int i = 0; i < 1000; ++i) press(kLaid);
+    const double held = rig.force().norm();
+    EXPECT_LT(largest, 3 * held * speed * rig.dt() / kLaid);
+  }
+}
+
+// A scalpel glows where the shaft lies.
+TEST(LaidShaft, WhatIsCutAwayUnderItLetsGoBySmallSteps) {
+  Scene scene = laid_scene(0.2);
+  Tool scalpel = block_scene().tools[0];
+  scalpel.name = "scalpel";
+  std::get<ProbeSpec>(scalpel.end) = {.radius = 0.002, .cautery = Cautery{0.006}};
+  scene.tools.push_back(scalpel);
+  PressRig rig = laid_rig(scene);
+  const auto press = [&](double depth, double pedal) {
+    std::array dofs{tip_at(scene.tools[0], laid_tip(0, depth)),
+                    tip_at(scalpel, Vector3d(0.004, 0.007, kSurface + 0.002))};
+    dofs[1].pedal = pedal;
+    rig.press(dofs);
+  };
+  const auto felt = [&] {
+    Vector3d sum = Vector3d::Zero();
+    for (const TouchContact& c : rig.organ().contacts())
+      if (c.is_by(0)) sum += c.force;
+    return sum;
+  };
+  for (int i = 0; i < 600; ++i) press(-0.001 + (kLaid + 0.001) * std::min(1.0, i / 300.0), 0);
+  const double held = felt().norm();
+  double worst = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d before = felt();
+    press(kLaid, i == 0);
+    worst = std::max(worst, (felt() - before).norm());
+  }
+  EXPECT_FALSE(rig.organ().removed().empty());
+  EXPECT_LT(worst, 0.1 * held);
+}
+
+class LaidShaftSlides : public ::testing::TestWithParam<double> {};
+
+// Across the triangles' edges, there and back at 50 mm/s.
+TEST_P(LaidShaftSlides, HasNoJumpFromTriangleToTriangle) {
+  PressRig rig = laid_rig(laid_scene(GetParam()));
+  lay_down(rig, -0.01);
+  double worst = 0;
+  constexpr int ticks = 400;
+  for (int i = 1; i <= 2 * ticks; ++i) {
+    const double share = 1 - std::abs(1 - static_cast<double>(i) / ticks);
+    const Vector3d before = rig.force();
+    rig.press(laid_tip(-0.01 + 0.02 * share, kLaid));
+    worst = std::max(worst, (rig.force() - before).norm() / rig.force().norm());
+  }
+  EXPECT_LT(worst, 0.15);
+}
+
+// Laid down, drawn aside and lifted, over and over: what the tool gets back is never more than what it has put in.
+TEST_P(LaidShaftSlides, ContactNeverPutsOutWork) {
+  PressRig rig = laid_rig(laid_scene(GetParam()));
+  double work = 0, least = 0, most = 0;
+  Vector3d at = laid_tip(-0.01, -0.001);
+  rig.press(at);
+  for (int cycle = 0; cycle < 3; ++cycle)
+    for (int i = 0; i < 400; ++i) {
+      const double turn = 2 * std::numbers::pi * i / 400;
+      const Vector3d next = laid_tip(-0.01 * std::cos(turn), 0.0005 - 0.0015 * std::cos(turn) + 0.001 * std::sin(turn));
+      const Vector3d before = rig.force();
+      rig.press(next);
+      work += 0.5 * (before + rig.force()).dot(next - at);
+      at = next;
+      least = std::min(least, work);
+      most = std::max(most, work);
+    }
+  EXPECT_GT(most, 1e-5);
+  EXPECT_GT(least, -1e-3 * most);
+}
+
+INSTANTIATE_TEST_SUITE_P(Friction, LaidShaftSlides, ::testing::Values(0.1, 0.2));
+
+}  // namespace
+}  // namespace palpate
