@@ -45,7 +45,8 @@ export class Picture {
     const tools = Math.min(scenery.tools.length, 8);
     for (const { finish, visual } of scenery.bodies) {
       this.programs.prepare(finish, tools);
-      for (const part of visual?.parts ?? []) this.programs.prepare(part.finish, tools, part.textured ? 'TEXTURED' : '');
+      for (const part of visual?.parts ?? [])
+        this.programs.prepare(part.finish, tools, part.textured ? 'TEXTURED' : '');
     }
     this.instruments = scenery.tools.map((tool) => tool.parts.map((part) =>
       new GpuMesh(gl).upload({ shape: 1, ...part, rest: part.position })));

@@ -80,7 +80,8 @@ export class VisualShape {
         for (let row = 0; row < 3; ++row) {
           const i = to + 3 * column;
           const value = weight[c] * (e[row] * inverse[i] + e[3 + row] * inverse[i + 1] + e[6 + row] * inverse[i + 2]);
-          for (let k = 0; k < 4 && cells[4 * c + k] >= 0; ++k) deformation[9 * cells[4 * c + k] + 3 * column + row] += value;
+          for (let k = 0; k < 4 && cells[4 * c + k] >= 0; ++k)
+            deformation[9 * cells[4 * c + k] + 3 * column + row] += value;
         }
       for (let k = 0; k < 4 && cells[4 * c + k] >= 0; ++k) around[cells[4 * c + k]] += weight[c];
     }
@@ -144,7 +145,7 @@ export class VisualShape {
     }
   }
 
-  // After a cut: `piece` per tetrahedron, -1 for one that is gone. Triangles with corners of different pieces go as well.
+  // After a cut: `piece` per tetrahedron, -1 for one that is gone. Triangles with corners of different pieces go too.
   part(piece) {
     const { spec } = this;
     for (let t = 0; t < spec.tetrahedra; ++t) this.alive[t] = piece[t] >= 0 ? 1 : 0;
@@ -216,7 +217,8 @@ class Frame {
   }
 
   fromWorld(from, at, to) {
-    const { inverse: m, shift } = this, x = from[at] - shift[0], y = from[at + 1] - shift[1], z = from[at + 2] - shift[2];
+    const { inverse: m, shift } = this;
+    const x = from[at] - shift[0], y = from[at + 1] - shift[1], z = from[at + 2] - shift[2];
     for (let i = 0; i < 3; ++i) to[at + i] = m[i] * x + m[3 + i] * y + m[6 + i] * z;
   }
 
