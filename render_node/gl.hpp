@@ -24,7 +24,8 @@ namespace palpate {
   X(DeleteRenderbuffers, DELETERENDERBUFFERS) X(DeleteShader, DELETESHADER) X(DeleteTextures, DELETETEXTURES) \
   X(DeleteVertexArrays, DELETEVERTEXARRAYS) X(DepthFunc, DEPTHFUNC) X(DepthMask, DEPTHMASK) X(Disable, DISABLE) \
   X(DrawArrays, DRAWARRAYS) X(DrawElements, DRAWELEMENTS) X(Enable, ENABLE) \
-  X(EnableVertexArrayAttrib, ENABLEVERTEXARRAYATTRIB) X(FrontFace, FRONTFACE) X(GetError, GETERROR) \
+  X(EnableVertexArrayAttrib, ENABLEVERTEXARRAYATTRIB) X(FrontFace, FRONTFACE) \
+  X(GenerateTextureMipmap, GENERATETEXTUREMIPMAP) X(GetError, GETERROR) \
   X(GetProgramInfoLog, GETPROGRAMINFOLOG) X(GetProgramiv, GETPROGRAMIV) X(GetShaderInfoLog, GETSHADERINFOLOG) \
   X(GetShaderiv, GETSHADERIV) X(GetString, GETSTRING) X(LinkProgram, LINKPROGRAM) \
   X(NamedBufferData, NAMEDBUFFERDATA) X(NamedBufferSubData, NAMEDBUFFERSUBDATA) \

@@ -44,10 +44,11 @@ void GpuMesh::build(const MeshView& mesh) {
   gl_->NamedBufferData(buffer_[normal], mesh.normal.size_bytes(), mesh.normal.data(), usage);
   gl_->NamedBufferData(buffer_[rest], mesh.rest.size_bytes(), mesh.rest.data(), GL_STATIC_DRAW);
   gl_->NamedBufferData(buffer_[scalar], mesh.scalar.size_bytes(), mesh.scalar.data(), usage);
+  gl_->NamedBufferData(buffer_[image], mesh.image.size_bytes(), mesh.image.data(), GL_STATIC_DRAW);
   gl_->NamedBufferData(buffer_[index], mesh.triangles.size_bytes(), mesh.triangles.data(), GL_STATIC_DRAW);
-  for (const GLuint slot : {position, normal, rest, scalar}) {
-    if (slot == scalar && mesh.scalar.empty()) continue;
-    const int components = slot == scalar ? 1 : 3;
+  for (const GLuint slot : {position, normal, rest, scalar, image}) {
+    if ((slot == scalar && mesh.scalar.empty()) || (slot == image && mesh.image.empty())) continue;
+    const int components = slot == scalar ? 1 : slot == image ? 2 : 3;
     gl_->EnableVertexArrayAttrib(array_, slot);
     gl_->VertexArrayAttribFormat(array_, slot, components, GL_FLOAT, GL_FALSE, 0);
     gl_->VertexArrayAttribBinding(array_, slot, slot);

@@ -22,7 +22,7 @@ class GpuMesh {
   void draw() const;
 
  private:
-  enum Buffer { position, normal, rest, scalar, index, buffers };
+  enum Buffer { position, normal, rest, scalar, image, index, buffers };
 
   void release();
 

@@ -58,6 +58,14 @@ void encode(const Image& image, const std::filesystem::path& file, std::FILE* ou
   png_write_end(writer.png, nullptr);
 }
 
+Image finish_reading(png_image& png, const std::filesystem::path& file) {
+  png.format = PNG_FORMAT_RGBA;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.rgba.resize(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr)) fail(file, png.message);
+  return image;
+}
+
 }  // namespace
 
 void write_png(const Image& image, const std::filesystem::path& file) {
@@ -69,15 +77,18 @@ void write_png(const Image& image, const std::filesystem::path& file) {
   whole.commit();
 }
 
+Image decode_png(std::string_view bytes, const std::filesystem::path& file) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) fail(file, png.message);
+  return finish_reading(png, file);
+}
+
 Image read_png(const std::filesystem::path& file) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_file(&png, file.c_str())) fail(file, png.message);
-  png.format = PNG_FORMAT_RGBA;
-  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
-  image.rgba.resize(PNG_IMAGE_SIZE(png));
-  if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr)) fail(file, png.message);
-  return image;
+  return finish_reading(png, file);
 }
 
 }  // namespace palpate

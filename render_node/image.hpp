@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -16,6 +17,9 @@ struct Image {
 /// Writes beside `file` under a temporary name, then renames: a reader never sees half a picture.
 /// Throws std::runtime_error("FILE: reason"), leaving nothing.
 void write_png(const Image& image, const std::filesystem::path& file);
+
+/// From the bytes of a PNG file, whose name is said where they are none. Throws std::runtime_error("FILE: reason").
+Image decode_png(std::string_view bytes, const std::filesystem::path& file);
 
 /// Throws std::runtime_error("FILE: reason") if the file is missing or not a PNG.
 Image read_png(const std::filesystem::path& file);

@@ -11,6 +11,7 @@
 #include "common/view/shaders.hpp"
 #include "render_node/gl.hpp"
 #include "render_node/gpu_mesh.hpp"
+#include "render_node/gpu_texture.hpp"
 #include "render_node/overlay.hpp"
 #include "render_node/render_target.hpp"
 #include "render_node/scene_block.hpp"
@@ -32,7 +33,9 @@ struct Renderer::Impl {
   void draw_backdrop(const Frame& frame);
   bool backdrop_changed(const Frame& frame, const SceneBlock& block);
   void draw_overlay(const Frame& frame);
-  GLuint soft_program(Finish finish, bool by_scalar, std::size_t tools);
+  GLuint soft_program(const MeshView& mesh, std::size_t tools);
+  GLuint make_soft(Finish finish, bool by_scalar, bool textured, std::size_t tools);
+  void wear(const TextureView& texture);
   GpuMesh& upload(const MeshView& mesh);
   void rebuild_font();
 
@@ -40,12 +43,13 @@ struct Renderer::Impl {
   GlFunctions& gl = context.gl;
   RenderTarget target;
   GLuint bone, lining, metal, cavity, flat;
-  std::map<std::tuple<Finish, bool, std::size_t>, GLuint>
-      soft;  ///< by (finish, coloured by scalar, number of instruments)
+  std::map<std::tuple<Finish, bool, bool, std::size_t>, GLuint>
+      soft;  ///< by (finish, coloured by scalar, textured, number of instruments)
   GLuint block = 0, empty_array = 0, glyph_texture = 0;
   std::optional<FontAtlas> font;
   int font_size = 0;
   std::map<int, GpuMesh> meshes;
+  std::map<int, GpuTexture> textures;
   using InstrumentKey = std::array<double, 6>;
   struct Instrument {
     InstrumentShape shape;
@@ -89,6 +93,10 @@ void Renderer::Impl::check(const Frame& frame) const {
     const std::size_t n = mesh.position.size();
     if (mesh.rest.size() != n || mesh.normal.size() != n || (!mesh.scalar.empty() && mesh.scalar.size() != n))
       throw std::runtime_error(fmt::format("mesh {}: rest, position, normal and scalar differ in length", mesh.id));
+    const TextureView& texture = mesh.texture;
+    if (!mesh.image.empty() && (mesh.image.size() != n || texture.rgba.empty() ||
+                                texture.rgba.size() != std::size_t{4} * texture.width * texture.height))
+      throw std::runtime_error(fmt::format("mesh {}: its texture, or the places in it, are not whole", mesh.id));
     if (!mesh.scalar.empty() && !(frame.legend && frame.legend->max > 0))
       throw std::runtime_error(fmt::format("mesh {}: colour by scalar needs a legend with a positive range", mesh.id));
   }
@@ -105,36 +113,46 @@ GpuMesh& Renderer::Impl::upload(const MeshView& mesh) {
   return gpu;
 }
 
-GLuint Renderer::Impl::soft_program(Finish finish, bool by_scalar, std::size_t tools) {
-  if (by_scalar) finish = Finish::tissue;
-  GLuint& program = soft[{finish, by_scalar, tools}];
-  if (program) return program;
-  const std::string start =
-      fmt::format("{}{}#define TOOLS {}\n{}", kHead, by_scalar ? "#define BY_SCALAR\n" : "", tools, shaders::scene) +
-      shaders::noise;
+GLuint Renderer::Impl::soft_program(const MeshView& mesh, std::size_t tools) {
+  const bool by_scalar = !mesh.scalar.empty(), textured = !by_scalar && !mesh.image.empty();
+  const Finish finish = by_scalar ? Finish::tissue : mesh.finish;
+  GLuint& program = soft[{finish, by_scalar, textured, tools}];
+  if (!program) program = make_soft(finish, by_scalar, textured, tools);
+  return program;
+}
+
+GLuint Renderer::Impl::make_soft(Finish finish, bool by_scalar, bool textured, std::size_t tools) {
+  const std::string start = fmt::format("{}{}{}#define TOOLS {}\n{}", kHead, by_scalar ? "#define BY_SCALAR\n" : "",
+                                        textured ? "#define TEXTURED\n" : "", tools, shaders::scene) +
+                            shaders::noise;
   const std::string lit = start + shaders::light;
   if (finish == Finish::tissue)
-    program =
-        context.link_program("tissue", start + shaders::tissue_vert, lit + shaders::colours + shaders::tissue_frag);
-  else if (finish == Finish::duct)
-    program = context.link_program("duct", start + shaders::wall_vert, lit + shaders::duct_frag);
-  else if (finish == Finish::mucosa)
-    program = context.link_program("mucosa", start + shaders::wall_vert, lit + shaders::mucosa_frag);
-  else
-    program = context.link_program("plastic", start + shaders::wall_vert, lit + shaders::plastic_frag);
-  return program;
+    return context.link_program("tissue", start + shaders::tissue_vert, lit + shaders::colours + shaders::tissue_frag);
+  if (finish == Finish::membrane)
+    return context.link_program("membrane", start + shaders::tissue_vert, lit + shaders::membrane_frag);
+  if (finish == Finish::duct) return context.link_program("duct", start + shaders::wall_vert, lit + shaders::duct_frag);
+  if (finish == Finish::mucosa)
+    return context.link_program("mucosa", start + shaders::wall_vert, lit + shaders::mucosa_frag);
+  return context.link_program("plastic", start + shaders::wall_vert, lit + shaders::plastic_frag);
 }
 
 void Renderer::Impl::draw_soft(const Frame& frame) {
   gl.Enable(GL_CULL_FACE);
   for (const MeshView& mesh : frame.meshes) {
     if (in_backdrop(mesh.finish)) continue;
-    const GLuint program = soft_program(mesh.finish, !mesh.scalar.empty(), frame.instruments.size());
+    const GLuint program = soft_program(mesh, frame.instruments.size());
     const auto& c = mesh.colour;
     gl.ProgramUniform4f(program, 4, float(c[0]), float(c[1]), float(c[2]), 1);
     gl.UseProgram(program);
+    if (!mesh.image.empty()) wear(mesh.texture);
     upload(mesh).draw();
   }
+}
+
+void Renderer::Impl::wear(const TextureView& texture) {
+  GpuTexture& held = textures.try_emplace(texture.id, context).first->second;
+  held.hold(texture);
+  held.bind(1);
 }
 
 /// What stands still while the camera does is drawn once and copied into every frame.

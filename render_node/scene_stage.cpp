@@ -11,7 +11,7 @@ Stage make_stage(const LoadedScene& loaded) {
   TriangleMesh backdrop;
   const auto& render = loaded.scene.render;
   if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
-  return Stage(loaded.scene, surfaces, backdrop);
+  return Stage(loaded.scene, surfaces, backdrop, load_visuals(loaded.scene, loaded.archives));
 }
 
 void write_still(const Stage& stage, int width, int height, const std::filesystem::path& file) {

@@ -72,7 +72,10 @@ bool Show::take() {
 }
 
 void Show::follow_cuts() {
-  for (const int body : topology_->take()) stage_.set_triangles(body, topology_->triangles(body));
+  for (const int body : topology_->take()) {
+    if (stage_.has_visual(body)) stage_.part_visual(body, topology_->pieces(body));
+    stage_.set_triangles(body, topology_->triangles(body));
+  }
 }
 
 void Show::tell(const std::vector<std::string>& above) {

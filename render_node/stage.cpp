@@ -27,7 +27,8 @@ double round_up(double value) {
 
 }  // namespace
 
-Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop)
+Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
+             std::vector<std::optional<VisualBody>> visuals)
     : render_(scene.render.value_or(Render{})) {
   if (!scene.render) render_.camera = fit_camera(surfaces);
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
@@ -39,7 +40,8 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     body.finish = look.finish;
     body.colour = look.colour;
     body.rest = to_float(map.position);
-    refine(body, map.triangles);
+    if (b < visuals.size() && visuals[b]) add_visual(body, std::move(*visuals[b]), scene.bodies[b], map);
+    refine(body, body.visual ? std::span<const std::array<int, 3>>() : map.triangles);
     body.position = body.rest;
     body.normal.resize(body.coarse);
     vertex_normals(std::span(body.rest).first(body.coarse), map.triangles, body.normal);
@@ -74,6 +76,12 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
   ++body.shape;
 }
 
+void Stage::add_visual(Soft& body, VisualBody visual, const Body& spec, const SurfaceMap& map) const {
+  body.uncut = map.triangles;
+  body.visual.emplace(std::move(visual), map.position, body.colour, as<SolidSpec>(spec)->visual->texture,
+                      render_.colour == Colouring::displacement);
+}
+
 void Stage::add_wall(Soft& body, const BodyLook& look) const {
   body.wall = ThickWall(body.refinement.triangles(), body.refinement.vertices(), look.thickness);
   body.wall.place(body.position, body.normal);
@@ -91,7 +99,10 @@ void Stage::add_wall(Soft& body, const BodyLook& look) const {
 
 void Stage::set_triangles(int index, std::span<const std::array<int, 3>> triangles) {
   Soft& body = bodies_.at(index);
-  refine(body, triangles);
+  if (body.visual)
+    refine(body, bared(body.uncut, triangles));
+  else
+    refine(body, triangles);
   body.position.resize(body.refinement.vertices());
   body.normal.resize(body.refinement.vertices());
   body.refinement.apply(body.position, body.normal);
@@ -132,10 +143,11 @@ void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, st
   std::copy(normal.begin(), normal.end(), body.normal.begin());
   if (!dents.empty()) smooth(body, dents);
   body.refinement.apply(body.position, body.normal);
+  if (body.visual) body.visual->place(std::span(body.position).first(body.coarse), dents);
   for (const HertzDent& d : dents) dent(body, d);
   if (body.finish == Finish::duct) body.wall.place(body.position, body.normal);
   if (body.displacement.empty()) return;
-  float most = 0;
+  float most = body.visual ? body.visual->most_displaced() : 0;
   for (std::size_t i = 0; i < body.rest.size(); ++i) {
     body.displacement[i] = (body.position[i] - body.rest[i]).norm();
     most = std::max(most, body.displacement[i]);
@@ -158,6 +170,7 @@ void Stage::set_overlay(std::vector<std::string> lines, std::optional<Gauge> gau
 }
 
 void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {
+  if (body.triangles.empty()) return;  // there is a visual surface
   MeshView view{.id = id,
                 .shape = body.shape,
                 .finish = body.finish,
@@ -190,6 +203,11 @@ Frame Stage::frame() const {
   frame.camera = render_.camera;
   const int bodies = static_cast<int>(bodies_.size());
   for (int b = 0; b < bodies; ++b) add_views(bodies_[b], b, bodies + b, frame);
+  for (int b = 0, id = 2 * bodies; b < bodies; ++b) {
+    if (!bodies_[b].visual) continue;
+    bodies_[b].visual->add_views(id, b, frame);
+    id += bodies_[b].visual->parts();
+  }
   for (std::size_t i = 0; i < backdrop_.size(); ++i) {
     const Rigid& part = backdrop_[i];
     frame.meshes.push_back({.id = -1 - static_cast<int>(i),

@@ -9,9 +9,11 @@
 #include "common/tool/kinematics.hpp"
 #include "common/view/draw_list.hpp"
 #include "common/view/looks.hpp"
+#include "common/view/visual_body.hpp"
 #include "idl/messages.hpp"
 #include "render_node/refine.hpp"
 #include "render_node/thick_wall.hpp"
+#include "render_node/visual_on_stage.hpp"
 
 namespace palpate {
 
@@ -19,8 +21,10 @@ namespace palpate {
 /// sides, catheters smooth tubes. Copies are snapshots.
 class Stage {
  public:
-  /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty.
-  Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop);
+  /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty. `visuals`: none, or one per body,
+  /// which may be empty. Throws as decode_png().
+  Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
+        std::vector<std::optional<VisualBody>> visuals = {});
 
   /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is. `dents`: which
   /// the positions show at the nodes; between these they are drawn as they are, round.
@@ -28,6 +32,9 @@ class Stage {
                    std::span<const HertzDent> dents = {});
   /// Another surface of one body over the same nodes, after a cut: outward triangles.
   void set_triangles(int body, std::span<const std::array<int, 3>> triangles);
+  bool has_visual(int body) const { return bodies_.at(body).visual.has_value(); }
+  /// Before set_triangles(): which piece each tetrahedron belongs to after the cut, as VisualShape::part() takes it.
+  void part_visual(int body, std::span<const int> piece) { bodies_.at(body).visual->part(piece); }
   /// False (and nothing set) if the scene has no such tool.
   bool set_tool(const ToolState& state);
   void set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge);
@@ -40,6 +47,7 @@ class Stage {
   struct Soft;
   void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
   void add_wall(Soft& body, const BodyLook& look) const;
+  void add_visual(Soft& body, VisualBody visual, const Body& spec, const SurfaceMap& map) const;
   static void smooth(Soft& body, std::span<const HertzDent> dents);
   static void dent(Soft& body, const HertzDent& dent);
   static void add_views(const Soft& body, int id, int inner_id, Frame& frame);
@@ -58,6 +66,8 @@ class Stage {
     ThickWall wall;                        ///< of a modal shell
     std::vector<Eigen::Vector3f> inner_texture;
     std::vector<float> inner_displacement;
+    std::optional<VisualOnStage> visual;    ///< is seen in place of the body's own surface
+    std::vector<std::array<int, 3>> uncut;  ///< own surface before any cut, where there is a visual one
   };
   struct Rigid {
     std::vector<Eigen::Vector3f> position, normal;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# pictures.sh [NAME ...]: draws the pictures of README anew, in docs/pictures: liver, hepatectomy, catheter_insertion by the
+# pictures.sh [NAME ...]: draws the pictures of README anew, in docs/pictures: liver, liver_visual, hepatectomy, catheter_insertion by the
 # scenes in lock step, live by a browser (needs chromium, chromium-driver and python3-selenium). All of them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,10 +14,11 @@ draw() {
 }
 jpeg() { ffmpeg -loglevel error -y -i "$work/$1.png" -q:v 2 "docs/pictures/$1.jpg"; }
 
-[ $# -gt 0 ] || set -- liver hepatectomy catheter_insertion live
+[ $# -gt 0 ] || set -- liver liver_visual hepatectomy catheter_insertion live
 for name in "$@"; do
   case "$name" in
     liver) draw liver liver 0 8 && jpeg liver ;;
+    liver_visual) draw liver_visual liver_visual 0 4 && jpeg liver_visual ;;
     hepatectomy) draw hepatectomy hepatectomy 13 13.2 && jpeg hepatectomy ;;
     catheter_insertion) draw catheter_insertion catheter_insertion 10.5 10.8 && jpeg catheter_insertion ;;
     live) /usr/bin/python3 scripts/live_view.py --rounds 1 --picture "$work/live.png" && jpeg live ;;

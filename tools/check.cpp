@@ -13,6 +13,7 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/tool/instrument.hpp"
+#include "render_node/image.hpp"
 #include "tools/check_tool.hpp"
 #include "tools/commands.hpp"
 #include "tools/human_bytes.hpp"
@@ -65,6 +66,12 @@ std::vector<MemoryPart> of_nodes(const NodePlan& plan, std::vector<MemoryPart> p
   return parts;
 }
 
+/// Throws std::runtime_error if the picture that a visual surface wears is damaged.
+void check_texture(const Body& body) {
+  const SolidSpec* solid = as<SolidSpec>(body);
+  if (solid && solid->visual && !solid->visual->texture.empty()) read_png(solid->visual->texture);
+}
+
 /// Loads and validates a body's mesh and everything that refers to it.
 CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
   const CheckSettings settings{
@@ -76,6 +83,7 @@ CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
       .check_guests = [&](const ShellSpec& wall, const ShellMesh& mesh) { check_guests(scene, wall, mesh); }};
   CheckReport report{.say = [&out](const std::string& line) { out.say(line); }};
   std::visit([&](const auto& spec) { check(spec, settings, report); }, body);
+  check_texture(body);  // its size is known to be within bounds by now
   say_archive(scene, body, out);
   out.memory(of_nodes(plan_nodes(scene, {}), report.memory));
   return report;

@@ -101,13 +101,15 @@ void run(const NodeOptions& o) {
   const Scene& scene = loaded.scene;
   std::vector<SurfaceMap> surfaces;
   for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
+  const std::vector<std::optional<VisualBody>> visuals = load_visuals(scene, loaded.archives);
   std::vector<std::size_t> nodes;
-  std::vector<std::vector<std::array<int, 3>>> triangles;
-  std::vector<std::vector<Eigen::Vector3f>> rest;
+  std::vector<web::WebLoop::Beginning> bodies;
   for (const SurfaceMap& surface : surfaces) {
     nodes.push_back(surface.position.size());
-    triangles.push_back(surface.triangles);
-    for (auto& body = rest.emplace_back(); const Eigen::Vector3d& p : surface.position) body.push_back(p.cast<float>());
+    web::WebLoop::Beginning& body = bodies.emplace_back();
+    body.triangles = surface.triangles;
+    body.visual = visuals[bodies.size() - 1].has_value();
+    for (const Eigen::Vector3d& p : surface.position) body.rest.push_back(p.cast<float>());
   }
 
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "web"));
@@ -120,10 +122,10 @@ void run(const NodeOptions& o) {
   const web::ServerSettings settings = server_settings(scene.web);
   web::Server server(settings, {.said = [&](std::uint32_t page, const web::Said& said) { pages.said(page, said); },
                                 .gone = [&](std::uint32_t page) { hands.gone(page); }});
-  server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene))});
+  server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene), visuals)});
   loaded.archives.clear();
   catch_shutdown_signals();
-  web::WebLoop loop(scene, std::move(triangles), std::move(rest), *source, *bus, presence, hands, server);
+  web::WebLoop loop(scene, std::move(bodies), *source, *bus, presence, hands, server);
   if (topology) loop.set_topology(&*topology);
   fmt::print("live view: {}\n", link_to(settings, server.port()));
   say_ready(o);

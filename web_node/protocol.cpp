@@ -66,16 +66,31 @@ bool usable(const Sample& s) {
 
 }  // namespace
 
-nlohmann::json Container::add(std::span<const Vector3f> vectors) {
+nlohmann::json Container::append(const void* data, std::size_t bytes, std::size_t count, const char* type) {
   const std::size_t at = arrays_.size();
-  arrays_.append(reinterpret_cast<const char*>(vectors.data()), vectors.size_bytes());
-  return {{"at", at}, {"count", 3 * vectors.size()}, {"type", "f32"}};
+  arrays_.append(static_cast<const char*>(data), bytes);
+  pad(arrays_, 0);
+  return {{"at", at}, {"count", count}, {"type", type}};
+}
+
+nlohmann::json Container::add(std::span<const Vector3f> vectors) {
+  return append(vectors.data(), vectors.size_bytes(), 3 * vectors.size(), "f32");
 }
 
 nlohmann::json Container::add(std::span<const std::array<int, 3>> triangles) {
-  const std::size_t at = arrays_.size();
-  arrays_.append(reinterpret_cast<const char*>(triangles.data()), triangles.size_bytes());
-  return {{"at", at}, {"count", 3 * triangles.size()}, {"type", "u32"}};
+  return append(triangles.data(), triangles.size_bytes(), 3 * triangles.size(), "u32");
+}
+
+nlohmann::json Container::add_numbers(std::span<const float> numbers) {
+  return append(numbers.data(), numbers.size_bytes(), numbers.size(), "f32");
+}
+
+nlohmann::json Container::add_integers(std::span<const int> integers) {
+  return append(integers.data(), integers.size_bytes(), integers.size(), "i32");
+}
+
+nlohmann::json Container::add_bytes(std::string_view bytes) {
+  return append(bytes.data(), bytes.size(), bytes.size(), "u8");
 }
 
 std::string Container::finish(Kind kind, const nlohmann::json& json) const {

@@ -25,15 +25,20 @@ struct Message {
 };
 
 /// JSON with arrays beside it: kind, length of the JSON, the JSON padded to 4 bytes, then the arrays. In the JSON an
-/// array is {"at": byte behind the JSON, "count": numbers, "type": "f32" or "u32"}.
+/// array is {"at": byte behind the JSON, "count": numbers, "type": "f32", "u32", "i32" or "u8"}.
 class Container {
  public:
   nlohmann::json add(std::span<const Eigen::Vector3f> vectors);
   nlohmann::json add(std::span<const std::array<int, 3>> triangles);
+  nlohmann::json add_numbers(std::span<const float> numbers);
+  nlohmann::json add_integers(std::span<const int> integers);
+  nlohmann::json add_bytes(std::string_view bytes);
   /// Throws std::runtime_error where it would not fit 32 bits.
   std::string finish(Kind kind, const nlohmann::json& json) const;
 
  private:
+  nlohmann::json append(const void* data, std::size_t bytes, std::size_t count, const char* type);
+
   std::string arrays_;
 };
 

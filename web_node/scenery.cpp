@@ -26,6 +26,8 @@ const char* name_of(Finish finish) {
   switch (finish) {
     case Finish::tissue:
       return "tissue";
+    case Finish::membrane:
+      return "membrane";
     case Finish::duct:
       return "duct";
     case Finish::plastic:
@@ -40,12 +42,50 @@ const char* name_of(Finish finish) {
   return "mucosa";
 }
 
-json body_of(const Body& spec, const SurfaceMap& surface, const Render& render, Container& to) {
+json visual_of(const VisualBody& visual, const std::array<double, 3>& tissue, Container& to) {
+  const VisualMesh& mesh = visual.mesh;
+  json parts = json::array();
+  bool textured = false;
+  for (const VisualMesh::Part& part : mesh.parts) {
+    const PartLook look = look_of(part, tissue);
+    parts.push_back({{"finish", name_of(look.finish)},
+                     {"colour", look.colour},
+                     {"textured", part.textured},
+                     {"first", part.first},
+                     {"count", part.count},
+                     {"triangles", to.add(part.triangles)}});
+    textured |= part.textured;
+  }
+  std::vector<int> cells, cell;
+  std::vector<float> weights, image;
+  for (const auto& nodes : visual.binding.cells) cells.insert(cells.end(), nodes.begin(), nodes.end());
+  for (const VisualBinding::Tie& tie : visual.binding.ties) {
+    cell.push_back(tie.cell);
+    weights.insert(weights.end(), tie.weight.begin(), tie.weight.end());
+  }
+  json out{{"position", to.add(mesh.position)},
+           {"node", to.add_integers(mesh.node)},
+           {"nodes", mesh.nodes},
+           {"cells", to.add_integers(cells)},
+           {"tetrahedra", visual.binding.tetrahedra},
+           {"cell", to.add_integers(cell)},
+           {"weight", to.add_numbers(weights)},
+           {"parts", parts}};
+  if (!textured) return out;
+  for (const Eigen::Vector2f& place : mesh.image) image.insert(image.end(), place.begin(), place.end());
+  out["image"] = to.add_numbers(image);
+  out["texture"] = to.add_bytes(visual.texture);
+  return out;
+}
+
+json body_of(const Body& spec, const SurfaceMap& surface, const Render& render, const std::optional<VisualBody>& visual,
+             Container& to) {
   const BodyLook look = look_of(spec, surface, render);
   json body{{"name", name_of(spec)},       {"finish", name_of(look.finish)},
             {"colour", look.colour},       {"max_triangles", look.max_triangles},
             {"thickness", look.thickness}, {"rest", to.add(to_float(surface.position))}};
   if (!look.texture.empty()) body["texture"] = to.add(look.texture);
+  if (visual) body["visual"] = visual_of(*visual, look.colour, to);
   return body;
 }
 
@@ -88,13 +128,14 @@ void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<doub
 
 }  // namespace
 
-std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop) {
+std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
+                            std::span<const std::optional<VisualBody>> visuals) {
   Container container;
   const Render render = scene.render.value_or(Render{});
   const Camera camera = scene.render ? render.camera : fit_camera(surfaces);
   json bodies = json::array(), tools = json::array(), behind = json::array();
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    bodies.push_back(body_of(scene.bodies[b], surfaces[b], render, container));
+    bodies.push_back(body_of(scene.bodies[b], surfaces[b], render, visuals[b], container));
   for (const Tool& tool : scene.tools) tools.push_back(tool_of(tool, container));
   const Backdrop sorted = sort_backdrop(backdrop);
   add_backdrop(sorted.bones, Finish::bone, kBoneColour, container, behind);
@@ -112,11 +153,14 @@ std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surf
                                           {"backdrop", behind}});
 }
 
-std::string topology_message(std::uint32_t number, std::span<const std::vector<std::array<int, 3>>> triangles) {
+std::string topology_message(std::uint32_t number, std::span<const BodyTopology> topologies) {
   Container container;
-  json bodies = json::array();
-  for (const auto& of_body : triangles) bodies.push_back(container.add(of_body));
-  return container.finish(Kind::topology, {{"number", number}, {"bodies", bodies}});
+  json bodies = json::array(), pieces = json::array();
+  for (const BodyTopology& body : topologies) {
+    bodies.push_back(container.add(body.triangles));
+    pieces.push_back(body.pieces.empty() ? json() : container.add_integers(body.pieces));
+  }
+  return container.finish(Kind::topology, {{"number", number}, {"bodies", bodies}, {"pieces", pieces}});
 }
 
 }  // namespace palpate::web

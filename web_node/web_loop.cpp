@@ -30,8 +30,7 @@ json of(const TaskRecord& task, const Scene& scene) {
 
 }  // namespace
 
-WebLoop::WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>> triangles,
-                 std::vector<std::vector<Eigen::Vector3f>> rest, SurfaceSource& source, Bus& bus, Presence& presence,
+WebLoop::WebLoop(const Scene& scene, std::vector<Beginning> bodies, SurfaceSource& source, Bus& bus, Presence& presence,
                  const Hands& hands, Server& server)
     : scene_(scene),
       source_(source),
@@ -43,8 +42,7 @@ WebLoop::WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>
       link_(bus),
       tools_(bus.reader(topics::tool_state)),
       forces_(bus.reader(topics::force_state)),
-      triangles_(std::move(triangles)),
-      rest_(std::move(rest)),
+      bodies_(std::move(bodies)),
       frame_tools_(scene.tools.size()) {
   presence_.set_clock(&clock_);
   if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
@@ -52,7 +50,9 @@ WebLoop::WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>
     const InstrumentView view = instrument_of(tool);
     instruments_.push_back({make_trocar(tool.pivot, tool.axis, tool.up), view, make_instrument(view)});
   }
-  server_.publish(topology, {false, topology_message(topology_number_, triangles_)});
+  for (const Beginning& body : bodies_)
+    topologies_.push_back({body.visual ? std::vector<std::array<int, 3>>() : body.triangles, {}});
+  server_.publish(topology, {false, topology_message(topology_number_, topologies_)});
 }
 
 void WebLoop::take() {
@@ -85,9 +85,15 @@ void WebLoop::take_tool(const ToolState& state) {
 
 void WebLoop::follow_cuts() {
   const std::vector<int> changed = topology_->take();
-  for (const int body : changed) triangles_[body] = topology_->triangles(body);
+  for (const int body : changed) {
+    topologies_[body].triangles = topology_->triangles(body);
+    if (!bodies_[body].visual) continue;
+    topologies_[body].triangles = bared(bodies_[body].triangles, topologies_[body].triangles);
+    const std::span<const int> pieces = topology_->pieces(body);
+    topologies_[body].pieces.assign(pieces.begin(), pieces.end());
+  }
   if (changed.empty()) return;
-  server_.publish(topology, {false, topology_message(++topology_number_, triangles_)});
+  server_.publish(topology, {false, topology_message(++topology_number_, topologies_)});
 }
 
 FrameTool WebLoop::tool_in_frame(int index) const {
@@ -126,9 +132,9 @@ void WebLoop::send_frame() {
   frame_.latency_ms = 1e-6f * static_cast<float>(now - own);
   frame_.tools = frame_tools_;
   frame_.bodies.clear();
-  for (std::size_t b = 0; b < rest_.size(); ++b) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto position = source_.shape(static_cast<int>(b)).position;
-    frame_.bodies.push_back(position.empty() ? std::span<const Eigen::Vector3f>(rest_[b]) : position);
+    frame_.bodies.push_back(position.empty() ? std::span<const Eigen::Vector3f>(bodies_[b].rest) : position);
   }
   server_.publish(frame, {false, encode(frame_)});
   ++report_.frames;

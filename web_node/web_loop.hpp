@@ -29,9 +29,13 @@ struct WebReport {
 /// Takes what the bus has and gives the server frames, at the scene's visual rate.
 class WebLoop {
  public:
-  /// `triangles` and `rest` [m]: of each body at the beginning.
-  WebLoop(const Scene& scene, std::vector<std::vector<std::array<int, 3>>> triangles,
-          std::vector<std::vector<Eigen::Vector3f>> rest, SurfaceSource& source, Bus& bus, Presence& presence,
+  /// What each body is like at the beginning.
+  struct Beginning {
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<Eigen::Vector3f> rest;  ///< [m]
+    bool visual = false;                ///< a visual surface is drawn in place of the triangles
+  };
+  WebLoop(const Scene& scene, std::vector<Beginning> bodies, SurfaceSource& source, Bus& bus, Presence& presence,
           const Hands& hands, Server& server);
 
   void set_topology(TopologyFeed* topology) { topology_ = topology; }
@@ -69,9 +73,9 @@ class WebLoop {
   std::unique_ptr<Reader<TaskRecord>> tasks_;  ///< null where no body tells a task
   std::vector<Instrument> instruments_;
   std::map<std::uint32_t, TaskRecord> latest_task_;
-  std::vector<std::vector<std::array<int, 3>>> triangles_;
+  std::vector<Beginning> bodies_;
+  std::vector<BodyTopology> topologies_;
   std::uint32_t topology_number_ = 0;
-  std::vector<std::vector<Eigen::Vector3f>> rest_;
   Frame frame_;
   std::vector<FrameTool> frame_tools_;
   std::int64_t begin_ns_ = 0, last_sense_ns_ = 0, last_status_ns_ = 0;

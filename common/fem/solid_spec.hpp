@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/mesh/selector.hpp"
+#include "common/mesh/visual_spec.hpp"
 
 namespace palpate {
 
@@ -86,6 +87,7 @@ inline void describe(Description& d, MeshedSpec& b) {
 struct SolidSpec : MeshedSpec {
   std::vector<BoundaryCondition> fixed;
   std::vector<MaterialRegion> materials;  ///< empty: one material, nothing is stored per element
+  std::optional<VisualSpec> visual;       ///< absent: its own surface is drawn
 };
 
 /// Refuses a body that nothing holds.
@@ -100,6 +102,7 @@ inline void describe(Description& d, SolidSpec& b) {
   d.tables({"material", "", "parts of another material; where two overlap, the later one counts", Need::optional,
             Use::stored},
            b.materials, {{}, b.material});
+  d.table({"visual", "", "what is drawn in its place", Need::optional, Use::local, "its own surface"}, b.visual);
 }
 
 }  // namespace palpate

@@ -25,6 +25,16 @@ std::vector<int> TopologyFeed::take() {
   return changed;
 }
 
+std::span<const int> TopologyFeed::pieces(int index) {
+  Followed& body = bodies_.at(index);
+  std::vector<char> joined(body.mesh->parts(body.piece), 0);
+  for (const int facet : body.shown->joints())
+    if (const int part = body.piece[facet / 4]; part >= 0) joined[part] = 1;
+  for (int& part : body.piece)
+    if (part >= 0) part = joined[part] ? 0 : part + 1;
+  return body.piece;
+}
+
 std::size_t TopologyFeed::cuts() const {
   std::size_t sum = 0;
   for (const auto& [index, body] : bodies_) sum += memory_.removed(index).size();

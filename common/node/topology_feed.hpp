@@ -18,6 +18,9 @@ class TopologyFeed {
   const std::vector<std::array<int, 3>>& triangles(int body) {
     return bodies_.at(body).shown->triangles(*bodies_.at(body).mesh);
   }
+  /// Which piece of such a body each of its tetrahedra belongs to: -1 for one that is gone, 0 for what is joined to a
+  /// rest that cannot be cut, then from 1. Valid until the next call.
+  std::span<const int> pieces(int body);
   const CutMesh& mesh(int body) const { return *bodies_.at(body).mesh; }
   std::size_t cuts() const;                                    ///< tetrahedra gone, of all bodies
   std::uint64_t refused() const { return memory_.refused(); }  ///< messages that do not fit the archives
@@ -29,6 +32,7 @@ class TopologyFeed {
     std::unique_ptr<CutMesh> mesh;
     std::unique_ptr<ShownSurface> shown;
     std::uint64_t run = 0;
+    std::vector<int> piece;  ///< per tetrahedron
   };
 
   TopologyMemory memory_;

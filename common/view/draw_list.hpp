@@ -13,15 +13,23 @@
 namespace palpate {
 
 /// How a mesh reflects light; only the outer side is drawn. Bone and lining (the smooth, moist wall of a cavity) are
-/// backdrop: they stand still. Duct and mucosa: outer and inner side of a thin-walled tube. Plastic: a catheter with
-/// marks. For these three `rest` is along the straightened tube: z is the distance along it, of a catheter minus that
-/// from its tip.
-enum class Finish { tissue, bone, lining, duct, mucosa, plastic };
+/// backdrop: they stand still. Membrane: what lies smooth over a
+/// gall bladder or a vessel, in a colour of its own. Duct and mucosa: outer and inner side of a thin-walled tube.
+/// Plastic: a catheter with marks. For these three `rest` is along the straightened tube: z is the distance along it,
+/// of a catheter minus that from its tip.
+enum class Finish { tissue, membrane, bone, lining, duct, mucosa, plastic };
 
 /// Whether meshes of this finish stand still behind the others.
 constexpr bool in_backdrop(Finish finish) {
   return finish == Finish::bone || finish == Finish::lining;
 }
+
+/// An image that a mesh wears in place of its colour; the pixels are sRGB, upper row first, four bytes each.
+struct TextureView {
+  int id = 0;  ///< the renderer keeps it under this number
+  int width = 0, height = 0;
+  std::span<const std::uint8_t> rgba;
+};
 
 /// A triangle mesh to draw. The spans belong to the caller and must live until Renderer::draw returns.
 struct MeshView {
@@ -33,8 +41,10 @@ struct MeshView {
   std::span<const Eigen::Vector3f> position;       ///< [m] per vertex
   std::span<const Eigen::Vector3f> normal;         ///< unit, outward, per vertex
   std::span<const float> scalar;                   ///< [m] per vertex, coloured by Frame::legend; empty: own colour
-  std::span<const std::array<int, 3>> triangles;   ///< vertex indices, outward by the right-hand rule
-  bool moving = true;                              ///< false: uploaded once per shape
+  std::span<const Eigen::Vector2f> image;          ///< per vertex, from the texture's upper left corner; empty: none
+  TextureView texture;
+  std::span<const std::array<int, 3>> triangles;  ///< vertex indices, outward by the right-hand rule
+  bool moving = true;                             ///< false: uploaded once per shape
 };
 
 /// A rigid instrument: a probe, whose spherical tip on a shaft opens into two jaws, an electric scalpel, or a forceps.

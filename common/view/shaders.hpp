@@ -11,6 +11,7 @@ extern const char* const colours;
 extern const char* const rigid_vert;
 extern const char* const tissue_vert;
 extern const char* const tissue_frag;
+extern const char* const membrane_frag;
 extern const char* const wall_vert;
 extern const char* const duct_frag;
 extern const char* const mucosa_frag;

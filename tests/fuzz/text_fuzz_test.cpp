@@ -5,13 +5,17 @@
 
 #include <regex>
 
+#include "common/files/png_file.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/obj_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/trajectory.hpp"
+#include "render_node/image.hpp"
 #include "tests/fuzz/rounds.hpp"
 #include "tests/mesh/literal_files.hpp"
+#include "tests/mesh/visual_surfaces.hpp"
 #include "tests/scene/full_scene.hpp"
 #include "tests/tensors/files_for_tests.hpp"
 
@@ -127,6 +131,36 @@ TEST(MeshFuzz, AMeshIsReadOrRefusedInWords) {
     const bool solid = reads(file, [&] { check_tet_mesh(load_tet_mesh(file, 1), file.string()); });
     const bool shell = reads(file, [&] { load_shell_mesh(file, 1); });
     return reads(file, [&] { load_triangle_mesh(file, 1); }) || solid || shell;
+  });
+}
+
+/// A visual surface, its materials and its image.
+TEST(VisualFuzz, AVisualSurfaceIsReadOrRefusedInWords) {
+  const testing::TemporaryFolder folder;
+  const VisualMesh mesh = ellipsoid_around({0.05, 0.04, 0.03}, 3, 5);
+  write_obj(mesh, folder / "a.obj", 1e-3, 3);
+  write_mtl(mesh, folder / "a.mtl", "a.png");
+  Image image{16, 8, std::vector<std::uint8_t>(std::size_t{4} * 16 * 8, 99)};
+  write_png(image, folder / "a.png");
+  const ObjMaterials materials = load_mtl(folder / "a.mtl");
+  std::vector<Sample> samples;
+  for (const char* name : {"a.obj", "a.mtl", "a.png"}) {
+    const auto bytes = testing::read_bytes(folder / name);
+    samples.push_back({name, {bytes.begin(), bytes.end()}});
+  }
+  spoil_all(samples, 3000, 4, [&](const std::filesystem::path& file) {
+    return reads(file, [&] {
+      if (file.extension() == ".obj") {
+        const VisualMesh read = load_obj(file, 1e-3, materials, true);
+        for (const VisualMesh::Part& part : read.parts)
+          for (const auto& triangle : part.triangles)
+            for (const int vertex : triangle) ASSERT_TRUE(vertex >= 0 && vertex < part.count);
+      } else if (file.extension() == ".mtl") {
+        load_mtl(file);
+      } else {
+        decode_png(read_png_bytes(file, kMaxTextureSide), file);
+      }
+    });
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/obj_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
 #include "render_node/image.hpp"
@@ -74,6 +75,22 @@ TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSame
   }
   ASSERT_EQ(organ(image, labels + (folder_ / "b.msh").string()).status, 0);
   EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+}
+
+TEST_F(OrganCommand, ASurfaceToBeLookedAtHasAMaterialForEachLabel) {
+  const auto image = write_file(folder_ / "image.inr", header() + voxels());
+  const auto look = folder_ / "look.obj";
+  const auto made =
+      organ(image, "--label 7=liver --label 9=gall_bladder --nodes 400 --group a=below:z --triangles 3000 -o " +
+                       (folder_ / "o.msh").string() + " --visual " + look.string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const VisualMesh mesh = load_obj(look, 1e-3, load_mtl(folder_ / "look.mtl"), false);
+  EXPECT_NEAR(static_cast<double>(mesh.triangles()), 3000, 450);
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  EXPECT_EQ(mesh.parts[0].material, "liver");
+  EXPECT_FALSE(mesh.parts[0].colour);
+  EXPECT_EQ(mesh.parts[1].material, "gall_bladder");
+  EXPECT_TRUE(mesh.parts[1].colour);
 }
 
 TEST_F(OrganCommand, PicturesShowTheBorderTheTetrahedraAndBothSurfaces) {

@@ -15,7 +15,7 @@ class SceneFolder {
     char name[] = "/tmp/palpate_scene_XXXXXX";
     path_ = mkdtemp(name);
     for (const char* file : {"liver.msh", "tube.stl", "force.csv", "radial.csv", "specimen.msh", "coarse.msh",
-                             "move.csv", "session.lcmlog", "ribs.stl"})
+                             "move.csv", "session.lcmlog", "ribs.stl", "organ.obj", "organ.mtl", "organ.png"})
       write(file, "some bytes\n");
   }
   ~SceneFolder() { std::filesystem::remove_all(path_); }
@@ -82,6 +82,12 @@ nodes = [10, 11]
 refine = 1
 element = "p2"
 formulation = "locking_free"
+
+[body.visual]
+surface = "organ.obj"
+materials = "organ.mtl"
+texture = "organ.png"
+scale = 0.001
 
 [[body]]
 name = "plate"

@@ -90,6 +90,21 @@ TEST(WebProtocol, ArraysLieBesideTheirJson) {
   EXPECT_EQ(at<std::int32_t>(bytes, 8 + length), 1);
 }
 
+TEST(WebProtocol, ArraysOfBytesLeaveTheNextWhereNumbersMayLie) {
+  Container container;
+  const std::vector<int> pieces{-1, 2};
+  const nlohmann::json json{{"image", container.add_bytes("\x89PNG\n")}, {"pieces", container.add_integers(pieces)}};
+  const std::string bytes = container.finish(Kind::scenery, json);
+  const auto length = at<std::uint32_t>(bytes, 4);
+  const auto told = nlohmann::json::parse(bytes.substr(8, length));
+  EXPECT_EQ(told["image"]["type"], "u8");
+  EXPECT_EQ(told["image"]["count"], 5);
+  const auto second = told["pieces"]["at"].get<std::size_t>();
+  EXPECT_EQ(second % 4, 0u);
+  EXPECT_EQ(told["pieces"]["type"], "i32");
+  EXPECT_EQ(at<std::int32_t>(bytes, 8 + length + second), -1);
+}
+
 TEST(WebProtocol, ASampleIsRead) {
   const auto said = decode(sample_bytes(5, {0.1f, 0.2f, -0.3f, 1, 0.5f, 1}));
   ASSERT_TRUE(said);

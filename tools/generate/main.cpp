@@ -10,6 +10,7 @@
 #include "common/cli/command_line.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/obj_file.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_quality.hpp"
@@ -18,6 +19,7 @@
 #include "tools/generate/duct_motions.hpp"
 #include "tools/generate/hepatectomy.hpp"
 #include "tools/generate/liver.hpp"
+#include "tools/generate/liver_visual.hpp"
 #include "tools/generate/plate.hpp"
 #include "tools/generate/plate_cut.hpp"
 #include "tools/generate/ribs.hpp"
@@ -75,6 +77,17 @@ void save(const ShellMesh& mesh, const std::filesystem::path& file) {
               mesh.triangles.size(), 2e3 * lumen_radius(mesh));
 }
 
+/// As OBJ in millimetres, with its materials and its image beside it.
+void save_liver_visual(const std::filesystem::path& file) {
+  const VisualMesh mesh = make_liver_visual();
+  const std::filesystem::path image = std::filesystem::path(file).replace_extension(".png");
+  write_obj(mesh, file, 1e-3, 2);
+  write_mtl(mesh, std::filesystem::path(file).replace_extension(".mtl"), image.filename());
+  write_liver_texture(image);
+  std::printf("%s: %zu vertices, %zu triangles, %zu materials\n", file.c_str(), mesh.position.size(), mesh.triangles(),
+              mesh.parts.size());
+}
+
 /// Writes the trajectories that a scene of the duct names; the files must be there already, as for every scene.
 void save_motions(const std::filesystem::path& file) {
   const Scene scene = load_scene(file);
@@ -107,6 +120,9 @@ int main(int argc, char** argv) {
   cli::Command shape = add_shape("liver", "the default organ (.msh)", [&] { save(make_liver(liver), file); });
   shape.add_option("--frequency", liver.frequency, "Fineness f of the surface: 10 f^2 + 2 nodes").between(2, 64);
   shape.add_option("--size", liver.inner_size, "Edge length inside [m]").positive();
+
+  add_shape("liver_visual", "how it looks, with gall bladder and vessels (.obj, .mtl and .png)",
+            [&] { save_liver_visual(file); });
 
   int plate_cells = 18;
   shape = add_shape("plate", "a thin square plate (.msh)", [&] { save(make_plate(plate_cells), file); });

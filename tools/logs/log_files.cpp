@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 
 /// A resolved scene that came over a network may name any file: only what a scene is made of goes into a log.
 bool is_scene_file(const fs::path& file) {
-  constexpr std::array<std::string_view, 7> kEndings{".msh", ".vtk", ".vtu", ".stl", ".csv", ".inp", ".lcmlog"};
+  constexpr std::array<std::string_view, 10> kEndings{".msh", ".vtk", ".vtu", ".stl", ".csv",
+                                                      ".inp", ".obj", ".mtl", ".png", ".lcmlog"};
   return std::ranges::find(kEndings, file.extension().string()) != kEndings.end();
 }
 

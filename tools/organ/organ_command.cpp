@@ -12,6 +12,7 @@
 #include "tools/organ/fineness_options.hpp"
 #include "tools/organ/label_measures.hpp"
 #include "tools/organ/organ_pictures.hpp"
+#include "tools/organ/organ_visual.hpp"
 
 namespace palpate {
 namespace {
@@ -21,7 +22,8 @@ constexpr double kDeviation = 0.6;  // voxel diagonals
 
 struct OrganOptions : MeshOptions {
   OrganOptions() { nodes = 2500; }
-  std::string volume, preview;
+  std::string volume, preview, visual;
+  int visual_triangles = 14000;
   std::vector<std::string> labels;
   double smoothing = 1, gap_mm = 0;
   std::string series;
@@ -77,6 +79,8 @@ OrganOptions options_of_one(const OrganOptions& o, const std::vector<NamedLabel>
   const fs::path file(o.output);
   own.output = file.parent_path() / fmt::format("{}_{}{}", file.stem().string(), name, file.extension().string());
   if (!o.preview.empty()) own.preview = fs::path(o.preview) / name;
+  const fs::path visual(o.visual);
+  if (!o.visual.empty()) own.visual = visual.parent_path() / fmt::format("{}_{}.obj", visual.stem().string(), name);
   return own;
 }
 
@@ -106,6 +110,16 @@ std::vector<NamedLabel> named_labels(const LabelVoxels& voxels, const std::vecto
   return named;
 }
 
+void make_visual(const LabelVolume& volume, const std::vector<NamedLabel>& labels, const LabelSolid& solid,
+                 const OrganOptions& o) {
+  say_progress("making the surface to be looked at");
+  VisualMesh mesh = visual_of(solid, labels, o.visual_triangles);
+  for (Eigen::Vector3f& p : mesh.position) p = volume.in_world(p.cast<double>()).cast<float>();
+  write_visual(mesh, o.visual);
+  fmt::print("{}: {} triangles of {} materials in millimetres, for [body.visual]\n", o.visual, mesh.triangles(),
+             mesh.parts.size());
+}
+
 void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<int>& labels,
                const LabelSolid& solid, const Fineness& fineness, const OrganOptions& o) {
   FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
@@ -116,6 +130,7 @@ void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::
     write_organ_pictures(volume, named, solid.solid, filled, o.preview);
   }
   print_label_measures(voxels, labels, solid, filled);
+  if (!o.visual.empty()) make_visual(volume, named, solid, o);
   for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.in_world(x);
   finish_mesh(std::move(filled.mesh), o);
 }
@@ -206,6 +221,13 @@ void add_organ_command(cli::Command& app) {
   command.add_option("--preview", o->preview,
                      "Folder for pictures: each slice with the smoothed border and the tetrahedra cut there, the "
                      "surface of the voxels and that of the mesh");
+  command
+      .add_option("--visual", o->visual,
+                  "Write the surface as it is looked at (.obj, and .mtl beside it), a material for each label")
+      .output_file(".obj", {".csv"});
+  command.add_option("--triangles", o->visual_triangles, "About so many has that surface")
+      .between(100, 200000)
+      .show_default();
   add_mesh_options(command, *o);
   command.tells_progress();
   command.examples(

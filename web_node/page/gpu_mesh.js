@@ -1,5 +1,5 @@
 // A triangle mesh in buffers of its own.
-const slots = { position: 3, normal: 3, rest: 3, scalar: 1 };
+const slots = { position: 3, normal: 3, rest: 3, scalar: 1, image: 2 };
 
 export class GpuMesh {
   constructor(gl) {
@@ -14,7 +14,7 @@ export class GpuMesh {
     const { gl } = this, fresh = this.shape !== view.shape;
     gl.bindVertexArray(this.array);
     for (const [slot, name] of Object.keys(slots).entries())
-      if (view[name] && (fresh || name !== 'rest')) this.put(slot, name, view[name], fresh);
+      if (view[name] && (fresh || (name !== 'rest' && name !== 'image'))) this.put(slot, name, view[name], fresh);
     if (fresh) {
       this.shape = view.shape;
       this.count = view.triangles.length;

@@ -82,7 +82,7 @@ class App {
     const { topology, next, scenery } = this;
     if (!scenery || !topology || !next || next.topology !== topology.number) return;
     if (this.built !== topology) {
-      topology.bodies.forEach((triangles, b) => this.setTriangles(b, triangles));
+      topology.bodies.forEach((triangles, b) => this.setTriangles(b, triangles, topology.pieces[b]));
       this.built = topology;
     }
     if (this.frame === next) return;
@@ -94,11 +94,12 @@ class App {
     if (most > this.look.legendMax) this.look.legendMax = roundUp(most);
   }
 
-  setTriangles(b, triangles) {
+  setTriangles(b, triangles, pieces) {
     const body = this.bodies[b];
     const spec = this.scenery.bodies[b], most = this.picture.software ? spec.max_triangles / 4 : spec.max_triangles;
     if (!body) this.bodies[b] = new SoftBody(spec, triangles, most);
     else if (!same(body.refinement.coarseTriangles, triangles)) body.setTriangles(triangles);
+    if (pieces) this.bodies[b].visual.part(pieces);
   }
 
   tick(now) {

@@ -3,9 +3,8 @@ import { add, dot, scale, unit } from './vec.js';
 
 // What was there when a drag began: a surface that gives way must not lead the tool on.
 export function snapshot(bodies) {
-  return bodies.filter((body) => body.spec.finish !== 'plastic').map((body) => ({
-    position: body.position.slice(), normal: body.normal.slice(), triangles: body.refinement.triangles,
-  }));
+  return bodies.filter((body) => body.spec.finish !== 'plastic').flatMap((body) => body.surfaces())
+    .map(({ position, normal, triangles }) => ({ position: position.slice(), normal: normal.slice(), triangles }));
 }
 
 export function pick(surfaces, ray) {

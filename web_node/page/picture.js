@@ -2,6 +2,7 @@
 import { Backdrop } from './backdrop.js';
 import { GpuMesh } from './gpu_mesh.js';
 import { Programs } from './programs.js';
+import { Textures } from './textures.js';
 import { axesOf, axis, blockBytes, origin, sceneBlock } from './scene_block.js';
 import { arrowMesh, arrowPlace } from './arrow.js';
 
@@ -32,6 +33,7 @@ export class Picture {
     this.arrow = new GpuMesh(gl).upload({ shape: 1, ...arrowMesh() });
     this.backdrop = new Backdrop(gl, this.programs);
     this.meshes = new Map();
+    this.textures = new Textures(gl);
   }
 
   setScenery(scenery) {
@@ -40,7 +42,12 @@ export class Picture {
     this.meshes.clear();
     this.backdrop.set(scenery.backdrop);
     for (const { finish } of scenery.backdrop) this.programs.prepare(finish);
-    for (const { finish } of scenery.bodies) this.programs.prepare(finish, false, Math.min(scenery.tools.length, 8));
+    const tools = Math.min(scenery.tools.length, 8);
+    for (const { finish, visual } of scenery.bodies) {
+      this.programs.prepare(finish, tools);
+      for (const part of visual?.parts ?? [])
+        this.programs.prepare(part.finish, tools, part.textured ? 'TEXTURED' : '');
+    }
     this.instruments = scenery.tools.map((tool) => tool.parts.map((part) =>
       new GpuMesh(gl).upload({ shape: 1, ...part, rest: part.position })));
   }
@@ -84,7 +91,7 @@ export class Picture {
 
   drawBodies(bodies, look, tools) {
     const views = bodies.flatMap((body, b) =>
-      body.views(this.scenery.mucosa_colour).map((view, i) => ({ view, key: 2 * b + i })));
+      body.views(this.scenery.mucosa_colour).map((view, i) => ({ view, key: `${b} ${i}` })));
     const clear = ({ view }) => look.through && (view.finish === 'duct' || view.finish === 'mucosa');
     const { gl } = this;
     for (const one of views) if (!clear(one)) this.drawSoft(one, look, tools);
@@ -100,10 +107,15 @@ export class Picture {
 
   drawSoft({ view, key }, look, tools) {
     const { gl } = this, byScalar = look.byScalar && view.finish !== 'plastic';
-    const program = this.programs.get(byScalar ? 'tissue' : view.finish, byScalar, tools);
+    const variant = byScalar ? 'BY_SCALAR' : view.image ? 'TEXTURED' : '';
+    const program = this.programs.get(byScalar ? 'tissue' : view.finish, tools, variant);
     if (!this.meshes.has(key)) this.meshes.set(key, new GpuMesh(gl));
     gl.useProgram(program.program);
     gl.uniform4f(program.colour, ...view.colour, 1);
+    if (variant === 'TEXTURED') {
+      this.textures.bind(view.texture);
+      gl.uniform1i(program.image, 0);
+    }
     this.meshes.get(key).upload(view).draw();
   }
 

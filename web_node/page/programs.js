@@ -38,27 +38,29 @@ export class Programs {
   }
 
   // Begins what will be needed; the browser compiles several at a time.
-  prepare(name, byScalar = false, tools = 0) {
-    const key = `${name} ${byScalar} ${tools}`;
-    if (!this.made.has(key)) this.made.set(key, this.begin(name, ...this.texts(name, byScalar, tools)));
+  prepare(name, tools = 0, variant = '') {
+    const key = `${name} ${variant} ${tools}`;
+    if (!this.made.has(key)) this.made.set(key, this.begin(name, ...this.texts(name, variant, tools)));
     return key;
   }
 
-  get(name, byScalar = false, tools = 0) {
-    const key = this.prepare(name, byScalar, tools), made = this.made.get(key);
+  // `variant`: '', 'BY_SCALAR' or 'TEXTURED'.
+  get(name, tools = 0, variant = '') {
+    const key = this.prepare(name, tools, variant), made = this.made.get(key);
     if (!made.ready) this.made.set(key, this.finish(made));
     return this.made.get(key);
   }
 
-  texts(name, byScalar, tools) {
+  texts(name, variant, tools) {
     const s = this.sources;
-    const start = head + (byScalar ? '#define BY_SCALAR\n' : '') + `#define TOOLS ${tools}\n` + s.scene;
+    const start = head + (variant && `#define ${variant}\n`) + `#define TOOLS ${tools}\n` + s.scene;
     const lit = start + s.noise + s.light;
     if (name === 'arrow') return [start + arrowVertex, start + s.colours + arrowFragment];
     if (name === 'cover') return [head + coverVertex, head + 'precision highp sampler2D;\n' + coverFragment];
     if (name === 'legend') return [head + coverVertex, head + s.colours + legendFragment];
     if (name === 'cavity') return [start + s.cavity_vert, lit + s.cavity_frag];
     if (name === 'tissue') return [start + s.noise + s.tissue_vert, lit + s.colours + s.tissue_frag];
+    if (name === 'membrane') return [start + s.noise + s.tissue_vert, lit + s.membrane_frag];
     const rigid = name === 'bone' || name === 'lining' || name === 'metal';
     return [rigid ? start + s.rigid_vert : start + s.noise + s.wall_vert, lit + s[`${name}_frag`]];
   }
@@ -87,7 +89,7 @@ export class Programs {
     const at = (uniform) => gl.getUniformLocation(program, uniform);
     return {
       ready: true, program, placement: at('placement'), colour: at('colour'), shaft: at('shaft'), share: at('share'),
-      colours: at('colours'), depths: at('depths'), height: at('height'),
+      colours: at('colours'), depths: at('depths'), height: at('height'), image: at('image'),
     };
   }
 }

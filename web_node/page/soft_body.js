@@ -1,5 +1,6 @@
 // A body: coarse positions from the wire become what is drawn.
 import { Refinement, vertexNormals } from './refine.js';
+import { VisualShape } from './visual_shape.js';
 import { ThickWall } from './wall.js';
 import { unpack } from './wire.js';
 
@@ -9,6 +10,7 @@ export class SoftBody {
     this.spec = spec;
     this.mostTriangles = mostTriangles;
     this.shape = 0;
+    if (spec.visual) this.visual = new VisualShape(spec.visual, spec.rest);
     this.setTriangles(triangles);
   }
 
@@ -53,7 +55,7 @@ export class SoftBody {
     vertexNormals(position, this.refinement.coarseTriangles, normal.subarray(0, coarse));
     this.refinement.apply(position, normal);
     this.wall?.place(position, normal);
-    let most = 0;
+    let most = this.visual?.place(position) ?? 0;
     for (let v = 0; v < this.displacement.length; ++v) {
       const i = 3 * v;
       const d = Math.hypot(position[i] - rest[i], position[i + 1] - rest[i + 1], position[i + 2] - rest[i + 2]);
@@ -64,13 +66,20 @@ export class SoftBody {
     return most;
   }
 
-  // What there is to draw.
+  // What a ray can meet: {position, normal, triangles}.
+  surfaces() {
+    const own = { position: this.position, normal: this.normal, triangles: this.refinement.triangles };
+    return this.visual ? [own, ...this.visual.views()] : [own];
+  }
+
+  // What there is to draw. Where there is a visual surface, the triangles are what cuts have bared.
   views(mucosaColour) {
     const { spec, wall } = this;
     const own = {
       finish: spec.finish, colour: spec.colour, shape: this.shape, position: this.position, normal: this.normal,
       rest: this.texture, scalar: this.displacement, triangles: this.refinement.triangles,
     };
+    if (this.visual) return [own, ...this.visual.views()];
     if (!wall) return [own];
     return [{ ...own, ...wall.outer },
       { ...own, ...wall.inner, finish: 'mucosa', colour: mucosaColour, rest: this.innerTexture,

@@ -3,6 +3,8 @@ export const SEEN = 1 << 31, OFFERED = 1 << 30;
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
 const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5;
 
+const types = { f32: Float32Array, u32: Uint32Array, i32: Int32Array, u8: Uint8Array };
+
 export function kindOf(buffer) {
   return new DataView(buffer).getUint32(0, true);
 }
@@ -12,7 +14,7 @@ export function decodeContainer(buffer) {
   const view = new DataView(buffer), length = view.getUint32(4, true);
   const json = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, length)));
   const begin = 8 + length;
-  return resolve(json, (of) => new (of.type === 'f32' ? Float32Array : Uint32Array)(buffer, begin + of.at, of.count));
+  return resolve(json, (of) => new types[of.type](buffer, begin + of.at, of.count));
 }
 
 function resolve(value, array) {

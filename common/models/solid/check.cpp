@@ -9,6 +9,7 @@
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/quality.hpp"
+#include "common/models/check/visual_check.hpp"
 #include "common/models/solid/precompute.hpp"
 
 namespace palpate {
@@ -69,6 +70,7 @@ void check_solid(const SolidSpec& body, std::string_view kind, const CheckedSoli
   if (body.materials.empty()) report.left_out.emplace_back("one material, nothing per element");
   report.warnings = size_warnings(settings, body.name, surface, true);
   report.meets = meets_surface(surface, true);
+  check_visual(body, solid.mesh, report);
 }
 
 std::vector<std::string> material_warnings(const SolidSpec& body) {

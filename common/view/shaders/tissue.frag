@@ -5,6 +5,10 @@ in vec3 sticky;
 in vec3 pattern;
 in vec4 relief;
 layout(location = 4) uniform vec4 colour;
+#ifdef TEXTURED
+in vec2 place;
+layout(binding = 1) uniform sampler2D image;
+#endif
 out vec4 pixel;
 void main() {
   Lit lit = light_at(world);
@@ -19,6 +23,11 @@ void main() {
   vec3 base = scale_colour(pattern.z / scene.up.w);
   base *= base * 0.9;
   const float wetness = 0.3;
+#elif defined(TEXTURED)
+  // The image has the colours; the patterns only keep what is near from looking flat.
+  float blotch = 0.5 * (pattern.x - 0.5) + 0.3 * middle;
+  vec3 base = texture(image, place).rgb * (1.0 + 0.4 * blotch + 0.35 * fine);
+  const float wetness = 1.0;
 #else
   float blotch = 1.3 * (pattern.x - 0.5) + 0.45 * middle;
   // Light passes the capsule twice: what is dark in a colour gets darker.

@@ -3,6 +3,10 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in float scalar;
+#ifdef TEXTURED
+layout(location = 4) in vec2 image_place;
+out vec2 place;
+#endif
 out vec3 world;
 out vec3 facing;
 out vec3 sticky;   // rest position
@@ -17,6 +21,9 @@ void main() {
   relief.xyz = middle.xyz / 0.0083 + (middle.x + middle.y + middle.z) * 2.0 / 0.033 * broad.xyz;
   relief.w = middle.w - 0.5;
   float vessel = noise(rest / 0.021 + 3.0 * noise(rest / 0.013));
+#ifdef TEXTURED
+  place = image_place;
+#endif
   sticky = rest;
   pattern = vec3(broad.w, vessel, scalar);
   gl_Position = scene.view_projection * vec4(position, 1.0);

@@ -1,0 +1,56 @@
+#include "common/view/visual_body.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "common/files/png_file.hpp"
+
+namespace palpate {
+namespace {
+
+std::array<int, 3> sorted(std::array<int, 3> t) {
+  std::ranges::sort(t);
+  return t;
+}
+
+}  // namespace
+
+std::optional<VisualBody> load_visual(const Body& body, const Archive& archive) {
+  const SolidSpec* solid = as<SolidSpec>(body);
+  if (!solid || !solid->visual) return {};
+  VisualBody visual{load_visual_mesh(*solid->visual), {}, {}};
+  const SurfaceMap& surface = archive.surface;
+  visual.binding = bind_visual(visual.mesh.position, surface.position, surface.triangles, archive.tetrahedra);
+  if (!solid->visual->texture.empty()) visual.texture = read_png_bytes(solid->visual->texture, kMaxTextureSide);
+  return visual;
+}
+
+std::vector<std::optional<VisualBody>> load_visuals(const Scene& scene, std::span<const Archive> archives) {
+  std::vector<std::optional<VisualBody>> visuals;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) visuals.push_back(load_visual(scene.bodies[b], archives[b]));
+  return visuals;
+}
+
+PartLook look_of(const VisualMesh::Part& part, const std::array<double, 3>& tissue) {
+  if (part.colour) return {Finish::membrane, *part.colour};
+  return {Finish::tissue, tissue};
+}
+
+std::vector<std::array<int, 3>> bared(std::span<const std::array<int, 3>> whole,
+                                      std::span<const std::array<int, 3>> now) {
+  std::set<std::array<int, 3>> before;
+  for (const auto& t : whole) before.insert(sorted(t));
+  std::vector<std::array<int, 3>> seen;
+  std::set<int> nodes;
+  for (const auto& t : now) {
+    if (before.contains(sorted(t))) continue;
+    seen.push_back(t);
+    nodes.insert(t.begin(), t.end());
+  }
+  const auto is_near = [&](int n) { return nodes.contains(n); };
+  for (const auto& t : now)
+    if (before.contains(sorted(t)) && std::ranges::any_of(t, is_near)) seen.push_back(t);
+  return seen;
+}
+
+}  // namespace palpate
