@@ -106,7 +106,7 @@ void guards(const Scene& scene, const std::vector<Archive>& archives, bool quick
   ScriptedTools tools(scene);
   const Tool& tool = scene.tools[0];
   Port port;
-  MotionGuard motion(rig.dt());
+  MotionGuard motion({}, rig.dt());
   PassivityGuard watch(scene.passivity, {&port}, tool.max_force, rig.dt());
   SafetyChain chain(tool.max_force, tool.max_force_rate, rig.dt());
   struct Tick {

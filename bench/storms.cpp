@@ -40,8 +40,11 @@ struct Felt {
 /// A scene with what moves its tools, as the haptic node reads it.
 class Motion {
  public:
-  explicit Motion(const Scene& scene) : dt_(1 / scene.rates.haptic_hz), guards_(scene.tools.size(), MotionGuard(dt_)) {
-    for (std::size_t t = 0; t < scene.tools.size(); ++t) devices_.push_back(make_device(scene, static_cast<int>(t)));
+  explicit Motion(const Scene& scene) : dt_(1 / scene.rates.haptic_hz) {
+    for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+      guards_.emplace_back(scene.tools[t].motion, dt_);
+      devices_.push_back(make_device(scene, static_cast<int>(t)));
+    }
     for (int k = 0; k == 0 || !over(k); ++k) add(k);
   }
   int ticks() const { return static_cast<int>(at_.size()); }

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kMeeting = 1e-9;   // [m] within which a line meets a facet
+constexpr double kMeeting = 1e-9;    // [m] within which a line meets a facet
 constexpr double kWithdrawn = 0.01;  // [m] of free air about a tool that passed, after which it is felt again
 
 }  // namespace

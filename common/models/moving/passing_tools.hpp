@@ -16,8 +16,8 @@ struct ToolDeed {
 };
 
 /// Which tools pass through an organ's tissue: one that began glowing, near tissue that had been cut, or run through
-/// what is whole, as where a cut was missed. Neither feels the other until the tool glows no more and has been withdrawn
-/// by a centimetre, or its jaws take hold.
+/// what is whole, as where a cut was missed. Neither feels the other until the tool glows no more and has been
+/// withdrawn by a centimetre, or its jaws take hold.
 class PassingTools {
  public:
   /// The surface outlives this object.
@@ -25,8 +25,8 @@ class PassingTools {
 
   bool passes(int tool) const { return passing_[tool] != 0; }
   /// Once a tick; `cut`: tissue has gone. Tissue that is whole can be pressed to where a tool begins; between the flaps
-  /// of a cut nobody knows what is on which side of it, nor, where forceps drew them apart, do they lie as they did; of a
-  /// stroke that goes on nobody knows what the last ticks should have cut.
+  /// of a cut nobody knows what is on which side of it, nor, where forceps drew them apart, do they lie as they did; of
+  /// a stroke that goes on nobody knows what the last ticks should have cut.
   void meet(std::span<const ToolInTick> tools, bool cut, const std::function<ToolDeed(int tool)>& deed);
   /// After meet(): those that are withdrawn pass no more.
   void clear(std::span<const ToolInTick> tools, const std::function<ToolDeed(int tool)>& deed);
