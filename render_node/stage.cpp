@@ -78,7 +78,7 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
 
 void Stage::add_visual(Soft& body, VisualBody visual, const Body& spec, const SurfaceMap& map) const {
   body.uncut = map.triangles;
-  body.visual.emplace(std::move(visual), map.position, body.colour, as<SolidSpec>(spec)->visual->texture,
+  body.visual.emplace(std::move(visual), map.position, body.colour, visual_of(spec)->texture,
                       render_.colour == Colouring::displacement);
 }
 
@@ -170,7 +170,7 @@ void Stage::set_overlay(std::vector<std::string> lines, std::optional<Gauge> gau
 }
 
 void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {
-  if (body.triangles.empty()) return;  // there is a visual surface
+  if (body.visual && body.triangles.empty()) return;  // it hides all of the own one
   MeshView view{.id = id,
                 .shape = body.shape,
                 .finish = body.finish,

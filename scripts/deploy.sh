@@ -80,7 +80,7 @@ for program in palpate "${nodes[@]}"; do [ -x "$bin/$program" ] || fail "$bin/$p
 
 # The files that the scene names: values of the keys that docs/scene.md gives as paths to read.
 named_in_scene() {
-  local keys=${1:-'mesh|specimen_mesh|force_curve|radial_curve|trajectory|backdrop'}
+  local keys=${1:-'mesh|specimen_mesh|force_curve|radial_curve|trajectory|backdrop|surface|materials|texture'}
   grep -oE "(^|[^[:alnum:]_])($keys)[[:space:]]*=[[:space:]]*(\"[^\"]*\"|'[^']*')" "$scene" | sed -E "s/^[^\"']*.(.*).\$/\1/" || true
 }
 
@@ -100,9 +100,9 @@ key_files() {
   done < <(named_in_scene keys)
 }
 
-# What a render_node reads a backdrop with.
+# What a render_node reads a backdrop with, and a surface that is no OBJ file.
 mesh_reader() {
-  [[ " ${nodes[*]} " == *" render_node "* ]] && [ -n "$(named_in_scene backdrop)" ] || return 0
+  [[ " ${nodes[*]} " == *" render_node "* ]] && [ -n "$(named_in_scene 'backdrop|surface' | grep -v '\.obj$')" ] || return 0
   mkdir -p "$1/lib/palpate"
   ln -s "$(realpath "$bin/../lib/palpate/libpalpate_gmsh.so")" "$1/lib/palpate/"
 }

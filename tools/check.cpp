@@ -68,8 +68,8 @@ std::vector<MemoryPart> of_nodes(const NodePlan& plan, std::vector<MemoryPart> p
 
 /// Throws std::runtime_error if the picture that a visual surface wears is damaged.
 void check_texture(const Body& body) {
-  const SolidSpec* solid = as<SolidSpec>(body);
-  if (solid && solid->visual && !solid->visual->texture.empty()) read_png(solid->visual->texture);
+  const VisualSpec* visual = visual_of(body);
+  if (visual && !visual->texture.empty()) read_png(visual->texture);
 }
 
 /// Loads and validates a body's mesh and everything that refers to it.

@@ -18,6 +18,10 @@ const ShellSpec* wall_of(const Body& body) {
   return std::visit([](const auto& spec) { return wall_of(spec); }, body);
 }
 
+const VisualSpec* visual_of(const Body& body) {
+  return std::visit([](const auto& spec) { return visual_of(spec); }, body);
+}
+
 void describe(Description& d, Body& body) {
   d.variant({"model", "", "the kind of tissue, see below", Need::optional, Use::stored}, body);
 }

@@ -41,6 +41,7 @@ std::string_view kind_of(const Body& body);
 Owner owner_of(const Body& body);
 
 const ShellSpec* wall_of(const Body& body);
+const VisualSpec* visual_of(const Body& body);
 
 void describe(Description& d, Body& body);
 

@@ -1,6 +1,8 @@
 #include "common/models/kind.hpp"
 
 #include "common/archive/archive.hpp"
+#include "common/archive/scale_young.hpp"
+#include "common/fem/solid_spec.hpp"
 #include "common/models/appearance.hpp"
 #include "common/shell/spec.hpp"
 
@@ -20,6 +22,14 @@ std::filesystem::path mesh_file(const NamedSpec&) {
 
 std::filesystem::path mesh_file(const MeshedSpec& body) {
   return body.mesh;
+}
+
+const VisualSpec* visual_of(const SolidSpec& body) {
+  return body.visual ? &*body.visual : nullptr;
+}
+
+void fit_archive(const MeshedSpec& body, Archive& archive) {
+  scale_young(archive, body.material.young);
 }
 
 std::optional<Archive> made_archive(const MeshedSpec&) {

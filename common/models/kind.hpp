@@ -27,6 +27,7 @@ struct SolidSpec;
 struct StaticField;
 struct StepSettings;
 struct SurfaceMap;
+struct VisualSpec;
 class BodyPart;
 class BodyShape;
 class Description;
@@ -79,6 +80,12 @@ constexpr std::string_view absence(const ShellSpec&) {
 Appearance appearance(const NamedSpec& body, const SurfaceMap& surface);
 Appearance appearance(const ShellSpec& body, const SurfaceMap& surface);
 
+/// visual_of(spec): what is drawn in place of its own surface; null: nothing else is.
+constexpr const VisualSpec* visual_of(const NamedSpec&) {
+  return nullptr;
+}
+const VisualSpec* visual_of(const SolidSpec& body);
+
 // Its archive.
 
 /// mesh_file(spec): the mesh beside which its archive lies; empty for a body without a mesh, which has no file.
@@ -102,6 +109,10 @@ std::vector<std::string> archive_lines(const MovingSpec& body, const Archive& ar
 
 /// made_archive(spec): the archive of a body without a mesh, for which there is no file; empty for all others.
 std::optional<Archive> made_archive(const MeshedSpec& body);
+
+/// fit_archive(spec, archive): makes of an archive that serves several bodies (archive_hash()) that of this one.
+inline void fit_archive(const NamedSpec&, Archive&) {}
+void fit_archive(const MeshedSpec& body, Archive& archive);
 
 // What it becomes at run time.
 

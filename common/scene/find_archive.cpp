@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "common/archive/scale_young.hpp"
 #include "common/models/content_hash.hpp"
 
 namespace palpate {
@@ -26,7 +25,7 @@ Archive find_archive(const Scene& scene, const Body& body, ArchivePart part) {
   try {
     Archive archive = read_archive(file, part, archive_hash(body));
     if (archive.model != kind_of(body)) throw std::runtime_error(file.string() + ": made for another kind of tissue");
-    scale_young(archive, as<MeshedSpec>(body)->material.young);
+    std::visit([&](const auto& spec) { fit_archive(spec, archive); }, body);
     archive.content_hash = content_hash(body);
     return archive;
   } catch (const std::exception& error) {

@@ -16,12 +16,12 @@ std::array<int, 3> sorted(std::array<int, 3> t) {
 }  // namespace
 
 std::optional<VisualBody> load_visual(const Body& body, const Archive& archive) {
-  const SolidSpec* solid = as<SolidSpec>(body);
-  if (!solid || !solid->visual) return {};
-  VisualBody visual{load_visual_mesh(*solid->visual), {}, {}};
+  const VisualSpec* spec = visual_of(body);
+  if (!spec) return {};
+  VisualBody visual{load_visual_mesh(*spec), {}, {}};
   const SurfaceMap& surface = archive.surface;
   visual.binding = bind_visual(visual.mesh.position, surface.position, surface.triangles, archive.tetrahedra);
-  if (!solid->visual->texture.empty()) visual.texture = read_png_bytes(solid->visual->texture, kMaxTextureSide);
+  if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;
 }
 

@@ -28,6 +28,7 @@ const std::vector<Example> kExamples{
      0,
      {"tool.probe.force.max>0.3", "body.liver.displacement.max>0.012", "body.liver.displacement.end<1e-9"},
      true},
+    {"liver_visual", 3, {"tool.probe.force.max>0.2"}},
     {"liver_nonlinear", 0, {"tool.probe.force.max>0.2", "body.liver.displacement.end<1e-9"}},
     {"liver_two_tools", 0, {"tool.probe.touching>4", "tool.second_probe.touching>4"}},
     {"two_hosts", 4, {"tool.probe.force.max>0.3"}},

@@ -47,10 +47,12 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         } else if (key == "lease" || key == "start" || key == "delay" || key == "max_speed") {
           const std::string start = key == "start" ? "" : "start = [0, 0, 0]\n";
           text = body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"pointer\"\n" + start + line;
+        } else if (key == "motion_scale") {
+          text = body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"bus\"\n" + line;
         } else if (key == "mass" || (table == "[[tool]]" && (key == "damping" || key == "stiffness"))) {
           text =
               body + "[[tool]]\nname = \"a\"\npivot = [0, 0, 0]\ndevice = \"hand\"\ntrajectory = \"move.csv\"\n" + line;
-        } else if (key == "cautery" || key == "jaws") {
+        } else if (key == "cautery" || key == "jaws" || key == "motion") {
           text = body + tool + line;
         } else if (key == "fixed") {
           text = plain + line;

@@ -23,6 +23,7 @@ std::string said_with(const std::string& option) {
 name = "block"
 mesh = "block.msh"
 young = 5000
+poisson = 0.4
 [[body.fixed]]
 box = [[-1, -1, -1e-6], [1, 1, 1e-6]]
 )";

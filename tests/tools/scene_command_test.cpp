@@ -56,7 +56,7 @@ TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
   ASSERT_EQ(run.status, 0) << run.err;
   const std::size_t at = run.out.find("largest force ");
   ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_GT(std::stod(run.out.substr(at + 14)), 0.05) << run.out;
+  EXPECT_GT(std::stod(run.out.substr(at + 14)), 0.03) << run.out;
 }
 
 TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {
