@@ -51,6 +51,25 @@ TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
     }
 }
 
+// Of a press far deeper than the tip is large the surface that the tip has passed lies far behind it.
+TEST_F(PatchRule, ADeepPressAndItsReleaseHaveNoJump) {
+  PressRig rig = PatchRule::rig(0.1);
+  constexpr int kTicks = 350;
+  const auto tip = [](int i) { return at(0.002, 0.001, -0.001 + 11 * PatchBlock::kRadius * i / kTicks); };
+  rig.start(tip(0));
+  Vector3d force = Vector3d::Zero();
+  double most = 0, change = 0;
+  for (int i = 0; i < 2 * kTicks; ++i) {
+    rig.step(tip(i < kTicks ? i : 2 * kTicks - i));
+    change = std::max(change, (rig.force() - force).norm());
+    force = rig.force();
+    most = std::max(most, force.norm());
+    if (i == kTicks) EXPECT_GT(force.norm(), 0.9 * most) << "the deeper, the harder it pushes";
+  }
+  EXPECT_LT(change, 0.02 * most);
+  EXPECT_LT(force.norm(), 1e-3 * most);
+}
+
 TEST_F(PatchRule, ASlideIsSmoothAndFrictionHoldsBack) {
   for (const double friction : {0.0, 0.3}) {
     SCOPED_TRACE(friction);

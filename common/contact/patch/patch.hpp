@@ -153,6 +153,8 @@ class Patch {
   Rise rise_of_nodes(std::span<const Eigen::Vector3d> moved) const;
   double rise(const Foot& foot, const Rise& of_nodes) const;
   double gap(int square, const Step& step, const Rise& of_nodes) const;
+  /// Triangles in which the sphere or strip may have feet.
+  std::span<int> near(const SmoothSurface& surface, const Segment& axis) const;
   bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);
   bool find_along(const Ground& ground, const Segment& axis);
   bool find_nearest(const Ground& ground, const Segment& axis);

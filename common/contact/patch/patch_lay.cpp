@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kLookAround = 1.5;  // radii about the sphere's middle, and as much more as it is deep,
-constexpr double kDeepest = 4;       // up to so many radii
+constexpr double kDeepest = 4;       // up to so many radii; about a deeper one, along all its way out
 constexpr double kOnEdge = 1e-6;     // radii, by which a foot may lie outside of a triangle's box
 constexpr double kFacing = 0.2;      // cosine between a facet's normal and the patch's, below which it lies aside
 
@@ -55,9 +55,7 @@ int Patch::local(int node) {
 
 std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
                                 const Segment& axis, double above) {
-  const double deep = grid_.strip() ? depth_ : std::min(depth_, kDeepest * grid_.radius());
-  const double about = kLookAround * grid_.radius() + deep;
-  near_ = grid_.strip() ? ground.surface.near(axis, about) : ground.surface.near(axis.start, about);
+  near_ = near(ground.surface, axis);
   nodes_.clear();
   for (Cell& cell : cells_) cell = {.gap = -std::numeric_limits<double>::infinity()};
   laid_at_ = axis.start;
@@ -76,6 +74,14 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   at_ = place_of_force();
   if (nodes_.empty() || depth <= -above) lift();
   return nodes_;
+}
+
+std::span<int> Patch::near(const SmoothSurface& surface, const Segment& axis) const {
+  const double around = kLookAround * grid_.radius(), deepest = kDeepest * grid_.radius();
+  if (grid_.strip()) return surface.near(axis, around + depth_);
+  if (depth_ <= deepest) return surface.near(axis.start, around + depth_);
+  const Segment way_out{axis.start, axis.start - (depth_ - deepest) * normal_};
+  return surface.near(way_out, around + deepest);
 }
 
 // The patch faces what the sphere has passed of the surface. Above it, it faces the surface where the line through the
