@@ -58,14 +58,14 @@ TEST(DeformLoop, PublishesRestShapesAtTheVisualRateUntilItHearsOfAHapticNode) {
 
 TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
   Loop l;
-  const std::vector<SurfaceState> all = l.run(0.5, [&] {
+  const std::vector<SurfaceState> all = l.run(0.9, [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(120));
     for (int i = 1; i <= 20; ++i) {
       ModalState state = l.s.modal_state();
       state.seq = state.step = static_cast<std::uint64_t>(i);
       state.sense_ns = now_ns();
       l.modes->write(state);
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
     }
   });
   std::map<std::uint32_t, int> count;
