@@ -34,6 +34,7 @@ nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& repo
           {"tasks", report.tasks},
           {"tissue_ticks", tissue.ticks},
           {"code_path", report.code_path},
+          {"complete", report.damage.empty()},
           {"mismatch", report.mismatch.empty() ? tissue.mismatch : report.mismatch},
           {"gaps", gaps},
           {"damage", report.damage}};

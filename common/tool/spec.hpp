@@ -61,7 +61,7 @@ inline void describe(Description& d, Tool& t) {
            t.max_force_rate, above(0));
   d.number({"force_scale", "",
             "share of the tool's forces and torques that goes to the hand; the limits hold for what is left"},
-           t.force_scale, above(0));
+           t.force_scale, within(1e-3, 1e3));
   d.table({"motion", "", "what its device may ask for", Need::optional, Use::agreed, "defaults"}, t.motion);
   static const std::string ends = meanings(std::type_identity<ToolEndSpec>{});
   d.variant({"kind", "", ends}, t.end);

@@ -24,6 +24,7 @@ class LockStep {
   void step();                ///< by the devices' inputs; they get its forces
   /// A step with other inputs than the devices', one per tool, which pass the same guard; the devices get nothing.
   void step(std::span<const sim::ToolInput> inputs);
+  const MotionGuard& guard(int tool) const { return guards_[tool]; }
   const std::vector<sim::ToolInput>& inputs() const { return inputs_; }  ///< of the last step, or where the tools start
 
  private:

@@ -71,6 +71,11 @@ class Run {
 
   Figures figures(double wall_seconds) const {
     Figures all = watch_.figures(lock_step_.simulator());
+    for (int t = 0; t < lock_step_.simulator().tools(); ++t) {
+      const std::string name = fmt::format("tool.{}.", lock_step_.simulator().scene().tools[t].name);
+      all.push_back({name + "refused", static_cast<double>(lock_step_.guard(t).refused()), "1"});
+      all.push_back({name + "followed", static_cast<double>(lock_step_.guard(t).followed()), "1"});
+    }
     all.push_back({"wall", wall_seconds, "s"});
     all.push_back({"realtime_factor", wall_seconds > 0 ? lock_step_.time() / wall_seconds : 0, "1"});
     return all;

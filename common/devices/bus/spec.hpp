@@ -16,7 +16,7 @@ inline void describe(Description& d, BusDeviceSpec& b) {
   describe_lease(d, b.lease);
   d.number({"motion_scale", "",
             "what the driver says of yaw, pitch and depth is multiplied by it: 0.5 halves the motion about the trocar"},
-           b.motion_scale, above(0));
+           b.motion_scale, within(1e-3, 1e3));
 }
 
 std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace& place);
