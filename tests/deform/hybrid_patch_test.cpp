@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/deform/block_bench.hpp"
+#include "tests/deform/work_of_cycles.hpp"
 
 namespace palpate {
 namespace {
@@ -119,22 +119,11 @@ TEST_P(HybridPatchSlides, TheHandFeelsNoJumpAtTheSeam) {
 // more than what it has put in.
 TEST_P(HybridPatchSlides, ContactNeverPutsOutWork) {
   PressRig rig = rig_of(hybrid_scene(GetParam()));
-  double work = 0, least = 0, most = 0;
-  Vector3d at = tip(-0.01, -0.001);
-  rig.press(at);
-  for (int cycle = 0; cycle < 3; ++cycle)
-    for (int i = 0; i < 400; ++i) {
-      const double turn = 2 * std::numbers::pi * i / 400;
-      const Vector3d next = tip(-0.01 * std::cos(turn), 0.001 - 0.002 * std::cos(turn) + 0.001 * std::sin(turn));
-      const Vector3d before = rig.force();
-      rig.press(next);
-      work += 0.5 * (before + rig.force()).dot(next - at);
-      at = next;
-      least = std::min(least, work);
-      most = std::max(most, work);
-    }
-  EXPECT_GT(most, 1e-5);
-  EXPECT_GT(least, -1e-3 * most);
+  const testing::WorkOfCycles work = testing::work_of_cycles(rig, tip(-0.01, -0.001), [](double turn) {
+    return tip(-0.01 * std::cos(turn), 0.001 - 0.002 * std::cos(turn) + 0.001 * std::sin(turn));
+  });
+  EXPECT_GT(work.most, 1e-5);
+  EXPECT_GT(work.least, -1e-3 * work.most);
 }
 
 INSTANTIATE_TEST_SUITE_P(Friction, HybridPatchSlides, ::testing::Values(0.0, 0.2));

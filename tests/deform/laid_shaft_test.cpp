@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "tests/deform/block_bench.hpp"
+#include "tests/deform/work_of_cycles.hpp"
 
 namespace palpate {
 namespace {
@@ -126,22 +126,11 @@ TEST_P(LaidShaftSlides, HasNoJumpFromTriangleToTriangle) {
 // Laid down, drawn aside and lifted, over and over: what the tool gets back is never more than what it has put in.
 TEST_P(LaidShaftSlides, ContactNeverPutsOutWork) {
   PressRig rig = laid_rig(laid_scene(GetParam()));
-  double work = 0, least = 0, most = 0;
-  Vector3d at = laid_tip(-0.01, -0.001);
-  rig.press(at);
-  for (int cycle = 0; cycle < 3; ++cycle)
-    for (int i = 0; i < 400; ++i) {
-      const double turn = 2 * std::numbers::pi * i / 400;
-      const Vector3d next = laid_tip(-0.01 * std::cos(turn), 0.0005 - 0.0015 * std::cos(turn) + 0.001 * std::sin(turn));
-      const Vector3d before = rig.force();
-      rig.press(next);
-      work += 0.5 * (before + rig.force()).dot(next - at);
-      at = next;
-      least = std::min(least, work);
-      most = std::max(most, work);
-    }
-  EXPECT_GT(most, 1e-5);
-  EXPECT_GT(least, -1e-3 * most);
+  const testing::WorkOfCycles work = testing::work_of_cycles(rig, laid_tip(-0.01, -0.001), [](double turn) {
+    return laid_tip(-0.01 * std::cos(turn), 0.0005 - 0.0015 * std::cos(turn) + 0.001 * std::sin(turn));
+  });
+  EXPECT_GT(work.most, 1e-5);
+  EXPECT_GT(work.least, -1e-3 * work.most);
 }
 
 INSTANTIATE_TEST_SUITE_P(Friction, LaidShaftSlides, ::testing::Values(0.1, 0.2));
