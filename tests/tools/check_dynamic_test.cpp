@@ -55,6 +55,16 @@ TEST_F(ToolsCheckDynamic, SaysWhatMovesAndWhereItIsJoined) {
   expect_line(said, "  body 'cylinder': does not tear by itself\n");
 }
 
+TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderATool) {
+  const std::string averaged = scene_ + "element = \"nodal_strain\"\n", warning = "averaged strain swing";
+  const std::string tool = "[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.5]\ntrajectory = \"" PALPATE_SOURCE
+                           "/scenes/trajectories/cylinder_hybrid.csv\"\n";
+  EXPECT_EQ(testing::run_program(check(averaged)).out.find(warning), std::string::npos) << "nothing presses it";
+  EXPECT_EQ(testing::run_program(check(scene_ + tool)).out.find(warning), std::string::npos);
+  const ProgramResult said = testing::run_program(check(averaged + tool));
+  EXPECT_NE(said.out.find(warning), std::string::npos) << said.out << said.err;
+}
+
 TEST_F(ToolsCheckDynamic, SaysTheSameAsJson) {
   const std::string command = check(scene_);
   const ProgramResult text = testing::run_program(command), json = testing::run_program(command + " --json");
