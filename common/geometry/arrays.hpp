@@ -5,7 +5,12 @@
 
 namespace palpate {
 
-/// Into the arrays of messages and states.
+/// Of the arrays of messages and states.
+inline Eigen::Map<const Eigen::Vector3d> vector(const std::array<double, 3>& of) {
+  return Eigen::Map<const Eigen::Vector3d>(of.data());
+}
+
+/// Into them.
 inline void copy(const Eigen::Vector3d& from, std::array<double, 3>& to) {
   std::copy_n(from.data(), 3, to.begin());
 }

@@ -7,22 +7,17 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
-#include "common/contact/cut_surface.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/describe/state.hpp"
 #include "common/dynamics/dynamic_model.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
 #include "common/dynamics/make_model.hpp"
 #include "common/dynamics/spec.hpp"
-#include "common/dynamics/tearing.hpp"
-#include "common/mesh/shown_surface.hpp"
-#include "common/models/moving/fading_loads.hpp"
-#include "common/models/moving/floating_part.hpp"
+#include "common/models/moving/cuttable_tissue.hpp"
 #include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/passing_tools.hpp"
 #include "common/models/moving/tissue_touch.hpp"
 #include "common/models/moving/tool_in_tick.hpp"
-#include "idl/messages.hpp"
 
 namespace palpate {
 
@@ -60,8 +55,8 @@ class DynamicOrgan {
   /// Steps of the tissue in a tick of dt [s]: of the scene's integrator, or while tools touch it of the semi-implicit
   /// one.
   int steps_in(double dt, bool touched = false) const;
-  const CutMesh& topology() const { return topology_; }
-  const CutSurface& surface() const { return surface_; }
+  const CutMesh& topology() const { return tissue_.topology(); }
+  const CutSurface& surface() const { return tissue_.surface(); }
   const DynamicModel& model() const { return *model_; }
   const ElasticMesh& mesh() const { return mesh_; }
   std::span<const TouchContact> contacts() const { return contacts_.contacts(); }
@@ -71,16 +66,13 @@ class DynamicOrgan {
   Eigen::Vector3d position(int node) const;
   Eigen::Vector3d displacement(int node) const;  ///< [m] of a node of either part
   /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
-  bool is_joint(int facet) const { return shown_.is_joint(facet); }
+  bool is_joint(int facet) const { return tissue_.is_joint(facet); }
   bool holds(int tool) const;  ///< its jaws hold something of this organ
 
-  struct Change {
-    RemovalCause cause;
-    std::vector<int> removed;  ///< in order, with those that conformity asked for
-  };
+  using Change = CuttableTissue::Change;
   /// What the last tick took away; empty most of the time.
-  std::span<const Change> changes() const { return changes_; }
-  const std::vector<int>& removed() const { return removed_; }  ///< all so far, in order
+  std::span<const Change> changes() const { return tissue_.changes(); }
+  const std::vector<int>& removed() const { return tissue_.removed(); }  ///< all so far, in order
 
   /// Position [m] and unit normal per node of the archive's surface map; nodes off the surface have no normal.
   void shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal);
@@ -118,36 +110,21 @@ class DynamicOrgan {
   void grasp(int tool, const ToolInTick& with);
   void update_positions();
   void cut(std::span<const ToolInTick> tools);
-  void tear();
-  void drop_fallen();
-  void remove(int tetrahedron);
-  bool fades(int node) const;  ///< what pressed it can: it is the moving part's alone, and there
-  void cut_from_model(std::span<const int> gone);
-  void load();
-  void note_change(RemovalCause cause, std::size_t first);
-  void follow_change();
+  void tear_and_drop();
+  void let_go_of_gone();
 
   std::string name_;
   std::vector<Hand> hands_;  ///< per tool
   ElasticMesh mesh_;
-  CutMesh topology_;
-  ShownSurface shown_;
-  CutSurface surface_;
   std::unique_ptr<DynamicModel> model_;
   std::unique_ptr<HybridTouch> still_;
+  CuttableTissue tissue_;
   TissueTouch contacts_;
   PassingTools passing_;
-  std::optional<TearSearch> tearing_;
   double max_step_, touched_step_;
-  double damping_;          ///< [1/s]
-  double diagonal_;         ///< [m] of the body at rest
-  Eigen::Vector3d middle_;  ///< [m] of the body at rest
-  FadingLoads fading_;
   std::vector<Eigen::Vector3d> position_;      ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
-  std::vector<int> removed_, part_of_;
-  std::vector<FloatingPart> floating_;
-  std::vector<Change> changes_;
+  std::vector<CuttableTissue::Glow> glows_;
   double moved_with_ = 0;  ///< [J] kinetic energy at the last calm()
 };
 

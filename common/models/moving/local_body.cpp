@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "common/geometry/arrays.hpp"
 #include "common/geometry/segment.hpp"
 #include "common/tool/safety.hpp"
 
@@ -16,10 +17,6 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
-
-Eigen::Map<const Vector3d> vector(const std::array<double, 3>& a) {
-  return Eigen::Map<const Vector3d>(a.data());
-}
 
 // What a contact can bear: it never pulls, and friction is a share of its pressure.
 Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {

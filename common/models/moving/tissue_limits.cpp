@@ -5,15 +5,12 @@
 #include <limits>
 
 #include "common/fem/elasticity.hpp"
+#include "common/geometry/arrays.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kAway = 0.5;  // of a body's diagonal: how far its tissue may be from where it rests
-
-Eigen::Map<const Eigen::Vector3d> vector(const std::array<double, 3>& a) {
-  return Eigen::Map<const Eigen::Vector3d>(a.data());
-}
 
 // [Pa] of a material against being pressed while it cannot give way sideways: the largest of its moduli.
 double confined_modulus(double young, double poisson) {
