@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
+#include <utility>
 
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
@@ -26,6 +29,18 @@ struct Loop {
   std::unique_ptr<Writer<CatheterState>> catheters = haptic_bus->writer(topics::catheter_state);
   std::unique_ptr<Reader<SurfaceState>> surfaces = observer_bus->reader(topics::surface_state, Keep::all);
   DeformReport report;
+  std::vector<SurfaceState> seen;  ///< what the observer has taken
+
+  void observe() {
+    while (auto surface = surfaces->take()) seen.push_back(std::move(*surface));
+  }
+  /// Until the observer has a surface of this step, or two seconds are over.
+  void wait_for(std::uint64_t step) {
+    const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    const auto there = [&] { return std::ranges::any_of(seen, [&](const SurfaceState& x) { return x.step == step; }); };
+    for (observe(); !there() && std::chrono::steady_clock::now() < late; observe())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 
   /// Runs for `seconds` while `meanwhile` happens on a thread of its own.
   template <class F>
@@ -35,9 +50,8 @@ struct Loop {
     std::thread other(meanwhile);
     report = loop.run(seconds);
     other.join();
-    std::vector<SurfaceState> all;
-    while (auto surface = surfaces->take()) all.push_back(std::move(*surface));
-    return all;
+    observe();
+    return std::exchange(seen, {});
   }
 };
 
@@ -58,14 +72,14 @@ TEST(DeformLoop, PublishesRestShapesAtTheVisualRateUntilItHearsOfAHapticNode) {
 
 TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
   Loop l;
-  const std::vector<SurfaceState> all = l.run(0.9, [&] {
+  const std::vector<SurfaceState> all = l.run(1.5, [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(120));
     for (int i = 1; i <= 20; ++i) {
       ModalState state = l.s.modal_state();
       state.seq = state.step = static_cast<std::uint64_t>(i);
       state.sense_ns = now_ns();
       l.modes->write(state);
-      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      l.wait_for(state.step);
     }
   });
   std::map<std::uint32_t, int> count;
@@ -80,7 +94,7 @@ TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
 
 TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
   Loop l;
-  l.run(0.15, [&] {
+  l.run(0.6, [&] {
     l.modes->write(l.s.modal_state());
     l.catheters->write(l.s.catheter_state(0.01));
   });
@@ -89,7 +103,7 @@ TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
   CatheterState state = l.s.catheter_state(0.02);
   state.run = 6;
   state.sense_ns = 5000;
-  const std::vector<SurfaceState> all = l.run(0.3, [&] {
+  const std::vector<SurfaceState> all = l.run(0.9, [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     l.catheters->write(state);
   });
