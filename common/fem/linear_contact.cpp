@@ -50,6 +50,20 @@ Factorisation factorised(const LinearContact::Space& space, const std::vector<in
   return factor;
 }
 
+/// Each node's direction, by its shares: 3 entries of each node x point.
+SparseMatrix directions(const SparseMatrix& share, const std::vector<Vector3d>& normal) {
+  SparseMatrix along(3 * share.rows(), share.cols());
+  along.reserve(3 * share.nonZeros());
+  for (Index point = 0; point < share.cols(); ++point) {
+    along.startVec(point);
+    for (SparseMatrix::InnerIterator it(share, point); it; ++it)
+      for (Index axis = 0; axis < 3; ++axis)
+        along.insertBack(3 * it.row() + axis, point) = normal[it.row()][axis] * it.value();
+  }
+  along.finalize();
+  return along;
+}
+
 std::vector<int> near_any(const StaticProblem& problem, const std::vector<int>& surface,
                           std::span<const Vector3d> centres, double reach) {
   std::vector<int> nodes;
@@ -122,11 +136,15 @@ LinearContact::Candidates LinearContact::spread(std::vector<int> points) const {
     for (SparseMatrix::InnerIterator it(space_.shares, p); it; ++it) node.push_back(static_cast<int>(it.row()));
   std::ranges::sort(node);
   node.erase(std::unique(node.begin(), node.end()), node.end());
-  candidates.share = MatrixXd::Zero(static_cast<Index>(node.size()), static_cast<Index>(candidates.point.size()));
-  for (std::size_t p = 0; p < candidates.point.size(); ++p)
+  candidates.share.resize(static_cast<Index>(node.size()), static_cast<Index>(candidates.point.size()));
+  for (std::size_t p = 0; p < candidates.point.size(); ++p) {
+    const auto column = static_cast<Index>(p);
+    candidates.share.startVec(column);
     for (SparseMatrix::InnerIterator it(space_.shares, candidates.point[p]); it; ++it)
-      candidates.share(std::ranges::lower_bound(node, static_cast<int>(it.row())) - node.begin(),
-                       static_cast<Index>(p)) = it.value();
+      candidates.share.insertBack(std::ranges::lower_bound(node, static_cast<int>(it.row())) - node.begin(), column) =
+          it.value();
+  }
+  candidates.share.finalize();
   return candidates;
 }
 
@@ -145,11 +163,10 @@ LinearContact::Candidates LinearContact::near(const Sphere& ball) const {
 
 PressState LinearContact::press(const Sphere& ball) const {
   const auto& [point, node, share, compliance] = near(ball);
-  const auto n = static_cast<Index>(node.size()), count = static_cast<Index>(point.size());
+  const auto n = static_cast<Index>(node.size());
   std::vector<Vector3d> normal(node.size());
   std::vector<char> active(point.size(), 0);
   VectorXd u = VectorXd::Zero(3 * n), nodal = u, depth(n);
-  MatrixXd along(3 * n, count);  // each node's direction, by its share
   for (int round = 0;; ++round) {
     if (round == kMaxRounds) throw std::runtime_error("the normals of the contact do not settle");
     double turned = 0;
@@ -160,11 +177,12 @@ PressState LinearContact::press(const Sphere& ball) const {
       turned = std::max(turned, round == 0 ? 1.0 : held * (now - normal[a]).norm());
       normal[a] = now;
       depth[a] = ball.radius - now.dot(from_centre);
-      along.middleRows<3>(3 * a) = now * share.row(a);
     }
     if (turned < 1e-8) break;
+    const SparseMatrix along = directions(share, normal);
+    const MatrixXd moved = compliance * along;
     const VectorXd force =
-        solve_forces(along.transpose() * (compliance * along), share.transpose() * depth, 1e-9 * ball.radius, active);
+        solve_forces(along.transpose() * moved, share.transpose() * depth, 1e-9 * ball.radius, active);
     nodal = along * force;
     u = compliance * nodal;
   }

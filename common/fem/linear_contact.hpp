@@ -40,7 +40,7 @@ class LinearContact {
   struct Candidates {
     std::vector<int> point;      ///< nodes of the mesh that may
     std::vector<int> node;       ///< nodes that they spread their forces over
-    Eigen::MatrixXd share;       ///< node x point
+    SparseMatrix share;          ///< node x point
     Eigen::MatrixXd compliance;  ///< [m/N] among the nodes, 3 entries each; fixed axes hold zeros
   };
   LinearContact(StaticProblem problem, Space space, std::span<const Eigen::Vector3d> centres, double reach);
