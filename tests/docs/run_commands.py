@@ -39,6 +39,7 @@ SHORTENED = [
     ("palpate study *", "--quick"),
     ("palpate stability *", "--quick"),
     ("* --quick*", ""),
+    ("palpate film out/* -o *", "--to 1"),
     ("palpate film * --from 2 --to 4 *", ""),
 ]
 

@@ -9,12 +9,12 @@ namespace {
 
 constexpr float kFar = 1e20f;
 
-/// Calls work(first index, stride, axis) for every line of the grid along each axis in turn.
+/// Calls work(first index, stride) for every line of the grid along an axis, neighbours in memory one after the other.
 template <class Work>
 void along_lines(const GridShape& shape, int axis, const Work& work) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(shape.count[0]),
                                           static_cast<std::size_t>(shape.count[0]) * shape.count[1]};
-  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
   for (int j = 0; j < shape.count[b]; ++j)
     for (int i = 0; i < shape.count[a]; ++i) work(i * stride[a] + j * stride[b], stride[axis]);
 }

@@ -154,6 +154,10 @@ Eigen::Vector3d SurfaceTree::nearest(const Eigen::Vector3d& x) const {
   return vector_of(tree_->boxes.closest_point(point_of(x)));
 }
 
+Eigen::Vector3d SurfaceTree::nearest(const Eigen::Vector3d& x, const Eigen::Vector3d& guess) const {
+  return vector_of(tree_->boxes.closest_point(point_of(x), point_of(guess)));
+}
+
 std::vector<std::pair<double, int>> SurfaceTree::crossings_along_x(const Eigen::Vector3d& x) const {
   std::vector<Triangles::const_iterator> met;
   tree_->boxes.all_intersected_primitives(Kernel::Ray_3(point_of(x), Kernel::Vector_3(1, 0, 0)),

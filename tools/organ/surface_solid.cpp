@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "tools/organ/distance_grid.hpp"
@@ -75,12 +76,19 @@ std::vector<char> inside_of(const SurfaceTree& tree, const GridShape& shape) {
 void make_exact_near_surface(DistanceGrid& grid, const SurfaceTree& tree) {
   const double near = 2.5 * grid.shape.spacing.x();
   for (int k = 0; k < grid.shape.count[2]; ++k)
-    for (int j = 0; j < grid.shape.count[1]; ++j)
+    for (int j = 0; j < grid.shape.count[1]; ++j) {
+      std::optional<Eigen::Vector3d> foot;  // the surface's nearest point to the place before, if that is near
       for (int i = 0; i < grid.shape.count[0]; ++i) {
         float& value = grid.value[grid.shape.index(i, j, k)];
-        if (std::abs(value) > near) continue;
-        value = std::copysign(static_cast<float>(tree.distance(grid.shape.place(i, j, k))), value);
+        if (std::abs(value) > near) {
+          foot.reset();
+          continue;
+        }
+        const Eigen::Vector3d x = grid.shape.place(i, j, k);
+        foot = foot ? tree.nearest(x, *foot) : tree.nearest(x);
+        value = std::copysign(static_cast<float>((*foot - x).norm()), value);
       }
+    }
 }
 
 }  // namespace
