@@ -59,7 +59,7 @@ def share(options):
     """Two pages; a closed one loses the tool within 200 ms; a server that comes back is found again."""
     with Nodes(options, "liver.toml") as nodes:
         port = nodes.port
-        first, second = open_browser(), open_browser()
+        first, second = open_browser(760, 480), open_browser(760, 480)
         try:
             here, there = Page(first, nodes.address), Page(second, nodes.address)
             second.execute_script(WATCH_HOLDER)
