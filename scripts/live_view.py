@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """live_view.py [--domain N] [--rounds N] [--picture FILE]: figures of the live view on this machine.
 
-Rows on standard output, as the benchmarks print them: from a pointer's move to the first picture whose state carries its
-sample (event_to_picture) and to that state in the page (event_to_state), bytes per second to one page, when the page is
-first drawn, and what sixteen viewers cost the haptic step. Needs chromium, chromium-driver and python3-selenium; run it
-with Debian's python3."""
+Rows on standard output, as the benchmarks print them: from a pointer's move to the first picture whose state carries
+its sample (event_to_picture), to that picture's completion (event_to_made) and to that state in the page
+(event_to_state), bytes per second to one page, when its first picture is complete, and what sixteen viewers cost the
+haptic step. Needs chromium, chromium-driver and python3-selenium; run it with Debian's python3."""
 import argparse
 import json
 import pathlib
@@ -19,14 +19,26 @@ from watcher import Watcher  # noqa: E402
 
 STATE_TIMES = """
 globalThis.stateDelays = [];
+globalThis.madeDelays = [];
 const own = palpate.binary.bind(palpate), waiting = [];
 palpate.binary = (buffer) => {
   own(buffer);
   const shown = palpate.next?.tools[0].sample ?? 0;
   while (waiting.length && waiting[0].number <= shown) stateDelays.push(performance.now() - waiting.shift().event);
 };
-const drag = palpate.hand.dragTo.bind(palpate.hand);
-palpate.hand.dragTo = (axes, at, event) => { drag(axes, at, event); waiting.push({ number: palpate.hand.number, event }); };
+const go = palpate.hand.go.bind(palpate.hand);
+palpate.hand.go = (frame) => { go(frame); waiting.push(palpate.hand.pending.at(-1)); };
+const busy = palpate.picture.busy.bind(palpate.picture), drawn = palpate.hand.drawn.bind(palpate.hand), making = [];
+palpate.picture.busy = () => {
+  const waits = busy();
+  if (!waits) for (const event of making.splice(0)) madeDelays.push(performance.now() - event);
+  return waits;
+};
+palpate.hand.drawn = (frame, me) => {
+  const before = [...palpate.hand.pending];
+  drawn(frame, me);
+  making.push(...before.slice(0, before.length - palpate.hand.pending.length).map(({ event }) => event));
+};
 """
 
 
@@ -67,7 +79,8 @@ def one_page(options):
             grown = [now - before for now, before in zip(page.get("[bytes, pictures]"), counted)]
             row("web,liver,bytes_per_s", "B/s", grown[0] / seconds)
             row("web,liver,pictures", "Hz", grown[1] / seconds)
-            for name, list_of in (("event_to_picture", "palpate.hand.delays"), ("event_to_state", "stateDelays")):
+            for name, list_of in (("event_to_picture", "palpate.hand.delays"), ("event_to_made", "madeDelays"),
+                                  ("event_to_state", "stateDelays")):
                 values = page.get(list_of)
                 row(f"web,liver,{name}", "ms p50 p99 max n", percentile(values, 0.5), percentile(values, 0.99),
                     max(values), len(values))

@@ -6,7 +6,7 @@ import { origin } from './scene_block.js';
 import { add, dot, scale, sub, unit } from './vec.js';
 
 const hover = 0.012, nearLine = 0.004, open = 0.6;  // [m] above the surface; from the line; [rad]
-const settle = 1000;  // [ms]
+const settle = 1000, apart = 8;  // [ms]
 
 const standing = (state) => ({ tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 });
 
@@ -18,11 +18,12 @@ export class Hand {
     this.depth = 0.01;
     this.pending = [];
     this.delays = [];
+    this.led = 0;  // time [ms] of the event that led the tool on last
     this.rest();
   }
 
   rest() {
-    this.drag = undefined;
+    this.drag = this.wanted = undefined;
     this.pose = undefined;  // {tip, roll, grip, pedal} that is told
   }
 
@@ -67,13 +68,23 @@ export class Hand {
     return true;
   }
 
-  // `event`: when it happened, so that the picture that shows it can be told.
-  dragTo(axes, at, event) {
-    const { drag } = this;
-    if (drag?.kind === 'press') drag.hit = pick(drag.surfaces, rayThrough(axes, ...at)) ?? drag.hit;
-    if (drag?.kind === 'move') this.moveTo(axes, at);
+  // `event` [ms]: when it happened, so that the picture that shows it can be told. A mouse may move a thousand times a
+  // second; what comes too soon after the last waits for the next or for `follow`.
+  dragTo(frame, axes, at, event) {
+    if (!this.drag || !frame || event <= this.led) return;
+    this.wanted = { axes, at, event };
+    if (event - this.led >= apart) this.go(frame);
+  }
+
+  go(frame) {
+    const { drag, wanted: { axes, at, event } } = this;
+    this.wanted = undefined;
+    this.led = event;
+    if (drag.kind === 'press') drag.hit = pick(drag.surfaces, rayThrough(axes, ...at)) ?? drag.hit;
+    else this.moveTo(axes, at);
+    this.aim(frame);
     this.tell();
-    if (event !== undefined) this.pending.push({ number: this.number, event });
+    this.pending.push({ number: this.number, event });
   }
 
   // On the plane through the tip that faces the camera.
@@ -114,7 +125,7 @@ export class Hand {
   endDrag() {
     const { drag } = this;
     if (drag?.kind === 'press') this.pose.tip = this.above(drag.hit, hover);
-    this.drag = undefined;
+    this.drag = this.wanted = undefined;
   }
 
   // Tip's place so that what meets tissue first is `height` [m] above a point of the surface.
@@ -124,16 +135,21 @@ export class Hand {
     return sub(at, scale(shape.jaw_length, unit(sub(at, shape.pivot))));
   }
 
-  // Sixty times a second: a press goes above its place first, and then down.
+  // A press goes above its place first, and then down.
+  aim(frame) {
+    const { drag } = this;
+    if (drag?.kind !== 'press') return;
+    const ready = this.above(drag.hit, hover);
+    const off = fromLine(origin(frame.tools[this.tool].parts[0]), ready, drag.hit.normal);
+    if (off < nearLine) drag.down = true;
+    this.pose.tip = drag.down ? this.above(drag.hit, -this.depth) : ready;
+  }
+
+  // Sixty times a second.
   follow(frame) {
-    const { drag, pose } = this;
-    if (!pose || !frame) return;
-    if (drag?.kind === 'press') {
-      const ready = this.above(drag.hit, hover);
-      const off = fromLine(origin(frame.tools[this.tool].parts[0]), ready, drag.hit.normal);
-      if (off < nearLine) drag.down = true;
-      pose.tip = drag.down ? this.above(drag.hit, -this.depth) : ready;
-    }
+    if (!this.pose || !frame) return;
+    if (this.wanted) return this.go(frame);
+    this.aim(frame);
     this.tell();
   }
 

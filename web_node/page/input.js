@@ -6,6 +6,8 @@ export class Input {
     this.touches = new Map();
     canvas.addEventListener('pointerdown', (event) => this.down(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
+    // Before the display's next picture, where the browser tells: on this host, and over TLS.
+    canvas.addEventListener('pointerrawupdate', (event) => this.leadTool(event));
     for (const type of ['pointerup', 'pointercancel', 'lostpointercapture'])
       canvas.addEventListener(type, (event) => this.up(event));
     canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
@@ -42,9 +44,14 @@ export class Input {
     const by = [(now[0] - before[0]) / height, (now[1] - before[1]) / height];
     if (this.kind === 'two') this.pinch(event.pointerId, now, by);
     this.touches.set(event.pointerId, now);
-    if (this.kind === 'tool') this.app.dragTo(this.place(event), event.timeStamp);
+    this.leadTool(event);
     if (this.kind === 'orbit') this.app.camera.orbit(3.5 * by[0], 3.5 * by[1]);
     if (this.kind === 'pan') this.app.camera.pan(by[0], -by[1]);
+  }
+
+  leadTool(event) {
+    if (this.kind === 'tool' && this.touches.has(event.pointerId))
+      this.app.dragTo(this.place(event), event.timeStamp);
   }
 
   // Two fingers: apart zooms, together pans and turns.

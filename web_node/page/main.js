@@ -13,6 +13,7 @@ import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
+const picturesApart = 12, wordsApart = 50;  // [ms]
 
 class App {
   constructor(sources) {
@@ -38,12 +39,12 @@ class App {
     this.setMode('press');
     setInterval(() => this.lead(), 16);  // also while pictures take longer
     addEventListener('pagehide', () => this.hand.release());
-    requestAnimationFrame((now) => this.tick(now));
+    this.everyPicture();
   }
 
   lost() {
     this.hand.rest();
-    this.frame = this.next = this.topology = undefined;
+    this.frame = this.next = this.shown = this.topology = undefined;
     this.panel.link('no connection; trying again', false);
   }
 
@@ -60,6 +61,9 @@ class App {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
+    if (document.hidden) return;
+    this.link.tellTaken();
+    this.draw();
   }
 
   setScenery(scenery) {
@@ -68,7 +72,7 @@ class App {
     this.built = undefined;
     this.topology = undefined;
     this.picture.setScenery(scenery);
-    this.panel.setScenery(scenery, this.picture.scale(128));
+    this.panel.setScenery(scenery);
     const back = this.camera.scene;
     if (JSON.stringify(back) !== JSON.stringify(scenery.camera)) this.camera.setScene(scenery.camera);
     this.look.byScalar = scenery.colour === 'displacement';
@@ -102,13 +106,35 @@ class App {
     if (pieces) this.bodies[b].visual.part(pieces);
   }
 
-  tick(now) {
-    requestAnimationFrame((later) => this.tick(later));
-    if (this.picture.busy()) return;
-    const seconds = Math.min((now - (this.last ?? now)) / 1e3, 0.1);
-    this.last = now;
+  // With every picture of the display.
+  everyPicture() {
+    requestAnimationFrame(() => this.everyPicture());
+    this.draw();
+    const now = performance.now();
+    if (!this.firstDrawn || now - (this.worded ?? -wordsApart) < wordsApart) return;
+    this.worded = now;
+    this.words();
+  }
+
+  // A frame is drawn when it comes: to wait for the display would delay it once more. Where nothing comes, the camera
+  // may have moved.
+  draw() {
+    const now = performance.now(), since = now - (this.last ?? now - picturesApart);
+    if (!this.paused && this.next === this.shown && since < 100) return;
+    if (this.picture.busy() || since < picturesApart) {
+      this.again ??= setTimeout(() => { this.again = undefined; this.draw(); }, 4);
+      return;
+    }
+    if (this.shown) this.firstDrawn ??= now;
     if (!this.paused) this.build();
-    if (!this.frame) return;
+    if (!this.frame || document.hidden) return;
+    this.last = now;
+    this.shown = this.next;
+    this.show(Math.min(since / 1e3, 0.1));
+  }
+
+  // `seconds`: since the last picture.
+  show(seconds) {
     this.adapt(seconds);
     const width = Math.round(canvas.clientWidth * this.scale), height = Math.round(canvas.clientHeight * this.scale);
     this.picture.resize(Math.max(width, 16), Math.max(height, 16));
@@ -116,7 +142,12 @@ class App {
     readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
     this.hand.drawn(this.frame, this.me);
     ++this.pictures;
-    this.firstDrawn ??= performance.now();
+  }
+
+  // What stands beside the picture; nobody reads faster.
+  words() {
+    if (!this.frame) return;
+    this.panel.scale(() => this.picture.scale(128));
     this.panel.frame(this.frame, this.me);
     this.panel.legend(this.look);
     this.curve.draw();
@@ -166,7 +197,7 @@ class App {
   }
 
   dragTo(at, event) {
-    if (this.picture.axes) this.hand.dragTo(this.picture.axes, at, event);
+    if (this.picture.axes) this.hand.dragTo(this.next, this.picture.axes, at, event);
   }
 
   endDrag() {

@@ -13,7 +13,7 @@ function row(tag, ...children) {
 }
 
 export class Panel {
-  setScenery(scenery, pixels) {
+  setScenery(scenery) {
     this.scenery = scenery;
     byId('title').textContent = scenery.title;
     document.title = `${scenery.title} - palpate`;
@@ -31,10 +31,13 @@ export class Panel {
     document.querySelector('[data-do=through]').hidden = !scenery.bodies.some((body) => body.finish === 'duct');
     document.querySelector('[data-do=grip]').hidden = !scenery.tools.some((tool) => tool.grips);
     document.querySelector('[data-do=pedal]').hidden = !scenery.tools.some((tool) => tool.cuts);
-    this.drawScale(pixels);
   }
 
-  drawScale(pixels) {
+  // `colours`: makes the pixels of the scale; asked once, after the first picture.
+  scale(colours) {
+    if (this.scaled) return;
+    this.scaled = true;
+    const pixels = colours();
     const canvas = document.querySelector('#legend canvas'), to = canvas.getContext('2d');
     const image = to.createImageData(canvas.width, canvas.height);
     for (let y = 0; y < canvas.height; ++y)
