@@ -17,12 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::comes_within;
-using testing::kLinear;
-using testing::LoopbackScene;
-using testing::program;
-using testing::run_program;
-using testing::text_of;
+using namespace testing;
 
 /// Names in a list of JSON.
 std::set<std::string> names_in(const json& list) {

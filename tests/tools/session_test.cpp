@@ -18,12 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::comes_within;
-using testing::kLinear;
-using testing::LoopbackScene;
-using testing::program;
-using testing::run_program;
-using testing::text_of;
+using namespace testing;
 
 /// The files that a whole session of `palpate run` leaves.
 struct Session {
