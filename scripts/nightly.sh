@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
-# undefined behaviour) and thread (sanitizers, short forms), fuzz (spoilt files for an hour under the address and
+# undefined behaviour) and thread (sanitizers, short forms), fuzz (spoilt files, pages' messages; over an hour, under the address and
 # undefined-behaviour sanitizers), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
 # out/mcap_reader), docs (every command of the pages), python (the module and its examples; installs pybind11-dev and
