@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with
-# undefined behaviour) and thread (sanitizers, short forms), fuzz (spoilt files for an hour under the address and
-# undefined-behaviour sanitizers), tidy (clang-tidy over the programs), stability (every case;
+# undefined behaviour) and thread (sanitizers, short forms), fuzz (spoilt files and pages' messages, over an hour, under
+# the address and undefined-behaviour sanitizers), tidy (clang-tidy over the programs), stability (every case;
 # an error while docs/stability.md names failed ones), mcap (exports in the reference reader, which npm brings into
 # out/mcap_reader), docs (every command of the pages), python (the module and its examples; installs pybind11-dev and
 # python3-dev), papers (docs/papers.md in full, into out/papers_docs), packages (made, and tried in a bare Debian 12;
@@ -54,7 +54,7 @@ for stage in "$@"; do
       ./scripts/build.sh address test_fuzz
       PALPATE_LONG_TESTS=1 build/address/bin/test_fuzz ;;
     tidy) ./scripts/tidy.sh ;;
-    -h|--help) sed -n '2,7p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,8p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done

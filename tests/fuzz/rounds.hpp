@@ -17,7 +17,7 @@ void repeat(int rounds, std::chrono::seconds in_long_tests, Round&& round) {
   for (int i = 0; for_long ? Clock::now() < end : i < rounds; ++i) round(i);
 }
 
-/// The same in twelve minutes that so many cases share. Five suites make an hour.
+/// The same in twelve minutes that so many cases share. Each suite has twelve.
 template <class Round>
 void fuzz(int rounds, int cases, Round&& round) {
   repeat(rounds, std::chrono::seconds(12 * 60) / cases, round);

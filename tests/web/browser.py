@@ -52,6 +52,39 @@ def press(options):
         expect(nodes.stop() == 0, "palpate run failed")
 
 
+CURVE_IS_SEEN = """(() => { const side = document.getElementById('side').getBoundingClientRect();
+const curve = document.getElementById('curve').getBoundingClientRect();
+return curve.height > 60 && curve.top >= side.top && curve.bottom <= side.bottom; })()"""
+CAP_TO_THE_RIGHT = """navigator.getGamepads = () => [{ connected: true, id: '3Dconnexion SpaceMouse (Vendor: 256f)',
+axes: [0.6, 0, 0, 0, 0, 0], buttons: [] }];
+const { right } = palpate.picture.axes, tip = () => palpate.frame.tools[0].parts[0].slice(12, 15);
+const begin = tip();
+globalThis.wentRight = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * right[i], 0);"""
+
+
+def touch(options):
+    """A finger on a phone presses the organ, and sees the curve; the cap of a 6-axis mouse moves the tool."""
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_browser()
+        try:
+            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": 390, "height": 800, "deviceScaleFactor": 2, "mobile": True})
+            browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+            page = Page(browser, nodes.address)
+            page.wait("palpate.frame.tools[0].seen", 20)
+            expect(page.get(CURVE_IS_SEEN), "the curve is cut off")
+            page.touch("touchStart", (0.5, 0.55))
+            page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
+            page.touch("touchMove", (0.52, 0.55))
+            page.touch("touchEnd")
+            page.wait(f"{FORCE} < 0.01", 6)
+            browser.execute_script(CAP_TO_THE_RIGHT)
+            page.wait("palpate.hand.holds(palpate.frame, palpate.me) && wentRight() > 0.01", 10)
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
 WATCH_HOLDER = """
 globalThis.seenHolder = [];
 setInterval(() => {
@@ -148,14 +181,14 @@ def attack(port):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("case", choices=["press", "share", "cut", "hostile"])
+    parser.add_argument("case", choices=["press", "touch", "share", "cut", "hostile"])
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
     options = parser.parse_args()
     if options.case != "hostile":
         need_browser()
-    {"press": press, "share": share, "cut": cut, "hostile": hostile}[options.case](options)
+    {"press": press, "touch": touch, "share": share, "cut": cut, "hostile": hostile}[options.case](options)
 
 
 if __name__ == "__main__":

@@ -34,6 +34,10 @@ TEST(WebBrowser, AHandPressesTheOrganAndLetsGo) {
   run("press");
 }
 
+TEST(WebBrowser, AFingerOnAPhoneAndACapOfSixAxesMoveTheTool) {
+  run("touch");
+}
+
 TEST(WebBrowserShared, TwoPagesShareAToolAndAServerThatReturnsIsFoundAgain) {
   run("share");
 }

@@ -131,6 +131,10 @@ class Page:
     def let_go(self, x, y):
         self.mouse("mouseReleased", x, y, False)
 
+    def touch(self, kind, *shares):
+        points = [dict(zip("xy", self.place(*share))) for share in shares]
+        self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
     def errors(self):
         return [line for line in self.browser.get_log("browser") if line["level"] == "SEVERE"
                 and "ERR_CONNECTION_REFUSED" not in line["message"]]

@@ -41,15 +41,16 @@ export class Curve {
     to.fillStyle = '#a29d95';
     to.strokeStyle = '#35312c';
     to.lineWidth = ratio;
+    const word = (f) => Math.max(y(f) - 3 * ratio, 10 * ratio);  // the highest one stays in the picture
     for (const f of [0, 0.5 * top, top]) {
       to.beginPath();
       to.moveTo(0, y(f));
       to.lineTo(width, y(f));
       to.stroke();
-      to.fillText(`${+f.toFixed(2)} N`, 4 * ratio, y(f) - 3 * ratio);
+      to.fillText(`${+f.toFixed(2)} N`, 4 * ratio, word(f));
     }
     to.textAlign = 'right';
-    to.fillText(`last ${seconds} s`, width - 4 * ratio, y(top) - 3 * ratio);
+    to.fillText(`last ${seconds} s`, width - 4 * ratio, word(top));
     to.textAlign = 'left';
   }
 }

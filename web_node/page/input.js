@@ -23,7 +23,7 @@ export class Input {
   }
 
   down(event) {
-    this.canvas.focus({ preventScroll: true });
+    this.canvas.focus({ preventScroll: true, focusVisible: false });
     this.canvas.setPointerCapture(event.pointerId);
     event.preventDefault();
     this.touches.set(event.pointerId, [event.clientX, event.clientY]);

@@ -63,7 +63,7 @@ class App {
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
     if (document.hidden) return;
     this.link.tellTaken();
-    this.draw();
+    this.drawIn(0);  // once what else has come is taken: the newest is drawn
   }
 
   setScenery(scenery) {
@@ -116,13 +116,18 @@ class App {
     this.words();
   }
 
+  // [ms]
+  drawIn(wait) {
+    this.again ??= setTimeout(() => { this.again = undefined; this.draw(); }, wait);
+  }
+
   // A frame is drawn when it comes: to wait for the display would delay it once more. Where nothing comes, the camera
   // may have moved.
   draw() {
     const now = performance.now(), since = now - (this.last ?? now - picturesApart);
     if (!this.paused && this.next === this.shown && since < 100) return;
     if (this.picture.busy() || since < picturesApart) {
-      this.again ??= setTimeout(() => { this.again = undefined; this.draw(); }, 4);
+      this.drawIn(4);
       return;
     }
     if (this.shown) this.firstDrawn ??= now;
@@ -162,10 +167,10 @@ class App {
     this.hand.follow(this.next);
   }
 
-  // Fewer pixels where the machine does not keep up.
+  // Fewer pixels where the machine does not keep up: pictures that wait for one another make the hand late too.
   adapt(seconds) {
     const full = Math.min(devicePixelRatio, 2);
-    this.slow = (this.slow ?? 0) + (seconds > 0.03 ? 1 : -0.5);
+    this.slow = (this.slow ?? 0) + (seconds > 0.02 ? 1 : -0.5);
     if (this.slow > 12 && this.scale > 0.4) this.scale = Math.max(0.4, 0.75 * this.scale);
     if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
     if (this.slow > 12 || this.slow < -400) this.slow = 0;
