@@ -85,6 +85,10 @@ TEST_F(StrangeSizes, SharpEdgesAreNoWalls) {
   EXPECT_NEAR(volume_made_of(regular), 1e-3 / 3, 2e-6);
 }
 
+TEST_F(StrangeSizes, ADeviationThatNoSurfaceIsFoundWithinIsRefused) {
+  expect_last_words("timeout 60 " + made_of(box(0.1, 0), "--deviation 1e-7"), "a deviation of 0.0001 mm is less than");
+}
+
 TEST_F(StrangeSizes, MoreNodesThanAMeshHasAreRefusedAtOnceWithTheirNumber) {
   const std::string surface = box(0.1, 0);
   const std::string edge = program("palpate") + " mesh " + surface + " --edge 1e-7 -o " + mesh_;
