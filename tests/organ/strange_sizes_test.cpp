@@ -77,12 +77,26 @@ TEST_F(StrangeSizes, ASurfaceWithoutVolumeIsRefused) {
   expect_last_words(made_of(line), line + ": the surface encloses no volume");
 }
 
+TEST_F(StrangeSizes, LinesOfAnObjFileThatSayNothingOfPolygonsAreTold) {
+  const std::string file = box(0.1, 0);
+  write_file(file, text_of(file) + "# a word\nmtllib a.mtl\ncurv 0 1\ncurv 1 2\n");
+  const auto made = run_program(made_of(file));
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("lines that say nothing of polygons (2), the first line 17, 'curv': passed over"),
+            std::string::npos)
+      << made.out;
+}
+
 TEST_F(StrangeSizes, SharpEdgesAreNoWalls) {
   const std::string at_corner = tetrahedron({{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}});
   EXPECT_NEAR(volume_made_of(at_corner), 1e-3 / 6, 1e-6);
   const std::string regular =
       tetrahedron({{{0.05, 0.05, 0.05}, {0.05, -0.05, -0.05}, {-0.05, 0.05, -0.05}, {-0.05, -0.05, 0.05}}});
   EXPECT_NEAR(volume_made_of(regular), 1e-3 / 3, 2e-6);
+}
+
+TEST_F(StrangeSizes, ADeviationThatNoSurfaceIsFoundWithinIsRefused) {
+  expect_last_words("timeout 60 " + made_of(box(0.1, 0), "--deviation 1e-7"), "a deviation of 0.0001 mm is less than");
 }
 
 TEST_F(StrangeSizes, MoreNodesThanAMeshHasAreRefusedAtOnceWithTheirNumber) {

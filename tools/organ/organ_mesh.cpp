@@ -30,6 +30,7 @@ constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds bot
 constexpr double kLongestOfGuess = 2;  // where the deviation asks for more nodes, longer edges do not help
 constexpr double kOfWall = 0.25;       // by how much of its thickness a wall's surfaces may be missed
 constexpr double kMostNodes = 3e6;     // of a mesh
+constexpr double kFoundWithin = 1e-4;  // of the box's diagonal: the mesher finds a surface no more exactly
 constexpr double kMissing = 0.3;       // of a part's volume: more than chords take
 
 MeshSizes sizes_at(const Solid& solid, const Fineness& f, double edge) {
@@ -171,6 +172,15 @@ void check_affordable(const Solid& solid, const SolidMeasures& measures, const M
                   1e3 * shortest, nodes, kMostNodes));
 }
 
+/// A triangle cannot come nearer to the surface than the mesher finds it: it would be halved without end.
+void check_deviation(const Solid& solid, double deviation) {
+  const double least = kFoundWithin * (solid.high - solid.low).norm();
+  if (deviation > 0 && deviation < least)
+    throw std::runtime_error(fmt::format(
+        "a deviation of {:.3g} mm is less than the surface is found within, {:.3g} mm: ask for a larger one",
+        1e3 * deviation, 1e3 * least));
+}
+
 FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   FilledSolid filled = fill_solid(solid, sizes);
   check_complete(measures, filled);
@@ -192,6 +202,7 @@ FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, c
     throw std::runtime_error(
         fmt::format("edges of {:.3g} mm are too long: {}", 1e3 * edge, advice(solid, measures, edge)));
   check_affordable(solid, measures, sizes_at(solid, fineness, edge));
+  check_deviation(solid, fineness.deviation);
   if (fineness.edge == 0) {
     say(fmt::format("looking for the edge length that gives {} nodes", fineness.nodes));
     edge = edge_for(solid, measures, fineness, say);

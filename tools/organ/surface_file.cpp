@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
@@ -54,6 +56,21 @@ ReadSurface triangles_of(const Polygons& read) {
   return surface;
 }
 
+/// Lines of an OBJ file that say nothing of polygons, which the library passes over or refuses.
+std::vector<Finding> strange_lines(const std::string& obj) {
+  static const std::set<std::string, std::less<>> known{"v", "vn", "vt", "vp",     "f",     "o",
+                                                        "g", "s",  "mg", "mtllib", "usemtl"};
+  std::istringstream lines(obj);
+  std::string line, word, first;
+  int count = 0;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (!(std::istringstream(line) >> word) || word[0] == '#' || known.contains(word)) continue;
+    if (count++ == 0) first = fmt::format("{}, '{:.20}'", number, word);
+  }
+  if (count == 0) return {};
+  return {{fmt::format("lines that say nothing of polygons ({}), the first line {}", count, first), "passed over", {}}};
+}
+
 ReadSurface read(const fs::path& file) {
   const std::string ending = ending_of(file);
   if (ending == ".stl") return read_stl(text_of(file));
@@ -63,8 +80,11 @@ ReadSurface read(const fs::path& file) {
   if (ending == ".vtk") return {load_triangle_mesh(file, 1), {}};
   if (ending != ".obj" && ending != ".ply" && ending != ".off")
     refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");
-  text_of(file);
-  return triangles_of(read_with_surface_library(file));
+  const std::string text = text_of(file);
+  ReadSurface surface = triangles_of(read_with_surface_library(file));
+  if (ending == ".obj")
+    for (const Finding& strange : strange_lines(text)) surface.findings.push_back(strange);
+  return surface;
 }
 
 }  // namespace
