@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "common/bus/dds_bus.hpp"
@@ -47,11 +49,16 @@ std::int64_t mono(const std_msgs_msg_dds__Header_& header) {
   return header.stamp.sec * kNsPerS + header.stamp.nanosec - (wall_ns() - now_ns());
 }
 
-/// What was sensed when ROS says; null if nothing was within 50 us of it.
+/// What was sensed nearest to when ROS says, as a late tick may be close behind another; null if nothing was within
+/// 50 us of it.
 template <class M>
 const M* sensed_at(const std::map<std::int64_t, M>& all, std::int64_t at) {
-  const auto found = all.lower_bound(at - 50'000);
-  return found != all.end() && found->first < at + 50'000 ? &found->second : nullptr;
+  auto nearest = all.lower_bound(at);
+  if (nearest == all.end() || (nearest != all.begin() && at - std::prev(nearest)->first < nearest->first - at)) {
+    if (nearest == all.begin()) return nullptr;
+    --nearest;
+  }
+  return std::abs(nearest->first - at) < 50'000 ? &nearest->second : nullptr;
 }
 
 Eigen::Vector3d vec(const double (&v)[3]) {
