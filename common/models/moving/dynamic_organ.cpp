@@ -17,6 +17,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kCalmed = 0.6;  // [s] for which tissue is calmed into which a tool was put: it is led out
+
 std::span<const int> joined_nodes(const HybridTouch* still) {
   return still ? still->part().connection() : std::span<const int>{};
 }
@@ -93,8 +95,17 @@ void DynamicOrgan::move_tools(double share) {
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   advance(tools, dt);
+  if (put_into(tools)) calm_left_ = kCalmed;
+  if (calm_left_ > 0) calm();
+  calm_left_ = std::max(calm_left_ - dt, 0.0);
   cut(tools);
   tear_and_drop();
+}
+
+// A tool that no motion has led here touches: what it pressed before swings, and what it is put into would.
+bool DynamicOrgan::put_into(std::span<const ToolInTick> tools) const {
+  const auto is_new = [&](const TouchContact& c) { return tools[c.tool_point().tool].begins; };
+  return std::ranges::any_of(contacts(), is_new) || (still_ && std::ranges::any_of(still_->contacts(), is_new));
 }
 
 void DynamicOrgan::settle(std::span<const ToolInTick> tools, double dt) {
@@ -237,6 +248,8 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   s.list(m.motion);
   s.list(m.holding);
   passing_.state(s);
+  s.value(calm_left_);
+  s.value(moved_with_);
   s.list(m.previous);
   s.list(m.present);
   if (s.restoring()) recall(m);

@@ -29,7 +29,8 @@ class DynamicOrgan {
   DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings, const MakeModel& make);
   ~DynamicOrgan();
 
-  /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears.
+  /// Moves the tissue on by `dt` [s] while the tools go from their poses before to now, then cuts and tears. Where a
+  /// tool has been put into it, its motion is stopped for a while as in settle().
   void tick(std::span<const ToolInTick> tools, double dt);
   /// The same without a cut, and with all motion stopped once it has begun to slow down: one after another lead to
   /// rest, as each stop finds the tissue where it moves fastest, which is near its rest (P. A. Cundall's dynamic
@@ -102,6 +103,7 @@ class DynamicOrgan {
   void recall(const Memory& memory);
   void advance(std::span<const ToolInTick> tools, double dt);
   void calm();
+  bool put_into(std::span<const ToolInTick> tools) const;
   void take_tools(std::span<const ToolInTick> tools);
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);
@@ -126,6 +128,7 @@ class DynamicOrgan {
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<CuttableTissue::Glow> glows_;
   double moved_with_ = 0;  ///< [J] kinetic energy at the last calm()
+  double calm_left_ = 0;   ///< [s] for which it is called
 };
 
 }  // namespace palpate
