@@ -85,9 +85,9 @@ TEST_F(DeviceTest, ADriverOfAToolThatNoneElsewhereMovesIsNotHeardAndSoItIsSaidOn
   const auto writer = elsewhere->writer(topics::device_state);
   const auto said = [&](std::uint64_t seq) {
     writer->write({.tool = 3, .seq = seq, .depth = 0.1});
-    ::testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStdout();
     drivers.take();
-    return ::testing::internal::GetCapturedStderr();
+    return ::testing::internal::GetCapturedStdout();
   };
   EXPECT_NE(said(1).find("moves tool 3, which no driver elsewhere moves in this scene"), std::string::npos);
   EXPECT_EQ(said(2), "");
