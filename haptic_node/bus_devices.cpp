@@ -1,5 +1,11 @@
 #include "haptic_node/bus_devices.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/log/log.hpp"
 #include "common/tool/motion_guard.hpp"
 
 namespace palpate {
@@ -17,14 +23,21 @@ bool BusDevices::needed() const {
 void BusDevices::take() {
   while (const auto sample = reader_->take()) {
     const ToolDofs dofs{sample->yaw, sample->pitch, sample->depth, sample->roll, sample->grip, sample->pedal};
-    for (const Target& target : targets_) {
-      if (target.tool != sample->tool) continue;
-      if (MotionLimits{}.allow(dofs))
-        target.device->put({dofs, sample->seq});
-      else
-        refused_.fetch_add(1, std::memory_order_relaxed);
-    }
+    const auto target = std::ranges::find(targets_, sample->tool, &Target::tool);
+    if (target == targets_.end())
+      say_unknown(sample->tool);
+    else if (MotionLimits{}.allow(dofs))
+      target->device->put({dofs, sample->seq});
+    else
+      refused_.fetch_add(1, std::memory_order_relaxed);
   }
+}
+
+void BusDevices::say_unknown(std::uint32_t tool) {
+  if (std::exchange(said_unknown_, true)) return;
+  log_warning(
+      fmt::format("a driver on topic {} moves tool {}, which no driver elsewhere moves in this scene; it is not heard",
+                  topics::device_state.name, tool));
 }
 
 }  // namespace palpate

@@ -23,9 +23,12 @@ class BusDevices {
     std::uint32_t tool;
     Device* device;
   };
+  void say_unknown(std::uint32_t tool);
+
   std::unique_ptr<Reader<DeviceState>> reader_;
   std::vector<Target> targets_;
   std::atomic<std::uint64_t> refused_ = 0;
+  bool said_unknown_ = false;
 };
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/bus/log_reader.hpp"
 #include "common/cli/progress.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -93,8 +94,21 @@ nlohmann::ordered_json json_of(const ReplayOptions& o, const PlayReport& report)
       {"damage", report.damage}};
 }
 
+/// A scene that is named gives its network; the log of another one is played all the same.
+void say_another_scene(const ReplayOptions& o) {
+  if (o.network.scene.empty()) return;
+  LogReader log(o.file);
+  for (LogEvent event; log.header().scene_hash.empty() && log.next(event);) {
+  }
+  const std::string& hash = log.header().scene_hash;
+  if (!hash.empty() && hash != scene_hash(load_scene(o.network.scene)))
+    fmt::print(stderr, "palpate: {} is of another scene than {}, whose [network] alone is used\n", o.file,
+               o.network.scene);
+}
+
 void play(const ReplayOptions& o) {
   catch_shutdown_signals();
+  say_another_scene(o);
   const auto bus = make_dds_bus(o.network);
   request_realtime(
       {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
@@ -134,7 +148,7 @@ void add_replay_command(cli::Command& app) {
           .add_flag(
               "--verify", o->verify,
               "Compute every recorded haptic step, and every tick of moving tissue, again and require the same bits")
-          .excludes({"--speed", "--topic"});
+          .excludes({"--speed", "--topic", "--scene"});
   command
       .add_option("--data", o->data,
                   "Folder for the files that the log brings along, and with those that are too large for it")

@@ -31,7 +31,7 @@ template <class Message>
 class Reader {
  public:
   virtual ~Reader() = default;
-  virtual std::optional<Message> take() = 0;  ///< the next valid sample, empty if there is none
+  virtual std::optional<Message> take() = 0;  ///< the next valid sample; empty: none, or so many were taken in a row
   /// The key alone of a stream whose writers have all died, fallen silent or ended, as take() came upon it; empty if
   /// there is none. Of streams in the memory of this process: never.
   virtual std::optional<Message> take_ended() { return std::nullopt; }

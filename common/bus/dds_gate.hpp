@@ -8,6 +8,8 @@
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/key.hpp"
 #include "common/bus/key_budget.hpp"
+#include "common/bus/rate_budget.hpp"
+#include "common/realtime/clock.hpp"
 #include "idl/limits.hpp"
 
 namespace palpate::dds {
@@ -22,8 +24,8 @@ struct CountBytes {
 };
 
 /// What stands between the middleware and a reader's memory. Every sample from outside passes here, on the
-/// middleware's threads, before anything of it is kept: only a valid one, under a name within its writer's budget, and
-/// within the reader's own. One that is refused costs no other sample its place.
+/// middleware's threads, before anything of it is kept: only a valid one, under a name and at a rate within its
+/// writer's budget, and within the reader's own. One that is refused costs no other sample its place.
 template <class M>
 class Gate {
  public:
@@ -49,11 +51,13 @@ class Gate {
  private:
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
-    if (valid(message_) && in_budget(writer) && has_room()) return true;
+    if (in_time(writer) && valid(message_) && in_budget(writer) && has_room()) return true;
     refused_.fetch_add(1, std::memory_order_relaxed);
     total_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
+  /// One that keeps all has its room alone: a recorder wants a log that is played faster than it was made.
+  bool in_time(dds_instance_handle_t writer) { return keeps_all_ || rate_.admits(writer, now_ns()); }
   bool in_budget(dds_instance_handle_t writer) {
     if constexpr (requires { message_.node; }) return budget_.admits(writer, key_of(message_));
     return true;  // numbers have their limits in the IDL
@@ -77,6 +81,7 @@ class Gate {
   const bool keeps_all_;
   M message_;  ///< kept between samples for its memory
   KeyBudget budget_;
+  RateBudget rate_;
   std::atomic<std::size_t> samples_ = 0, bytes_ = 0;
   std::atomic<std::uint64_t> refused_ = 0;
 };

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 
 #include "common/bus/key_budget.hpp"
+#include "common/bus/rate_budget.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/bus/messages_for_tests.hpp"
 #include "tests/hostile/attacker.hpp"
@@ -26,7 +28,7 @@ class GateTest : public ::testing::Test {
     EXPECT_TRUE(met);
   }
 
-  Attacker attacker_{own_domain()};
+  Attacker attacker_{{.domain = own_domain()}};
   std::unique_ptr<Bus> bus_ = make_dds_bus({.domain = own_domain()});
 };
 
@@ -72,6 +74,33 @@ TEST_F(GateTest, AWriterMayUseSoManyNames) {
     return newest == 7;
   });
   EXPECT_EQ(taken, KeyBudget::kKeys + 1) << "another writer has names of its own";
+}
+
+TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {
+  const auto reader = bus_->reader(topics::clock_probe);
+  const HostileWriter<ClockProbe> one = attacker_.writer(topics::clock_probe);
+  const HostileWriter<ClockProbe> other = attacker_.writer(topics::clock_probe);
+  until([&] { return reader->writers() == 2; });
+  for (int k = 0; k < 200; ++k)
+    one.write({.node = std::to_string(k), .seq = 1}), other.write({.node = std::to_string(1000 + k), .seq = 1});
+  std::this_thread::sleep_for(1s);  // all of them wait
+  const auto visit = [&] {
+    int taken = 0;
+    while (reader->take()) ++taken;
+    return taken;
+  };
+  EXPECT_EQ(visit(), 256);
+  EXPECT_EQ(visit(), 400 - 256);
+}
+
+TEST(RateBudget, IsEachWritersOwnAndOfASecond) {
+  RateBudget budget;
+  int admitted = 0;
+  for (std::int64_t k = 0; k < 100'000; ++k) admitted += budget.admits(1, 5'000'000'000 + 10'000 * k - 1);
+  EXPECT_EQ(admitted, RateBudget::kPerSecond) << "100 kHz for a second";
+  EXPECT_FALSE(budget.admits(1, 5'999'999'998));
+  EXPECT_TRUE(budget.admits(2, 5'999'999'998));
+  EXPECT_TRUE(budget.admits(1, 6'000'000'000));
 }
 
 // A reader that keeps all and from which nobody takes would stop the middleware's thread for all others.

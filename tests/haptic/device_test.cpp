@@ -75,6 +75,25 @@ TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
   EXPECT_EQ(devices[1]->read(0).seq, 5u);
 }
 
+TEST_F(DeviceTest, ADriverOfAToolThatNoneElsewhereMovesIsNotHeardAndSoItIsSaidOnce) {
+  const Scene scene = scene_with(BusDeviceSpec{});
+  std::vector<std::unique_ptr<Device>> devices;
+  devices.push_back(make_device(scene, 0));
+  const auto network = make_memory_network();
+  const auto here = make_memory_bus(network), elsewhere = make_memory_bus(network);
+  BusDevices drivers(*here, devices);
+  const auto writer = elsewhere->writer(topics::device_state);
+  const auto said = [&](std::uint64_t seq) {
+    writer->write({.tool = 3, .seq = seq, .depth = 0.1});
+    ::testing::internal::CaptureStdout();
+    drivers.take();
+    return ::testing::internal::GetCapturedStdout();
+  };
+  EXPECT_NE(said(1).find("moves tool 3, which no driver elsewhere moves in this scene"), std::string::npos);
+  EXPECT_EQ(said(2), "");
+  EXPECT_FALSE(devices[0]->ready());
+}
+
 TEST_F(DeviceTest, AToolDoesThePartOfItsDriversMotionThatTheSceneSays) {
   const auto device = make_device(scene_with(BusDeviceSpec{.motion_scale = 0.5}), 0);
   device->put({.dofs = {.yaw = 0.2, .pitch = -0.1, .depth = 0.12, .roll = 0.3, .grip = 0.4}, .seq = 1});

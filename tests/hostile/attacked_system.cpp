@@ -2,7 +2,10 @@
 
 #include <fstream>
 
+#include "common/bus/security.hpp"
 #include "common/realtime/clock.hpp"
+#include "tools/keys/documents.hpp"
+#include "tools/keys/key_folder.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -19,9 +22,32 @@ double resident_mb(pid_t pid) {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Keys of every role, and those of the insider.
+void make_keys(const std::filesystem::path& folder) {
+  constexpr std::time_t day = 24 * 60 * 60;
+  const keys::Period period{std::time(nullptr) - day, std::time(nullptr) + 30 * day};
+  keys::make_folder(folder, period);
+  keys::add_keys(folder, "player", "insider", period);
+  const keys::Identity authority{text_of(folder / "authority/key.pem"), text_of(folder / "authority/certificate.pem")};
+  const KeyFiles files = key_files(folder / "insider");
+  const Rights all{rights_of("player").writes, rights_of("observer").reads};
+  const std::string subject = keys::subject_of(text_of(files.certificate));
+  std::ofstream(files.permissions) << keys::sign(authority, keys::permissions_document("player", subject, all, period));
+}
+
 }  // namespace
 
-HostileScene::HostileScene() : LoopbackScene("hostile", "[body.dynamic]\ndamping = 20\n") {
+HostileScene::HostileScene(bool with_keys)
+    : LoopbackScene("hostile", "[body.dynamic]\ndamping = 20\n"), with_keys_(with_keys) {
+  if (with_keys) {
+    replace("[render]\n", "[network.security]\nkeys = \"keys\"\n\n[render]\n");
+    make_keys(folder() / "keys");
+  }
   replace("quasi_static", "tensor_mass");
   replace("width = 320\nheight = 240", "width = 64\nheight = 64");
   replace("[[tool]]", R"([rates]
@@ -51,9 +77,15 @@ device = "bus"
   write("motion.csv", fmt::format("time,yaw,pitch,depth,roll,grip\n0,0,0,{0},0,0\n3600,0,0,{0},0,0\n", kHover));
 }
 
-AttackedSystem::AttackedSystem(int domain)
-    : attacker_(domain),
-      hand_(domain, 1),
+BusSettings HostileScene::insider(int domain) const {
+  if (!with_keys_) return {.domain = domain};
+  return {.domain = domain, .keys = folder() / "keys/insider", .role = "player"};
+}
+
+AttackedSystem::AttackedSystem(int domain, bool with_keys)
+    : scene_(with_keys),
+      attacker_(scene_.insider(domain)),
+      hand_(scene_.insider(domain), 1),
       status_(attacker_.bus().reader(topics::node_status)),
       picture_(attacker_.bus().reader(topics::picture_state)) {
   std::string said;

@@ -17,13 +17,18 @@ namespace palpate::testing {
 /// the moving one, near enough for the deform node to tell of it; a driver elsewhere holds another far away.
 class HostileScene : public LoopbackScene {
  public:
-  HostileScene();
+  /// With keys: among them those of an insider, who may write and read all, more than any role.
+  explicit HostileScene(bool with_keys);
+  BusSettings insider(int domain) const;
+
+ private:
+  bool with_keys_;
 };
 
 /// All nodes of that scene as processes, with the driver of the second tool in this one.
 class AttackedSystem {
  public:
-  explicit AttackedSystem(int domain);
+  AttackedSystem(int domain, bool with_keys);
   ~AttackedSystem();
 
   Attacker& attacker() { return attacker_; }

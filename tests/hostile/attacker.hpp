@@ -44,9 +44,8 @@ class HostileWriter {
 /// A participant with the project's messages that writes and reads all topics of a domain, and plays by no rule.
 class Attacker {
  public:
-  explicit Attacker(int domain)
-      : bus_(make_dds_bus({.domain = domain})),
-        participant_(dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr), "attacker") {}
+  explicit Attacker(const BusSettings& settings)
+      : bus_(make_dds_bus(settings)), participant_(make_participant(settings), "attacker") {}
 
   Bus& bus() { return *bus_; }
   template <class M>

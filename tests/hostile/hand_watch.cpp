@@ -24,9 +24,9 @@ double size(const ForceState& f) {
 
 }  // namespace
 
-HandWatch::HandWatch(int domain, std::uint32_t tool)
+HandWatch::HandWatch(const BusSettings& settings, std::uint32_t tool)
     : tool_(tool),
-      participant_(dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr), "watching the hand"),
+      participant_(make_participant(settings), "watching the hand"),
       topic_(dds_create_topic(participant_, &dds::Generated<ForceState>::descriptor(), topics::force_state.name,
                               nullptr, nullptr),
              "watching the hand"),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/bus/dds_bus.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "idl/messages.hpp"
 #include "tests/realtime/host_watch.hpp"
@@ -13,7 +14,8 @@ namespace palpate::testing {
 /// What the haptic node's own writer says of one tool's force: that of others on the same topic is not looked at.
 class HandWatch {
  public:
-  HandWatch(int domain, std::uint32_t tool);
+  /// In a domain that this process has joined with these settings.
+  HandWatch(const BusSettings& settings, std::uint32_t tool);
 
   /// Takes what has come.
   void look();

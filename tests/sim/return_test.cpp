@@ -213,7 +213,7 @@ TEST_F(MissedCut, IsNoKickBetweenFlapsThatForcepsHadDrawnApart) {
 
 // It swings since the tool that pressed it was gone, and would since another was put into it: 1.14 times the
 // undisturbed force in both.
-TEST_F(InterruptedScript, IsNoKickInTissueThatSwingsSlowly) {
+TEST_F(InterruptedScript, IsNoKickInTissueThatSwings) {
   expect_no_kick(Played("cylinder_hybrid"), 9000, {{Victim::haptic, 6870, 7331}, {Victim::haptic, 5548, 7356}});
 }
 

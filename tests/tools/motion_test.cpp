@@ -76,10 +76,17 @@ class ToolsMotion : public ::testing::Test {
   LoopbackScene scene_{"motion", testing::kLinear};
 };
 
+TEST_F(ToolsMotion, OneThatTouchesNothingIsMadeAndSoItIsSaid) {
+  const auto made = run_program(motion("\"to 0,0,1\" \"hold 0.1s\""));
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.err.find("made.csv: the tool touches nothing on all of its way"), std::string::npos) << made.err;
+}
+
 TEST_F(ToolsMotion, ForcesAndDepthsAreWhatTheStepsSay) {
   const auto made = run_program(motion(
       "\"to 0,0,1\" \"press 3mm\" \"hold 0.2s\" withdraw \"press 0.1N\" \"hold 0.5s\" \"slide 4mm,0,1\" withdraw"));
   ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.err.find("touches nothing"), std::string::npos) << made.err;
   EXPECT_EQ(std::count(made.out.begin(), made.out.end(), '\n'), 10) << made.out;
   const auto run = run_program(
       fmt::format("{} drive {} --set tool.probe.trajectory=made.csv --json", program("palpate"), scene_.scene()));

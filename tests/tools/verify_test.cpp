@@ -72,6 +72,18 @@ int samples_of(const fs::path& file, const std::string& topic) {
   return count;
 }
 
+TEST_F(ToolsVerify, ALogThatIsPlayedByTheNetworkOfAnotherSceneSaysSo) {
+  const LoopbackScene other("verify-other", testing::kLinear, 9000);
+  const std::string play = fmt::format("{} replay {} --speed 100 --domain {} --scene ", program("palpate"),
+                                       log().string(), testing::own_domain());
+  const std::string words = "is of another scene than";
+  EXPECT_EQ(run_program(play + scene_->scene()).err.find(words), std::string::npos);
+  EXPECT_NE(run_program(play + other.scene()).err.find(words), std::string::npos);
+  EXPECT_NE(run_program(program("palpate") + " replay --verify " + log().string() + " --scene " + other.scene()).status,
+            0)
+      << "a log is verified with its own scene";
+}
+
 TEST_F(ToolsVerify, ALogThatKeepsEnoughIsVerifiedWithoutTheRest) {
   const auto run =
       run_program(fmt::format("{} run {} --seconds 2.3 --processes 3 --domain {} --record {} --keep enough",

@@ -28,8 +28,8 @@ int choose_tool(const Scene& scene, const std::string& name) {
   throw std::runtime_error(fmt::format("{}: which tool? It has {}", scene.file.string(), names));
 }
 
-/// What the tool felt in each part.
-void print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
+/// What the tool felt in each part; whether it felt anything.
+bool print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
   const std::vector<double> felt = rehearsal.forces(maker.rows().trajectory());
   const auto at = [&](double time) {
     return std::min(static_cast<std::size_t>(time / rehearsal.dt()), felt.size() - 1);
@@ -41,6 +41,7 @@ void print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
     fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", part.begin, part.end, *std::max_element(first, last + 1),
                *last, part.text);
   }
+  return std::ranges::any_of(felt, [](double force) { return force > 0; });
 }
 
 void make_motion(const MotionOptions& o) {
@@ -59,7 +60,8 @@ void make_motion(const MotionOptions& o) {
   std::string comment = fmt::format("{} on {}:", scene.tools[tool].name, body);
   for (const MotionStep& step : steps) comment += fmt::format(" {};", step.text);
   maker.rows().write(o.out, comment);
-  print_parts(maker, rehearsal);
+  if (!print_parts(maker, rehearsal))
+    fmt::print(stderr, "palpate: {}: the tool touches nothing on all of its way\n", o.out);
   fmt::print(
       "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
       o.out, maker.rows().time(), o.scene, scene.tools[tool].name, o.out);

@@ -96,7 +96,8 @@ void DynamicOrgan::move_tools(double share) {
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   advance(tools, dt);
   if (put_into(tools)) calm_left_ = kCalmed;
-  if (calm_left_ > 0) calm();
+  // What jaws carry goes with them: stopped, it would be a blow to the hand.
+  if (calm_left_ > 0 && std::ranges::none_of(hands_, &Hand::holding)) calm();
   calm_left_ = std::max(calm_left_ - dt, 0.0);
   cut(tools);
   tear_and_drop();
