@@ -94,8 +94,9 @@ void DynamicOrgan::move_tools(double share) {
 }
 
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
+  const bool swings = std::exchange(touched_before_, touched_before_ || !contacts().empty());
   advance(tools, dt);
-  if (put_into(tools)) calm_left_ = kCalmed;
+  if (swings && put_into(tools)) calm_left_ = kCalmed;
   // What jaws carry goes with them: stopped, it would be a blow to the hand.
   if (calm_left_ > 0 && std::ranges::none_of(hands_, &Hand::holding)) calm();
   calm_left_ = std::max(calm_left_ - dt, 0.0);
@@ -251,6 +252,7 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   passing_.state(s);
   s.value(calm_left_);
   s.value(moved_with_);
+  s.value(touched_before_);
   s.list(m.previous);
   s.list(m.present);
   if (s.restoring()) recall(m);
