@@ -1,8 +1,9 @@
-// A ball at rest in stiff, thin or coarse tissue feels a force at rest: it grows with Young's modulus and does not
-// chatter.
+// A ball at rest in tissue, stiff, thin, coarse or of averaged strain, feels a force at rest: it grows with Young's
+// modulus and does not chatter.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "common/mesh/generators.hpp"
 #include "tests/deform/block_bench.hpp"
@@ -75,6 +76,48 @@ INSTANTIATE_TEST_SUITE_P(Tissue, StiffContact,
                                            Held{"slab", 5e3, 0.005, 0, Integrator::rk4, true},
                                            Held{"slab_on_nodes", 5e3, 0.02, 0, Integrator::rk4, true}),
                          [](const auto& info) { return info.param.name; });
+
+/// Of its force: the largest change in a tick of a slide, and what it swings by when it has stood for a second.
+struct Swing {
+  double slid = 0, held = 0;
+};
+
+/// A tip is pressed 4 mm into the flank of a sagging cylinder, 30 mm from its clamp, slid by 10 mm and held.
+Swing slide_over_averaged_cylinder(double friction) {
+  Scene scene = block_scene();
+  MovingSpec& tissue = moving_block_of(scene);
+  tissue.material = {1500, 0.4, 1000};
+  tissue.dynamic.element = TetElement::nodal_strain;
+  tissue.dynamic.damping = 5;
+  tissue.dynamic.gravity = {9.81, 0, 0};
+  scene.contact.friction = friction;
+  std::get<ProbeSpec>(scene.tools[0].end).radius = 0.005;
+  TetMesh lying = make_cylinder(0.015, 0.05, 4, 12);
+  for (Eigen::Vector3d& x : lying.nodes) x = {x.z() - 0.03, x.y(), -x.x()};
+  Bench bench(scene, lying);
+  Swing swing;
+  double before = 0, least = std::numeric_limits<double>::infinity(), most = 0;
+  constexpr int slides = 1500, stands = 2000, settled = 3000, end = 3500;
+  for (int i = 0; i < end; ++i) {
+    bench.tick(testing::from_above(i, 500, 0.0205, 0.016),
+               testing::from_above(i - slides, stands - slides, 0.0012, -0.0088));
+    const double force = bench.force().norm();
+    if (i >= slides && i < stands) swing.slid = std::max(swing.slid, std::abs(force - before) / force);
+    if (i >= settled) least = std::min(least, force), most = std::max(most, force);
+    before = force;
+  }
+  swing.held = (most - least) / most;
+  return swing;
+}
+
+/// Its elements are softer than the half-space under forces on single nodes, in shear as well.
+TEST(AveragedStrain, IsSlidOverEvenlyAndIsAtRestUnderAToolAtRest) {
+  for (const double friction : {0.1, 0.3}) {
+    const Swing swing = slide_over_averaged_cylinder(friction);
+    EXPECT_LT(swing.slid, 0.03) << friction;
+    EXPECT_LT(swing.held, 0.01) << friction;
+  }
+}
 
 TEST(StiffTissue, TheForceGrowsWithYoungsModulusAlone) {
   const double soft = hold_in({"soft", 2e5}).mean / 2e5;

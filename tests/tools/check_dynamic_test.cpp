@@ -56,7 +56,8 @@ TEST_F(ToolsCheckDynamic, SaysWhatMovesAndWhereItIsJoined) {
 }
 
 TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderATool) {
-  const std::string averaged = scene_ + "element = \"nodal_strain\"\n", warning = "averaged strain swing";
+  const std::string averaged = scene_ + "element = \"nodal_strain\"\n",
+                    warning = "elements of averaged strain is up to";
   const std::string tool = "[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.5]\ntrajectory = \"" PALPATE_SOURCE
                            "/scenes/trajectories/cylinder_hybrid.csv\"\n";
   EXPECT_EQ(testing::run_program(check(averaged)).out.find(warning), std::string::npos) << "nothing presses it";

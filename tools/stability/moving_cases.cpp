@@ -12,8 +12,9 @@ namespace palpate::stability {
 namespace {
 
 constexpr int kCombinations = 500, kQuickCombinations = 30;
-constexpr std::array kLongPoints{6, 14};  // seconds each
-constexpr int kTelling = 106;             // fails if the patch follows each swing of the tissue; no quick one does
+constexpr int kAveraged = 100, kQuickAveraged = 4;  // combinations of elements of averaged strain
+constexpr std::array kLongPoints{6, 14};            // seconds each
+constexpr int kTelling = 106;  // fails if the patch follows each swing of the tissue; no quick one does
 using Tried = TriedContact;
 
 std::string words_of(const MovingPress& p) {
@@ -117,6 +118,12 @@ std::vector<Point> moving_points(const Extent& extent) {
     const bool quick = i < kQuickCombinations ? std::ranges::count(kLongPoints, i) == 0 : i == kTelling;
     if (extent.quick && !quick) continue;
     add("moving contact, any", "combination", fmt::format("{}: {}", i, words_of(p)), p);
+  }
+  std::mt19937 of_averaged(6);
+  for (int i = 0; i < (extent.quick ? kQuickAveraged : kAveraged); ++i) {
+    MovingPress p = any_press(of_averaged);
+    p.element = TetElement::nodal_strain;
+    add("moving contact, averaged strain", "combination", fmt::format("{}: {}", i, words_of(p)), p);
   }
   return points;
 }

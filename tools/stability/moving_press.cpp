@@ -67,6 +67,7 @@ Scene scene_of(const MovingPress& p) {
   body.dynamic.integrator = p.integrator;
   body.dynamic.precision = p.precision;
   body.dynamic.corotational = p.corotational;
+  body.dynamic.element = p.element;
   Scene scene = scene_of_moving(body);
   scene.contact.friction = p.friction;
   scene.contact.rule = p.rule;
@@ -86,12 +87,14 @@ TetMesh mesh_of(const MovingPress& p) {
                     p.origin + Vector3d(0.5 * size.x(), 0.5 * size.y(), 0), {p.cells.x(), p.cells.y(), p.cells.z()});
 }
 
-/// [N] of the same contact with the same tissue without inertia, at the end of the path.
-double static_force(Scene scene, const TetMesh& mesh, const Stroke& stroke) {
+/// [N] of the same contact with tissue of the same elements without inertia, at the end of the path.
+double static_force(Scene scene, const TetMesh& mesh, const Archive& moving, const Stroke& stroke) {
   auto body = as_kind<QuasiStaticSpec>(scene.bodies[0]);
   body.offline = Offline{.element = FiniteElement::p1};
   scene.bodies[0] = body;
-  PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
+  Archive archive = precompute_on(scene.bodies[0], mesh);
+  archive.touchable_compliance = moving.moving_compliance;
+  PressRig rig(scene, {archive});
   rig.start(stroke.path(0));
   for (int i = 1; i <= stroke.ticks + 50; ++i) rig.press(stroke.path(i));
   return -rig.force().z();
@@ -118,7 +121,8 @@ Result press_moving(const MovingPress& p) {
   const Scene scene = scene_of(p);
   const TetMesh mesh = mesh_of(p);
   const Stroke stroke = stroke_of(p);
-  PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
+  const Archive archive = precompute_on(scene.bodies[0], mesh);
+  PressRig rig(scene, {archive});
   StandJudge judge;
   Vector3d before = stroke.path(0);
   rig.press(before);
@@ -129,7 +133,7 @@ Result press_moving(const MovingPress& p) {
     judge.look(-force.z(), force.dot(step), rig.organ().model().energy(), reach_of(rig.organ()));
     before = tip;
   }
-  return judge.result(static_force(scene, mesh, stroke), p.cells.cast<double>().cwiseProduct(p.cell).norm());
+  return judge.result(static_force(scene, mesh, archive, stroke), p.cells.cast<double>().cwiseProduct(p.cell).norm());
 }
 
 }  // namespace palpate::stability

@@ -19,6 +19,7 @@ struct MovingPress {
   double friction = 0;
   ContactRule rule = ContactRule::patch;
   bool corotational = false;
+  TetElement element = TetElement::linear;
   std::string gesture = "held";  ///< held | tapped | slid | stabbed; then it stands
 };
 

@@ -27,7 +27,6 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   wanted_.assign(points, 0.0);
   pressure_force_.assign(points, 0.0);
   compliance_.assign(points * points, 0.0);
-  more_.assign(points * points, 0.0);
   const auto ld = static_cast<std::size_t>(kernels::leading_dimension(static_cast<int>(points)));
   factor_.assign(ld * ld, 0.0);
   right_.assign(ld, 0.0);
@@ -238,15 +237,6 @@ bool Patch::solve_active() {
   return std::isfinite(right_[0]);
 }
 
-// [m/N] K between a force that the nodes share and what they all do, in such shares.
-Eigen::Matrix3d Patch::shared_near_field(std::span<const double> share) const {
-  Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < share.size(); ++i)
-    for (std::size_t j = 0; share[i] != 0 && j < share.size(); ++j)
-      if (share[j] != 0) k += share[i] * share[j] * near_field_[i * kMaxNodes + j];
-  return k;
-}
-
 // One shear force, spread as the pressures are. The tissue is bent along until Coulomb's bound is met; from there it
 // slips and stays bent as far as the bound allows, so that the shear never turns against the travel. Nodes that move by
 // themselves take a part of the travel, which is not bent any more at the next step.
@@ -267,14 +257,8 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
   if (ground.friction > 0) {
     Eigen::Matrix<double, 3, 2> plane;
     plane << across_, up_;
-    Eigen::Matrix2d c = Eigen::Matrix2d::Zero(), given = Eigen::Matrix2d::Zero();
-    for (const int p : rows_)
-      for (const int q : rows_) {
-        if (q > p) break;
-        c += (q < p ? 2 : 1) * pressure_force_[p] * pressure_force_[q] * kernel_.sheared(p, q);
-      }
-    c /= pressing_ * pressing_;
-    c += plane.transpose() * shared_near_field(std::span(share).first(count)) * plane;
+    const Eigen::Matrix2d c = compliance_to_shear(plane, std::span(share).first(count));
+    Eigen::Matrix2d given = Eigen::Matrix2d::Zero();
     const Vector3d past = memory_ ? memory_->bent() : Vector3d::Zero();
     Vector2d bent = plane.transpose() * (bent_ + drag.travel - past);
     if (!resumed_.isZero(0)) bent = c * plane.transpose() * resumed_;

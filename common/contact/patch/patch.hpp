@@ -176,10 +176,9 @@ class Patch {
   void fill_near_field(const NearField& near_field);
   void fill_normal();
   void keep_positive();
-  void add_more(double sign);
   bool is_positive();
   void list_laid();
-  void find_more();
+  void raise_eigenvalues();
   void add_nodes_give(std::span<const NodeGive> give);
   void fill_at_foot(const Foot& foot, const std::vector<double>& between_nodes);
   double at_foot(const Foot& foot) const;
@@ -188,6 +187,7 @@ class Patch {
   void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
   void sum_pressures();
   Eigen::Matrix3d shared_near_field(std::span<const double> share) const;
+  Eigen::Matrix2d compliance_to_shear(const Eigen::Matrix<double, 3, 2>& plane, std::span<const double> share) const;
   void shear(const Ground& ground, const Drag& drag);
   void add_slip(const Eigen::Vector3d& bent_before);
 
@@ -203,8 +203,6 @@ class Patch {
   std::optional<PatchMemory> memory_;
   bool sticks_ = true;
   Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
-  std::vector<double> more_;                                ///< [m/N] between squares: what keeps L positive
-  bool has_more_ = false;                                   ///< more_ is of known_
   std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;

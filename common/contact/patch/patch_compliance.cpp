@@ -17,7 +17,6 @@ constexpr double kMinGive = 0.02, kTolerated = 0.001;
 void Patch::fill_near_field(const NearField& near_field) {
   if (nodes_ == known_) return;
   known_ = nodes_;
-  has_more_ = false;
   const int count = static_cast<int>(nodes_.size());
   for (int i = 0; i < count; ++i)
     for (int j = 0; j <= i; ++j) {
@@ -51,18 +50,11 @@ void Patch::fill_normal() {
   for (const int p : rows_) compliance_[p * n + p] += (1 / cells_[p].cover - 1) * kernel_.own();
 }
 
-// Where the nodes lie closer than the squares, they know of patterns that G does not: without these L is none the less
-// to be positive, or the contact would put out work.
+// Where the nodes lie closer than the squares, or are softer than the half-space under forces on single ones, they know
+// of patterns that G does not: without these L is none the less to be positive, or the contact would put out work.
+// Anew in each tick: what is kept from another place makes the force jump.
 void Patch::keep_positive() {
-  if (has_more_) add_more(1);
-  if (is_positive()) return;
-  if (has_more_) add_more(-1);
-  find_more();
-  add_more(1);
-}
-
-void Patch::add_more(double sign) {
-  for (std::size_t i = 0; i < more_.size(); ++i) compliance_[i] += sign * more_[i];
+  if (!is_positive()) raise_eigenvalues();
 }
 
 bool Patch::is_positive() {
@@ -82,8 +74,8 @@ void Patch::list_laid() {
     if (laid(p)) rows_.push_back(p);
 }
 
-// The eigenvalues that are too small are raised.
-void Patch::find_more() {
+// Those that are too small.
+void Patch::raise_eigenvalues() {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSquares, kMaxSquares>;
   const int n = grid_.size(), m = static_cast<int>(rows_.size());
   Matrix a(m, m);
@@ -91,14 +83,12 @@ void Patch::find_more() {
     for (int c = 0; c < m; ++c) a(r, c) = compliance_[rows_[r] * n + rows_[c]];
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
   const double least = kMinGive * kernel_.own();
-  std::ranges::fill(more_, 0.0);
   for (int k = 0; k < m && eigen.eigenvalues()[k] < least; ++k) {
     const double raise = least - eigen.eigenvalues()[k];
     for (int r = 0; r < m; ++r)
       for (int c = 0; c < m; ++c)
-        more_[rows_[r] * n + rows_[c]] += raise * eigen.eigenvectors()(r, k) * eigen.eigenvectors()(c, k);
+        compliance_[rows_[r] * n + rows_[c]] += raise * eigen.eigenvectors()(r, k) * eigen.eigenvectors()(c, k);
   }
-  has_more_ = true;
 }
 
 // What a step's forces do to the nodes, to all squares over them.
@@ -129,6 +119,33 @@ void Patch::fill_at_foot(const Foot& f, const std::vector<double>& between_nodes
 double Patch::at_foot(const Foot& f) const {
   return f.weights[0] * at_nodes_[f.local[0]] + f.weights[1] * at_nodes_[f.local[1]] +
          f.weights[2] * at_nodes_[f.local[2]];
+}
+
+// [m/N] K between a force that the nodes share and what they all do, in such shares.
+Eigen::Matrix3d Patch::shared_near_field(std::span<const double> share) const {
+  Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < share.size(); ++i)
+    for (std::size_t j = 0; share[i] != 0 && j < share.size(); ++j)
+      if (share[j] != 0) k += share[i] * share[j] * near_field_[i * kMaxNodes + j];
+  return k;
+}
+
+// [m/N] Of one shear that is spread as the pressures are, by G and K. Elements may be softer to shear than all that
+// lies beyond them: without a floor, as that under the pressures, the shear would put out work.
+Eigen::Matrix2d Patch::compliance_to_shear(const Eigen::Matrix<double, 3, 2>& plane,
+                                           std::span<const double> share) const {
+  Eigen::Matrix2d c = Eigen::Matrix2d::Zero();
+  for (const int p : rows_)
+    for (const int q : rows_) {
+      if (q > p) break;
+      c += (q < p ? 2 : 1) * pressure_force_[p] * pressure_force_[q] * kernel_.sheared(p, q);
+    }
+  c /= pressing_ * pressing_;
+  const double least = kMinGive * 0.5 * c.trace();
+  c += plane.transpose() * shared_near_field(share) * plane;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(c);
+  if (eigen.eigenvalues()[0] >= least) return c;
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(least).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 }  // namespace palpate

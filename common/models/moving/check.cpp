@@ -115,9 +115,8 @@ std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, c
 void warn_of_averaged_strain(const MovingSpec& body, const CheckSettings& settings, CheckReport& report) {
   if (body.dynamic.element != TetElement::nodal_strain || settings.tools.empty()) return;
   report.warnings.push_back(
-      fmt::format("body '{}': under a tip that presses it, elements of averaged strain swing in some shapes of mesh, "
-                  "by up to a fifth "
-                  "of the force and without rest; element = \"linear\" does not",
+      fmt::format("body '{}': under a tip that is wider than its edges, the force of elements of averaged strain is up "
+                  "to 11 % off what it is at rest, and can swing where friction is near 1",
                   body.name));
 }
 

@@ -127,9 +127,9 @@ class DynamicOrgan {
   std::vector<Eigen::Vector3d> position_;      ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<CuttableTissue::Glow> glows_;
-  double moved_with_ = 0;            ///< [J] kinetic energy at the last calm()
-  double calm_left_ = 0;             ///< [s] for which it is called
-  std::uint8_t touched_before_ = 0;  ///< by any tool, as far as a tick ago: it may swing
+  double moved_with_ = 0;        ///< [J] kinetic energy at the last calm()
+  double calm_left_ = 0;         ///< [s] for which it is called
+  bool touched_before_ = false;  ///< by any tool, as far as a tick ago: it may swing
 };
 
 }  // namespace palpate
