@@ -15,10 +15,7 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::LoopbackScene;
-using testing::own_domain;
-using testing::program;
-using testing::run_command;
+using namespace testing;
 
 constexpr std::uint64_t kUndisturbed = 6000;  // steps: pressed, and aside and back twice
 constexpr double kMaxChange = 0.25;           // [N] a step: the default
