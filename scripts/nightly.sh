@@ -15,7 +15,9 @@ export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_mo
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
-    long) PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 ;;
+    long)
+      ./scripts/install.sh libcgal-demo  # a real liver, for its test
+      PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 ;;
     stability)
       ./scripts/build.sh release palpate palpate_study
       ./build/release/bin/palpate stability --jobs "$(nproc)" -o out/stability ;;
