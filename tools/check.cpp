@@ -12,6 +12,7 @@
 #include "common/models/check/check.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "common/tool/instrument.hpp"
 #include "render_node/image.hpp"
 #include "tools/check_tool.hpp"
@@ -19,6 +20,7 @@
 #include "tools/human_bytes.hpp"
 #include "tools/mesh/check_mesh.hpp"
 #include "tools/node_plan.hpp"
+#include "tools/set_option.hpp"
 #include "tools/tool_warnings.hpp"
 
 namespace palpate {
@@ -201,19 +203,24 @@ void add_check_command(cli::Command& app) {
       app.add_command("check", "Validate a scene, or a mesh, and say what will be built and what it takes");
   struct Arguments {
     std::string scene;
+    std::vector<std::string> set;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
   command.add_option("SCENE", arguments->scene, "Scene file, or a mesh of tetrahedra in metres (.msh, .vtk)")
       .required();
+  add_set_option(command, arguments->set);
   command.add_flag("--json", arguments->json, "Print one line of JSON");
-  command.examples({"palpate check scenes/liver.toml", "palpate check scenes/meshes/liver.msh"});
+  command.examples({"palpate check scenes/liver.toml", "palpate check scenes/liver.toml --set body.young=8000",
+                    "palpate check scenes/meshes/liver.msh"});
   command.does([arguments] {
     CheckOutput out(arguments->json);
+    if (names_mesh(arguments->scene) && !arguments->set.empty())
+      throw std::runtime_error("--set is for a scene, and " + arguments->scene + " is a mesh");
     if (names_mesh(arguments->scene))
       check_mesh(arguments->scene, out);
     else
-      check_scene(load_scene(arguments->scene), out);
+      check_scene(load_scene(arguments->scene, parse_changes(arguments->set)), out);
     if (arguments->json)
       fmt::print("{}\n", out.json().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   });

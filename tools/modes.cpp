@@ -9,15 +9,17 @@
 #include <numbers>
 
 #include "common/models/vibration.hpp"
-#include "common/scene/scene.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
+#include "tools/set_option.hpp"
 
 namespace palpate {
 namespace {
 
 struct ModesArguments {
   std::string scene, body;
+  std::vector<std::string> set;
   int count = 10;
   bool json = false;
 };
@@ -29,7 +31,7 @@ std::vector<double> in_hertz(const Eigen::VectorXd& omega) {
 }
 
 void print_modes(const ModesArguments& arguments) {
-  const Scene scene = load_scene(arguments.scene);
+  const Scene scene = load_scene(arguments.scene, parse_changes(arguments.set));
   const Body& body = choose_body(scene, arguments.body);
   const FreeVibration free = std::visit([](const auto& spec) { return vibration(spec); }, body);
   const int count = std::min(arguments.count, static_cast<int>(free.mass.size()));
@@ -50,10 +52,12 @@ void add_modes_command(cli::Command& app) {
       "modes", "Frequencies at which a body swings freely, of its own elements: CSV on the standard output");
   auto arguments = std::make_shared<ModesArguments>();
   command.add_option("SCENE", arguments->scene, "Scene file").required();
+  add_set_option(command, arguments->set);
   command.add_option("--body", arguments->body, "Name of the body; needed where the scene has several");
   command.add_option("--count", arguments->count, "How many, from the lowest").between(1, 1000).show_default();
   command.add_flag("--json", arguments->json, "Print one line of JSON");
-  command.examples({"palpate modes scenes/plate_cut.toml --count 12"});
+  command.examples({"palpate modes scenes/plate_cut.toml --count 12",
+                    "palpate modes scenes/plate_cut.toml --set body.young=20000 --json"});
   command.does([arguments] { print_modes(*arguments); });
 }
 

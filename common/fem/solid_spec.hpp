@@ -18,13 +18,16 @@ struct Material {
   double density = 1000;  ///< [kg/m^3]
 };
 
+/// Far above what there is, and as far below where squares of such numbers end.
+inline constexpr Range kYoungRange = above_up_to(0, 1e20);   ///< [Pa]; diamond has 1e12
+inline constexpr Range kDensityRange = above_up_to(0, 1e6);  ///< [kg/m^3]; osmium has 2.3e4
 /// Positive definite elasticity that is not incompressible.
 inline constexpr Range kPoissonRange = strictly_within(-1, 0.5);
 
 inline void describe(Description& d, Material& m) {
-  d.number({"young", "Pa", "Young's modulus", Need::required, Use::stored}, m.young, above(0));
+  d.number({"young", "Pa", "Young's modulus", Need::required, Use::stored}, m.young, kYoungRange);
   d.number({"poisson", "1", "Poisson's ratio", Need::required, Use::stored}, m.poisson, kPoissonRange);
-  d.number({"density", "kg/m³", "mass per volume", Need::optional, Use::inertia}, m.density, above(0));
+  d.number({"density", "kg/m³", "mass per volume", Need::optional, Use::inertia}, m.density, kDensityRange);
 }
 
 /// A part of another material.
@@ -37,11 +40,12 @@ inline void describe(Description& d, MaterialRegion& r) {
   describe(d, r.where, "elements");
   d.require(d.given("young") || d.given("poisson") || d.given("density"), "",
             "[[body.material]] needs at least one of 'young', 'poisson' and 'density'");
-  d.number({"young", "Pa", "Young's modulus", Need::optional, Use::stored, "the body's"}, r.material.young, above(0));
+  d.number({"young", "Pa", "Young's modulus", Need::optional, Use::stored, "the body's"}, r.material.young,
+           kYoungRange);
   d.number({"poisson", "1", "Poisson's ratio", Need::optional, Use::stored, "the body's"}, r.material.poisson,
            kPoissonRange);
   d.number({"density", "kg/m³", "mass per volume", Need::optional, Use::inertia, "the body's"}, r.material.density,
-           above(0));
+           kDensityRange);
 }
 
 /// Nodes whose displacement is zero along some axes.

@@ -76,7 +76,7 @@ TEST_F(SceneChanges, AnotherChoiceLetsGoOfTheFilesKeysForTheOldOne) {
 TEST_F(SceneChanges, AreRefusedWithTheirOwnPlace) {
   const std::string body = name_of(load_scene(folder_ / "scene.toml").bodies[0]);
   EXPECT_EQ(refusal("body." + body + ".young=-1"),
-            "--set body." + body + ".young=-1: young must be greater than 0, and is -1");
+            "--set body." + body + ".young=-1: young must be greater than 0 and at most 1e+20, and is -1");
   EXPECT_EQ(refusal("body." + body + ".yung=1").find("--set body." + body + ".yung=1: unknown key 'yung'"), 0u);
   EXPECT_NE(refusal("body.young=1").find("entries of 'body': name one of " + body), std::string::npos);
   EXPECT_NE(refusal("body.77.young=1").find("name one of"), std::string::npos);

@@ -55,6 +55,16 @@ TEST_F(ToolsCheckDynamic, SaysWhatMovesAndWhereItIsJoined) {
   expect_line(said, "  body 'cylinder': does not tear by itself\n");
 }
 
+TEST_F(ToolsCheckDynamic, TakesWhatIsSetInPlaceOfTheFilesOwn) {
+  const std::string set = " --set body.dynamic.damping=7 --set body.young=6000";
+  expect_line(testing::run_program(check(scene_) + set),
+              "  motion: rk4, single precision, damping 7 1/s, gravity 0 0 0 m/s2\n");
+  expect_refusal(check(scene_) + " --set body.yuong=6000", {"--set body.yuong=6000", "did you mean 'young'?"});
+  expect_refusal(
+      program("palpate check") + " " PALPATE_SOURCE "/scenes/meshes/cylinder_hybrid.msh --set body.young=6000",
+      {"--set is for a scene"});
+}
+
 TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderATool) {
   const std::string averaged = scene_ + "element = \"nodal_strain\"\n",
                     warning = "elements of averaged strain is up to";

@@ -70,6 +70,13 @@ TEST(ToolsModes, AreTheSameInJson) {
   for (std::size_t m = 0; m < table.size(); ++m) EXPECT_NEAR(json["frequency_hz"][m], table[m], 1e-5 * table[m]);
 }
 
+TEST(ToolsModes, GoUpWithTheRootOfAStiffnessThatIsSet) {
+  const OwnFolder folder("modes");
+  const std::string arguments = bar(folder, "tensor_mass") + " --count 1";
+  const auto soft = frequencies(arguments), stiff = frequencies(arguments + " --set body.young=40000");
+  EXPECT_NEAR(stiff.at(0), 2 * soft.at(0), 1e-4 * soft.at(0));
+}
+
 TEST(ToolsModes, AHybridSwingsAsTheWholeBody) {
   const OwnFolder folder("modes");
   const auto whole = frequencies(bar(folder, "tensor_mass"));

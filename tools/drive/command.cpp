@@ -18,6 +18,7 @@
 #include "tools/drive/run.hpp"
 #include "tools/drive/sweep.hpp"
 #include "tools/say_stages.hpp"
+#include "tools/set_option.hpp"
 
 namespace palpate {
 namespace {
@@ -168,10 +169,7 @@ void add_drive_command(cli::Command& app) {
   cli::Command command =
       app.add_command("drive", "Run a scene in lock step, as fast as it goes, and say what it comes to");
   command.add_option("SCENE", o->scene, "Scene file");
-  command
-      .add_option("--set", o->set,
-                  "KEY=VALUE in place of what the scene file says, such as body.young=8000; may be repeated")
-      .one_value_each_time();
+  add_set_option(command, o->set);
   command
       .add_option("--sweep", o->sweep,
                   "KEY=VALUE,VALUE,...: a run for each value, of several keys for each combination")

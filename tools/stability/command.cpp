@@ -7,6 +7,7 @@
 
 #include "common/cli/command_line.hpp"
 #include "common/scene/scene_changes.hpp"
+#include "tools/set_option.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
 #include "tools/study/commands.hpp"
@@ -41,11 +42,7 @@ void add_stability_command(cli::Command& app) {
   cli::Command command =
       app.add_command("stability", "Stiff and extreme cases, each with its outcome, as a table and a page");
   const cli::Option scene = command.add_option("SCENE", options->scene, "Scene file; without one, the general cases");
-  command
-      .add_option("--set", options->set,
-                  "KEY=VALUE in place of what the scene file says, such as body.young=8000; may be repeated")
-      .one_value_each_time()
-      .needs(scene);
+  add_set_option(command, options->set).needs(scene);
   command.add_option("-o,--output", options->folder, "Folder for stability.csv, plots and page").required();
   command.add_flag("--quick", options->quick, "The subset that takes a minute");
   command.add_option("--only", options->run.only, "Cases whose name contains this");

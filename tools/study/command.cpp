@@ -3,7 +3,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/cli/progress.hpp"
 #include "common/scene/scene_changes.hpp"
+#include "tools/set_option.hpp"
 #include "tools/study/commands.hpp"
 #include "tools/study/growth.hpp"
 #include "tools/study/run_script.hpp"
@@ -35,14 +37,13 @@ double seconds_of(const std::string& text) {
   return value * scale;
 }
 
-void say(const std::string& line) {
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
+void tell(const std::string& line) {
+  cli::say(line);
 }
 
 void make_page(const std::filesystem::path& folder) {
   const std::string missing = run_script("study_page.py", folder);
-  say(missing.empty() ? (folder / "index.html").string() : missing);
+  fmt::print("{}\n", missing.empty() ? (folder / "index.html").string() : missing);
 }
 
 /// All of them before the first is studied. Throws std::runtime_error where two would share a folder.
@@ -58,7 +59,7 @@ std::vector<Scene> load_scenes(const std::vector<std::string>& files, const std:
 }
 
 void run(const Arguments& arguments) {
-  study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = say};
+  study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = tell};
   if (!arguments.budget.empty()) options.budget = seconds_of(arguments.budget);
   const std::filesystem::path out = arguments.out;
   const bool several = arguments.scenes.size() > 1 || arguments.growth;  // a folder each, and an index
@@ -70,7 +71,7 @@ void run(const Arguments& arguments) {
     study::run_study(scene, folder, options);
     make_page(folder);
   }
-  if (arguments.growth) study::measure_growth(out, arguments.quick, say);
+  if (arguments.growth) study::measure_growth(out, arguments.quick, tell);
   if (several) make_page(out);
 }
 
@@ -80,10 +81,7 @@ void add_study_command(cli::Command& app) {
   cli::Command command = app.add_command("study", "Error against run time of all that can serve a scene");
   auto arguments = std::make_shared<Arguments>();
   command.add_option("SCENE", arguments->scenes, "Scene files (TOML)");
-  command
-      .add_option("--set", arguments->set,
-                  "KEY=VALUE in place of what the scene files say, such as body.young=8000; may be repeated")
-      .one_value_each_time();
+  add_set_option(command, arguments->set);
   command
       .add_option("-o,--output", arguments->out,
                   "Folder for figures and page; with several scenes one folder each in it")
@@ -94,6 +92,7 @@ void add_study_command(cli::Command& app) {
   command.add_flag("--growth", arguments->growth,
                    "How a step's time grows over surface nodes, contacts, edges, modes and particles");
   command.add_flag("--quick", arguments->quick, "Fewer patches, samples and knobs");
+  command.tells_progress();
   command.examples({"palpate study scenes/plate.toml --quick -o out/study",
                     "palpate study scenes/liver.toml --budget 200us -o out/liver"});
   command.does([arguments] { run(*arguments); });

@@ -62,9 +62,9 @@ struct CatheterSpec : NamedSpec {
 
 inline void describe(Description& d, CatheterSpec& b) {
   describe(d, static_cast<NamedSpec&>(b));
-  d.number({"young", "Pa", "Young's modulus", Need::required}, b.material.young, above(0));
+  d.number({"young", "Pa", "Young's modulus", Need::required}, b.material.young, kYoungRange);
   d.number({"poisson", "1", "Poisson's ratio"}, b.material.poisson, kPoissonRange);
-  d.number({"density", "kg/m³", "mass per volume"}, b.material.density, above(0));
+  d.number({"density", "kg/m³", "mass per volume"}, b.material.density, kDensityRange);
   d.table({"catheter", "", "where it lies and what it is made of", Need::required, Use::stored}, b.catheter);
 }
 
