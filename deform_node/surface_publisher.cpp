@@ -24,6 +24,7 @@ void SurfacePublisher::publish(int body, std::span<const Eigen::Vector3f> positi
   m.run = origin.run;
   m.step = origin.step;
   m.sense_ns = origin.sense_ns;
+  stamp(origin.tissue, m);
   m.publish_ns = last_ns_ = now_ns();
   ++m.seq;
   writer_->write(m);

@@ -6,6 +6,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/sim/deformer.hpp"
+#include "common/sim/tissue_time.hpp"
 
 namespace palpate {
 
@@ -14,10 +15,11 @@ class SurfacePublisher {
  public:
   SurfacePublisher(Bus& bus, const Deformer& deformer);
 
-  /// Where the newest step shown comes from.
+  /// Where the newest step shown comes from, and of which time the tissue is, if it moves.
   struct Origin {
     std::uint64_t run = 0, step = 0;
     std::int64_t sense_ns = 0;
+    TissueTime tissue = {};
   };
   void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
                const Origin& origin);
