@@ -174,18 +174,20 @@ void DynamicLoop::publish_models() {
 
 void DynamicLoop::publish_frames() {
   deformer_.deform();
-  SurfacePublisher::Origin newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
+  SurfacePublisher::Moment newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
   for (int t = 0; t < world_.tools(); ++t) {
     const ToolState& s = world_.tool(t).consumed();
     if (s.sense_ns > newest.sense_ns) newest = {s.run, s.step, s.sense_ns};
   }
   for (int b = 0; b < deformer_.bodies(); ++b)
-    if (!moves_[b]) surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, newest);
-  SurfacePublisher::Origin of_tissue = newest;
+    if (!moves_[b])
+      surfaces_.publish(b, {deformer_.shape(b).origin(), deformer_.surface(b).position, deformer_.surface(b).normal},
+                        newest);
+  SurfacePublisher::Moment of_tissue = newest;
   of_tissue.tissue = time_;
   for (int i = 0; i < world_.organs(); ++i) {
     world_.organ(i).shape(position_, normal_);
-    surfaces_.publish(world_.bodies()[i], position_, normal_, of_tissue);
+    surfaces_.publish(world_.bodies()[i], {world_.organ(i).origin(), position_, normal_}, of_tissue);
   }
   ++report_.frames;
   for (const std::string& said : range_.look(deformer_)) log_warning(said);

@@ -23,7 +23,7 @@ inline ContactState contact_sample(int contacts = 2) {
 inline SurfaceState surface_sample(std::size_t nodes, std::uint64_t seq = 1) {
   SurfaceState m;
   m.body = 0, m.run = 21, m.seq = seq, m.step = 22, m.sense_ns = 23, m.tissue_ns = 24, m.late_ns = 25,
-  m.publish_ns = 26;
+  m.origin = {27, 28, 29.5}, m.publish_ns = 26;
   for (std::size_t i = 0; i < 3 * nodes; ++i) {
     m.position.push_back(0.001f * static_cast<float>(i % 977));
     m.normal.push_back(i % 3 == 2 ? 1.f : 0.f);

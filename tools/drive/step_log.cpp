@@ -128,6 +128,7 @@ void StepLog::write_surfaces() {
                       .step = record.step,
                       .sense_ns = record.sense_ns,
                       .tissue_ns = std::ranges::find(moving, b) == moving.end() ? 0 : simulator_.tissue().time_ns(),
+                      .origin = {shown.origin.x(), shown.origin.y(), shown.origin.z()},
                       .position = flat(shown.position),
                       .normal = flat(shown.normal)});
   }
