@@ -27,7 +27,7 @@ void DeformLoop::publish(bool all) {
   }
   for (int b = 0; b < deformer_.bodies(); ++b)
     if (all || deformer_.changed(b))
-      surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal,
+      surfaces_.publish(b, {deformer_.shape(b).origin(), deformer_.surface(b).position, deformer_.surface(b).normal},
                         {deformer_.run(), deformer_.step(), deformer_.sense_ns()});
   ++report_.frames;
   if (all)

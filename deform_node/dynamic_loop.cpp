@@ -94,23 +94,31 @@ void DynamicLoop::tell_begin() {
   for (int i = 0; i < world_.organs(); ++i) publish_change(i, gone_before, world_.organ(i).removed());
 }
 
-void DynamicLoop::tick() {
+// Late is what the tissue's time lacks when a tick begins: those that were left out, and what this one came after its
+// time.
+void DynamicLoop::tick(std::int64_t due_ns) {
   feed_.take();
+  if (world_.ticks() == 0) first_due_ns_ = due_ns;
   if (world_.ticks() % world_.keyframe_interval() == 0) {
     keyframe_.run = run_;
     ++keyframe_.seq;
     keyframe_.tick = world_.ticks();
+    stamp(time_, keyframe_);
     keyframe_.state = world_.save();
     keyframes_->write(keyframe_);
   }
   const std::int64_t begin = now_ns();
   const std::uint64_t number = world_.ticks();
+  time_.late_ns = std::max<std::int64_t>(begin - first_due_ns_ - world_.time_ns(), 0);
   world_.tick();
+  time_.tissue_ns = world_.time_ns();
   report_.tick.record(now_ns() - begin);
+  report_.late_ns = time_.late_ns;
 
   step_.run = run_;
   ++step_.seq;
   step_.tick = number;
+  stamp(time_, step_);
   step_.consumed.clear();
   for (int t = 0; t < world_.tools(); ++t) {
     const ToolState& tool = world_.tool(t).consumed();
@@ -126,6 +134,7 @@ void DynamicLoop::tick() {
 void DynamicLoop::publish_change(int organ, RemovalCause cause, const std::vector<int>& removed) {
   const int body = world_.bodies()[organ];
   TopologyChange m{.body = static_cast<std::uint32_t>(body), .run = run_, .seq = ++change_seq_[body], .cause = cause};
+  stamp(time_, m);
   m.removed.assign(removed.begin(), removed.end());
   changes_->write(m);
 }
@@ -158,22 +167,27 @@ void DynamicLoop::publish_models() {
     if (!near && !was_near && !remind) continue;
     m.run = run_;
     ++m.seq;
+    stamp(time_, m);
     models_->write(m);
   }
 }
 
 void DynamicLoop::publish_frames() {
   deformer_.deform();
-  SurfacePublisher::Origin newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
+  SurfacePublisher::Moment newest{deformer_.run(), deformer_.step(), deformer_.sense_ns()};
   for (int t = 0; t < world_.tools(); ++t) {
     const ToolState& s = world_.tool(t).consumed();
     if (s.sense_ns > newest.sense_ns) newest = {s.run, s.step, s.sense_ns};
   }
   for (int b = 0; b < deformer_.bodies(); ++b)
-    if (!moves_[b]) surfaces_.publish(b, deformer_.surface(b).position, deformer_.surface(b).normal, newest);
+    if (!moves_[b])
+      surfaces_.publish(b, {deformer_.shape(b).origin(), deformer_.surface(b).position, deformer_.surface(b).normal},
+                        newest);
+  SurfacePublisher::Moment of_tissue = newest;
+  of_tissue.tissue = time_;
   for (int i = 0; i < world_.organs(); ++i) {
     world_.organ(i).shape(position_, normal_);
-    surfaces_.publish(world_.bodies()[i], position_, normal_, newest);
+    surfaces_.publish(world_.bodies()[i], {world_.organ(i).origin(), position_, normal_}, of_tissue);
   }
   ++report_.frames;
   for (const std::string& said : range_.look(deformer_)) log_warning(said);
@@ -219,7 +233,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
     if (heard_ && phase_ == Phase::waiting) begin_tissue(now);
     if (phase_ == Phase::settling) settle(now);
     if (phase_ == Phase::moving) {
-      tick();
+      tick(timer.tick_time_ns());
       ++report_.ticks;
       report_.period.skipped = timer.statistics().skipped;
     } else {

@@ -14,6 +14,7 @@
 #include "common/sim/dynamic_world.hpp"
 #include "common/sim/local_models.hpp"
 #include "common/sim/range_monitor.hpp"
+#include "common/sim/tissue_time.hpp"
 #include "deform_node/earlier_cuts.hpp"
 #include "deform_node/surface_publisher.hpp"
 
@@ -28,14 +29,15 @@ struct DynamicReport {
   Histogram tick;                               ///< [ns] advancing the tissue
   Histogram latency;                            ///< [ns] sense time of the tool's step to the surface being published
   std::uint64_t behind = 0;                     ///< [s] in which ticks were left out
+  std::int64_t late_ns = 0;                     ///< by which the tissue's time was behind in the last tick
   PeriodStatistics period;
 };
 
 /// Advances moving tissue in real time: takes the tools' newest states, ticks the world, journals, sends local contact
 /// models and cuts, and publishes all surfaces at the visual rate. A tick that comes late is left out: time in the
-/// tissue then runs slower, and the report says how often. The tissue rests until a tool is first heard of, and others
-/// have told what it had lost before this node started; if it comes back to tools that are in the tissue, that first
-/// comes to rest around them.
+/// tissue then runs slower; every message says what that time is and how late, and the report says how often. The
+/// tissue rests until a tool is first heard of, and others have told what it had lost before this node started; if it
+/// comes back to tools that are in the tissue, that first comes to rest around them.
 class DynamicLoop {
  public:
   /// `deformer`: of the scene's quasi-static bodies.
@@ -56,7 +58,7 @@ class DynamicLoop {
   void begin_tissue(std::int64_t now);
   void settle(std::int64_t now);
   void tell_begin();
-  void tick();
+  void tick(std::int64_t due_ns);
   void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed);
   void publish_changes();
   void count(std::span<const DynamicOrgan::Change> changes);
@@ -89,6 +91,8 @@ class DynamicLoop {
   std::vector<LocalContactModel> model_;   ///< per tool
   DeformStep step_;
   DeformKeyframe keyframe_;
+  TissueTime time_;
+  std::int64_t first_due_ns_ = 0;  ///< when the first tick was due
   std::vector<Eigen::Vector3f> position_, normal_;
   EarlierCuts earlier_;
   bool whole_ = false;  ///< they do not count

@@ -62,11 +62,12 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   if (whole) loop.forget_earlier_cuts();
   say_ready(o);
   const DynamicReport& r = loop.run(o.seconds);
-  log_info(fmt::format(
-      "{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks; {} tetrahedra cut, {} torn, {} "
-      "fallen away",
-      rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped, r.cut, r.torn,
-      r.fallen));
+  log_info(
+      fmt::format("{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks, the tissue's time "
+                  "{:.3f} s late; {} "
+                  "tetrahedra cut, {} torn, {} fallen away",
+                  rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped,
+                  1e-9 * static_cast<double>(r.late_ns), r.cut, r.torn, r.fallen));
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},
@@ -75,6 +76,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
           {"tick_hz", rate(r.ticks, r.seconds)},
           {"missed", r.period.skipped},
           {"behind_s", r.behind},
+          {"late_s", 1e-9 * static_cast<double>(r.late_ns)},
           {"tick_us_p50", us(r.tick, 0.5)},
           {"tick_us_p99", us(r.tick, 0.99)},
           {"tick_us_max", us(r.tick, 1)},

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "common/geometry/arrays.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -16,14 +17,15 @@ SurfacePublisher::SurfacePublisher(Bus& bus, const Deformer& deformer)
   }
 }
 
-void SurfacePublisher::publish(int body, std::span<const Eigen::Vector3f> position,
-                               std::span<const Eigen::Vector3f> normal, const Origin& origin) {
+void SurfacePublisher::publish(int body, const Shape& shape, const Moment& moment) {
   SurfaceState& m = messages_[body];
-  std::memcpy(m.position.data(), position.data(), m.position.size() * sizeof(float));
-  std::memcpy(m.normal.data(), normal.data(), m.normal.size() * sizeof(float));
-  m.run = origin.run;
-  m.step = origin.step;
-  m.sense_ns = origin.sense_ns;
+  std::memcpy(m.position.data(), shape.position.data(), m.position.size() * sizeof(float));
+  std::memcpy(m.normal.data(), shape.normal.data(), m.normal.size() * sizeof(float));
+  copy(shape.origin, m.origin);
+  m.run = moment.run;
+  m.step = moment.step;
+  m.sense_ns = moment.sense_ns;
+  stamp(moment.tissue, m);
   m.publish_ns = last_ns_ = now_ns();
   ++m.seq;
   writer_->write(m);

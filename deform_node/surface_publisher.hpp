@@ -6,6 +6,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/sim/deformer.hpp"
+#include "common/sim/tissue_time.hpp"
 
 namespace palpate {
 
@@ -14,13 +15,17 @@ class SurfacePublisher {
  public:
   SurfacePublisher(Bus& bus, const Deformer& deformer);
 
-  /// Where the newest step shown comes from.
-  struct Origin {
+  /// The newest step shown, and of which time the tissue is, if it moves.
+  struct Moment {
     std::uint64_t run = 0, step = 0;
     std::int64_t sense_ns = 0;
+    TissueTime tissue = {};
   };
-  void publish(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
-               const Origin& origin);
+  struct Shape {
+    Eigen::Vector3d origin;                             ///< [m] world, near the body
+    std::span<const Eigen::Vector3f> position, normal;  ///< [m] from there on, unit
+  };
+  void publish(int body, const Shape& shape, const Moment& moment);
   std::int64_t last_publish_ns() const { return last_ns_; }
   bool delivered() const { return writer_->delivered(); }  ///< every viewer has what was published
 

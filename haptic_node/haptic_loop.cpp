@@ -136,6 +136,7 @@ void HapticLoop::count(std::uint32_t flags) {
   report_.damped += (flags & passivity_limited) != 0;
   report_.silent += (flags & silent_device) != 0;
   report_.stale += (flags & stale_model) != 0;
+  report_.late += (flags & late_tissue) != 0;
   report_.implausible += (flags & implausible_force) != 0;
   shown_flags_.fetch_or(flags, std::memory_order_relaxed);
 }

@@ -31,12 +31,12 @@ struct LoopReport {
   Histogram step, push;       ///< [ns] whole tick; hand-over to the publisher
   Histogram wire;             ///< [ns] from there until the bus has all messages of a step
   PeriodStatistics period;
-  double max_force = 0;                                                           ///< [N]
-  std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, damped = 0;  ///< steps
-  std::uint64_t force_limited = 0, slew_limited = 0;                              ///< steps, of those limited
-  std::uint64_t silent = 0;                                                       ///< steps without a driver's word
-  std::uint64_t behind = 0;                                                       ///< [s] in which steps were late
-  double min_energy = 0;                                                          ///< [J] of all tools together
+  double max_force = 0;                                                                     ///< [N]
+  std::uint64_t limited = 0, regularised = 0, faults = 0, stale = 0, late = 0, damped = 0;  ///< steps
+  std::uint64_t force_limited = 0, slew_limited = 0;                                        ///< steps, of those limited
+  std::uint64_t silent = 0;              ///< steps without a driver's word
+  std::uint64_t behind = 0;              ///< [s] in which steps were late
+  double min_energy = 0;                 ///< [J] of all tools together
   std::uint64_t refused_samples = 0;     ///< of devices: no possible pose, or a jump that the next did not confirm
   std::uint64_t followed_samples = 0;    ///< steps in which a tool followed its device at a bounded speed
   std::uint64_t refused_models = 0;      ///< local contact models of steps to come

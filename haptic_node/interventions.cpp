@@ -24,6 +24,7 @@ void Interventions::look(const Seen& seen) {
       Kind{(seen.flags & implausible_force) != 0,
            "the force of moving tissue is limited: a local contact model asks for more than the tissue can give"},
       Kind{(seen.flags & stale_model) != 0, "the force of moving tissue fades: its local contact models come too late"},
+      Kind{(seen.flags & late_tissue) != 0, "the tissue that is felt moves too slowly: its time is late"},
       Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"},
       Kind{(seen.flags & force_limited) != 0, "the force is limited: more was asked for than the tool's port gives"},
       Kind{(seen.flags & slew_limited) != 0, "the force is limited: it rises no faster than the tool's port lets it"},

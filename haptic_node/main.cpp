@@ -125,6 +125,7 @@ nlohmann::json summary_of(const LoopReport& r) {
           {"regularised_steps", r.regularised},
           {"fault_steps", r.faults},
           {"stale_model_steps", r.stale},
+          {"late_tissue_steps", r.late},
           {"refused_samples", r.refused_samples},
           {"followed_steps", r.followed_samples},
           {"refused_models", r.refused_models},

@@ -83,8 +83,11 @@ class Simulator {
     return flags;
   }
 
-  py::array_t<float> surface(const std::string& body) {
-    return rows_of(lock_step_.simulator().surface(number_of(body)).position);
+  py::array_t<double> surface(const std::string& body) {
+    const sim::SurfaceView shown = lock_step_.simulator().surface(number_of(body));
+    std::vector<Eigen::Vector3d> places;
+    for (const Eigen::Vector3f& p : shown.position) places.push_back(shown.origin + p.cast<double>());
+    return rows_of(std::span(std::as_const(places)));
   }
   py::array_t<float> normals(const std::string& body) {
     return rows_of(lock_step_.simulator().surface(number_of(body)).normal);
@@ -154,8 +157,7 @@ void bind_simulator(py::module_& module) {
            "One step with these degrees of freedom, shaped like `dofs`. A jump that no hand can make is followed at a "
            "bounded\n"
            "speed.")
-      .def("surface", &Simulator::surface, py::arg("body") = "",
-           "(n, 3) float32 [m] of each node of a body's surface map")
+      .def("surface", &Simulator::surface, py::arg("body") = "", "(n, 3) [m] of each node of a body's surface map")
       .def("normals", &Simulator::normals, py::arg("body") = "", "(n, 3) float32, unit, outward")
       .def(
           "triangles",

@@ -9,6 +9,7 @@
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/moved_files.hpp"
+#include "common/view/view_origin.hpp"
 #include "render_node/render_loop.hpp"
 #include "render_node/scene_stage.hpp"
 
@@ -25,10 +26,12 @@ struct RenderOptions {
 RenderOptions options;
 
 std::unique_ptr<SurfaceSource> make_source(Bus& bus, const Presence& presence, const LoadedScene& loaded) {
-  if (options.deform) return deform_surfaces(loaded.scene, bus, presence, Deformer(loaded.scene, loaded.archives));
+  const Eigen::Vector3d origin = view_origin(loaded.archives);
+  if (options.deform)
+    return deform_surfaces(loaded.scene, bus, presence, Deformer(loaded.scene, loaded.archives), origin);
   std::vector<std::size_t> nodes;
   for (const Archive& archive : loaded.archives) nodes.push_back(archive.surface.position.size());
-  return receive_surfaces(bus, presence, std::move(nodes));
+  return receive_surfaces(bus, presence, std::move(nodes), origin);
 }
 
 void summarise(const RenderReport& r, const Film* film, const RangeMonitor* range, bool supervised) {

@@ -1,6 +1,7 @@
 #include "render_node/scene_stage.hpp"
 
 #include "common/mesh/mesh_file.hpp"
+#include "common/view/view_origin.hpp"
 #include "render_node/renderer.hpp"
 
 namespace palpate {
@@ -11,7 +12,8 @@ Stage make_stage(const LoadedScene& loaded) {
   TriangleMesh backdrop;
   const auto& render = loaded.scene.render;
   if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
-  return Stage(loaded.scene, surfaces, backdrop, load_visuals(loaded.scene, loaded.archives));
+  const Eigen::Vector3d origin = view_origin(loaded.archives);
+  return Stage(loaded.scene, surfaces, backdrop, load_visuals(loaded.scene, loaded.archives, origin), origin);
 }
 
 void write_still(const Stage& stage, int width, int height, const std::filesystem::path& file) {

@@ -6,16 +6,10 @@
 
 #include "common/mesh/normals.hpp"
 #include "common/view/backdrop.hpp"
+#include "common/view/view_origin.hpp"
 
 namespace palpate {
 namespace {
-
-std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
-  std::vector<Eigen::Vector3f> out;
-  out.reserve(points.size());
-  for (const auto& p : points) out.push_back(p.cast<float>());
-  return out;
-}
 
 /// The next "round" number that is at least `value`.
 double round_up(double value) {
@@ -28,9 +22,11 @@ double round_up(double value) {
 }  // namespace
 
 Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
-             std::vector<std::optional<VisualBody>> visuals)
-    : render_(scene.render.value_or(Render{})) {
+             std::vector<std::optional<VisualBody>> visuals, const Eigen::Vector3d& origin)
+    : origin_(origin), render_(scene.render.value_or(Render{})) {
   if (!scene.render) render_.camera = fit_camera(surfaces);
+  render_.camera.eye -= origin;
+  render_.camera.target -= origin;
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const SurfaceMap& map = surfaces[b];
     const BodyLook look = look_of(scene.bodies.at(b), map, render_);
@@ -39,7 +35,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
     body.max_triangles = look.max_triangles;
     body.finish = look.finish;
     body.colour = look.colour;
-    body.rest = to_float(map.position);
+    body.rest = places_from(origin, map.position);
     if (b < visuals.size() && visuals[b]) add_visual(body, std::move(*visuals[b]), scene.bodies[b], map);
     refine(body, body.visual ? std::span<const std::array<int, 3>>() : map.triangles);
     body.position = body.rest;
@@ -57,7 +53,7 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
   add_backdrop(sorted.bones, Finish::bone, kBoneColour);
   add_backdrop(sorted.lining, Finish::lining, kLiningColour);
   for (const Tool& tool : scene.tools)
-    tools_.push_back({make_trocar(tool.pivot, tool.axis, tool.up), instrument_of(tool)});
+    tools_.push_back({make_trocar(tool.pivot - origin, tool.axis, tool.up), instrument_of(tool)});
 }
 
 // A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
@@ -78,7 +74,9 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
 
 void Stage::add_visual(Soft& body, VisualBody visual, const Body& spec, const SurfaceMap& map) const {
   body.uncut = map.triangles;
-  body.visual.emplace(std::move(visual), map.position, body.colour, visual_of(spec)->texture,
+  std::vector<Eigen::Vector3d> nodes = map.position;
+  for (Eigen::Vector3d& node : nodes) node -= origin_;
+  body.visual.emplace(std::move(visual), nodes, body.colour, visual_of(spec)->texture,
                       render_.colour == Colouring::displacement);
 }
 
@@ -110,7 +108,7 @@ void Stage::set_triangles(int index, std::span<const std::array<int, 3>> triangl
 
 void Stage::add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour) {
   if (mesh.triangles.empty()) return;
-  Rigid part{to_float(mesh.nodes), {}, mesh.triangles, finish, colour};
+  Rigid part{places_from(origin_, mesh.nodes), {}, mesh.triangles, finish, colour};
   part.normal.resize(part.position.size());
   vertex_normals(part.position, part.triangles, part.normal);
   backdrop_.push_back(std::move(part));

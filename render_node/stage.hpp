@@ -22,12 +22,13 @@ namespace palpate {
 class Stage {
  public:
   /// `surfaces`: one per body, at rest until set_surface. `backdrop` may be empty. `visuals`: none, or one per body,
-  /// which may be empty. Throws as decode_png().
+  /// which may be empty. What is drawn is counted from `origin` [m] on, and so are the visuals already. Throws as
+  /// decode_png().
   Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
-        std::vector<std::optional<VisualBody>> visuals = {});
+        std::vector<std::optional<VisualBody>> visuals = {}, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
-  /// Shape of one body: position [m] and unit normal per surface node; empty spans leave it as it is. `dents`: which
-  /// the positions show at the nodes; between these they are drawn as they are, round.
+  /// Shape of one body: position [m] from the origin on and unit normal per surface node; empty spans leave it as it
+  /// is. `dents`: which the positions show at the nodes; between these they are drawn as they are, round.
   void set_surface(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
                    std::span<const HertzDent> dents = {});
   /// Another surface of one body over the same nodes, after a cut: outward triangles.
@@ -81,6 +82,7 @@ class Stage {
     bool seen = false;
   };
 
+  Eigen::Vector3d origin_;
   Render render_;
   std::vector<Soft> bodies_;
   std::vector<Rigid> backdrop_;

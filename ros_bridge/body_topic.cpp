@@ -22,12 +22,15 @@ BodyTopic::BodyTopic(Node& node, const std::string& body, const std::array<doubl
       surface_(
           node.publisher("/palpate/" + allowed_name(body) + "/surface", visualization_msgs_msg_dds__Marker__desc)) {}
 
-void BodyTopic::tell(std::span<const Eigen::Vector3f> position, std::span<const std::array<int, 3>> triangles,
-                     std::int64_t wall_ns) {
+void BodyTopic::tell(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3f> position,
+                     std::span<const std::array<int, 3>> triangles, std::int64_t wall_ns) {
   std::vector<geometry_msgs_msg_dds__Point_> corners;
   corners.reserve(3 * triangles.size());
   for (const auto& triangle : triangles)
-    for (const int node : triangle) corners.push_back({position[node].x(), position[node].y(), position[node].z()});
+    for (const int node : triangle) {
+      const Eigen::Vector3d at = origin + position[node].cast<double>();
+      corners.push_back({at.x(), at.y(), at.z()});
+    }
   visualization_msgs_msg_dds__Marker_ marker{};
   leave_empty(marker);
   marker.header = header(wall_ns, kWorld);

@@ -17,9 +17,10 @@ class BodyTopic {
 
   /// Whether somebody looks: a surface takes 72 bytes a triangle.
   bool wanted() const { return surface_.readers() > 0; }
-  /// `position` [m] per surface node, `triangles` of them; `wall_ns`: of the haptic step that is shown, CLOCK_REALTIME.
-  void tell(std::span<const Eigen::Vector3f> position, std::span<const std::array<int, 3>> triangles,
-            std::int64_t wall_ns);
+  /// `position` [m] per surface node from `origin` on, `triangles` of them; `wall_ns`: of the haptic step that is
+  /// shown, CLOCK_REALTIME.
+  void tell(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3f> position,
+            std::span<const std::array<int, 3>> triangles, std::int64_t wall_ns);
 
  private:
   std::string body_;

@@ -8,8 +8,8 @@
 
 namespace palpate::ros {
 
-BridgeLoop::BridgeLoop(const Scene& scene, std::vector<SurfaceMap> surfaces, Node& node, SurfaceSource& source,
-                       Bus& bus, Presence& presence)
+BridgeLoop::BridgeLoop(const Scene& scene, std::vector<SurfaceMap> surfaces, const Eigen::Vector3d& origin, Node& node,
+                       SurfaceSource& source, Bus& bus, Presence& presence)
     : scene_(scene),
       source_(source),
       bus_(bus),
@@ -17,7 +17,8 @@ BridgeLoop::BridgeLoop(const Scene& scene, std::vector<SurfaceMap> surfaces, Nod
       clock_(bus, presence.node()),
       link_(bus),
       states_(bus.reader(topics::tool_state)),
-      forces_(bus.reader(topics::force_state)) {
+      forces_(bus.reader(topics::force_state)),
+      origin_(origin) {
   presence_.set_clock(&clock_);
   for (const Tool& tool : scene.tools) tools_.emplace_back(node, tool);
   const Render render = scene.render.value_or(Render{});
@@ -68,7 +69,7 @@ void BridgeLoop::tell_surfaces(std::int64_t now) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto position = source_.shape(static_cast<int>(b)).position;
     if (position.empty() || !bodies_[b].wanted()) continue;
-    bodies_[b].tell(position, triangles_[b], moment.run != 0 ? wall_time(moment.sense_ns) : wall_ns());
+    bodies_[b].tell(origin_, position, triangles_[b], moment.run != 0 ? wall_time(moment.sense_ns) : wall_ns());
   }
 }
 

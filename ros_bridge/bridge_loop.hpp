@@ -28,9 +28,9 @@ struct BridgeReport {
 /// rate.
 class BridgeLoop {
  public:
-  /// `surfaces`: of each body at rest.
-  BridgeLoop(const Scene& scene, std::vector<SurfaceMap> surfaces, Node& node, SurfaceSource& source, Bus& bus,
-             Presence& presence);
+  /// `surfaces`: of each body at rest. `origin` [m]: where the source counts from.
+  BridgeLoop(const Scene& scene, std::vector<SurfaceMap> surfaces, const Eigen::Vector3d& origin, Node& node,
+             SurfaceSource& source, Bus& bus, Presence& presence);
 
   void set_topology(TopologyFeed* topology) { topology_ = topology; }
   /// `rate_hz`: of the tools. Until `seconds` are over (0: no limit) or a stop is requested.
@@ -59,6 +59,7 @@ class BridgeLoop {
   std::vector<ToolTopics> tools_;
   std::vector<BodyTopic> bodies_;
   std::vector<std::vector<std::array<int, 3>>> triangles_;
+  Eigen::Vector3d origin_;
   std::int64_t next_surface_ns_ = 0, last_status_ns_ = 0;
   std::uint64_t last_ticks_ = 0;
   Histogram recent_latency_;

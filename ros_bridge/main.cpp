@@ -5,6 +5,7 @@
 #include "common/log/log.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/view/view_origin.hpp"
 #include "ros_bridge/bridge_loop.hpp"
 #include "ros_bridge/commands.hpp"
 
@@ -66,16 +67,17 @@ void run(const NodeOptions& o) {
     surfaces.push_back(archive.surface);
     nodes.push_back(archive.surface.position.size());
   }
+  const Eigen::Vector3d origin = view_origin(loaded.archives);
   // Towards the scene it has the rights of the live view: it reads what is shown and moves tools.
   const BusSettings settings = bus_settings(scene, o, "web"), ros_side = ros_settings(settings);
   const std::unique_ptr<Bus> bus = make_dds_bus(settings);
   Presence presence(*bus, "ros", 0, loaded.scene_hash, loaded.archive_hash);
-  const std::unique_ptr<SurfaceSource> source = receive_surfaces(*bus, presence, nodes);
+  const std::unique_ptr<SurfaceSource> source = receive_surfaces(*bus, presence, nodes, origin);
   std::optional<TopologyFeed> topology;
   if (has_moving_tissue(scene)) topology.emplace(*bus, presence, loaded.archives);
   loaded.archives.clear();
   ros::Node node(ros_side, "palpate");
-  ros::BridgeLoop loop(scene, std::move(surfaces), node, *source, *bus, presence);
+  ros::BridgeLoop loop(scene, std::move(surfaces), origin, node, *source, *bus, presence);
   if (topology) loop.set_topology(&*topology);
   ros::Commands commands(node, *bus, scene);
   node.announce();

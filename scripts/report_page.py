@@ -36,6 +36,7 @@ FLAGS = {
     "stale_model": "without news of moving tissue, the force fading",
     "passivity_limited": "damped by the passivity controller",
     "silent_device": "without news of the device, the force fading",
+    "late_tissue": "with moving tissue felt whose time was late",
     "implausible_force": "with a force refused that the tissue cannot give",
 }
 STYLE = """body{font:15px/1.45 system-ui,sans-serif;max-width:1060px;margin:24px auto;padding:0 16px;color:#222}

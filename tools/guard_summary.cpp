@@ -27,6 +27,7 @@ constexpr Count kInterventions[] = {
 constexpr Count kLimits[] = {
     {"haptic_node", "slew_limited_steps", "steps in which the force rose no faster than the port lets it"},
     {"haptic_node", "passivity_limited_steps", "steps damped"},
+    {"haptic_node", "late_tissue_steps", "steps in which tissue was felt whose time was late"},
     {"haptic_node", "behind_s", "s in which the force's steps were late"},
     {"deform_node", "behind_s", "s in which the tissue's time went slower"},
     {"render_node", "behind_s", "s in which pictures were left out"}};

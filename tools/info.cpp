@@ -47,6 +47,7 @@ Json json_of(const LogSummary& s, const std::string& file) {
   json["files"] = Json::array();
   for (const LogFile& f : s.files) json["files"].push_back({{"path", f.path}, {"hash", f.hash}, {"bytes", f.size}});
   json["hops_us"] = json_of(s.hops);
+  json["tissue_s"] = json_of(s.hops.tissue());
   json["tasks"] = Json::array();
   for (const TaskRecord& task : s.tasks) json["tasks"].push_back(Json::parse(to_json(task)));
   json["topics"] = Json::object();
@@ -116,6 +117,7 @@ void print_text(const LogSummary& s, const std::string& file) {
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
   print_table(s);
   print_hops(s);
+  fmt::print("{}", text_of(s.hops.tissue()));
   print_tasks(s);
 }
 

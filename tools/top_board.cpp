@@ -116,8 +116,8 @@ std::string TopBoard::hops_text() const {
   row("tool to force", hops_.force());
   row("tool to surface", hops_.surface());
   row("tool to picture", hops_.picture());
-  return text.empty() ? text
-                      : fmt::format("\n{:16} {:>10} {:>10} {:>10}\n", "one way [us]", "p50", "p99", "max") + text;
+  if (!text.empty()) text = fmt::format("\n{:16} {:>10} {:>10} {:>10}\n", "one way [us]", "p50", "p99", "max") + text;
+  return text + text_of(hops_.tissue());
 }
 
 Json TopBoard::json(double seconds) const {
@@ -142,7 +142,11 @@ Json TopBoard::json(double seconds) const {
                      {"force_max_n", hand.strongest},
                      {"steps_hz", static_cast<double>(hand.steps) / seconds},
                      {"flags", hand.last.flags}});
-  return {{"nodes", nodes}, {"tools", tools}, {"missing_forces", sequence_.missing()}, {"hops_us", json_of(hops_)}};
+  return {{"nodes", nodes},
+          {"tools", tools},
+          {"missing_forces", sequence_.missing()},
+          {"hops_us", json_of(hops_)},
+          {"tissue_s", json_of(hops_.tissue())}};
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include "common/node/node_setup.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/view/view_origin.hpp"
 #include "web_node/door.hpp"
 #include "web_node/web_loop.hpp"
 
@@ -33,10 +34,10 @@ std::string link_to(const web::ServerSettings& settings, int port) {
                      settings.secret.empty() ? "" : settings.secret + "/");
 }
 
-std::vector<web::OfferedTool> offered_tools(const Scene& scene) {
+std::vector<web::OfferedTool> offered_tools(const Scene& scene, const Eigen::Vector3d& origin) {
   std::vector<web::OfferedTool> tools;
   for (const Tool& tool : scene.tools)
-    tools.push_back({is_for_hands(tool.device, options.hands), make_trocar(tool.pivot, tool.axis, tool.up)});
+    tools.push_back({is_for_hands(tool.device, options.hands), make_trocar(tool.pivot - origin, tool.axis, tool.up)});
   return tools;
 }
 
@@ -99,9 +100,10 @@ void summarise(const web::WebReport& r, const web::Server::Seen& seen, bool supe
 void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::header);
   const Scene& scene = loaded.scene;
+  const Eigen::Vector3d origin = view_origin(loaded.archives);  // of all places at the page
   std::vector<SurfaceMap> surfaces;
   for (const Archive& archive : loaded.archives) surfaces.push_back(archive.surface);
-  const std::vector<std::optional<VisualBody>> visuals = load_visuals(scene, loaded.archives);
+  const std::vector<std::optional<VisualBody>> visuals = load_visuals(scene, loaded.archives, origin);
   std::vector<std::size_t> nodes;
   std::vector<web::WebLoop::Beginning> bodies;
   for (const SurfaceMap& surface : surfaces) {
@@ -109,23 +111,23 @@ void run(const NodeOptions& o) {
     web::WebLoop::Beginning& body = bodies.emplace_back();
     body.triangles = surface.triangles;
     body.visual = visuals[bodies.size() - 1].has_value();
-    for (const Eigen::Vector3d& p : surface.position) body.rest.push_back(p.cast<float>());
+    body.rest = places_from(origin, surface.position);
   }
 
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "web"));
   Presence presence(*bus, "web", 0, loaded.scene_hash, loaded.archive_hash);
-  const std::unique_ptr<SurfaceSource> source = receive_surfaces(*bus, presence, nodes);
+  const std::unique_ptr<SurfaceSource> source = receive_surfaces(*bus, presence, nodes, origin);
   std::optional<TopologyFeed> topology;
   if (has_moving_tissue(scene)) topology.emplace(*bus, presence, loaded.archives);
-  web::Hands hands(offered_tools(scene), static_cast<std::uint64_t>(now_ns() / 1'000'000));
+  web::Hands hands(offered_tools(scene, origin), static_cast<std::uint64_t>(now_ns() / 1'000'000));
   Pages pages(*bus, hands);
   const web::ServerSettings settings = server_settings(scene.web);
   web::Server server(settings, {.said = [&](std::uint32_t page, const web::Said& said) { pages.said(page, said); },
                                 .gone = [&](std::uint32_t page) { hands.gone(page); }});
-  server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene), visuals)});
+  server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene), visuals, origin)});
   loaded.archives.clear();
   catch_shutdown_signals();
-  web::WebLoop loop(scene, std::move(bodies), *source, *bus, presence, hands, server);
+  web::WebLoop loop(scene, origin, std::move(bodies), *source, *bus, presence, hands, server);
   if (topology) loop.set_topology(&*topology);
   fmt::print("live view: {}\n", link_to(settings, server.port()));
   say_ready(o);

@@ -5,18 +5,13 @@
 #include "common/view/backdrop.hpp"
 #include "common/view/instrument.hpp"
 #include "common/view/looks.hpp"
+#include "common/view/view_origin.hpp"
 #include "web_node/protocol.hpp"
 
 namespace palpate::web {
 namespace {
 
 using nlohmann::json;
-
-std::vector<Eigen::Vector3f> to_float(const std::vector<Eigen::Vector3d>& points) {
-  std::vector<Eigen::Vector3f> out;
-  for (const auto& p : points) out.push_back(p.cast<float>());
-  return out;
-}
 
 json of(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -79,17 +74,17 @@ json visual_of(const VisualBody& visual, const std::array<double, 3>& tissue, Co
 }
 
 json body_of(const Body& spec, const SurfaceMap& surface, const Render& render, const std::optional<VisualBody>& visual,
-             Container& to) {
+             const Eigen::Vector3d& origin, Container& to) {
   const BodyLook look = look_of(spec, surface, render);
   json body{{"name", name_of(spec)},       {"finish", name_of(look.finish)},
             {"colour", look.colour},       {"max_triangles", look.max_triangles},
-            {"thickness", look.thickness}, {"rest", to.add(to_float(surface.position))}};
+            {"thickness", look.thickness}, {"rest", to.add(places_from(origin, surface.position))}};
   if (!look.texture.empty()) body["texture"] = to.add(look.texture);
   if (visual) body["visual"] = visual_of(*visual, look.colour, to);
   return body;
 }
 
-json tool_of(const Tool& tool, Container& to) {
+json tool_of(const Tool& tool, const Eigen::Vector3d& origin, Container& to) {
   const InstrumentView view = instrument_of(tool);
   const InstrumentShape shape = make_instrument(view);
   const EndAbilities can = abilities_of(tool);
@@ -109,14 +104,14 @@ json tool_of(const Tool& tool, Container& to) {
           {"bare", steel.bare},
           {"grips", can.turning.has_value() || can.closing.has_value()},
           {"cuts", can.cautery.has_value()},
-          {"pivot", of(tool.pivot)},
+          {"pivot", of(tool.pivot - origin)},
           {"parts", parts}};
 }
 
-void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour, Container& to,
-                  json& list) {
+void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour,
+                  const Eigen::Vector3d& origin, Container& to, json& list) {
   if (mesh.triangles.empty()) return;
-  const std::vector<Eigen::Vector3f> position = to_float(mesh.nodes);
+  const std::vector<Eigen::Vector3f> position = places_from(origin, mesh.nodes);
   std::vector<Eigen::Vector3f> normal(position.size());
   vertex_normals(position, mesh.triangles, normal);
   list.push_back({{"finish", name_of(finish)},
@@ -129,21 +124,21 @@ void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<doub
 }  // namespace
 
 std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
-                            std::span<const std::optional<VisualBody>> visuals) {
+                            std::span<const std::optional<VisualBody>> visuals, const Eigen::Vector3d& origin) {
   Container container;
   const Render render = scene.render.value_or(Render{});
   const Camera camera = scene.render ? render.camera : fit_camera(surfaces);
   json bodies = json::array(), tools = json::array(), behind = json::array();
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    bodies.push_back(body_of(scene.bodies[b], surfaces[b], render, visuals[b], container));
-  for (const Tool& tool : scene.tools) tools.push_back(tool_of(tool, container));
+    bodies.push_back(body_of(scene.bodies[b], surfaces[b], render, visuals[b], origin, container));
+  for (const Tool& tool : scene.tools) tools.push_back(tool_of(tool, origin, container));
   const Backdrop sorted = sort_backdrop(backdrop);
-  add_backdrop(sorted.bones, Finish::bone, kBoneColour, container, behind);
-  add_backdrop(sorted.lining, Finish::lining, kLiningColour, container, behind);
+  add_backdrop(sorted.bones, Finish::bone, kBoneColour, origin, container, behind);
+  add_backdrop(sorted.lining, Finish::lining, kLiningColour, origin, container, behind);
   return container.finish(Kind::scenery, {{"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
                                           {"camera",
-                                           {{"eye", of(camera.eye)},
-                                            {"target", of(camera.target)},
+                                           {{"eye", of(camera.eye - origin)},
+                                            {"target", of(camera.target - origin)},
                                             {"up", of(camera.up)},
                                             {"field_of_view", camera.field_of_view}}},
                                           {"colour", word_of(render.colour)},

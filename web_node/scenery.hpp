@@ -11,9 +11,9 @@
 namespace palpate::web {
 
 /// The message with all that stays the same while a scene runs: camera, colours, rest shapes, instruments, backdrop.
-/// `surfaces` and `visuals`: one per body.
+/// `surfaces` and `visuals`: one per body. Places are counted from `origin` [m] on, those of the visuals already.
 std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
-                            std::span<const std::optional<VisualBody>> visuals);
+                            std::span<const std::optional<VisualBody>> visuals, const Eigen::Vector3d& origin);
 
 /// What is to be seen of a body's topology.
 struct BodyTopology {

@@ -32,8 +32,8 @@ json of(const TaskRecord& task, const Scene& scene) {
 
 }  // namespace
 
-WebLoop::WebLoop(const Scene& scene, std::vector<Beginning> bodies, SurfaceSource& source, Bus& bus, Presence& presence,
-                 const Hands& hands, Server& server)
+WebLoop::WebLoop(const Scene& scene, const Eigen::Vector3d& origin, std::vector<Beginning> bodies,
+                 SurfaceSource& source, Bus& bus, Presence& presence, const Hands& hands, Server& server)
     : scene_(scene),
       source_(source),
       bus_(bus),
@@ -50,7 +50,7 @@ WebLoop::WebLoop(const Scene& scene, std::vector<Beginning> bodies, SurfaceSourc
   if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
   for (const Tool& tool : scene.tools) {
     const InstrumentView view = instrument_of(tool);
-    instruments_.push_back({make_trocar(tool.pivot, tool.axis, tool.up), view, make_instrument(view)});
+    instruments_.push_back({make_trocar(tool.pivot - origin, tool.axis, tool.up), view, make_instrument(view)});
   }
   for (const Beginning& body : bodies_)
     topologies_.push_back({body.visual ? std::vector<std::array<int, 3>>() : body.triangles, {}});

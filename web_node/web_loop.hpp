@@ -33,11 +33,12 @@ class WebLoop {
   /// What each body is like at the beginning.
   struct Beginning {
     std::vector<std::array<int, 3>> triangles;
-    std::vector<Eigen::Vector3f> rest;  ///< [m]
+    std::vector<Eigen::Vector3f> rest;  ///< [m] from the origin on
     bool visual = false;                ///< a visual surface is drawn in place of the triangles
   };
-  WebLoop(const Scene& scene, std::vector<Beginning> bodies, SurfaceSource& source, Bus& bus, Presence& presence,
-          const Hands& hands, Server& server);
+  /// `origin` [m]: where places at the page, and those of the source, are counted from.
+  WebLoop(const Scene& scene, const Eigen::Vector3d& origin, std::vector<Beginning> bodies, SurfaceSource& source,
+          Bus& bus, Presence& presence, const Hands& hands, Server& server);
 
   void set_topology(TopologyFeed* topology) { topology_ = topology; }
   /// Until `seconds` are over (0: no limit) or a stop is requested.

@@ -21,8 +21,9 @@ struct Corner {
 
 class ObjReader {
  public:
-  ObjReader(const std::filesystem::path& file, double scale, const std::optional<ObjMaterials>& materials, bool image)
-      : lines_(file), scale_(scale), materials_(materials), image_(image) {}
+  ObjReader(const std::filesystem::path& file, double scale, const std::optional<ObjMaterials>& materials, bool image,
+            const Eigen::Vector3d& origin)
+      : lines_(file), scale_(scale), materials_(materials), image_(image), origin_(origin) {}
 
   VisualMesh read() {
     while (lines_.next()) take_line();
@@ -55,7 +56,7 @@ class ObjReader {
     Eigen::Vector3d p;
     for (double& x : p) x = scale_ * lines_.number();
     if (!p.cast<float>().allFinite()) lines_.refuse("a place lies too far away to be drawn");
-    positions_.push_back(p.cast<float>());
+    positions_.emplace_back((p - origin_).cast<float>());
   }
 
   void take_image_place() {
@@ -144,6 +145,7 @@ class ObjReader {
   double scale_;
   const std::optional<ObjMaterials>& materials_;
   bool image_;
+  Eigen::Vector3d origin_;
   std::string material_;
   std::vector<Eigen::Vector3f> positions_;
   std::vector<Eigen::Vector2f> image_places_;
@@ -156,8 +158,8 @@ class ObjReader {
 }  // namespace
 
 VisualMesh load_obj(const std::filesystem::path& file, double scale, const std::optional<ObjMaterials>& materials,
-                    bool image) {
-  return ObjReader(file, scale, materials, image).read();
+                    bool image, const Eigen::Vector3d& origin) {
+  return ObjReader(file, scale, materials, image, origin).read();
 }
 
 }  // namespace palpate

@@ -22,9 +22,9 @@ ObjMaterials load_mtl(const std::filesystem::path& file);
 /// Reads vertices, texture coordinates, faces and `usemtl` of a Wavefront OBJ; normals, smoothing groups and the names
 /// of objects and groups are passed over, as are lines, points and curves. A face of more than three corners becomes a
 /// fan. `scale` [m per unit]; `materials`: empty: any name will do, and faces with texture coordinates wear the image.
-/// `image`: whether there is one. Throws std::runtime_error("FILE:LINE: sentence").
+/// `image`: whether there is one; positions from `origin` [m] on. Throws std::runtime_error("FILE:LINE: sentence").
 VisualMesh load_obj(const std::filesystem::path& file, double scale, const std::optional<ObjMaterials>& materials,
-                    bool image);
+                    bool image, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
 /// The same mesh as OBJ, its positions and texture coordinates rounded to `digits` places; `usemtl` for parts with a
 /// name. Throws std::runtime_error("FILE: sentence").

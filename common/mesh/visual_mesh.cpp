@@ -11,12 +11,12 @@
 namespace palpate {
 namespace {
 
-VisualMesh of_one_material(const TriangleMesh& surface, const std::string& file) {
+VisualMesh of_one_material(const TriangleMesh& surface, const Eigen::Vector3d& origin, const std::string& file) {
   if (surface.triangles.size() > kMaxVisualTriangles)
     throw std::runtime_error(fmt::format("{}: it has {} triangles, and a visual surface has {} at most", file,
                                          surface.triangles.size(), kMaxVisualTriangles));
   VisualMesh mesh;
-  for (const Eigen::Vector3d& p : surface.nodes) mesh.position.push_back(p.cast<float>());
+  for (const Eigen::Vector3d& p : surface.nodes) mesh.position.emplace_back((p - origin).cast<float>());
   mesh.image.assign(mesh.position.size(), Eigen::Vector2f::Zero());
   VisualMesh::Part& part = mesh.parts.emplace_back();
   part.count = static_cast<int>(mesh.position.size());
@@ -35,14 +35,14 @@ void join_places(VisualMesh& mesh) {
   mesh.nodes = static_cast<int>(node_at.size());
 }
 
-VisualMesh load_visual_mesh(const VisualSpec& spec) {
+VisualMesh load_visual_mesh(const VisualSpec& spec, const Eigen::Vector3d& origin) {
   const bool is_obj = spec.surface.extension() == ".obj";
   if (!is_obj && !(spec.materials.empty() && spec.texture.empty()))
     throw std::runtime_error(spec.surface.string() + ": only an OBJ has materials and texture coordinates");
-  if (!is_obj) return of_one_material(load_triangle_mesh(spec.surface, spec.scale), spec.surface.string());
+  if (!is_obj) return of_one_material(load_triangle_mesh(spec.surface, spec.scale), origin, spec.surface.string());
   std::optional<ObjMaterials> materials;
   if (!spec.materials.empty()) materials = load_mtl(spec.materials);
-  return load_obj(spec.surface, spec.scale, materials, !spec.texture.empty());
+  return load_obj(spec.surface, spec.scale, materials, !spec.texture.empty(), origin);
 }
 
 }  // namespace palpate

@@ -39,8 +39,8 @@ inline constexpr int kMaxTextureSide = 4096;
 /// Finds what vertices lie at one place: fills in `node` and `nodes`.
 void join_places(VisualMesh& mesh);
 
-/// Reads what a scene says of a visual surface, but for its image. Throws std::runtime_error("FILE:LINE: sentence") or
-/// ("FILE: sentence").
-VisualMesh load_visual_mesh(const VisualSpec& spec);
+/// Reads what a scene says of a visual surface, but for its image; positions from `origin` [m] on. Throws
+/// std::runtime_error("FILE:LINE: sentence") or ("FILE: sentence").
+VisualMesh load_visual_mesh(const VisualSpec& spec, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
 }  // namespace palpate

@@ -9,7 +9,7 @@ namespace palpate {
 void BodyShape::rebuild(const ContactsOnBody& contacts, DeformedSurface& surface) {
   displace(contacts, surface.displacement);
   for (std::size_t n = 0; n < surface.position.size(); ++n)
-    surface.position[n] = map_.position[n].cast<float>() + surface.displacement[n];
+    surface.position[n] = (map_.position[n] - origin_).cast<float>() + surface.displacement[n];
   vertex_normals(surface.position, map_.triangles, surface.normal);
 }
 

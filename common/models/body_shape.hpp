@@ -9,12 +9,13 @@
 #include "common/archive/archive.hpp"
 #include "common/contact/body_message.hpp"
 #include "common/contact/patch/hertz_dent.hpp"
+#include "common/mesh/near_origin.hpp"
 
 namespace palpate {
 
 /// The visible surface of one body as it is now.
 struct DeformedSurface {
-  std::vector<Eigen::Vector3f> position;      ///< [m] world, per surface node
+  std::vector<Eigen::Vector3f> position;      ///< [m] world, per surface node, from BodyShape::origin() on
   std::vector<Eigen::Vector3f> displacement;  ///< [m]; of a catheter, from its rest shape
   std::vector<Eigen::Vector3f> normal;        ///< unit, outward
 };
@@ -29,10 +30,11 @@ struct ContactsOnBody {
 /// the body stays at rest.
 class BodyShape {
  public:
-  explicit BodyShape(SurfaceMap map) : map_(std::move(map)) {}
+  explicit BodyShape(SurfaceMap map) : map_(std::move(map)), origin_(near_origin(map_.position)) {}
   virtual ~BodyShape() = default;
 
   const SurfaceMap& map() const { return map_; }
+  const Eigen::Vector3d& origin() const { return origin_; }  ///< [m] world, near the body
 
   /// Whether it follows from contacts.
   virtual bool superposed() const { return false; }
@@ -59,6 +61,7 @@ class BodyShape {
 
  private:
   SurfaceMap map_;
+  Eigen::Vector3d origin_;
 };
 
 /// A shape that follows from the newest message of one type.

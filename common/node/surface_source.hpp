@@ -13,9 +13,10 @@ namespace palpate {
 class SurfaceSource {
  public:
   struct Shape {
-    std::span<const Eigen::Vector3f> position;  ///< [m] per surface node of the archive
+    std::span<const Eigen::Vector3f> position;  ///< [m] per surface node of the archive, from the source's origin on
     std::span<const Eigen::Vector3f> normal;    ///< unit, outward
-    std::span<const HertzDent> dents = {};      ///< that the nodes show as far as they can; of shapes of this process
+    std::span<const HertzDent> dents = {};  ///< from there too, that the nodes show as far as they can; of shapes of
+                                            ///< this process
   };
   virtual ~SurfaceSource() = default;
   virtual bool update() = 0;                ///< takes what has come; true if a newer haptic step is shown
@@ -31,12 +32,15 @@ class SurfaceSource {
   virtual std::uint64_t refused() const = 0;  ///< samples of foreign runs, or that do not fit the archives
 };
 
-/// Surfaces published by a deform node. `nodes`: surface nodes per body.
-std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence, std::vector<std::size_t> nodes);
+/// Surfaces published by a deform node. `nodes`: surface nodes per body. `origin` [m]: where to count places from, near
+/// the bodies.
+std::unique_ptr<SurfaceSource> receive_surfaces(Bus& bus, const Presence& presence, std::vector<std::size_t> nodes,
+                                                const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
 /// Superposes the received contacts in this process, and keeps them for a haptic node that dies and comes
 /// back.
 std::unique_ptr<SurfaceSource> deform_surfaces(const Scene& scene, Bus& bus, const Presence& presence,
-                                               Deformer deformer);
+                                               Deformer deformer,
+                                               const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
 }  // namespace palpate

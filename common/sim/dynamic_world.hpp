@@ -43,6 +43,8 @@ class DynamicWorld {
   bool settle();
 
   std::uint64_t ticks() const { return ticks_; }
+  /// [ns] of the tissue's own time.
+  std::int64_t time_ns() const { return std::llround(1e9 * static_cast<double>(ticks_) * dt_); }
   const TissueTool& tool(int t) const { return tools_[t]; }
   const ToolInTick& in_tick(int t) const { return in_tick_[t]; }  ///< as the organs met it in the last tick
 

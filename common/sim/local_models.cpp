@@ -95,6 +95,7 @@ void LocalModels::add_origin(int tool, LocalContactModel& model) const {
   model.tool_run = s.run;
   model.tool_step = s.step;
   model.sense_ns = s.sense_ns;
+  model.tissue_ns = world_.time_ns();
   model.yaw = pose.yaw;
   model.pitch = pose.pitch;
   model.depth = pose.depth;

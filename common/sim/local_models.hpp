@@ -21,7 +21,7 @@ class LocalModels {
   LocalModels(const DynamicWorld& world, const std::vector<Archive>& archives,
               LocalStiffness::Worker worker = LocalStiffness::Worker::thread);
 
-  /// Fills everything but run and seq, after a tick; false if no dynamic tissue is near the tool.
+  /// Fills everything but run, seq and late_ns, after a tick; false if no dynamic tissue is near the tool.
   bool describe(int tool, LocalContactModel& model);
   /// Asks for the stiffness that the tools' places need now, and takes what has been worked out. Call once a tick.
   void refresh();

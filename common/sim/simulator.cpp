@@ -106,10 +106,10 @@ int Simulator::organ_of(int body) const {
 SurfaceView Simulator::surface(int body) {
   if (const int moving = organ_of(body); moving >= 0) {
     world_.organ(moving).shape(position_, normal_);
-    return {position_, normal_};
+    return {world_.organ(moving).origin(), position_, normal_};
   }
   if (deformer_.fresh()) deformer_.deform();
-  return {deformer_.surface(body).position, deformer_.surface(body).normal};
+  return {deformer_.shape(body).origin(), deformer_.surface(body).position, deformer_.surface(body).normal};
 }
 
 // As the haptic step is, also between the steps at which walls and catheters are shown.

@@ -37,7 +37,8 @@ struct ChangeView {
 
 /// One body's visible surface, per node of its surface map.
 struct SurfaceView {
-  std::span<const Eigen::Vector3f> position;  ///< [m] world
+  Eigen::Vector3d origin;                     ///< [m] world, near the body
+  std::span<const Eigen::Vector3f> position;  ///< [m] world, from the origin on
   std::span<const Eigen::Vector3f> normal;    ///< unit, outward
 };
 

@@ -15,19 +15,22 @@ std::array<int, 3> sorted(std::array<int, 3> t) {
 
 }  // namespace
 
-std::optional<VisualBody> load_visual(const Body& body, const Archive& archive) {
+std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, const Eigen::Vector3d& origin) {
   const VisualSpec* spec = visual_of(body);
   if (!spec) return {};
-  VisualBody visual{load_visual_mesh(*spec), {}, {}};
-  const SurfaceMap& surface = archive.surface;
-  visual.binding = bind_visual(visual.mesh.position, surface.position, surface.triangles, archive.tetrahedra);
+  VisualBody visual{load_visual_mesh(*spec, origin), {}, {}};
+  std::vector<Eigen::Vector3d> nodes = archive.surface.position;
+  for (Eigen::Vector3d& node : nodes) node -= origin;
+  visual.binding = bind_visual(visual.mesh.position, nodes, archive.surface.triangles, archive.tetrahedra);
   if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;
 }
 
-std::vector<std::optional<VisualBody>> load_visuals(const Scene& scene, std::span<const Archive> archives) {
+std::vector<std::optional<VisualBody>> load_visuals(const Scene& scene, std::span<const Archive> archives,
+                                                    const Eigen::Vector3d& origin) {
   std::vector<std::optional<VisualBody>> visuals;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) visuals.push_back(load_visual(scene.bodies[b], archives[b]));
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    visuals.push_back(load_visual(scene.bodies[b], archives[b], origin));
   return visuals;
 }
 

@@ -19,11 +19,13 @@ struct VisualBody {
   std::string texture;    ///< PNG; empty: none
 };
 
-/// Empty where the body's own surface is drawn. Throws std::runtime_error as load_visual_mesh() and read_png_bytes().
-std::optional<VisualBody> load_visual(const Body& body, const Archive& archive);
+/// Empty where the body's own surface is drawn. Places are counted from `origin` [m] on. Throws std::runtime_error as
+/// load_visual_mesh() and read_png_bytes().
+std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, const Eigen::Vector3d& origin);
 
 /// One per body.
-std::vector<std::optional<VisualBody>> load_visuals(const Scene& scene, std::span<const Archive> archives);
+std::vector<std::optional<VisualBody>> load_visuals(const Scene& scene, std::span<const Archive> archives,
+                                                    const Eigen::Vector3d& origin);
 
 /// How a part is drawn; `tissue`: linear RGB of a part that has no colour of its own.
 struct PartLook {

@@ -22,7 +22,8 @@ inline ContactState contact_sample(int contacts = 2) {
 
 inline SurfaceState surface_sample(std::size_t nodes, std::uint64_t seq = 1) {
   SurfaceState m;
-  m.body = 0, m.run = 21, m.seq = seq, m.step = 22, m.sense_ns = 23, m.publish_ns = 24;
+  m.body = 0, m.run = 21, m.seq = seq, m.step = 22, m.sense_ns = 23, m.tissue_ns = 24, m.late_ns = 25,
+  m.origin = {27, 28, 29.5}, m.publish_ns = 26;
   for (std::size_t i = 0; i < 3 * nodes; ++i) {
     m.position.push_back(0.001f * static_cast<float>(i % 977));
     m.normal.push_back(i % 3 == 2 ? 1.f : 0.f);
@@ -69,7 +70,7 @@ inline DeviceState device_sample() {
 }
 
 inline TopologyChange topology_sample(std::uint64_t seq = 3) {
-  return {1, 2, seq, fell_away, {17, 5, 4000001}, 5};
+  return {1, 2, seq, fell_away, 6, 7, {17, 5, 4000001}, 5};
 }
 
 inline HeldTopology held_topology_sample(std::uint32_t body = 1) {
@@ -79,6 +80,7 @@ inline HeldTopology held_topology_sample(std::uint32_t body = 1) {
 inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uint32_t triangles = 3) {
   LocalContactModel m;
   m.tool = 1, m.run = 2, m.seq = 3, m.tool_run = 5, m.tool_step = 6, m.sense_ns = 7, m.publish_ns = 8;
+  m.tissue_ns = 9, m.late_ns = 10;
   m.yaw = 0.1, m.pitch = 0.2, m.depth = 0.3, m.roll = 0.4, m.grip = 0.5;
   for (std::uint32_t i = 0; i < contacts; ++i)
     m.contacts.push_back(
@@ -91,11 +93,11 @@ inline LocalContactModel local_model_sample(std::uint32_t contacts = 2, std::uin
 }
 
 inline DeformStep deform_step_sample() {
-  return {1, 2, 3, {{4, 5, 6}, {7, 8, 9}}, 0xFEDCBA9876543210, 10};
+  return {1, 2, 3, 11, 12, {{4, 5, 6}, {7, 8, 9}}, 0xFEDCBA9876543210, 10};
 }
 
 inline DeformKeyframe deform_keyframe_sample() {
-  return {1, 2, 3, "avx2 0.1.0", {0, 1, 2, 254, 255}, 4};
+  return {1, 2, 3, 5, 6, "avx2 0.1.0", {0, 1, 2, 254, 255}, 4};
 }
 
 inline ModalState modal_sample(std::uint32_t modes = 4, std::uint32_t forces = 3) {

@@ -11,11 +11,14 @@ using nlohmann::json;
 
 TEST(GuardSummary, WhatASoundRunDoesNotNeedIsAnInterventionAndItsLimitsAreNot) {
   EXPECT_EQ(interventions_in({{"haptic_node", nullptr}}), "");
-  const json sound{{"haptic_node", {{"slew_limited_steps", 3}, {"passivity_limited_steps", 2}, {"behind_s", 1}}},
-                   {"render_node", {{"behind_s", 4}}}};
+  const json sound{
+      {"haptic_node",
+       {{"slew_limited_steps", 3}, {"passivity_limited_steps", 2}, {"late_tissue_steps", 6}, {"behind_s", 1}}},
+      {"render_node", {{"behind_s", 4}}}};
   EXPECT_EQ(interventions_in(sound), "");
   EXPECT_EQ(limits_met_in(sound),
-            "3 steps in which the force rose no faster than the port lets it, 2 steps damped, 1 s in which the "
+            "3 steps in which the force rose no faster than the port lets it, 2 steps damped, 6 steps in "
+            "which tissue was felt whose time was late, 1 s in which the "
             "force's steps were late, 4 s in which pictures were left out");
   for (const char* key : {"fault_steps", "refused_samples", "followed_steps", "silent_device_steps", "refused_models",
                           "implausible_models", "implausible_force_steps", "stale_model_steps", "force_limited_steps",

@@ -46,6 +46,28 @@ TEST(HopTimes, AreOnTheHapticNodesClock) {
   EXPECT_EQ(hops.uncertainty_ns(), 90'000);
 }
 
+TEST(TissueCourse, TellsWhatWasLostWhateverOvertakesWhatAndBeginsAnewWithAnotherNode) {
+  TissueCourse course;
+  const auto tick = [](std::int64_t ms, std::int64_t late_ms) {
+    return DeformStep{.tissue_ns = ms * kMs, .late_ns = late_ms * kMs};
+  };
+  EXPECT_FALSE(course.known());
+  EXPECT_EQ(text_of(course), "");
+  course.add(tick(5000, 2));
+  EXPECT_EQ(course.lost_s(), 0) << "nobody looked before";
+  course.add(tick(5001, 12));
+  course.add(SurfaceState{.tissue_ns = 5000 * kMs, .late_ns = 2 * kMs});  // comes late
+  course.add(tick(5002, 11));
+  EXPECT_NEAR(course.time_s(), 5.002, 1e-12);
+  EXPECT_NEAR(course.late_s(), 0.011, 1e-12);
+  EXPECT_NEAR(course.lost_s(), 0.009, 1e-12);
+  EXPECT_NEAR(course.at_once_s(), 0.010, 1e-12);
+  course.add(tick(1, 0));
+  course.add(tick(2, 4));
+  EXPECT_NEAR(course.late_s(), 0.004, 1e-12) << "another deform node";
+  EXPECT_NEAR(course.lost_s(), 0.013, 1e-12);
+}
+
 /// A way that comes back at once, but loses every seventh and gives every tenth late.
 class CrookedEcho : public latency::Echo {
  public:

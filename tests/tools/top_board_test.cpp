@@ -17,6 +17,7 @@ class TopBoardTest : public ::testing::Test {
   std::unique_ptr<Bus> nodes_bus_ = make_memory_bus(network_), own_bus_ = make_memory_bus(network_);
   std::unique_ptr<Writer<NodeStatus>> nodes_ = nodes_bus_->writer(topics::node_status);
   std::unique_ptr<Writer<ForceState>> forces_ = nodes_bus_->writer(topics::force_state);
+  std::unique_ptr<Writer<SurfaceState>> surfaces_ = nodes_bus_->writer(topics::surface_state);
   TopBoard board_{*own_bus_};
 };
 
@@ -59,6 +60,30 @@ TEST_F(TopBoardTest, ForcesAreCountedAnewFromLookToLook) {
   EXPECT_EQ(board_.json(1)["tools"][0]["force_max_n"], 0.5);
   board_.begin_anew();
   EXPECT_EQ(board_.json(1)["tools"][0]["steps_hz"], 0);
+}
+
+TEST_F(TopBoardTest, SaysHowLateTheTissueIs) {
+  std::uint64_t seq = 0;
+  const auto hear_of_tissue = [&](std::int64_t tissue_ms, std::int64_t late_ms) {
+    surfaces_->write({.body = 0, .seq = ++seq, .tissue_ns = tissue_ms * 1'000'000, .late_ns = late_ms * 1'000'000});
+    board_.take();
+  };
+  hear_of_tissue(0, 0);
+  EXPECT_TRUE(board_.json(1)["tissue_s"].is_null()) << "none moves yet";
+  EXPECT_EQ(board_.text(1).find("tissue"), std::string::npos);
+  hear_of_tissue(2000, 5);
+  board_.begin_anew();
+  hear_of_tissue(2016, 5);
+  hear_of_tissue(2032, 35);
+  EXPECT_NE(board_.text(1).find("at 2.032 s, 0.0350 s late; lost 0.0300 s meanwhile, 0.0300 s at once at most"),
+            std::string::npos)
+      << board_.text(1);
+  const auto tissue = board_.json(1)["tissue_s"];
+  EXPECT_NEAR(tissue["late"], 0.035, 1e-9);
+  EXPECT_NEAR(tissue["lost"], 0.03, 1e-9);
+  board_.begin_anew();
+  hear_of_tissue(2048, 35);
+  EXPECT_EQ(board_.json(1)["tissue_s"]["lost"], 0.0);
 }
 
 }  // namespace

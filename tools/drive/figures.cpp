@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/mesh/near_origin.hpp"
 #include "tools/drive/pieces.hpp"
 
 namespace palpate::drive {
@@ -56,8 +57,10 @@ Watch::Watch(const sim::Simulator& simulator, const std::vector<Archive>& archiv
     : tools_(simulator.tools()),
       bodies_(simulator.bodies()),
       shape_interval_(static_cast<std::uint64_t>(std::max(1l, std::lround(1 / (kShapeHz * simulator.dt()))))) {
-  for (int b = 0; b < simulator.bodies(); ++b)
-    for (const Eigen::Vector3d& x : archives[b].surface.position) bodies_[b].rest.push_back(x.cast<float>());
+  for (int b = 0; b < simulator.bodies(); ++b) {
+    const Eigen::Vector3d origin = near_origin(archives[b].surface.position);
+    for (const Eigen::Vector3d& x : archives[b].surface.position) bodies_[b].rest.push_back((x - origin).cast<float>());
+  }
 }
 
 void Watch::look_at_tool(const sim::Simulator& simulator, int t) {

@@ -42,7 +42,7 @@ class Watch {
     std::uint64_t limited = 0, faults = 0;
   };
   struct OfBody {
-    std::vector<Eigen::Vector3f> rest;  ///< [m] per node of the surface map
+    std::vector<Eigen::Vector3f> rest;  ///< [m] per node of the surface map, from the origin of SurfaceView on
     double max_displacement = 0, last_displacement = 0;
     std::uint64_t cut = 0, torn = 0, fallen = 0;
   };

@@ -75,6 +75,7 @@ void StepLog::before_step() {
   keyframes_->write({.run = kRun,
                      .seq = ++keyframe_seq_,
                      .tick = simulator_.tissue().ticks(),
+                     .tissue_ns = simulator_.tissue().time_ns(),
                      .code_path = code_path(),
                      .state = simulator_.tissue().save()});
 }
@@ -91,7 +92,11 @@ void StepLog::after_step() {
 
 void StepLog::write_tissue_step() {
   const DynamicWorld& tissue = simulator_.tissue();
-  DeformStep step{.run = kRun, .seq = tissue.ticks(), .tick = tissue.ticks() - 1, .hash = tissue.hash()};
+  DeformStep step{.run = kRun,
+                  .seq = tissue.ticks(),
+                  .tick = tissue.ticks() - 1,
+                  .tissue_ns = tissue.time_ns(),
+                  .hash = tissue.hash()};
   for (int t = 0; t < tissue.tools(); ++t) {
     step.consumed.push_back({static_cast<std::uint32_t>(t), kRun, tissue.tool(t).consumed().step});
     models_->write(simulator_.local_model(t));
@@ -104,7 +109,8 @@ void StepLog::write_changes() {
     TopologyChange m{.body = static_cast<std::uint32_t>(change.body),
                      .run = kRun,
                      .seq = ++change_seq_[change.body],
-                     .cause = change.cause};
+                     .cause = change.cause,
+                     .tissue_ns = simulator_.tissue().time_ns()};
     m.removed.assign(change.removed.begin(), change.removed.end());
     changes_->write(m);
   }
@@ -112,6 +118,7 @@ void StepLog::write_changes() {
 
 void StepLog::write_surfaces() {
   const StepRecord& record = simulator_.record();
+  const std::span<const int> moving = simulator_.tissue().bodies();
   ++surface_seq_;
   for (int b = 0; b < simulator_.bodies(); ++b) {
     const sim::SurfaceView shown = simulator_.surface(b);
@@ -120,6 +127,8 @@ void StepLog::write_surfaces() {
                       .seq = surface_seq_,
                       .step = record.step,
                       .sense_ns = record.sense_ns,
+                      .tissue_ns = std::ranges::find(moving, b) == moving.end() ? 0 : simulator_.tissue().time_ns(),
+                      .origin = {shown.origin.x(), shown.origin.y(), shown.origin.z()},
                       .position = flat(shown.position),
                       .normal = flat(shown.normal)});
   }

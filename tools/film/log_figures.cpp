@@ -12,8 +12,9 @@ namespace {
 constexpr double kCourseInterval = 0.01;  // [s]
 
 /// Of ForceFlag's bits, those that tell of something that a trainer should know.
-constexpr std::array<const char*, 8> kFlags{"force_limited", "slew_limited",      "fault",         nullptr,
-                                            "stale_model",   "passivity_limited", "silent_device", "implausible_force"};
+constexpr std::array<const char*, 9> kFlags{"force_limited", "slew_limited",      "fault",
+                                            nullptr,         "stale_model",       "passivity_limited",
+                                            "silent_device", "implausible_force", "late_tissue"};
 
 }  // namespace
 

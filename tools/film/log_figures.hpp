@@ -42,7 +42,7 @@ class LogFigures {
     ForceState force;
     Handling handling;
     std::uint64_t steps = 0, forces = 0;     ///< that the log has
-    std::array<std::uint64_t, 8> flagged{};  ///< steps with each bit of ForceFlag
+    std::array<std::uint64_t, 9> flagged{};  ///< steps with each bit of ForceFlag
     std::size_t latest = 0;                  ///< of its places, from 1; 0: none yet
   };
 

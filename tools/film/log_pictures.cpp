@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/bus/memory_bus.hpp"
+#include "common/view/view_origin.hpp"
 #include "render_node/scene_stage.hpp"
 
 namespace palpate {
@@ -34,10 +35,12 @@ LogPictures::LogPictures(const std::filesystem::path& log, const LogContents& co
 }
 
 std::unique_ptr<SurfaceSource> LogPictures::make_source() {
-  if (!received_) return deform_surfaces(loaded_.scene, *bus_, presence_, Deformer(loaded_.scene, loaded_.archives));
+  const Eigen::Vector3d origin = view_origin(loaded_.archives);
+  if (!received_)
+    return deform_surfaces(loaded_.scene, *bus_, presence_, Deformer(loaded_.scene, loaded_.archives), origin);
   std::vector<std::size_t> nodes;
   for (const Archive& archive : loaded_.archives) nodes.push_back(archive.surface.position.size());
-  return receive_surfaces(*bus_, presence_, std::move(nodes));
+  return receive_surfaces(*bus_, presence_, std::move(nodes), origin);
 }
 
 Frame LogPictures::at(double seconds) {

@@ -12,6 +12,7 @@
 #include "common/scene/scene.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
+#include "tools/latency/hop_json.hpp"
 #include "tools/latency/observe.hpp"
 #include "tools/latency/round_trips.hpp"
 #include "tools/network_options.hpp"
@@ -155,12 +156,6 @@ Result measure(const LatencyOptions& o) {
   return result;
 }
 
-Json json_of(const Histogram& h) {
-  if (h.count() == 0) return nullptr;
-  const Percentiles p = percentiles_us(h);
-  return {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
-}
-
 /// Bins with samples: lowest value [us] and count.
 Json bins_of(const Histogram& h) {
   Json bins = Json::array();
@@ -177,12 +172,8 @@ Json json_of(const LatencyOptions& o, const Result& r) {
         json["round_trip_us"].is_null() || json[way + "_us"].is_null()
             ? Json(nullptr)
             : Json(json["round_trip_us"]["p50"].get<double>() / json[way + "_us"]["p50"].get<double>());
-  json["hops_us"] = nullptr;
-  if (r.observed)
-    json["hops_us"] = {{"tool_to_force", json_of(r.hops.force())},
-                       {"tool_to_surface", json_of(r.hops.surface())},
-                       {"tool_to_picture", json_of(r.hops.picture())},
-                       {"clock_uncertainty", 1e-3 * static_cast<double>(r.hops.uncertainty_ns())}};
+  json["hops_us"] = r.observed ? json_of(r.hops) : Json(nullptr);
+  json["tissue_s"] = json_of(r.hops.tissue());
   json["sent"] = r.trips[0].sent;
   json["lost"] = r.trips[0].lost;
   json["reordered"] = r.trips[0].reordered;
@@ -230,6 +221,7 @@ void print_text(const Result& r) {
   print_row("tool to force", r.hops.force());
   print_row("tool to surface", r.hops.surface());
   print_row("tool to picture", r.hops.picture());
+  fmt::print("{}", text_of(r.hops.tissue()));
   if (r.hops.uncertainty_ns() > 0)
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
 }

@@ -12,6 +12,15 @@ inline nlohmann::ordered_json json_of(const Histogram& h) {
   return {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
 }
 
+/// [s]; null where no tissue moves.
+inline nlohmann::ordered_json json_of(const TissueCourse& tissue) {
+  if (!tissue.known()) return nullptr;
+  return {{"time", tissue.time_s()},
+          {"late", tissue.late_s()},
+          {"lost", tissue.lost_s()},
+          {"lost_at_once", tissue.at_once_s()}};
+}
+
 inline nlohmann::ordered_json json_of(const HopTimes& hops) {
   return {{"tool_to_force", json_of(hops.force())},
           {"tool_to_surface", json_of(hops.surface())},

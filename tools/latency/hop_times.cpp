@@ -20,6 +20,7 @@ void HopTimes::clear_times() {
   force_.clear();
   surface_.clear();
   picture_.clear();
+  tissue_.begin_anew();
 }
 
 void HopTimes::add(const ForceState& m) {
@@ -27,6 +28,7 @@ void HopTimes::add(const ForceState& m) {
 }
 
 void HopTimes::add(const SurfaceState& m) {
+  tissue_.add(m);
   const std::pair newest(m.run, m.step);
   const auto [known, first] = shown_.try_emplace(m.body, newest);
   if (m.run == 0 || (!first && known->second == newest)) return;

@@ -5,6 +5,7 @@
 
 #include "common/realtime/histogram.hpp"
 #include "idl/messages.hpp"
+#include "tools/latency/tissue_course.hpp"
 
 namespace palpate {
 
@@ -16,6 +17,7 @@ class HopTimes {
   void add(const SurfaceState& m);
   void add(const PictureState& m);
   void add(const NodeStatus& m);
+  void add(const DeformStep& m) { tissue_.add(m); }
   template <class M>
   void add(const M&) {}  ///< other messages tell nothing of it
 
@@ -26,6 +28,7 @@ class HopTimes {
   const Histogram& picture() const { return picture_; }  ///< [ns] the first picture with that step done
   /// [ns] the widest that an offset in use may be off; 0 where all nodes have one clock.
   std::int64_t uncertainty_ns() const { return uncertainty_; }
+  const TissueCourse& tissue() const { return tissue_; }
 
  private:
   struct Clock {
@@ -38,6 +41,7 @@ class HopTimes {
   std::map<std::uint32_t, std::pair<std::uint64_t, std::uint64_t>> shown_;  ///< by body: run and step
   Histogram force_, surface_, picture_;
   std::int64_t uncertainty_ = 0;
+  TissueCourse tissue_;
 };
 
 }  // namespace palpate

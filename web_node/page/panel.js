@@ -3,6 +3,7 @@ import { inks } from './curve.js';
 import { size } from './vec.js';
 
 const flagWords = [[4, 'fault: force off'], [64, 'let go: force fades'], [16, 'tissue late: force fades'],
+  [256, 'tissue late: moves slowly'],
   [1, 'limited'], [32, 'damped']];
 const byId = (id) => document.getElementById(id);
 

@@ -15,10 +15,10 @@ class TubeShape : public ShapeFrom<CatheterState> {
   void rebuild(const ContactsOnBody& contacts, DeformedSurface& surface) override {
     if (!newest()) return BodyShape::rebuild(contacts, surface);
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      particles_[i] = Eigen::Map<const Eigen::Vector3d>(&newest()->position[3 * i]);
+      particles_[i] = Eigen::Map<const Eigen::Vector3d>(&newest()->position[3 * i]) - origin();
     tube_.place(particles_, surface.position, surface.normal);
     for (std::size_t n = 0; n < surface.position.size(); ++n)
-      surface.displacement[n] = surface.position[n] - map().position[n].cast<float>();
+      surface.displacement[n] = surface.position[n] - (map().position[n] - origin()).cast<float>();
   }
 
  private:

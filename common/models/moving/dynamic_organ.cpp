@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/mesh/near_origin.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving_kind.hpp"
@@ -36,6 +37,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
       tissue_(archive, body, settings, mesh_, *model_, joined_nodes(still_.get())),
       contacts_(archive, mesh_, tissue_.topology(), tissue_.surface(), *model_, still_.get(), settings),
       passing_(tissue_.surface(), settings.tools.size()),
+      origin_(near_origin(mesh_.rest)),
       position_(mesh_.rest),
       in_tick_(settings.tools.size()),
       in_step_(settings.tools.size()) {
@@ -222,8 +224,8 @@ void DynamicOrgan::let_go_of_gone() {
 void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal) {
   position.resize(position_.size());
   normal.resize(position_.size());
-  for (std::size_t n = 0; n < position_.size(); ++n) position[n] = position_[n].cast<float>();
-  if (still_) still_->shape(mesh_.rest, position);
+  for (std::size_t n = 0; n < position_.size(); ++n) position[n] = (position_[n] - origin_).cast<float>();
+  if (still_) still_->shape(mesh_.rest, origin_, position);
   vertex_normals(position, tissue_.shown(), normal);
 }
 

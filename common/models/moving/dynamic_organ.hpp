@@ -75,7 +75,10 @@ class DynamicOrgan {
   std::span<const Change> changes() const { return tissue_.changes(); }
   const std::vector<int>& removed() const { return tissue_.removed(); }  ///< all so far, in order
 
-  /// Position [m] and unit normal per node of the archive's surface map; nodes off the surface have no normal.
+  /// [m] World, near the body: where shape() counts from.
+  const Eigen::Vector3d& origin() const { return origin_; }
+  /// Position [m] from the origin on and unit normal per node of the archive's surface map; nodes off the surface have
+  /// no normal.
   void shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal);
 
   /// For keyframes. `tools`: as they are, where it restores; throws std::runtime_error on a state of another body.
@@ -124,6 +127,7 @@ class DynamicOrgan {
   TissueTouch contacts_;
   PassingTools passing_;
   double max_step_, touched_step_;
+  Eigen::Vector3d origin_;
   std::vector<Eigen::Vector3d> position_;      ///< [m] per node
   std::vector<MovingTool> in_tick_, in_step_;  ///< per tool: from before to now in the tick, and in one of its steps
   std::vector<CuttableTissue::Glow> glows_;

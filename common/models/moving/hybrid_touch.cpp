@@ -67,10 +67,11 @@ void HybridTouch::hold(std::span<const MovingTool> tools) {
     model_.set_load(part_.connection()[k], part_.load(static_cast<int>(k)));
 }
 
-void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::Vector3f> position) {
+void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, const Eigen::Vector3d& origin,
+                        std::span<Eigen::Vector3f> position) {
   part_.superpose(moved_);
   for (int n = 0; n < map_.size(); ++n)
-    if (part_.owns(n)) position[n] = rest[n].cast<float>() + moved_[n];
+    if (part_.owns(n)) position[n] = (rest[n] - origin).cast<float>() + moved_[n];
 }
 
 void HybridTouch::state(State& s, std::span<const MovingTool> tools) {

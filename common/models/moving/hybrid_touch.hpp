@@ -37,8 +37,8 @@ class HybridTouch {
   std::span<const TouchContact> contacts() const { return part_.law().contacts(); }
   Eigen::Vector3d force(int contact) const { return part_.contact_force(contact); }  ///< [N] on the tissue
 
-  /// Overwrites the positions [m] of this part's visible nodes.
-  void shape(std::span<const Eigen::Vector3d> rest, std::span<Eigen::Vector3f> position);
+  /// Overwrites the positions [m] of this part's visible nodes, from `origin` on.
+  void shape(std::span<const Eigen::Vector3d> rest, const Eigen::Vector3d& origin, std::span<Eigen::Vector3f> position);
 
   /// What is held is factorised anew in the next step, so that a restored state goes on alike.
   void forget_factor() { part_.law().forget_factor(); }

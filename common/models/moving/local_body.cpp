@@ -51,15 +51,28 @@ void LocalBody::consume(const LocalModel& model) {
     state_.from_share = 1;
     state_.weight = 0;
   }
+  count_lost(model);
   state_.silent = 0;
   state_.model = model;
   model_pose_ = tip_pose(trocar_, model.pose());
 }
 
+// Since the last model, evenly, as far as it is not forgotten yet. What one tick came late and the next made good is
+// not lost.
+void LocalBody::count_lost(const LocalModel& model) {
+  const LocalModel& before = state_.model;
+  const bool goes_on = before.seq != 0 && model.run == before.run;
+  const double lost = goes_on ? 1e-9 * static_cast<double>(model.late_ns - before.late_ns) : 0;
+  const double passed = static_cast<double>(std::max<std::uint64_t>(state_.silent, 1)) * dt_ / kLately;
+  const double still_known = -std::expm1(-passed) / passed;
+  state_.lost = goes_on ? std::clamp(state_.lost + still_known * lost, 0.0, kLately) : 0;
+}
+
 ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most) {
   const LocalModel& m = state_.model;
   ToolLoad load;
-  stale_ = limited_ = false;
+  stale_ = limited_ = late_ = false;
+  state_.lost *= 1 - dt_ / kLately;
   const double age = step > m.tool_step ? static_cast<double>(step - m.tool_step) * dt_ : 0.0;
   const bool fresh = m.seq != 0 && age <= kOldest;
   const double change = dt_ / kFadeSeconds;
@@ -80,6 +93,7 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most
   if (!felt && age <= kSilent) reach_.set_free(tool);
   if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
   stale_ = weight() < 1 - kRounding && felt;
+  late_ = state_.lost > kLate && felt;
   keep_from_rising(load);
   load.force *= state_.weight;
   load.torque *= state_.weight;

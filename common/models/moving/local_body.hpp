@@ -15,7 +15,8 @@ namespace palpate {
 /// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
 /// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface.
 /// Age counts in haptic steps, so that a replay gives the same bits. While no model comes the force rises no more, then
-/// fades; what comes after a silence, or from another deform node, comes in from the present force. Never allocates.
+/// fades; what comes after a silence, or from another deform node, comes in from the present force. Tissue whose own
+/// time stands still or goes slower is felt as it is, and told. Never allocates.
 class LocalBody {
  public:
   static constexpr double kOldest = 0.15;        ///< [s] age of a model at which its force begins to fade
@@ -23,6 +24,8 @@ class LocalBody {
   static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
   static constexpr double kRises = 0.005;        ///< [s] without a model after which the force rises no more
   static constexpr double kSilent = 0.02;        ///< [s] without a model after which the next comes in gradually
+  static constexpr double kLately = 0.1;         ///< [s] over which time that the tissue lost is forgotten
+  static constexpr double kLate = 0.01;          ///< [s] lost lately from which on the tissue is late
 
   /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
   LocalBody(const Tool& tool, double friction, double dt);
@@ -45,6 +48,8 @@ class LocalBody {
   double grasp_load() const { return grasp_force_.norm(); }
   /// True if the last load was less than it should be, because the model is too old or has only just come back.
   bool stale() const { return stale_; }
+  /// True if the last load is of tissue that has lost more than kLate of its time of late: at once, or a tenth of it.
+  bool late() const { return late_; }
 
   /// Restoring throws std::runtime_error on counts or indices that no model has.
   void state(State& s);
@@ -59,6 +64,7 @@ class LocalBody {
     std::array<double, 3> from_force{}, from_torque{};  ///< of the load from which the model comes in
     double from_share = 0;                              ///< of that load, which is still rendered
     double from_weight = 0;                             ///< share of the force that it was
+    double lost = 0;                                    ///< [s] of the tissue's time, of late
   };
   struct Held {
     Eigen::Vector3d at;  ///< [m] where the tool holds tissue now
@@ -70,6 +76,7 @@ class LocalBody {
 
   void add(const Eigen::Vector3d& at, const Eigen::Vector3d& on_tissue, const MovingTool& tool, ToolLoad& load) const;
   int hold(const MovingTool& tool, ToolLoad& load);
+  void count_lost(const LocalModel& model);
   void keep_within(double most, ToolLoad& load);
   void keep_from_rising(ToolLoad& load);
   void come_from_before(ToolLoad& load);
@@ -84,7 +91,7 @@ class LocalBody {
   std::uint64_t rises_, silent_;  ///< steps in kRises and kSilent
   Memory state_;
   Eigen::Isometry3d model_pose_ = Eigen::Isometry3d::Identity();
-  bool stale_ = false, limited_ = false;
+  bool stale_ = false, limited_ = false, late_ = false;
   ToolReach reach_;
   Eigen::Vector3d grasp_force_ = Eigen::Vector3d::Zero();  ///< [N] on the tissue
   JawObstacles obstacles_;

@@ -10,6 +10,7 @@ bool copy_model(const LocalContactModel& from, const TissueLimits& limits, Local
   to.run = from.run;
   to.seq = from.seq;
   to.tool_step = from.tool_step;
+  to.late_ns = from.late_ns;
   to.dofs = {from.yaw, from.pitch, from.depth, from.roll, from.grip};
   to.contacts = static_cast<std::int32_t>(from.contacts.size());
   to.nodes = static_cast<std::int32_t>(from.nodes.size());

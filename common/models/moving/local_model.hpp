@@ -31,6 +31,7 @@ struct LocalModel {
 
   std::uint64_t run = 0, seq = 0;  ///< of the message; seq 0: none has come yet
   std::uint64_t tool_step = 0;     ///< haptic step whose pose is in it
+  std::int64_t late_ns = 0;        ///< by which the tissue's own time is behind its node's clock
   Dofs dofs{};                     ///< that pose
   double stiffness = 0;            ///< [N/m] that the tissue in it has at most, by TissueLimits
   std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;

@@ -41,6 +41,7 @@ LawOutcome LocalPart::touch(const ToolsInStep& in, std::span<ToolLoad> loads) {
     const double stiffness = of_tool_[t].model().stiffness + pressing_[t];
     ToolLoad load = of_tool_[t].load(in.tools[t], in.step, stiffness * (moved + kSlack) + limits_.weight());
     if (of_tool_[t].stale()) load.flags |= stale_model;
+    if (of_tool_[t].late()) load.flags |= late_tissue;
     if (of_tool_[t].limited()) load.flags |= implausible_force;
     loads[t].add(load);
   }
