@@ -64,8 +64,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
   const DynamicReport& r = loop.run(o.seconds);
   log_info(
       fmt::format("{:.1f} Hz over {:.1f} s, tick p50 {:.0f} us, p99 {:.0f} us, missed {} ticks, the tissue's time "
-                  "{:.3f} s late; {} "
-                  "tetrahedra cut, {} torn, {} fallen away",
+                  "{:.3f} s late; {} tetrahedra cut, {} torn, {} fallen away",
                   rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped,
                   1e-9 * static_cast<double>(r.late_ns), r.cut, r.torn, r.fallen));
   return {{"node", "deform"},

@@ -111,7 +111,8 @@ TEST_F(DriveCommand, WritesALogThatReadsAsOneOfTheNodes) {
 
 TEST_F(DriveCommand, RefusesInWordsWhatItCannotDo) {
   expect_refusal(program("palpate") + " drive", {"give a scene"});
-  expect_refusal(drive("--set body.young=-1"), {"--set body.young=-1: young must be greater than 0 and at most 1e+20, and is -1"});
+  expect_refusal(drive("--set body.young=-1"),
+                 {"--set body.young=-1: young must be greater than 0 and at most 1e+20, and is -1"});
   expect_refusal(drive("--set body.yung=1"), {"--set body.yung=1: unknown key", "did you mean"});
   expect_refusal(drive("--expect nonsense"), {"--expect", "such as"});
   expect_refusal(drive("--expect \"tool.probe.force.mex<1\""), {"did you mean", "tool.probe.force.max"});

@@ -46,7 +46,8 @@ const Refusal kRefusals[] = {
     {"young = 6000", "young = +inf", "+inf", "young must be finite"},
     {"poisson = 0.45", "poisson = 0.5", "0.5\n", "poisson must be greater than -1 and less than 0.5, and is 0.5"},
     {"poisson = 0.45", "poisson = -1", "-1\n", "poisson must be greater than -1 and less than 0.5, and is -1"},
-    {"density = 1060.0", "density = 0", "0\n\n[[body.fixed", "density must be greater than 0 and at most 1000000, and is 0"},
+    {"density = 1060.0", "density = 0", "0\n\n[[body.fixed",
+     "density must be greater than 0 and at most 1000000, and is 0"},
     {"scale = 0.001", "scale = -1", "-1\nmodel", "scale must be greater than 0, and is -1"},
     {"\"quasi_static\"", "\"jelly\"", "\"jelly\"",
      "model 'jelly' is unknown; known: quasi_static, tensor_mass, spring_mass, hybrid, "
