@@ -328,7 +328,7 @@ TEST_P(Hostile, WhatWasRecordedAndIsPlayedAgainIsNotFelt) {
     if (k % 4 == 0) system().watch(1ms);
   }
   EXPECT_LT(hand().max_force(), 0.1);
-  EXPECT_TRUE(system().pictures_go_on(2s));
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, NodesEndAsTheyShouldAndSayWhatTheyRefused) {
