@@ -101,10 +101,12 @@ def share(options):
         try:
             here, there = Page(first, nodes.address), Page(second, nodes.address)
             second.execute_script(WATCH_HOLDER)
+            pressed = time.time()
             here.press(0.45, 0.6)
             here.wait("palpate.frame.tools[0].holder === palpate.me", 5)
             mine = here.get("palpate.me")
             there.wait(f"palpate.next.tools[0].holder === {mine}", 5)
+            taken = there.get("seenHolder.at(-1).at") - 1e3 * pressed
             there.get("palpate.hand.take(palpate.next)")
             here.wait("document.getElementById('ask').classList.contains('on')", 5)
             there.get("palpate.hand.rest()")
@@ -112,8 +114,9 @@ def share(options):
             first.execute_cdp_cmd("Page.close", {})
             there.wait(f"seenHolder.at(-1).holder !== {mine}", 5)
             took = there.get("seenHolder.at(-1).at") - 1e3 * closed
-            print(f"a closed page's hand was off the tool after {took:.0f} ms")
-            expect(took < 200, took)
+            print(f"a page had the tool after {taken:.0f} ms; when closed, its hand was off after {took:.0f} ms")
+            # Pages on a slow machine see a tool taken later than that already.
+            expect(took < max(200, taken), (took, taken))
             nodes.stop()
             there.wait("!palpate.link.open", 10)
             with Nodes(options, "liver.toml", port):
