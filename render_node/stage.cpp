@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/mesh/near_origin.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/view/backdrop.hpp"
-#include "common/view/view_origin.hpp"
 
 namespace palpate {
 namespace {
@@ -74,9 +74,7 @@ void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) co
 
 void Stage::add_visual(Soft& body, VisualBody visual, const Body& spec, const SurfaceMap& map) const {
   body.uncut = map.triangles;
-  std::vector<Eigen::Vector3d> nodes = map.position;
-  for (Eigen::Vector3d& node : nodes) node -= origin_;
-  body.visual.emplace(std::move(visual), nodes, body.colour, visual_of(spec)->texture,
+  body.visual.emplace(std::move(visual), counted_from(origin_, map.position), body.colour, visual_of(spec)->texture,
                       render_.colour == Colouring::displacement);
 }
 

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SceneOptions {
-  std::string mesh, output, tissue;
+  std::string mesh, output, tissue, visual;
   SceneWishes wishes;
 };
 
@@ -24,6 +24,13 @@ const Tissue& tissue_of(const SceneOptions& o) {
   if (const Tissue* const tissue = find_tissue(name)) return *tissue;
   throw std::runtime_error(
       fmt::format("'{}' is no tissue that is known: give --tissue one of {}", name, tissue_names()));
+}
+
+/// As a scene in the folder names them.
+VisualSpec seen_from(const fs::path& folder, VisualSpec visual) {
+  for (fs::path* const file : {&visual.surface, &visual.materials})
+    if (!file->empty()) *file = fs::proximate(fs::absolute(*file), folder);
+  return visual;
 }
 
 void write(const fs::path& file, const std::string& text) {
@@ -42,8 +49,10 @@ void make_scene(const SceneOptions& o) {
   const std::string mesh_name = fs::proximate(fs::absolute(o.mesh), folder).string();
   const SceneTexts texts = [&] {
     const TetMesh mesh = load_tet_mesh(o.mesh, 1);
+    SceneWishes wishes = o.wishes;
+    if (!o.visual.empty()) wishes.visual = seen_from(folder, visual_about(mesh, o.visual));
     try {
-      return scene_for(mesh, mesh_name, trajectory.filename(), tissue, o.wishes);
+      return scene_for(mesh, mesh_name, trajectory.filename(), tissue, wishes);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(fmt::format("{}: {}", o.mesh, error.what()));
     }
@@ -67,13 +76,17 @@ void add_scene_command(cli::Command& app) {
       .output_file(".toml");
   command.add_option("--tissue", o->tissue,
                      fmt::format("What it is of (default: the mesh's name): {}", tissue_names()));
+  command.add_option("--visual", o->visual,
+                     "Surface that is drawn in place of the mesh's own, in metres or millimetres (.obj, with its .mtl "
+                     "beside it; .stl)");
   command.add_option("--fixed", o->wishes.fixed, "Group of the mesh by which it is held").show_default();
   command.add_option("--radius", o->wishes.radius, "Radius of the probe's tip [m]").positive().show_default();
   command
       .add_option("--press", o->wishes.press,
                   "How deep it presses [m] (default: a fortieth of the diagonal, 0.01 at most)")
       .positive();
-  command.examples({"palpate scene organ.msh --tissue liver -o organ.toml"});
+  command.examples({"palpate scene organ.msh --tissue liver -o organ.toml",
+                    "palpate scene organ.msh --tissue liver --visual organ_look.obj -o organ.toml"});
   command.does([o] { make_scene(*o); });
 }
 

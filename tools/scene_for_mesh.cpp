@@ -10,6 +10,7 @@
 #include "common/devices/device_spec.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/mesh/visual_mesh.hpp"
 
 namespace palpate {
 namespace {
@@ -69,6 +70,13 @@ std::string material_text(const TetMesh& mesh) {
   return text;
 }
 
+std::string visual_text(const VisualSpec& visual) {
+  if (visual.surface.empty()) return "";
+  std::string text = fmt::format("\n[body.visual]\nsurface = \"{}\"\n", visual.surface.string());
+  if (!visual.materials.empty()) text += fmt::format("materials = \"{}\"\n", visual.materials.string());
+  return text + fmt::format("scale = {}   # m\n", visual.scale);
+}
+
 std::string camera_text(const Spot& spot, const Eigen::Vector3d& middle, double extent) {
   const Eigen::Vector3d side = spot.normal.cross(up_across(spot.normal)).normalized();
   const Eigen::Vector3d from = (side + 0.6 * spot.normal + 0.3 * up_across(spot.normal)).normalized();
@@ -100,6 +108,26 @@ std::string trajectory_text(double depth, double press) {
 
 }  // namespace
 
+VisualSpec visual_about(const TetMesh& mesh, const std::filesystem::path& surface) {
+  VisualSpec visual{.surface = surface};
+  const VisualMesh seen = load_visual_mesh(visual);
+  Eigen::AlignedBox3d tissue, picture;
+  for (const Eigen::Vector3d& x : mesh.nodes) tissue.extend(x);
+  for (const Eigen::Vector3f& x : seen.position) picture.extend(x.cast<double>());
+  constexpr double kNear = 0.25;  // of the mesh's diagonal, by which corners of the boxes may lie apart
+  const auto lies_about = [&](double scale) {
+    const double apart =
+        std::max((scale * picture.min() - tissue.min()).norm(), (scale * picture.max() - tissue.max()).norm());
+    return apart < kNear * tissue.diagonal().norm();
+  };
+  if (!lies_about(visual.scale) && !lies_about(visual.scale = 1e-3))
+    throw std::runtime_error(
+        fmt::format("{}: it does not lie about the mesh, neither in metres nor in millimetres", surface.string()));
+  const std::filesystem::path materials = std::filesystem::path(surface).replace_extension(".mtl");
+  if (std::filesystem::exists(materials)) visual.materials = materials;
+  return visual;
+}
+
 SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const std::string& trajectory_name,
                      const Tissue& tissue, const SceneWishes& wishes) {
   const auto held = mesh.groups.find(wishes.fixed);
@@ -128,7 +156,7 @@ density = {7}   # kg/m3
 {8}
 [[body.fixed]]
 group = "{9}"
-
+{16}
 [[tool]]
 name = "instrument"
 pivot = {10}
@@ -144,7 +172,7 @@ friction = 0.3
                             tissue.name, mesh_name, tissue.young, tissue.young_low, tissue.young_high, tissue.source,
                             tissue.poisson, tissue.density, material_text(mesh), wishes.fixed, vector_text(pivot),
                             vector_text(-spot.normal), vector_text(up_across(spot.normal)), wishes.radius,
-                            trajectory_name, kind_of(DeviceSpec{}));
+                            trajectory_name, kind_of(DeviceSpec{}), visual_text(wishes.visual));
   texts.scene += camera_text(spot, mean_place(mesh, surface.nodes), extent);
   return texts;
 }

@@ -4,6 +4,7 @@
 
 #include "common/log/log.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/mesh/near_origin.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"

@@ -1,11 +1,11 @@
 #include "web_node/scenery.hpp"
 
+#include "common/mesh/near_origin.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/view/backdrop.hpp"
 #include "common/view/instrument.hpp"
 #include "common/view/looks.hpp"
-#include "common/view/view_origin.hpp"
 #include "web_node/protocol.hpp"
 
 namespace palpate::web {

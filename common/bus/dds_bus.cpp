@@ -10,6 +10,7 @@
 #include "common/bus/dds_domain.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "common/bus/dds_gate.hpp"
+#include "common/bus/peers.hpp"
 #include "common/bus/stamp.hpp"
 #include "common/bus/version_watch.hpp"
 #include "idl/limits.hpp"
@@ -170,10 +171,10 @@ std::string stream_name(const Topic<M>& topic, Keep keep) {
 template <class M>
 class DdsReader final : public Reader<M> {
  public:
-  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep,
+  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep, const Peers& peers,
             std::atomic<std::uint64_t>& refused)
       : at_once_(keep == Keep::all ? dds::Gate<M>::kSamples : kKeysAtOnce),
-        gate_(refused, keep == Keep::all),
+        gate_(peers, refused, keep == Keep::all),
         inlet_(participant, waitset, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
                {.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG,
                 .f = {.sample_sampleinfo_arg = &dds::Gate<M>::filter},
@@ -232,14 +233,15 @@ class DdsBus final : public Bus {
         domain_(join_domain(settings)),
         participant_(make_participant(settings), fmt::format("joining domain {}", settings.domain)),
         waitset_(dds_create_waitset(participant_), "creating a wait set"),
-        versions_(participant_) {}
+        versions_(participant_),
+        peers_(participant_) {}
 
-#define PALPATE_DDS_PORTS(M)                                                              \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                     \
-    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                \
-  }                                                                                       \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {          \
-    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep, refused_); \
+#define PALPATE_DDS_PORTS(M)                                                                      \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                             \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                        \
+  }                                                                                               \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {                  \
+    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep, peers_, refused_); \
   }
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
@@ -266,6 +268,7 @@ class DdsBus final : public Bus {
   std::atomic<std::uint64_t> refused_ = 0;
   Entity participant_, waitset_;
   VersionWatch versions_;
+  Peers peers_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/key.hpp"
 #include "common/bus/key_budget.hpp"
+#include "common/bus/peers.hpp"
 #include "common/bus/rate_budget.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/limits.hpp"
@@ -25,15 +26,17 @@ struct CountBytes {
 
 /// What stands between the middleware and a reader's memory. Every sample from outside passes here, on the
 /// middleware's threads, before anything of it is kept: only a valid one, under a name and at a rate within its
-/// writer's budget, and within the reader's own. One that is refused costs no other sample its place.
+/// peer's budget, and within the reader's own. One that is refused costs no other sample its place.
 template <class M>
 class Gate {
  public:
   static constexpr std::size_t kSamples = 16000;               ///< that wait in a reader that keeps all
   static constexpr std::size_t kBytes = std::size_t{1} << 30;  ///< in these
 
-  /// `total`: counts what is refused by all gates of a bus. `keeps_all`: what is admitted waits until it is taken.
-  Gate(std::atomic<std::uint64_t>& total, bool keeps_all) : total_(total), keeps_all_(keeps_all) {}
+  /// `peers`: of the bus. `total`: counts what is refused by all its gates. `keeps_all`: what is admitted waits until
+  /// it is taken.
+  Gate(const Peers& peers, std::atomic<std::uint64_t>& total, bool keeps_all)
+      : peers_(peers), total_(total), keeps_all_(keeps_all) {}
 
   /// For dds_set_topic_filter_extended(). The middleware calls it for one sample of a reader at a time.
   static bool filter(const void* sample, const dds_sample_info_t* info, void* self) {
@@ -51,15 +54,21 @@ class Gate {
  private:
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
-    if (in_time(writer) && valid(message_) && in_budget(writer) && has_room()) return true;
+    const std::uint64_t peer = peer_of(writer);
+    if (in_time(peer) && valid(message_) && in_budget(peer) && has_room()) return true;
     refused_.fetch_add(1, std::memory_order_relaxed);
     total_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
+  /// All writers of a participant have one budget. A writer that is not known yet has its own.
+  std::uint64_t peer_of(dds_instance_handle_t writer) {
+    if (writer != writer_ || peer_ == 0) peer_ = peers_.of(writer_ = writer);
+    return peer_ != 0 ? peer_ : writer;
+  }
   /// One that keeps all has its room alone: a recorder wants a log that is played faster than it was made.
-  bool in_time(dds_instance_handle_t writer) { return keeps_all_ || rate_.admits(writer, now_ns()); }
-  bool in_budget(dds_instance_handle_t writer) {
-    if constexpr (requires { message_.node; }) return budget_.admits(writer, key_of(message_));
+  bool in_time(std::uint64_t peer) { return keeps_all_ || rate_.admits(peer, now_ns()); }
+  bool in_budget(std::uint64_t peer) {
+    if constexpr (requires { message_.node; }) return budget_.admits(peer, key_of(message_));
     return true;  // numbers have their limits in the IDL
   }
   bool has_room() {
@@ -77,9 +86,12 @@ class Gate {
     return count.bytes;
   }
 
+  const Peers& peers_;
   std::atomic<std::uint64_t>& total_;
   const bool keeps_all_;
-  M message_;  ///< kept between samples for its memory
+  M message_;                         ///< kept between samples for its memory
+  dds_instance_handle_t writer_ = 0;  ///< of the sample before
+  std::uint64_t peer_ = 0;
   KeyBudget budget_;
   RateBudget rate_;
   std::atomic<std::size_t> samples_ = 0, bytes_ = 0;

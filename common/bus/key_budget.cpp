@@ -4,9 +4,9 @@
 
 namespace palpate {
 
-bool KeyBudget::admits(std::uint64_t writer, const std::string& key) {
-  if (used_.size() >= kWriters && !used_.contains(writer)) used_.clear();
-  std::set<std::size_t>& keys = used_[writer];
+bool KeyBudget::admits(std::uint64_t peer, const std::string& key) {
+  if (used_.size() >= kPeers && !used_.contains(peer)) used_.clear();
+  std::set<std::size_t>& keys = used_[peer];
   const std::size_t hash = std::hash<std::string>{}(key);
   if (keys.contains(hash)) return true;
   if (keys.size() >= kKeys) return false;

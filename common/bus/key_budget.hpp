@@ -7,17 +7,17 @@
 
 namespace palpate {
 
-/// How many names each writer may use as keys of a topic: a reader keeps something of each while the writer lives.
+/// How many names each peer may use as keys of a topic: a reader keeps something of each while their writer lives.
 class KeyBudget {
  public:
-  static constexpr std::size_t kKeys = 256;      ///< of a writer: a log that is played has all nodes of its runs
-  static constexpr std::size_t kWriters = 1024;  ///< remembered; beyond, all begin anew
+  static constexpr std::size_t kKeys = 256;    ///< of a peer: a log that is played has all nodes of its runs
+  static constexpr std::size_t kPeers = 1024;  ///< remembered; beyond, all begin anew
 
-  /// `writer`: a handle that is its own. False for a new name of a writer that has used its share.
-  bool admits(std::uint64_t writer, const std::string& key);
+  /// `peer`: a handle that is its own. False for a new name of a peer that has used its share.
+  bool admits(std::uint64_t peer, const std::string& key);
 
  private:
-  std::map<std::uint64_t, std::set<std::size_t>> used_;  ///< hashes of keys by writer
+  std::map<std::uint64_t, std::set<std::size_t>> used_;  ///< hashes of keys by peer
 };
 
 }  // namespace palpate

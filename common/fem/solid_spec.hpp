@@ -18,7 +18,7 @@ struct Material {
   double density = 1000;  ///< [kg/m^3]
 };
 
-/// Far above what there is, and as far below where squares of such numbers end.
+/// Far above what there is, so that nothing that is made of them overflows.
 inline constexpr Range kYoungRange = above_up_to(0, 1e20);   ///< [Pa]; diamond has 1e12
 inline constexpr Range kDensityRange = above_up_to(0, 1e6);  ///< [kg/m^3]; osmium has 2.3e4
 /// Positive definite elasticity that is not incompressible.

@@ -35,9 +35,9 @@ bool UsedRange::within() const {
 RangeMonitor::RangeMonitor(const Scene& scene, const Deformer& deformer) {
   for (int b = 0; b < deformer.bodies(); ++b) {
     if (!deformer.shape(b).superposed()) continue;
-    std::vector<Eigen::Vector3d> rest = deformer.map(b).position;
-    for (Eigen::Vector3d& p : rest) p -= deformer.shape(b).origin();
-    watched_.push_back({name_of(scene.bodies[b]), b, SurfaceAtRest(rest, deformer.map(b).triangles)});
+    const SurfaceMap& map = deformer.map(b);
+    watched_.push_back({name_of(scene.bodies[b]), b,
+                        SurfaceAtRest(counted_from(deformer.shape(b).origin(), map.position), map.triangles)});
   }
 }
 

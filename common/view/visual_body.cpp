@@ -4,6 +4,7 @@
 #include <set>
 
 #include "common/files/png_file.hpp"
+#include "common/mesh/near_origin.hpp"
 
 namespace palpate {
 namespace {
@@ -19,9 +20,8 @@ std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, 
   const VisualSpec* spec = visual_of(body);
   if (!spec) return {};
   VisualBody visual{load_visual_mesh(*spec, origin), {}, {}};
-  std::vector<Eigen::Vector3d> nodes = archive.surface.position;
-  for (Eigen::Vector3d& node : nodes) node -= origin;
-  visual.binding = bind_visual(visual.mesh.position, nodes, archive.surface.triangles, archive.tetrahedra);
+  visual.binding = bind_visual(visual.mesh.position, counted_from(origin, archive.surface.position),
+                               archive.surface.triangles, archive.tetrahedra);
   if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;
 }

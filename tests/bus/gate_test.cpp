@@ -59,12 +59,15 @@ TEST_F(GateTest, AToolBeyondTheLastIsRefused) {
   EXPECT_EQ(taken, 4);
 }
 
-TEST_F(GateTest, AWriterMayUseSoManyNames) {
+TEST_F(GateTest, APeerMayUseSoManyNamesHoweverManyWritersItMakes) {
   const auto reader = bus_->reader(topics::clock_probe);
-  const HostileWriter<ClockProbe> hostile = attacker_.writer(topics::clock_probe);
-  const HostileWriter<ClockProbe> other = attacker_.writer(topics::clock_probe);
-  until([&] { return reader->writers() == 2; });
-  for (int k = 0; k < 300; ++k) hostile.write({.node = std::to_string(k), .seq = 1});
+  const HostileWriter<ClockProbe> hostile[] = {attacker_.writer(topics::clock_probe),
+                                               attacker_.writer(topics::clock_probe),
+                                               attacker_.writer(topics::clock_probe)};
+  const Attacker somebody({.domain = own_domain()});
+  const HostileWriter<ClockProbe> other = somebody.writer(topics::clock_probe);
+  until([&] { return reader->writers() == 4; });
+  for (int k = 0; k < 300; ++k) hostile[k % 3].write({.node = std::to_string(k), .seq = 1});
   until([&] { return reader->invalid() == 300 - KeyBudget::kKeys; });
   other.write({.node = "299", .seq = 7});
   int taken = 0;
@@ -73,13 +76,14 @@ TEST_F(GateTest, AWriterMayUseSoManyNames) {
     while (const auto probe = reader->take()) ++taken, newest = probe->seq;
     return newest == 7;
   });
-  EXPECT_EQ(taken, KeyBudget::kKeys + 1) << "another writer has names of its own";
+  EXPECT_EQ(taken, KeyBudget::kKeys + 1) << "another peer has names of its own";
 }
 
 TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {
   const auto reader = bus_->reader(topics::clock_probe);
   const HostileWriter<ClockProbe> one = attacker_.writer(topics::clock_probe);
-  const HostileWriter<ClockProbe> other = attacker_.writer(topics::clock_probe);
+  const Attacker second({.domain = own_domain()});
+  const HostileWriter<ClockProbe> other = second.writer(topics::clock_probe);
   until([&] { return reader->writers() == 2; });
   for (int k = 0; k < 200; ++k)
     one.write({.node = std::to_string(k), .seq = 1}), other.write({.node = std::to_string(1000 + k), .seq = 1});
@@ -93,7 +97,7 @@ TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {
   EXPECT_EQ(visit(), 400 - 256);
 }
 
-TEST(RateBudget, IsEachWritersOwnAndOfASecond) {
+TEST(RateBudget, IsEachPeersOwnAndOfASecond) {
   RateBudget budget;
   int admitted = 0;
   for (std::int64_t k = 0; k < 100'000; ++k) admitted += budget.admits(1, 5'000'000'000 + 10'000 * k - 1);

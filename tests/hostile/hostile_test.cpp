@@ -23,9 +23,8 @@ constexpr double kFlood = 10;                      // [MB] by which it may in a 
 // The loop runs at 1000 Hz while the machine does: much may fall out in one attack of a second or two, little in all.
 constexpr double kMinHz = 950, kMinHzOfAll = 990;
 
-constexpr std::chrono::seconds kAfterFlood{
-    15};                                   // in which pictures come again, on a busy machine too: they yield first
-constexpr std::chrono::minutes kLong{25};  // each with PALPATE_LONG_TESTS; the other cases take some minutes then
+constexpr std::chrono::seconds kAfterFlood{15};  // in which pictures come again: on a busy machine they yield first
+constexpr std::chrono::minutes kLong{25};        // each with PALPATE_LONG_TESTS; the other cases take some minutes then
 
 bool long_form() {
   return std::getenv("PALPATE_LONG_TESTS") != nullptr;

@@ -5,7 +5,7 @@
 #include "common/mesh/near_origin.hpp"
 #include "common/node/surface_source.hpp"
 #include "render_node/stage.hpp"
-#include "tests/render/scenery.hpp"
+#include "tests/render/ball_world.hpp"
 
 namespace palpate {
 namespace {
@@ -15,51 +15,20 @@ using Eigen::Vector3d;
 
 constexpr double kClose = 1.5e-6;  // [m]
 
-/// A ball as body and a tool, somewhere, and a haptic node with run 5 on the same bus.
-struct FarWorld {
-  Vector3d at;
-  std::shared_ptr<MemoryNetwork> network = make_memory_network();
-  std::unique_ptr<Bus> haptic_bus = make_memory_bus(network), bus = make_memory_bus(network);
-  Presence haptic{*haptic_bus, "haptic", 5, "scene", "archive"};
-  Presence presence{*bus, "render", 0, "scene", "archive"};
-  Scene scene;
-  Archive archive;
-
-  explicit FarWorld(const Vector3d& where) : at(where) {
-    const testing::Ball ball = make_ball(0.05f, 6);
-    scene.bodies.resize(1);
-    scene.tools.resize(1);
-    scene.tools[0].pivot = at + Vector3d(0, 0, 0.2);
-    scene.render = Render{.width = 160, .height = 120, .camera = empty_frame().camera};
-    scene.render->camera.eye += at;
-    scene.render->camera.target += at;
-    archive.young = {1e4};
-    archive.poisson = {0.3};
-    for (const auto& p : ball.position) archive.surface.position.push_back(at + p.cast<double>());
-    archive.surface.triangles = ball.triangles;
-    const int n = archive.surface.size();
-    archive.surface.touchable = n;
-    archive.surface.fixed.resize(n);
-    for (int i = 0; i < n; ++i) archive.surface.node_number.push_back(i);
-    for (int dof = 0; dof < 3 * n; ++dof) {
-      archive.touchable_dofs.push_back({dof / 3, dof % 3});
-      for (int j = 0; j <= dof; ++j) archive.touchable_compliance.push_back(dof == j ? 1e-3 : 0);  // springs of 1 N/mm
-    }
-    presence.watch();
-  }
-  Vector3d origin() const { return near_origin(archive.surface.position); }
-};
-
 const Vector3d kFar(1e5, 5e4, -25'007);
+
+Vector3d origin_of(const BallWorld& world) {
+  return near_origin(world.archive.surface.position);
+}
 
 TEST(FarSurfaces, AreReceivedWhereTheyAreWhateverTheyAreCountedFrom) {
   for (const Vector3d& beside : {Vector3d(0, 0, 0), Vector3d(16, 0, -16)}) {
-    FarWorld world(kFar);
+    BallWorld world(kFar);
     const auto writer = world.haptic_bus->writer(topics::surface_state);
     const auto source =
-        receive_surfaces(*world.bus, world.presence, {world.archive.surface.position.size()}, world.origin());
+        receive_surfaces(*world.bus, world.presence, {world.archive.surface.position.size()}, origin_of(world));
     SurfaceState surface{.run = 5, .seq = 1, .step = 1, .sense_ns = 1};
-    const Vector3d from = world.origin() + beside;
+    const Vector3d from = origin_of(world) + beside;
     surface.origin = {from.x(), from.y(), from.z()};
     for (const Vector3d& p : world.archive.surface.position)
       for (int axis = 0; axis < 3; ++axis) {
@@ -70,35 +39,36 @@ TEST(FarSurfaces, AreReceivedWhereTheyAreWhateverTheyAreCountedFrom) {
     ASSERT_TRUE(source->update());
     const SurfaceSource::Shape shape = source->shape(0);
     for (std::size_t n = 0; n < shape.position.size(); ++n)
-      EXPECT_LT((world.origin() + shape.position[n].cast<double>() - world.archive.surface.position[n]).norm(), kClose);
+      EXPECT_LT((origin_of(world) + shape.position[n].cast<double>() - world.archive.surface.position[n]).norm(),
+                kClose);
   }
 }
 
 TEST(FarSurfaces, OfThisProcessAreWhereTheyAre) {
-  FarWorld world(kFar);
+  BallWorld world(kFar);
   const auto writer = world.haptic_bus->writer(topics::contact_state);
-  const auto source =
-      deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}), world.origin());
+  const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}),
+                                      origin_of(world));
   ContactState contacts{.run = 5, .step = 1, .sense_ns = 1, .press = {0, 1, 0}};
   contacts.forces.push_back({0, 20, {0, 4, 0}});
   writer->write(contacts);
   ASSERT_TRUE(source->update());
-  const Vector3d shown = world.origin() + source->shape(0).position[20].cast<double>();
+  const Vector3d shown = origin_of(world) + source->shape(0).position[20].cast<double>();
   EXPECT_LT((shown - world.archive.surface.position[20] - Vector3d(0, 0.004, 0)).norm(), kClose);
 }
 
 TEST(FarStage, ShowsTheSamePicture) {
-  const FarWorld near(Vector3d::Zero()), far(kFar);
-  const auto frame_of = [](const FarWorld& world, Stage& stage) {
+  const BallWorld near, far(kFar);
+  const auto frame_of = [](const BallWorld& world, Stage& stage) {
     ToolState tool;
     tool.depth = 0.15;
     stage.set_tool(tool);
     return stage.frame();
   };
   Stage here(near.scene, std::span(&near.archive.surface, 1), {}),
-      there(far.scene, std::span(&far.archive.surface, 1), {}, {}, far.origin());
+      there(far.scene, std::span(&far.archive.surface, 1), {}, {}, origin_of(far));
   const Frame a = frame_of(near, here), b = frame_of(far, there);
-  const Vector3d apart = far.at - far.origin();
+  const Vector3d apart = kFar - origin_of(far);
   EXPECT_LT((a.camera.eye + apart - b.camera.eye).norm(), 1e-9);
   EXPECT_LT((a.camera.target + apart - b.camera.target).norm(), 1e-9);
   ASSERT_EQ(b.instruments.size(), 1u);

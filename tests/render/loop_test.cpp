@@ -4,62 +4,15 @@
 #include "common/realtime/clock.hpp"
 #include "common/view/backdrop.hpp"
 #include "render_node/render_loop.hpp"
-#include "tests/render/scenery.hpp"
+#include "tests/render/ball_world.hpp"
 
 namespace palpate {
 namespace {
 
 using namespace testing;
 
-/// A ball as body, one tool, and a haptic node with run 5 on the same bus.
-struct World {
-  std::shared_ptr<MemoryNetwork> network = make_memory_network();
-  std::unique_ptr<Bus> haptic_bus = make_memory_bus(network), bus = make_memory_bus(network);
-  Presence haptic{*haptic_bus, "haptic", 5, "scene", "archive"};
-  Presence presence{*bus, "render", 0, "scene", "archive"};
-  Scene scene;
-  Archive archive;
-
-  World() {
-    const testing::Ball ball = make_ball(0.05f, 6);
-    scene.title = "a ball";
-    scene.bodies.resize(1);
-    scene.tools.resize(1);
-    scene.tools[0].name = "probe";
-    scene.tools[0].pivot = {0, 0, 0.2};
-    scene.rates.visual_hz = 50;
-    scene.render = Render{.width = 160, .height = 120, .camera = empty_frame().camera};
-    archive.young = {1e4};
-    archive.poisson = {0.3};
-    for (const auto& p : ball.position) archive.surface.position.push_back(p.cast<double>());
-    archive.surface.triangles = ball.triangles;
-    const int n = archive.surface.size();
-    archive.surface.touchable = n;
-    archive.surface.fixed.resize(n);
-    for (int i = 0; i < n; ++i) archive.surface.node_number.push_back(i);
-    for (int dof = 0; dof < 3 * n; ++dof) {
-      archive.touchable_dofs.push_back({dof / 3, dof % 3});
-      for (int j = 0; j <= dof; ++j) archive.touchable_compliance.push_back(dof == j ? 1e-3 : 0);  // springs of 1 N/mm
-    }
-    presence.watch();
-  }
-
-  Stage stage() const { return Stage(scene, std::span(&archive.surface, 1), {}); }
-  std::vector<std::size_t> nodes() const { return {archive.surface.position.size()}; }
-
-  ContactState press(int node, double newton, std::uint64_t run = 5) const {
-    ContactState contacts;
-    contacts.run = run;
-    contacts.sense_ns = now_ns();
-    contacts.step = 1;
-    contacts.press = {0, 1, 0};
-    contacts.forces.push_back({0, static_cast<std::uint32_t>(node), {0, newton, 0}});
-    return contacts;
-  }
-};
-
 TEST(SurfaceSource, DeformsReceivedContacts) {
-  World world;
+  BallWorld world;
   const auto writer = world.haptic_bus->writer(topics::contact_state);
   const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}));
   EXPECT_FALSE(source->update());
@@ -71,7 +24,7 @@ TEST(SurfaceSource, DeformsReceivedContacts) {
 }
 
 TEST(SurfaceSource, KeepsTheContactsOfADeadHapticNode) {
-  World world;
+  BallWorld world;
   auto writer = world.haptic_bus->writer(topics::contact_state);
   const auto held = world.haptic_bus->reader(topics::held_contacts);
   const auto source = deform_surfaces(world.scene, *world.bus, world.presence, Deformer(world.scene, {world.archive}));
@@ -90,7 +43,7 @@ TEST(SurfaceSource, KeepsTheContactsOfADeadHapticNode) {
 }
 
 TEST(SurfaceSource, RefusesForeignRunsAndSurfacesThatDoNotFit) {
-  World world;
+  BallWorld world;
   const auto writer = world.haptic_bus->writer(topics::surface_state);
   const auto source = receive_surfaces(*world.bus, world.presence, world.nodes());
   SurfaceState surface;
@@ -115,7 +68,7 @@ TEST(SurfaceSource, RefusesForeignRunsAndSurfacesThatDoNotFit) {
 }
 
 TEST(Stage, ShowsToolsOnceHeardOf) {
-  World world;
+  BallWorld world;
   Stage stage = world.stage();
   EXPECT_TRUE(stage.frame().instruments.empty());
   ToolState tool;
@@ -131,7 +84,7 @@ TEST(Stage, ShowsToolsOnceHeardOf) {
 }
 
 TEST(Stage, LegendCoversTheLargestDisplacement) {
-  World world;
+  BallWorld world;
   world.scene.render->colour = Colouring::displacement;
   Stage stage = world.stage();
   EXPECT_DOUBLE_EQ(stage.frame().legend->max, 1e-3);
@@ -144,7 +97,7 @@ TEST(Stage, LegendCoversTheLargestDisplacement) {
 }
 
 TEST(Stage, SceneWithoutCameraSeesAllBodies) {
-  World world;
+  BallWorld world;
   world.scene.render.reset();
   const Stage stage = world.stage();
   Frame nothing;
@@ -167,7 +120,7 @@ TEST(Backdrop, OpenSheetsAreLiningAndClosedPartsAreBone) {
 }
 
 TEST(RenderLoop, DrawsAtTheVisualRateAndFilmsInRealTime) {
-  World world;
+  BallWorld world;
   const Folder folder;
   const auto tools = world.haptic_bus->writer(topics::tool_state);
   const auto forces = world.haptic_bus->writer(topics::force_state);

@@ -59,6 +59,37 @@ TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
   EXPECT_GT(std::stod(run.out.substr(at + 14)), 0.03) << run.out;
 }
 
+TEST_F(ToolsScene, ASurfaceToBeLookedAtComesInByItself) {
+  // Two sides of the block.
+  const auto written = [&](const char* name, double unit) {
+    std::ofstream out(folder_ / name);
+    out << "mtllib look.mtl\nusemtl bile\n";
+    for (const double x : {0.0, 0.1})
+      for (const double y : {0.0, 0.08})
+        for (const double z : {0.0, 0.06}) out << fmt::format("v {} {} {}\n", x / unit, y / unit, z / unit);
+    out << "f 1 2 3\nf 2 4 3\nf 5 7 6\nf 6 7 8\n";
+    return (folder_ / name).string();
+  };
+  std::ofstream(folder_ / "look.mtl") << "newmtl bile\nKd 0.1 0.4 0.1\n";
+  const auto made = [&](const std::string& surface) {
+    return run_program(fmt::format("{} scene {} --tissue kidney --visual {} -o {}", program("palpate"),
+                                   (folder_ / "block.msh").string(), surface, scene()));
+  };
+  for (const auto& [unit, scale] : {std::pair{0.001, "scale = 0.001"}, std::pair{1.0, "scale = 1"}}) {
+    const auto result = made(written("look.obj", unit));
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string text = text_of(scene());
+    for (const char* const said : {"[body.visual]", "surface = \"look.obj\"", "materials = \"look.mtl\"", scale})
+      EXPECT_NE(text.find(said), std::string::npos) << said << "\n" << text;
+    EXPECT_EQ(checked().status, 0) << checked().err;
+  }
+  const auto inches = made(written("inches.obj", 0.0254));
+  EXPECT_EQ(inches.status, 1);
+  EXPECT_NE(inches.err.find("inches.obj: it does not lie about the mesh, neither in metres nor in millimetres"),
+            std::string::npos)
+      << inches.err;
+}
+
 TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {
   change("block.toml", "name = \"kidney\"\n", "name = \"kidney\"\nscale = 20\n");
   expect_warning("is 2.83 m across: is its scale right?");

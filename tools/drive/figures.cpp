@@ -58,8 +58,8 @@ Watch::Watch(const sim::Simulator& simulator, const std::vector<Archive>& archiv
       bodies_(simulator.bodies()),
       shape_interval_(static_cast<std::uint64_t>(std::max(1l, std::lround(1 / (kShapeHz * simulator.dt()))))) {
   for (int b = 0; b < simulator.bodies(); ++b) {
-    const Eigen::Vector3d origin = near_origin(archives[b].surface.position);
-    for (const Eigen::Vector3d& x : archives[b].surface.position) bodies_[b].rest.push_back((x - origin).cast<float>());
+    const std::vector<Eigen::Vector3d>& rest = archives[b].surface.position;
+    bodies_[b].rest = places_from(near_origin(rest), rest);
   }
 }
 
