@@ -56,11 +56,14 @@ int TouchSurface::collect(const Eigen::Vector3d& low, const Eigen::Vector3d& hig
   if (((low_ - high).cwiseMax(low - high_).array() > radius).any()) return 0;  // far from all of it
   const int candidates = buckets_.query(low, high, radius, found_);
   // The buckets' answer depends on when entries were last moved; the boxes themselves do not, and replay needs that.
+  const auto is_near = [&](const std::array<Eigen::Vector3d, 2>& box) {
+    const Eigen::Vector3d apart = (box[0] - high).cwiseMax(low - box[1]).cwiseMax(0.0);
+    return apart.squaredNorm() <= radius * radius;
+  };
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
-    const auto [box_low, box_high] = swept_box(found_[i]);
-    const Eigen::Vector3d apart = (box_low - high).cwiseMax(low - box_high).cwiseMax(0.0);
-    if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
+    const int t = found_[i];
+    if (is_near(entered_[t]) && is_near(swept_box(t))) found_[kept++] = t;  // the first holds the second
   }
   return kept;
 }

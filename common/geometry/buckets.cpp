@@ -51,6 +51,7 @@ void Buckets::lay_grid(std::span<const Vector3d> positions, double size) {
   size_ = size;
   per_metre_ = 1 / size;
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = std::max(1, static_cast<int>(std::ceil(counts[axis])));
+  filled_.low = cells_;
   first_overflow_ = cells_[0] * cells_[1] * cells_[2];
   first_in_bucket_.assign(first_overflow_ + 1, -1);
 }
@@ -127,6 +128,10 @@ void Buckets::enter(int triangle) {
   const int reserve = static_cast<int>(range_.size());
   if (count > kMaxBuckets || free_count_ - count < reserve) return link(triangle, first_overflow_);
   for_each_bucket(range, [&](int bucket) { link(triangle, bucket); });
+  for (int axis = 0; axis < 3; ++axis) {
+    filled_.low[axis] = std::min(filled_.low[axis], range.low[axis]);
+    filled_.high[axis] = std::max(filled_.high[axis], range.high[axis]);
+  }
 }
 
 void Buckets::leave(int triangle) {
@@ -160,11 +165,16 @@ int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, double radi
     }
   };
   const double reach = radius + kRounding * (radius + size_);
-  const Range range = range_of(box_min.array() - reach, box_max.array() + reach);
+  Range range = range_of(box_min.array() - reach, box_max.array() + reach);
+  for (int axis = 0; axis < 3; ++axis) {
+    range.low[axis] = std::max(range.low[axis], filled_.low[axis]);
+    range.high[axis] = std::min(range.high[axis], filled_.high[axis]);
+  }
   for (int k = range.low[2]; k <= range.high[2]; ++k)
     for (int j = range.low[1]; j <= range.high[1]; ++j) {
       const double z = apart(box_min.z(), box_max.z(), k, 2), y = apart(box_min.y(), box_max.y(), j, 1);
       const double left = reach * reach - z * z - y * y;
+      if (left < 0) continue;
       for (int i = range.low[0]; i <= range.high[0]; ++i) {
         const double x = apart(box_min.x(), box_max.x(), i, 0);
         if (!(x * x > left)) collect((k * cells_[1] + j) * cells_[0] + i);

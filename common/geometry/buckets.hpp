@@ -64,6 +64,7 @@ class Buckets {
   Eigen::Vector3d origin_;
   double size_, per_metre_;
   std::array<int, 3> cells_;
+  Range filled_;                        ///< around all buckets that a triangle has ever been in, the overflow left out
   std::vector<int> first_in_bucket_;    ///< entry, or -1
   std::vector<Range> range_;            ///< per triangle; of one that is out it is empty
   std::vector<int> first_of_triangle_;  ///< entry, or -1

@@ -10,6 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastShare = 1e-9;  // of about the whole disc: what is less is rounding
+constexpr double kBeyond = 1 + 1e-9;  // squared radii of the disc's middle from an edge: it certainly lies beyond
 
 // Over a triangle from the disc's middle to a piece of a line at distance d, by the tangents of the angles from the
 // foot on the line to its ends: the integral of (3 a^4 r^2 - 3 a^2 r^4 + r^6) / 6 over the angle, r = d / cos.
@@ -40,6 +41,12 @@ double beside_edge(double a2, const Vector3d& p, const Vector3d& q, const Vector
   return std::copysign(sum, d);
 }
 
+// Whether the disc lies beyond an edge as a whole, and so beside the triangle. p and q as above.
+bool is_beyond(double a2, const Vector3d& p, const Vector3d& q, const Vector3d& normal) {
+  const double side = normal.dot(p.cross(q));
+  return side < 0 && side * side > kBeyond * a2 * (q - p).squaredNorm();
+}
+
 }  // namespace
 
 Vector3d overlap_normal(const SmoothSurface& surface, std::span<const int> triangles, const Vector3d& middle,
@@ -53,8 +60,11 @@ Vector3d overlap_normal(const SmoothSurface& surface, std::span<const int> trian
     if (faces <= 0 || high >= radius) continue;
     const double a2 = radius * radius - std::pow(std::max(high, 0.0), 2);
     const Vector3d foot = middle - high * normal;
+    const Triangle c{corner[0] - foot, corner[1] - foot, corner[2] - foot};
+    if (is_beyond(a2, c[0], c[1], normal) || is_beyond(a2, c[1], c[2], normal) || is_beyond(a2, c[2], c[0], normal))
+      continue;
     double share = 0;
-    for (int v = 0; v < 3; ++v) share += beside_edge(a2, corner[v] - foot, corner[(v + 1) % 3] - foot, normal);
+    for (int v = 0; v < 3; ++v) share += beside_edge(a2, c[v], c[(v + 1) % 3], normal);
     if (share > kLeastShare * a2 * a2 * a2) sum += faces * share * normal;
   }
   return sum;

@@ -11,11 +11,14 @@ using Eigen::Vector3d;
 
 constexpr int kPasses = 24;               // at most, of the active set
 constexpr double kTouchTolerance = 1e-9;  // [m]
-constexpr double kPivotShare = 0.05;      // of a square's own compliance, to which pivots are raised: G leaves more
+constexpr int kMaxCells = 128;            // of any grid
+using PerCell = Eigen::Array<double, Eigen::Dynamic, 1, 0, kMaxCells, 1>;
+constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which pivots are raised: G leaves more
 
 }  // namespace
 
-Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : grid_(grid), kernel_(grid) {
+Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
+    : grid_(grid), kernel_(grid), near_field_(kMaxNodes) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
@@ -23,6 +26,7 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   cells_.resize(points);
   cell_length_ = grid.edge();
   feet_.resize(grid.feet());
+  foot_middle_.resize(grid.feet());
   active_.assign(points, 0);
   wanted_.assign(points, 0.0);
   pressure_force_.assign(points, 0.0);
@@ -36,9 +40,9 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep) : gri
   nodes_give_.assign(kMaxNodes * kMaxNodes, 0.0);
   lifted_.reserve(kMaxNodes);
   known_.reserve(kMaxNodes);
-  near_field_.assign(kMaxNodes * kMaxNodes, Eigen::Matrix3d::Zero());
   k_.assign(kMaxNodes * kMaxNodes, 0.0);
   k_feet_.assign(grid.feet() * grid.feet(), 0.0);
+  foot_to_node_.assign(kMaxNodes * grid.feet(), 0.0);
 }
 
 void Patch::lift() {
@@ -93,13 +97,20 @@ void Patch::lie_beside(const Patch& other) {
   const HalfSpace& half_space = grid_.half_space();
   const double scale = half_space.scale() * (1 - half_space.poisson) * other.force_.dot(normal_) / other.pressing_;
   const double self = half_space.scale() * (1 - half_space.poisson) / other.kernel_.own();
+  list_laid();
+  const int laid = static_cast<int>(rows_.size());
+  PerCell x(laid), y(laid), z(laid), dent(laid);
+  for (int i = 0; i < laid; ++i) {
+    const Cell& cell = cells_[rows_[i]];
+    x[i] = cell.at.x(), y[i] = cell.at.y(), z[i] = cell.at.z(), dent[i] = cell.dent;
+  }
   for (int q = 0; q < other.grid_.size(); ++q) {
     if (!(other.pressure_force_[q] > 0)) continue;
-    for (int p = 0; p < grid_.size(); ++p)
-      if (laid(p))
-        cells_[p].dent += scale * other.pressure_force_[q] /
-                          std::sqrt((cells_[p].at - other.cells_[q].at).squaredNorm() + self * self);
+    const Vector3d& at = other.cells_[q].at;
+    dent += scale * other.pressure_force_[q] /
+            ((x - at.x()).square() + (y - at.y()).square() + (z - at.z()).square() + self * self).sqrt();
   }
+  for (int i = 0; i < laid; ++i) cells_[rows_[i]].dent = dent[i];
 }
 
 // What the last step's shear does along the normal.
@@ -113,8 +124,7 @@ void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
     if (found == nodes_.end()) continue;
     const auto j = found - nodes_.begin();
     shear[j] = f.force - f.force.dot(normal_) * normal_;
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      lifted_[i] += normal_.dot(near_field_[i * kMaxNodes + j] * shear[j]);
+    near_field_.add_along(normal_, shear[j], static_cast<int>(j), static_cast<int>(nodes_.size()), lifted_.data());
   }
   for (const auto& [i, j, block] : give) {
     lifted_[i] += normal_.dot(block * shear[j]);

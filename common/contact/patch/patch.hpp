@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/contact/patch/near_field.hpp"
+#include "common/contact/patch/node_blocks.hpp"
 #include "common/contact/patch/patch_grid.hpp"
 #include "common/contact/patch/patch_memory.hpp"
 #include "common/contact/patch/smooth_surface.hpp"
@@ -175,6 +176,8 @@ class Patch {
   Eigen::Vector3d place_of_force() const;
   void fill_near_field(const NearField& near_field);
   void fill_normal();
+  void fill_feet();
+  void fill_cell(int q);
   void keep_positive();
   bool is_positive();
   void list_laid();
@@ -209,20 +212,22 @@ class Patch {
   std::span<int> near_;  ///< triangles, of lay() alone
   PatchKernel kernel_;
   Flank flank_;
-  double window_ = 0, cell_length_ = 0;  ///< [m] along the first axis: where the columns begin, and a column's
-  std::vector<Cell> cells_;              ///< per cell of the grid
-  std::vector<Foot> feet_;               ///< per foot of the grid
-  std::vector<int> nodes_;               ///< under the patch
+  double window_ = 0, cell_length_ = 0;       ///< [m] along the first axis: where the columns begin, and a column's
+  std::vector<Cell> cells_;                   ///< per cell of the grid
+  std::vector<Foot> feet_;                    ///< per foot of the grid
+  std::vector<Eigen::Vector2d> foot_middle_;  ///< [m] about the patch's middle, likewise
+  std::vector<int> nodes_;                    ///< under the patch
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
-  std::vector<int> known_;                   ///< nodes that near_field_ is of
-  std::vector<Eigen::Matrix3d> near_field_;  ///< K between nodes_, kMaxNodes a row
-  std::vector<double> k_;                    ///< [m/N] K along the normal, likewise
-  std::array<double, kMaxNodes> at_nodes_;   ///< [m/N] along the normal, of a force on one foot
+  std::vector<int> known_;                  ///< nodes that near_field_ is of
+  NodeBlocks near_field_;                   ///< K between nodes_
+  std::vector<double> k_;                   ///< [m/N] K along the normal, kMaxNodes a row
+  std::array<double, kMaxNodes> at_nodes_;  ///< [m/N] along the normal, of a force on one foot
   std::array<PatchForce, kMaxNodes> forces_;
-  int loaded_ = 0;              ///< how many of them
-  std::vector<double> k_feet_;  ///< [m/N] K between feet, along the normal
+  int loaded_ = 0;                    ///< how many of them
+  std::vector<double> k_feet_;        ///< [m/N] K between feet, along the normal
+  std::vector<double> foot_to_node_;  ///< [m/N] likewise from a foot to a node: one entry a foot, row by row of nodes
 };
 
 }  // namespace palpate

@@ -11,6 +11,13 @@ namespace {
 // Of a square's own compliance: the least that pressures of any pattern find beyond the nodes'.
 constexpr double kMinGive = 0.02, kTolerated = 0.001;
 
+template <int N>
+void add_to_each(const double* from, double number, double* to) {
+  using Numbers = Eigen::Array<double, N, 1>;
+  Eigen::Map<Numbers> sum(to);
+  sum = Eigen::Map<const Numbers>(from) + number;
+}
+
 }  // namespace
 
 // From one step to the next the nodes are mostly the same.
@@ -19,35 +26,55 @@ void Patch::fill_near_field(const NearField& near_field) {
   known_ = nodes_;
   const int count = static_cast<int>(nodes_.size());
   for (int i = 0; i < count; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const Eigen::Matrix3d block = near_field.between(nodes_[i], nodes_[j]);
-      near_field_[i * kMaxNodes + j] = block;
-      near_field_[j * kMaxNodes + i] = block.transpose();
-    }
+    for (int j = 0; j <= i; ++j) near_field_.set(i, j, near_field.between(nodes_[i], nodes_[j]));
 }
 
 // The compliance between squares along the normal [m/N].
 void Patch::fill_normal() {
-  const int n = grid_.size(), count = static_cast<int>(nodes_.size());
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j <= i; ++j)
-      k_[i * kMaxNodes + j] = k_[j * kMaxNodes + i] = normal_.dot(near_field_[i * kMaxNodes + j] * normal_);
-  for (int a = 0; a < grid_.feet(); ++a) {
-    if (!feet_[a].stands()) continue;
-    fill_at_foot(feet_[a], k_);
-    for (int b = 0; b <= a; ++b)
-      if (feet_[b].stands()) k_feet_[a * grid_.feet() + b] = k_feet_[b * grid_.feet() + a] = at_foot(feet_[b]);
-  }
+  fill_feet();
   list_laid();
-  for (const int p : rows_) {
-    const double* const at_feet = &k_feet_[grid_.foot(p) * grid_.feet()];
-    for (const int q : rows_) {
-      if (q > p) break;
-      compliance_[p * n + q] = compliance_[q * n + p] = kernel_.pressed(p, q) + at_feet[grid_.foot(q)];
-    }
-  }
+  const int n = grid_.size();
+  for (const int q : rows_) fill_cell(q);
   // A cell of which little lies over tissue gives little force: at an edge it comes and goes by and by.
   for (const int p : rows_) compliance_[p * n + p] += (1 / cells_[p].cover - 1) * kernel_.own();
+}
+
+// K between feet.
+void Patch::fill_feet() {
+  const int count = static_cast<int>(nodes_.size()), feet = grid_.feet();
+  for (int j = 0; j < count; ++j) {
+    double* const row = &k_[j * kMaxNodes];
+    near_field_.along(normal_, j, j, count, row + j);
+    for (int i = j + 1; i < count; ++i) k_[i * kMaxNodes + j] = row[i];
+  }
+  for (int a = 0; a < feet; ++a) {
+    if (!feet_[a].stands()) continue;
+    fill_at_foot(feet_[a], k_);
+    for (int i = 0; i < count; ++i) foot_to_node_[i * feet + a] = at_nodes_[i];
+  }
+  for (int b = 0; b < feet; ++b) {
+    const Foot& f = feet_[b];
+    if (!f.stands()) continue;
+    double* const row = &k_feet_[b * feet];
+    const double *const n0 = &foot_to_node_[f.local[0] * feet], *const n1 = &foot_to_node_[f.local[1] * feet],
+                        *const n2 = &foot_to_node_[f.local[2] * feet];
+    for (int a = b; a < feet; ++a) row[a] = f.weights[0] * n0[a] + f.weights[1] * n1[a] + f.weights[2] * n2[a];
+    for (int a = b + 1; a < feet; ++a) k_feet_[a * feet + b] = row[a];
+  }
+}
+
+// G + K between cell q and all others.
+void Patch::fill_cell(int q) {
+  double* const row = &compliance_[q * grid_.size()];
+  const double* const at_feet = &k_feet_[grid_.foot(q) * grid_.feet()];
+  for (int column = 0; column < grid_.columns(); ++column) {
+    const int begin = grid_.first(column), count = grid_.first(column + 1) - begin;
+    const double* const pressed = kernel_.pressed(std::abs(column - grid_.column(q)), grid_.row(q)) + grid_.row(begin);
+    if (grid_.strip())
+      add_to_each<PatchGrid::kStripRows>(pressed, at_feet[column], row + begin);
+    else
+      for (int i = 0; i < count; ++i) row[begin + i] = pressed[i] + at_feet[begin + i];
+  }
 }
 
 // Where the nodes lie closer than the squares, or are softer than the half-space under forces on single ones, they know
@@ -126,7 +153,7 @@ Eigen::Matrix3d Patch::shared_near_field(std::span<const double> share) const {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < share.size(); ++i)
     for (std::size_t j = 0; share[i] != 0 && j < share.size(); ++j)
-      if (share[j] != 0) k += share[i] * share[j] * near_field_[i * kMaxNodes + j];
+      if (share[j] != 0) near_field_.add(static_cast<int>(i), static_cast<int>(j), share[i] * share[j], k);
   return k;
 }
 

@@ -6,9 +6,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kSquaresPerRadius = 4;            // 44 squares in all
-constexpr double kWidth = 0.95;                    // of the radius: beyond it the sphere is too steep to press
-constexpr int kStripColumns = 10, kStripRows = 8;  // with a tip's, 124
+constexpr double kSquaresPerRadius = 4;  // 44 squares in all
+constexpr double kWidth = 0.95;          // of the radius: beyond it the sphere is too steep to press
+constexpr int kStripColumns = 10;        // by PatchGrid::kStripRows; with a tip's squares 124
 
 int squares_across() {
   return static_cast<int>(2 * kWidth * kSquaresPerRadius) + 1;
@@ -23,14 +23,18 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
       half_space_(half_space),
       columns_(strip() ? kStripColumns : squares_across()),
       rows_(strip() ? kStripRows : squares_across()) {
-  for (int i = 0; i < columns_; ++i)
+  for (int i = 0; i < columns_; ++i) {
+    first_.push_back(size());
     for (int j = 0; j < rows_; ++j) {
       const double beside =
           strip() ? std::abs(across(j)) : edge_ * std::hypot(i - 0.5 * (columns_ - 1), j - 0.5 * (rows_ - 1));
       if (beside >= kWidth * radius) continue;
       cells_.push_back({i, j});
+      middle_.emplace_back(edge_ * (i - 0.5 * (columns_ - 1)), across(j));
       rise_.push_back(std::sqrt(radius * radius - beside * beside));
     }
+  }
+  first_.push_back(size());
   for (const Cell& p : cells_)
     for (const Cell& q : cells_) ways_.push_back(std::abs(p.column - q.column) * rows_ + std::abs(p.row - q.row));
 }
@@ -38,7 +42,7 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
 PatchKernel::PatchKernel(const PatchGrid& grid)
     : grid_(grid),
       corners_((grid.columns() + 1) * (grid.rows() + 1)),
-      pressed_(grid.columns() * grid.rows()),
+      pressed_(grid.columns() * (2 * grid.rows() - 1)),
       sheared_(grid.columns() * grid.rows()) {
   lay(grid.edge());
 }
@@ -58,15 +62,10 @@ void PatchKernel::lay(double length) {
       const HalfSpace::Corner sum{high[1].across - high[0].across - low[1].across + low[0].across,
                                   high[1].along - high[0].along - low[1].along + low[0].along,
                                   high[1].mixed - high[0].mixed - low[1].mixed + low[0].mixed};
-      pressed_[i * rows + j] = per_force * grid_.half_space().pressed(sum);
+      double* const pressed = &pressed_[i * (2 * rows - 1) + rows - 1];
+      pressed[j] = pressed[-j] = per_force * grid_.half_space().pressed(sum);
       sheared_[i * rows + j] = per_force * grid_.half_space().sheared(sum);
     }
-}
-
-Eigen::Matrix2d PatchKernel::sheared(int p, int q) const {
-  Eigen::Matrix2d k = sheared_[grid_.ways_from(p)[q]];
-  if ((grid_.column(p) < grid_.column(q)) != (grid_.row(p) < grid_.row(q))) k(0, 1) = k(1, 0) = -k(0, 1);
-  return k;
 }
 
 const PatchGrid& PatchGrids::of(double radius, double length) {

@@ -12,6 +12,8 @@ namespace palpate {
 /// same for all patches of one shape on one material.
 class PatchGrid {
  public:
+  static constexpr int kStripRows = 8;
+
   /// Of a sphere where `length` [m] is 0.
   PatchGrid(double radius, double length, const HalfSpace& half_space);
 
@@ -29,12 +31,16 @@ class PatchGrid {
   double across(int row) const { return edge_ * (row - 0.5 * (rows_ - 1)); }  ///< [m] of a row's middle
   double rise(int p) const { return rise_[p]; }  ///< [m] of the sphere, or the axis, over it
   /// [m] about the patch's middle, of a sphere's square.
-  Eigen::Vector2d middle(int p) const { return {edge_ * (column(p) - 0.5 * (columns_ - 1)), across(row(p))}; }
+  const Eigen::Vector2d& middle(int p) const { return middle_[p]; }
+  /// Cells stand column by column, those of one in rows that follow one another: the first of a column, and behind the
+  /// last one how many there are.
+  int first(int column) const { return first_[column]; }
 
   /// Places at which the tissue under the cells is asked for what it has beyond the half-space: each square's own, one
   /// for a column of rectangles.
   int feet() const { return strip() ? columns_ : size(); }
   int foot(int p) const { return strip() ? column(p) : p; }
+  int first_foot(int column) const { return strip() ? column : first(column); }  ///< of a column, like first()
   /// Of cell p, for each cell q: which of columns() * rows() ways lies between them, whatever its sign.
   const int* ways_from(int p) const { return &ways_[p * cells_.size()]; }
 
@@ -48,6 +54,8 @@ class PatchGrid {
   int columns_, rows_;
   std::vector<Cell> cells_;
   std::vector<double> rise_;
+  std::vector<Eigen::Vector2d> middle_;
+  std::vector<int> first_;
   std::vector<int> ways_;
 };
 
@@ -58,16 +66,23 @@ class PatchKernel {
 
   /// For cells of a length [m].
   void lay(double length);
-  double own() const { return pressed_[0]; }                                      ///< [m/N] of a cell by itself
-  double pressed(int p, int q) const { return pressed_[grid_.ways_from(p)[q]]; }  ///< [m/N]
-  Eigen::Matrix2d sheared(int p, int q) const;                                    ///< [m/N]
+  double own() const { return pressed_[grid_.rows() - 1]; }  ///< [m/N] of a cell by itself
+  /// [m/N] Between a cell in row `row` and those of a column so many columns away: one entry a row.
+  const double* pressed(int columns_away, int row) const {
+    return &pressed_[columns_away * (2 * grid_.rows() - 1) + grid_.rows() - 1 - row];
+  }
+  Eigen::Matrix2d sheared(int p, int q) const {  ///< [m/N]
+    Eigen::Matrix2d k = sheared_[grid_.ways_from(p)[q]];
+    if ((grid_.column(p) < grid_.column(q)) != (grid_.row(p) < grid_.row(q))) k(0, 1) = k(1, 0) = -k(0, 1);
+    return k;
+  }
 
  private:
   const PatchGrid& grid_;
   double length_ = 0;
   std::vector<HalfSpace::Corner> corners_;
-  std::vector<double> pressed_;           ///< by the way between them
-  std::vector<Eigen::Matrix2d> sheared_;  ///< likewise
+  std::vector<double> pressed_;           ///< by the columns between them, and by the rows from - to +
+  std::vector<Eigen::Matrix2d> sheared_;  ///< by the way between them
 };
 
 /// One grid for each shape, on one material.

@@ -134,27 +134,33 @@ Vector2d Patch::foot_middle(int foot) const {
 void Patch::lay_feet(const Ground& ground) {
   const SmoothSurface& surface = ground.surface;
   for (Foot& f : feet_) f = {.depth = std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < grid_.feet(); ++i) foot_middle_[i] = foot_middle(i);
   for (const int t : near_) {
     if (!presses(ground, t)) continue;
     const Triangle c = surface.corners(t);
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
-    const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();
-    const double twice = e1.x() * e2.y() - e1.y() * e2.x();
-    std::array<int, 3> corners{-2, -2, -2};
     if (grid_.strip() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0)) continue;
     const Vector2d low = flat[0].cwiseMin(flat[1]).cwiseMin(flat[2]).head<2>().array() - kOnEdge * grid_.radius();
     const Vector2d high = flat[0].cwiseMax(flat[1]).cwiseMax(flat[2]).head<2>().array() + kOnEdge * grid_.radius();
-    for (int i = 0; i < grid_.feet(); ++i) {
-      const Vector2d middle = foot_middle(i);
-      if ((middle.array() < low.array()).any() || (middle.array() > high.array()).any()) continue;
-      const Vector2d d = middle - flat[0].head<2>();
-      const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;
-      if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
-      const Vector3d w(1 - w1 - w2, w1, w2);
-      const double depth = w[0] * flat[0].z() + w[1] * flat[1].z() + w[2] * flat[2].z();
-      if (depth >= feet_[i].depth) continue;
-      for (int v = 0; v < 3 && corners[v] == -2; ++v) corners[v] = local(surface.map().triangles[t][v]);
-      if (std::ranges::min(corners) >= 0) feet_[i] = {corners, w, depth};
+    const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();
+    const double twice = e1.x() * e2.y() - e1.y() * e2.x();
+    std::array<int, 3> corners{-2, -2, -2};
+    for (int column = 0; column < grid_.columns(); ++column) {
+      const int first = grid_.first_foot(column), last = grid_.first_foot(column + 1) - 1;
+      if (foot_middle_[first].x() < low.x()) continue;
+      if (foot_middle_[first].x() > high.x()) break;
+      for (int i = first; i <= last; ++i) {
+        const Vector2d& middle = foot_middle_[i];
+        if (middle.y() < low.y() || middle.y() > high.y()) continue;
+        const Vector2d d = middle - flat[0].head<2>();
+        const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;
+        if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
+        const Vector3d w(1 - w1 - w2, w1, w2);
+        const double depth = w[0] * flat[0].z() + w[1] * flat[1].z() + w[2] * flat[2].z();
+        if (depth >= feet_[i].depth) continue;
+        for (int v = 0; v < 3 && corners[v] == -2; ++v) corners[v] = local(surface.map().triangles[t][v]);
+        if (std::ranges::min(corners) >= 0) feet_[i] = {corners, w, depth};
+      }
     }
   }
 }

@@ -16,6 +16,7 @@ constexpr double kBeside = 0.25;   // radii above the surface from which a cell 
 constexpr double kMaxDepth = 10;   // radii below the surface, likewise
 constexpr double kLines[] = {0, -0.35, 0.35, -0.65, 0.65, -0.85, 0.85};  // radii aside, along which it overlaps
 constexpr double kMinCover = 1e-3;                                       // of a cell, likewise
+constexpr double kHair = 1e-9;  // radii, by which what rounding may have moved is looked at all the same
 
 /// By the line at `y` along the first axis; false if it does not meet the triangle. The ends go along the axis.
 bool cut_at(const std::array<Vector3d, 3>& t, double y, TriangleCut& cut) {
@@ -36,6 +37,11 @@ bool cut_at(const std::array<Vector3d, 3>& t, double y, TriangleCut& cut) {
     std::swap(cut.weights[0], cut.weights[1]);
   }
   return true;
+}
+
+/// Whether the line at `y` meets it, as in cut_at().
+bool reaches(double low, double high, double y) {
+  return low < y && high >= y;
 }
 
 /// The piece of a cut between two places along the axis; false if there is none.
@@ -106,7 +112,14 @@ bool Patch::turn_along(const Segment& axis) {
 // Over lines along the axis' underside, spread across the strip.
 Patch::Overlap Patch::overlap(const Ground& ground) const {
   Overlap all;
-  const double radius = grid_.radius();
+  const double radius = grid_.radius(), hair = kHair * radius;
+  // Before or behind all of the lines, or below them.
+  const auto is_aside = [&](const std::array<Vector3d, 3>& t) {
+    const auto [low, high] = std::minmax({t[0].x(), t[1].x(), t[2].x()});
+    const auto over = [&](const Vector3d& p) { return flank_.slope * p.x() - p.z(); };
+    const double gap = std::max({over(t[0]), over(t[1]), over(t[2])}) + radius * flank_.steep;
+    return high < flank_.from - hair || low > flank_.to + hair || gap < -hair;
+  };
   for (const int t : near_) {
     if (!presses(ground, t)) continue;
     const Triangle c = ground.surface.corners(t);
@@ -114,9 +127,11 @@ Patch::Overlap Patch::overlap(const Ground& ground) const {
                  y2 = up_.dot(c[2]) - side;
     if (std::min({y0, y1, y2}) > radius || std::max({y0, y1, y2}) < -radius) continue;
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+    if (is_aside(flat)) continue;
+    const auto [low, high] = std::minmax({flat[0].y(), flat[1].y(), flat[2].y()});
     for (const double share : kLines) {
       TriangleCut cut;
-      if (cut_at(flat, share * radius, cut) && clip(cut, flank_.from, flank_.to))
+      if (reaches(low, high, share * radius) && cut_at(flat, share * radius, cut) && clip(cut, flank_.from, flank_.to))
         add_overlap(ground, t, radius * std::sqrt(1 - share * share) * flank_.steep, cut, all);
     }
   }
@@ -158,7 +173,9 @@ void Patch::lay_strip(const Ground& ground) {
   for (const int t : near_) {
     const Triangle c = ground.surface.corners(t);
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
-    for (int row = 0; row < grid_.rows(); ++row) lay_row(row, flat);
+    const auto [low, high] = std::minmax({flat[0].y(), flat[1].y(), flat[2].y()});
+    for (int row = 0; row < grid_.rows(); ++row)
+      if (reaches(low, high, grid_.across(row))) lay_row(row, flat);
   }
   bool any = false;
   for (int p = 0; p < grid_.size(); ++p) {

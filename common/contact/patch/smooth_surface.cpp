@@ -33,6 +33,7 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
     const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
     facet_normal_.push_back(doubled_area.normalized());
     area_.push_back(0.5 * doubled_area.norm());
+    box_.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
     middle_.push_back((c[0] + c[1] + c[2]) / 3);
     reach_.push_back(0);
     for (const Vector3d& corner : c) reach_.back() = std::max(reach_.back(), (corner - middle_.back()).norm());
@@ -56,8 +57,7 @@ std::span<int> SmoothSurface::near(const Vector3d& point, double radius) const {
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
     if (left_out_[found_[i]]) continue;
-    const Triangle c = corners(found_[i]);
-    const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]), high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    const auto& [low, high] = box_[found_[i]];
     const Vector3d apart = (low - point).cwiseMax(point - high).cwiseMax(0.0);
     if (apart.squaredNorm() <= radius * radius) found_[kept++] = found_[i];
   }

@@ -43,8 +43,9 @@ class SmoothSurface {
  private:
   const SurfaceMap& map_;
   std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
-  std::vector<Eigen::Vector3d> middle_;  ///< [m] per triangle
-  std::vector<double> reach_;            ///< [m] of its corners from there
+  std::vector<std::array<Eigen::Vector3d, 2>> box_;  ///< [m] per triangle: its lowest and its highest corner
+  std::vector<Eigen::Vector3d> middle_;              ///< [m] per triangle
+  std::vector<double> reach_;                        ///< [m] of its corners from there
   std::vector<double> area_, weight_;
   std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;
