@@ -44,7 +44,7 @@ bool CuttableTissue::cut(std::span<const Glow> glows) {
       int nearest = -1;
       for (int facet : surface_.find(tip, tip, radius)) {
         const double squared = closest_point(tip, surface_.corners(facet)).squared_distance;
-        if (squared >= least) continue;
+        if (!is_nearer(squared, least)) continue;
         least = squared;
         nearest = facet;
       }
