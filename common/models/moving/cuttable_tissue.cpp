@@ -100,8 +100,8 @@ void CuttableTissue::begin_tick() {
   for (FloatingPart& part : floating_) part.keep_loads(model_);
 }
 
-void CuttableTissue::begin_step() {
-  for (FloatingPart& part : floating_) part.give_back_damping(model_, mesh_.rest);
+void CuttableTissue::begin_step(std::span<const JawHold> held, double dt) {
+  for (FloatingPart& part : floating_) part.give_back_damping(model_, mesh_.rest, held, dt);
 }
 
 void CuttableTissue::fade(int node, const Eigen::Vector3d& force) {
