@@ -199,7 +199,7 @@ bool ToolContacts::grasp_nearest(int tool, const Eigen::Isometry3d& pose, double
   std::optional<Anchor> nearest;
   for (int t : surface_.find(middle, middle, length)) {
     const ClosestPoint p = closest_point(middle, surface_.corners(t));
-    if (p.squared_distance >= least) continue;
+    if (!is_nearer(p.squared_distance, least)) continue;
     least = p.squared_distance;
     nearest = {surface_.triangle(t), p.weights};
   }

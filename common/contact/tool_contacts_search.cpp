@@ -163,7 +163,7 @@ void ToolContacts::add_face(const MovingTool& moving, int tool, int part, std::s
     const Triangle corners = surface_.corners(t);
     const ClosestPoint p = closest_point(centre, corners);
     const Eigen::Vector3d at = p.weights[0] * corners[0] + p.weights[1] * corners[1] + p.weights[2] * corners[2];
-    if (p.squared_distance >= least || (centre - at).dot(surface_.triangle_normal(t)) <= 0) continue;
+    if (!is_nearer(p.squared_distance, least) || (centre - at).dot(surface_.triangle_normal(t)) <= 0) continue;
     least = p.squared_distance;
     nearest = t;
     weights = p.weights;
@@ -205,7 +205,7 @@ void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<
   const auto& x = surface_.positions();
   const ClosestPoint own = closest_point(centre, {x[now.nodes[0]], x[now.nodes[1]], x[now.nodes[2]]});
   Anchor followed{now.nodes, own.weights};
-  double least = own.squared_distance * (1 - 1e-9);
+  double least = own.squared_distance;
   for (int t : near) {
     const auto& nodes = surface_.triangle(t);
     bool across = own.weights.minCoeff() <= 0 && nodes != now.nodes;
@@ -213,7 +213,7 @@ void ToolContacts::follow(int contact, const Eigen::Vector3d& centre, std::span<
       across &= own.weights[v] <= 0 || std::find(nodes.begin(), nodes.end(), now.nodes[v]) != nodes.end();
     if (!across || triangle_taken(law_.contacts()[contact].tool_point().tool, nodes, contact)) continue;
     const ClosestPoint p = closest_point(centre, surface_.corners(t));
-    if (p.squared_distance >= least) continue;
+    if (!is_nearer(p.squared_distance, least)) continue;
     least = p.squared_distance;
     followed = {nodes, p.weights};
   }

@@ -199,11 +199,10 @@ void ToolContacts::find_faces(const MovingTool& moving, int tool, int part, std:
     const auto& nodes = surface_.triangle(t);
     const Eigen::Vector3d away = axis.at(p.share) - at;
     if (away.dot(outward(nodes)) <= 0 || away.dot(surface_.outer_side(nodes)) <= 0) continue;
-    candidates_.push_back({t, p.share, p.squared_distance});
+    const auto farther = std::ranges::find_if(
+        candidates_, [&](const Candidate& c) { return is_nearer(p.squared_distance, c.squared_distance); });
+    candidates_.insert(farther, {t, p.share, p.squared_distance});
   }
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.triangle < b.triangle;
-  });
 }
 
 }  // namespace palpate

@@ -14,6 +14,12 @@ struct ClosestPoint {
 };
 ClosestPoint closest_point(const Eigen::Vector3d& p, const Triangle& triangle);
 
+/// Of two squared distances: whether one is less by more than rounding. Triangles that share the nearest edge or corner
+/// are equally near, and which of them is taken must not hang on rounding: the first one.
+constexpr bool is_nearer(double squared, double than) {
+  return squared < (1 - 1e-6) * than;
+}
+
 /// First time at which a point that moves linearly crosses a triangle whose corners move linearly.
 ///
 /// Outside is the side of the normal, the triangle's plane included; a crossing is a change of side. So a

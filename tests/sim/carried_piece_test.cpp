@@ -1,11 +1,15 @@
 // What jaws carry has weight and inertia and nothing else: in hepatectomy, from the cut to the end.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
 #include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
+#include "tools/rig/example_bodies.hpp"
+#include "tools/rig/kinds.hpp"
+#include "tools/rig/press_rig.hpp"
 #include "tools/rig/two_nodes.hpp"
 
 namespace palpate {
@@ -84,6 +88,54 @@ TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
   fmt::print("in the mean {:.4f} N, where {:.4f} kg under the jaws' own motion ask for {:.4f} N, off by {:.4f} N\n",
              all_felt.norm(), before.mass, carried.norm(), (all_felt - carried).norm());
   EXPECT_LT((all_felt - carried).norm(), 0.1 * carried.norm());
+}
+
+/// [J] of motion and of the tissue's springs.
+double energy_of(const DynamicOrgan& organ) {
+  double sum = 0;
+  for (int n = 0; n < organ.mesh().nodes(); ++n) {
+    if (!organ.topology().has_node(n)) continue;
+    sum += 0.5 * organ.model().mass(n) * organ.model().velocity(n).squaredNorm();
+    sum -= 0.5 * organ.model().elastic_force(n).dot(organ.model().displacement(n));
+  }
+  return sum;
+}
+
+// A block that hangs on nothing but the jaws at its top, which move aside and stop: the swing about them, most of it a
+// turn of all of it, comes to rest as quickly as tissue's other motions do.
+TEST(CarriedPiece, SwingsAboutTheJawsNoLongerThanItsDampingLetsIt) {
+  constexpr double kDamping = 5, kWindow = 0.5;  // [1/s]; [s], some swings long
+  constexpr int kMoves = 50, kTicks = 3000;
+  Scene scene = moving_block_scene(TensorMassSpec{}, 0.3);
+  moving_block_of(scene).dynamic.damping = kDamping;
+  std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{.length = 0.012, .width = 0.012, .closed_below = 0.1};
+  PressRig rig(scene, {precompute_on(scene.bodies[0], small_block_mesh())});
+  const std::vector<std::array<int, 4>>& all = rig.archives()[0].tetrahedra;
+  std::vector<std::uint32_t> below;
+  for (std::size_t t = 0; t < all.size(); ++t)
+    if (std::ranges::any_of(all[t], [&](int n) { return rig.organ().mesh().fixed[n][2]; }))
+      below.push_back(static_cast<std::uint32_t>(t));
+  ASSERT_TRUE(rig.tissue().organ(0).begin_without(below));
+  const double heavy = floating(rig.organ()).mass;
+  ASSERT_GT(heavy, 0);
+  std::vector<double> energy(1, 0.0);  // [J] mean of each window
+  const int window = static_cast<int>(kWindow / rig.dt());
+  for (int k = 0; k < kTicks; ++k) {
+    ToolDofs dofs = tip_at(scene.tools[0], {0.005 * std::min(1.0, k / double{kMoves}), 0, 0.024});
+    dofs.grip = 0;
+    rig.press(std::array{dofs});
+    ASSERT_TRUE(rig.organ().holds(0));
+    if (k < kMoves) continue;
+    energy.back() += energy_of(rig.organ()) / window;
+    if ((k - kMoves) % window == window - 1) energy.push_back(0);
+  }
+  energy.pop_back();
+  fmt::print("{:.3f} kg, mean energy in windows of {} s: {:.2g} J\n", heavy, kWindow, fmt::join(energy, ", "));
+  ASSERT_GT(energy.size(), 4u);
+  ASSERT_GT(energy[0], 1e-7);
+  // All of the energy swings between motion and springs, and damping takes from motion alone: exp(-damping t).
+  for (std::size_t w = 0; w + 1 < energy.size(); ++w)
+    EXPECT_LT(energy[w + 1], 2 * std::exp(-kDamping * kWindow) * energy[w]) << w;
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ bool CuttableTissue::cut(std::span<const Glow> glows) {
       int nearest = -1;
       for (int facet : surface_.find(tip, tip, radius)) {
         const double squared = closest_point(tip, surface_.corners(facet)).squared_distance;
-        if (squared >= least) continue;
+        if (!is_nearer(squared, least)) continue;
         least = squared;
         nearest = facet;
       }
@@ -100,8 +100,8 @@ void CuttableTissue::begin_tick() {
   for (FloatingPart& part : floating_) part.keep_loads(model_);
 }
 
-void CuttableTissue::begin_step() {
-  for (FloatingPart& part : floating_) part.give_back_damping(model_, mesh_.rest);
+void CuttableTissue::begin_step(std::span<const JawHold> held, double dt) {
+  for (FloatingPart& part : floating_) part.give_back_damping(model_, mesh_.rest, held, dt);
 }
 
 void CuttableTissue::fade(int node, const Eigen::Vector3d& force) {

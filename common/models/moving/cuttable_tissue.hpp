@@ -53,8 +53,8 @@ class CuttableTissue {
 
   /// Before a tick: what has been cut away fades, and what floats is damped for its swinging alone.
   void begin_tick();
-  /// Before each step of the tick.
-  void begin_step();
+  /// Before each step of the tick, of `dt` [s]. `held`: what jaws hold.
+  void begin_step(std::span<const JawHold> held, double dt);
   /// `force` [N], which was on a node, fades from now on.
   void fade(int node, const Eigen::Vector3d& force);
 

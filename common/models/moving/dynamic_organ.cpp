@@ -132,7 +132,7 @@ void DynamicOrgan::advance(std::span<const ToolInTick> tools, double dt) {
   for (int s = 1; s <= steps; ++s) {
     move_tools(static_cast<double>(s) / steps);
     if (still_) still_->hold(in_step_);
-    tissue_.begin_step();
+    tissue_.begin_step(contacts_.held(in_step_), dt / steps);
     if (touched)
       contacts_.step(in_step_, dt / steps);
     else

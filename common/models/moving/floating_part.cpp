@@ -2,10 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 namespace palpate {
 
+using Eigen::Affine3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -23,7 +25,44 @@ void FloatingPart::keep_loads(const DynamicModel& model) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) load_[i] = model.load(nodes_[i]);
 }
 
-void FloatingPart::give_back_damping(DynamicModel& model, std::span<const Vector3d> rest) {
+bool FloatingPart::is_held_by(const JawHold& hold) const {
+  return std::ranges::find(nodes_, hold.anchor.nodes[0]) != nodes_.end();
+}
+
+void FloatingPart::give_back_damping(DynamicModel& model, std::span<const Vector3d> rest, std::span<const JawHold> held,
+                                     double dt) {
+  int count = 0;
+  Affine3d velocity(Affine3d::MatrixType::Zero());  // [m/s] of each place [m], as the mean of the jaws takes it along
+  for (const JawHold& hold : held) {
+    if (!is_held_by(hold)) continue;
+    ++count;
+    velocity.affine() += (hold.motion.matrix() - Eigen::Matrix4d::Identity()).topRows<3>() / dt;
+  }
+  if (count == 0) return go_on(model, rest);
+  velocity.affine() /= count;
+  const Vector3d braking = go_along(model, rest, velocity);
+  for (const JawHold& hold : held)
+    for (int v = 0; v < 3 && is_held_by(hold); ++v) {
+      const int n = hold.anchor.nodes[v];
+      model.set_load(n, model.load(n) - hold.anchor.weights[v] / count * braking);
+    }
+}
+
+// With jaws. Returns what brakes all of it against them [N].
+Vector3d FloatingPart::go_along(DynamicModel& model, std::span<const Vector3d> rest, const Affine3d& velocity) {
+  Vector3d braking = Vector3d::Zero();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const int n = nodes_[i];
+    const double rate = damping_ * model.mass(n);
+    const Vector3d along = velocity * Vector3d(rest[n] + model.displacement(n));
+    braking -= rate * (model.velocity(n) - along);
+    model.set_load(n, load_[i] + rate * along);
+  }
+  return braking;
+}
+
+// As a rigid body.
+void FloatingPart::go_on(DynamicModel& model, std::span<const Vector3d> rest) {
   const auto place = [&](int n) -> Vector3d { return rest[n] + model.displacement(n); };
   const Vector3d origin = place(nodes_[0]);
   double mass = 0;

@@ -168,7 +168,7 @@ bool TissuePatches::find_place(const Tip& tip, const MovingTool& tool, Vector3d&
     for (const int t : ground.surface.find(tool.axis_before(kTip).start, middle, std::sqrt(least))) {
       if (ground.triangle[t] < 0) continue;
       const ClosestPoint p = closest_point(middle, ground.surface.corners(t));
-      if (p.squared_distance >= least) continue;
+      if (!is_nearer(p.squared_distance, least)) continue;
       least = p.squared_distance;
       place = anchor_position({ground.surface.triangle(t), p.weights}, map_.position);
       found = true;

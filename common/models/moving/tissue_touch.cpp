@@ -45,6 +45,7 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
   aimed_.reserve(kMaxContacts);
   all_.reserve(2 * kMaxContacts + settings.tools.size());
   leavers_.reserve(kMaxContacts);
+  holds_.reserve(kMaxContacts);
 }
 
 void TissueTouch::find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds) {
@@ -70,6 +71,16 @@ void TissueTouch::gather() {
 
 bool TissueTouch::grasping(int tool) const {
   return law_.grasps(tool);
+}
+
+std::span<const JawHold> TissueTouch::held(std::span<const MovingTool> tools) {
+  holds_.clear();
+  for (const TouchContact& c : law_.contacts()) {
+    if (!c.grasped) continue;
+    const MovingTool& tool = tools[c.tool_point().tool];
+    holds_.push_back({c.anchor, tool.now * tool.before.inverse()});
+  }
+  return holds_;
 }
 
 // Gone at once, its force would be a blow to the hand.

@@ -8,6 +8,7 @@
 #include "common/contact/cut_surface.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/dynamic_model.hpp"
+#include "common/models/moving/floating_part.hpp"
 #include "common/models/moving/inertial_response.hpp"
 #include "common/models/moving/tissue_patches.hpp"
 
@@ -40,6 +41,8 @@ class TissueTouch {
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
   bool grasping(int tool) const;
+  /// What jaws hold. `tools`: as they are at the beginning and end of a step. Valid until the next call.
+  std::span<const JawHold> held(std::span<const MovingTool> tools);
 
   /// One step of `dt` [s], as in find(), of the tissue with contacts. `tools`: as they are at its beginning and end.
   void step(std::span<const MovingTool> tools, double dt);
@@ -84,6 +87,7 @@ class TissueTouch {
   std::unique_ptr<TissuePatches> patches_;  ///< null: tips touch as everything else does
   ToolContacts contacts_;
   std::vector<TouchContact> all_;
+  std::vector<JawHold> holds_;
   int fading_ticks_;
   std::vector<Leaver> leavers_;
   std::vector<PatchForce> loose_;  ///< [N] of the last cut
