@@ -58,11 +58,12 @@ Eigen::Vector3d up_across(const Eigen::Vector3d& sight) {
   return std::abs(sight.normalized().z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
 }
 
-std::string material_text(const TetMesh& mesh) {
+/// Of the groups that have the name of another tissue than the body's own.
+std::string material_text(const TetMesh& mesh, const Tissue& own) {
   std::string text;
   for (const auto& [name, group] : mesh.groups) {
     const Tissue* const tissue = find_tissue(name);
-    if (!tissue || group.tetrahedra.empty()) continue;
+    if (!tissue || tissue == &own || group.tetrahedra.empty()) continue;
     text += fmt::format(
         "\n[[body.material]]\ngroup = \"{}\"\nyoung = {}   # Pa; {} to {}: {}\npoisson = {}\ndensity = {}\n", name,
         tissue->young, tissue->young_low, tissue->young_high, tissue->source, tissue->poisson, tissue->density);
@@ -170,9 +171,9 @@ trajectory = "{14}"
 friction = 0.3
 )",
                             tissue.name, mesh_name, tissue.young, tissue.young_low, tissue.young_high, tissue.source,
-                            tissue.poisson, tissue.density, material_text(mesh), wishes.fixed, vector_text(pivot),
-                            vector_text(-spot.normal), vector_text(up_across(spot.normal)), wishes.radius,
-                            trajectory_name, kind_of(DeviceSpec{}), visual_text(wishes.visual));
+                            tissue.poisson, tissue.density, material_text(mesh, tissue), wishes.fixed,
+                            vector_text(pivot), vector_text(-spot.normal), vector_text(up_across(spot.normal)),
+                            wishes.radius, trajectory_name, kind_of(DeviceSpec{}), visual_text(wishes.visual));
   texts.scene += camera_text(spot, mean_place(mesh, surface.nodes), extent);
   return texts;
 }

@@ -11,16 +11,15 @@ namespace {
 
 using namespace palpate::testing;
 
-/// A block of 100 x 80 x 60 mm held at its bottom, of which one half is of another tissue.
+/// A block of 100 x 80 x 60 mm held at its bottom, a kidney of which some is fat.
 class ToolsScene : public ::testing::Test {
  protected:
   ToolsScene() {
     TetMesh mesh = make_block({0, 0, 0}, {0.1, 0.08, 0.06}, {4, 4, 4});
     mesh.groups = {{"attachment", mesh.groups.at("bottom")}};
-    MeshGroup half;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-      if (mesh.nodes[mesh.tetrahedra[t][0]].x() < 0.04) half.tetrahedra.push_back(static_cast<int>(t));
-    mesh.groups["fat"] = half;
+      mesh.groups[mesh.nodes[mesh.tetrahedra[t][0]].x() < 0.04 ? "fat" : "kidney"].tetrahedra.push_back(
+          static_cast<int>(t));
     write_tet_mesh(mesh, folder_ / "block.msh");
     const auto made = run_program(program("palpate") + " scene " + (folder_ / "block.msh").string() +
                                   " --tissue kidney -o " + scene());
@@ -47,10 +46,12 @@ TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
   const std::size_t warning = result.out.find("warning:");
   ASSERT_NE(warning, std::string::npos) << result.out;
   EXPECT_NE(result.out.find("is of other materials than its own", warning), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("100 % of what can be touched"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("warning:", warning + 1), std::string::npos) << result.out;
   for (const char* said : {"size: 100 x 80 x 60 mm, 480 ml", "dihedral angles: smallest", "young 10000 Pa",
                            "in group 'fat': young 3000 Pa", "group 'attachment', 25 nodes"})
     EXPECT_NE(result.out.find(said), std::string::npos) << said << "\n" << result.out;
+  EXPECT_EQ(result.out.find("in group 'kidney'"), std::string::npos) << result.out;
   const auto run =
       run_program(fmt::format("{} run {} --seconds 3.5 --domain {}", program("palpate"), scene(), own_domain()));
   ASSERT_EQ(run.status, 0) << run.err;

@@ -117,7 +117,11 @@ std::array<int, 3> ascending(std::array<int, 3> nodes) {
   return nodes;
 }
 
-TouchedArea touched_area(const CheckedSolid& solid) {
+bool feels_as(const Material& a, const Material& b) {
+  return a.young == b.young && a.poisson == b.poisson;
+}
+
+TouchedArea touched_area(const CheckedSolid& solid, const Material& own) {
   const SurfaceMap& surface = solid.surface;
   std::map<std::array<int, 3>, double> area;  // of the triangles that can be touched, by their mesh nodes
   TouchedArea sum;
@@ -129,7 +133,7 @@ TouchedArea touched_area(const CheckedSolid& solid) {
     sum.all += size;
   }
   for (std::size_t e = 0; e < solid.materials.of_element.size(); ++e) {
-    if (solid.materials.of_element[e] == 0) continue;
+    if (feels_as(solid.materials.at(static_cast<int>(e)), own)) continue;
     const auto& n = solid.mesh.tetrahedra[e];
     for (const auto& [i, j, k] : {std::array{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}})
       if (const auto found = area.find(ascending({n[i], n[j], n[k]})); found != area.end()) sum.other += found->second;
@@ -141,7 +145,7 @@ TouchedArea touched_area(const CheckedSolid& solid) {
 void warn_of_regions(const QuasiStaticSpec& body, const CheckedSolid& solid, const CheckSettings& settings,
                      CheckReport& report) {
   if (settings.contact.rule != ContactRule::patch || settings.tools.empty()) return;
-  const TouchedArea area = touched_area(solid);
+  const TouchedArea area = touched_area(solid, body.material);
   if (area.other == 0) return;
   report.warnings.push_back(fmt::format(
       "{:.0f} % of what can be touched of body '{}' is of other materials than its own: a patch feels the tissue next "
