@@ -47,4 +47,16 @@ inline cholmod_sparse cholmod_view(const SparseMatrix& lower) {
   return view;
 }
 
+/// A view of a dense matrix, by columns; copies nothing.
+inline cholmod_dense cholmod_view(const Eigen::MatrixXd& matrix) {
+  cholmod_dense view{};
+  view.nrow = view.d = matrix.rows();
+  view.ncol = matrix.cols();
+  view.nzmax = matrix.size();
+  view.x = const_cast<double*>(matrix.data());
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  return view;
+}
+
 }  // namespace palpate

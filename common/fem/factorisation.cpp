@@ -8,18 +8,36 @@
 
 namespace palpate {
 
-struct Factorisation::Impl {
+struct Factorisation::Scratch::Impl {
   CholmodContext context;
-  cholmod_factor* factor = nullptr;
-  double flops = 0;
-  std::int64_t nonzeros = 0;
-  // Scratch of cholmod_l_solve2, kept between calls.
-  cholmod_dense* workspace[2] = {nullptr, nullptr};
+  cholmod_dense* workspace[2] = {nullptr, nullptr};  // of cholmod_l_solve2
 
   ~Impl() {
     for (auto& dense : workspace) cholmod_l_free_dense(&dense, context.get());
-    cholmod_l_free_factor(&factor, context.get());
   }
+};
+
+Factorisation::Scratch::Scratch() : impl_(std::make_unique<Impl>()) {}
+Factorisation::Scratch::~Scratch() = default;
+
+namespace {
+
+[[noreturn]] void fail(int status, const std::string& what) {
+  if (status == CHOLMOD_OUT_OF_MEMORY) throw std::runtime_error(what + ": not enough memory");
+  if (status == CHOLMOD_TOO_LARGE) throw std::runtime_error(what + ": the problem is too large");
+  throw std::runtime_error(fmt::format("{} (CHOLMOD status {})", what, status));
+}
+
+}  // namespace
+
+struct Factorisation::Impl {
+  CholmodContext context;
+  Scratch scratch;
+  cholmod_factor* factor = nullptr;
+  double flops = 0;
+  std::int64_t nonzeros = 0;
+
+  ~Impl() { cholmod_l_free_factor(&factor, context.get()); }
 
   void analyse(const SparseMatrix& lower, std::span<const std::int64_t> order) {
     auto view = cholmod_view(lower);
@@ -30,15 +48,9 @@ struct Factorisation::Impl {
     context->postorder = order.empty();
     auto* permutation = const_cast<std::int64_t*>(order.data());
     factor = cholmod_l_analyze_p(&view, reinterpret_cast<SuiteSparse_long*>(permutation), nullptr, 0, context.get());
-    if (!factor) throw std::runtime_error(failure("the analysis of the stiffness matrix failed"));
+    if (!factor) fail(context->status, "the analysis of the stiffness matrix failed");
     flops = context->fl;
     nonzeros = static_cast<std::int64_t>(context->lnz);
-  }
-
-  std::string failure(const std::string& what) {
-    if (context->status == CHOLMOD_OUT_OF_MEMORY) return what + ": not enough memory";
-    if (context->status == CHOLMOD_TOO_LARGE) return what + ": the problem is too large";
-    return fmt::format("{} (CHOLMOD status {})", what, context->status);
   }
 };
 
@@ -68,24 +80,23 @@ void Factorisation::factorise(const SparseMatrix& lower) {
         "elements "
         "are degenerate");
   if (impl_->context->status < CHOLMOD_OK)
-    throw std::runtime_error(impl_->failure("the factorisation of the stiffness matrix failed"));
+    fail(impl_->context->status, "the factorisation of the stiffness matrix failed");
 }
 
 Eigen::MatrixXd Factorisation::solve(const Eigen::MatrixXd& b) const {
-  cholmod_dense view{};
-  view.nrow = view.d = b.rows();
-  view.ncol = b.cols();
-  view.nzmax = b.size();
-  view.x = const_cast<double*>(b.data());
-  view.xtype = CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  cholmod_dense* x = nullptr;
-  cholmod_l_solve2(CHOLMOD_A, impl_->factor, &view, nullptr, &x, nullptr, &impl_->workspace[0], &impl_->workspace[1],
-                   impl_->context.get());
-  if (!x) throw std::runtime_error(impl_->failure("the solution with the factor failed"));
-  Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), b.rows(), b.cols());
-  cholmod_l_free_dense(&x, impl_->context.get());
-  return result;
+  Eigen::MatrixXd x;
+  solve_into(b, x, impl_->scratch);
+  return x;
+}
+
+void Factorisation::solve_into(const Eigen::MatrixXd& b, Eigen::MatrixXd& x, Scratch& scratch) const {
+  x.resize(b.rows(), b.cols());
+  auto right = cholmod_view(b), answer = cholmod_view(x);
+  cholmod_dense* into = &answer;  // which CHOLMOD keeps, since it has the size of the answer
+  auto& [context, workspace] = *scratch.impl_;
+  if (!cholmod_l_solve2(CHOLMOD_A, impl_->factor, &right, nullptr, &into, nullptr, &workspace[0], &workspace[1],
+                        context.get()))
+    fail(context->status, "the solution with the factor failed");
 }
 
 Eigen::MatrixXd Factorisation::trailing_factor(int count) const {

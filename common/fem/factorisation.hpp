@@ -12,6 +12,18 @@ namespace palpate {
 /// indices). Constructing analyses the pattern only; factorise() does the arithmetic.
 class Factorisation {
  public:
+  /// Room that solving takes, kept from one time to the next. It belongs to the thread that makes it.
+  class Scratch {
+   public:
+    Scratch();
+    ~Scratch();
+
+   private:
+    friend class Factorisation;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+  };
+
   /// Orders with METIS.
   explicit Factorisation(const SparseMatrix& lower);
   /// Keeps the given order exactly: position i of the factor is row order[i].
@@ -27,6 +39,9 @@ class Factorisation {
 
   /// Solves K X = B for all columns of B at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  /// The same into `x`, whose memory serves again where its size is the same; threads solve at once, each with a
+  /// scratch of its own.
+  void solve_into(const Eigen::MatrixXd& b, Eigen::MatrixXd& x, Scratch& scratch) const;
 
   /// The last `count` rows and columns of L, dense; above the diagonal zero.
   Eigen::MatrixXd trailing_factor(int count) const;

@@ -38,6 +38,9 @@ class FineFactor {
 
   /// K^-1 B for free dofs; `corrected` once by its own residual.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_->solve(b); }
+  void solve_into(const Eigen::MatrixXd& b, Eigen::MatrixXd& x, Factorisation::Scratch& scratch) const {
+    factor_->solve_into(b, x, scratch);
+  }
   Eigen::MatrixXd solve_corrected(const Eigen::MatrixXd& b) const;
   double flops() const { return factor_->flops(); }
   double nonzeros() const { return static_cast<double>(factor_->factor_nonzeros()); }

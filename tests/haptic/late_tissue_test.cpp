@@ -63,7 +63,7 @@ TEST_F(LateTissue, ATickThatCameLateIsToldForAWhileAndChangesNoForce) {
 
 // Models that come each step are never too old, however slowly the tissue in them moves.
 TEST_F(LateTissue, TissueThatGoesSlowlyIsToldFromATenthOn) {
-  for (const auto [share, told] : {std::pair{0.05, false}, {0.09, false}, {0.12, true}, {0.5, true}}) {
+  for (const auto& [share, told] : {std::pair{0.05, false}, {0.09, false}, {0.12, true}, {0.5, true}}) {
     go_on(1000);
     take_late_steps();
     for (int i = 0; i < 1000; ++i) feel(late_ns_ + std::llround(share * kTickNs));

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
 // Of surface nodes squared [s], measured on one core (docs/organ.md): with quadratic elements and with linear ones.
-constexpr double kQuadraticSeconds = 7e-6, kLinearSeconds = 1.3e-6;
+constexpr double kQuadraticSeconds = 6e-6, kLinearSeconds = 1.3e-6;
 
 void write_whole(const TetMesh& mesh, const std::filesystem::path& file) {
   AtomicFile whole(file);

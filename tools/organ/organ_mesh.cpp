@@ -13,6 +13,7 @@
 #include "common/mesh/normals.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/organ/better_angles.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/mesh_pieces.hpp"
 
@@ -185,6 +186,7 @@ FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, cons
   FilledSolid filled = fill_solid(solid, sizes);
   check_complete(measures, filled);
   project(solid, filled.mesh);
+  better_angles(kKeptAngle, filled);
   if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
   check_tet_mesh(filled.mesh, "the mesh that was made");
   if (const double angle = measures_of(filled.mesh).smallest_angle; angle < kWorstAngle)

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <future>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
-#include "common/fem/dense.hpp"
+#include "common/fem/all_cores.hpp"
 #include "common/fem/linear_contact.hpp"
 #include "common/fem/newton_solid.hpp"
 #include "common/mesh/surface.hpp"
@@ -143,23 +140,17 @@ std::vector<PressedPlace> press_by_laws(const StaticProblem& problem, const Surf
                                         const NeoHookeanLaw& law, const std::string& body, const Progress& progress) {
   const auto spots = choose_spots(surface, law.ball_radius, law.places);
   std::vector<PressedPlace> places(spots.size());
-  const OneLinearAlgebraThread one_each;
-  std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
   std::mutex telling;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < spots.size(); i = next++) {
+  on_all_cores(spots.size(), [&] {
+    return [&](std::size_t i) {
       const auto begin = std::chrono::steady_clock::now();
       places[i] = press(problem, spots[i]);
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
       const std::lock_guard lock(telling);
       if (progress) progress(sentence(++done, spots.size(), places[i], law.ball_radius), taken.count());
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-    workers.push_back(std::async(std::launch::async, work));
-  for (auto& worker : workers) worker.get();
+    };
+  });
   std::erase_if(places, [](const PressedPlace& p) { return p.force.empty(); });
   if (places.empty())
     throw std::runtime_error(fmt::format("body '{}': [body.nonlinear]: no press with a ball of {} m finds equilibrium",

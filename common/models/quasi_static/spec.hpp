@@ -107,7 +107,7 @@ inline void describe(Description& d, QuasiStaticSpec& b) {
 Offline offline_of(const QuasiStaticSpec& body, int surface_nodes);
 /// Why it is that, in words; empty where the body says so itself.
 std::string why_offline(const QuasiStaticSpec& body, int surface_nodes);
-inline constexpr int kMaxQuadratic = 2000;
+inline constexpr int kMaxQuadratic = 3000;
 /// How tensors are stored: whole, or compressed, near blocks dense and far ones of low rank. Which
 /// one follows from the number of touchable nodes.
 enum class TensorForm { dense, compressed };
