@@ -18,6 +18,14 @@ class MeshCommand : public ::testing::Test {
   ProgramResult mesh(const std::string& arguments) const {
     return run_program(program("palpate") + " mesh " + arguments);
   }
+  /// Of a surface, held at its bottom, with edges of 20 mm; where it was written.
+  std::string mesh_of(const std::string& surface, const std::string& name, const std::string& more = "") const {
+    const std::string output = (folder_ / name).string();
+    const auto made =
+        mesh(surface + " --group attachment=below:z --edge 0.02 --deviation 0.002" + more + " -o " + output);
+    EXPECT_EQ(made.status, 0) << made.err;
+    return output;
+  }
   const OwnFolder folder_{"organ"};
 };
 
@@ -58,6 +66,24 @@ TEST_F(MeshCommand, TheRadiusOfAToolMakesItFinerOnTheSideThatIsNotHeld) {
   }
   EXPECT_GT(near, 5 * opposite) << made.out;
   expect_refusal(program("palpate") + " mesh " + file + " --tool-radius 0.008" + to, {"--tool-radius needs a --group"});
+}
+
+TEST_F(MeshCommand, ASceneMakesItFinerWhereItsToolsGo) {
+  const auto file = write_file(folder_ / "ball.stl", text_stl(make_sphere({0, 0, 0}, 0.05, 20))).string();
+  const std::string coarse = mesh_of(file, "a.msh"), scene = (folder_ / "a.toml").string();
+  const auto made = run_program(program("palpate") + " scene " + coarse + " --tissue liver --radius 0.005 -o " + scene);
+  ASSERT_EQ(made.status, 0) << made.err;
+  const TetMesh body = load_tet_mesh(mesh_of(file, "b.msh", " --for " + scene), 1);
+  int near = 0, opposite = 0;  // the scene's tool comes from the side that is not held
+  for (const int n : extract_surface(body).nodes) {
+    near += (body.nodes[n] - Eigen::Vector3d(0, 0, 0.05)).norm() < 0.02;
+    opposite += (body.nodes[n] + Eigen::Vector3d(0, 0, 0.05)).norm() < 0.02;
+  }
+  EXPECT_GT(near, 5 * opposite);
+  const auto far = write_file(folder_ / "far.stl", text_stl(make_sphere({1, 0, 0}, 0.05, 8))).string();
+  const auto refused = mesh(far + " --for " + scene + " -o " + (folder_ / "c.msh").string());
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("a.toml: none of its tools comes to the organ"), std::string::npos) << refused.err;
 }
 
 TEST_F(MeshCommand, MistakesAreToldInASentence) {

@@ -13,6 +13,7 @@
 #include "common/models/quasi_static/spec.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/places.hpp"
+#include "tools/organ/scene_places.hpp"
 
 namespace palpate {
 namespace {
@@ -79,6 +80,10 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
                   "Of the tool's tip [m]: edges of half of it on the side that lies farthest from the first --group")
       .positive();
   command
+      .add_option("--for", o.scene,
+                  "Scene whose tools press the organ: edges of half a tip's radius along their motions (.toml)")
+      .excludes({"--tool-radius"});
+  command
       .add_option("--group", o.groups,
                   "Names nodes of the surface: NAME=below:z (the lowest tenth; above, x, y too), NAME=below:z:0.01, "
                   "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz [m]; may be given again")
@@ -95,13 +100,15 @@ Fineness fineness_of(const MeshOptions& o) {
   return f;
 }
 
-void add_touched_place(Fineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
-  constexpr double kOfRadius = 3, kEdge = 0.5;  // of the tip's radius: what it comes near, and edges there
-  if (o.tool_radius == 0) return;
-  const Eigen::Vector3d place = farthest_from_group(o.groups[0], surface);
-  fineness.fine.push_back({place, place, kOfRadius * o.tool_radius, kEdge * o.tool_radius});
-  fmt::print("  edges of {:.3g} mm around {}, where the tool touches\n", 1e3 * kEdge * o.tool_radius,
-             place_in_mm(place));
+void add_touched_places(Fineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
+  std::vector<FinePlace> places;
+  if (o.tool_radius > 0) places.push_back(pressed_place(farthest_from_group(o.groups[0], surface), o.tool_radius));
+  if (!o.scene.empty()) places = pressed_places(o.scene, surface);
+  if (!places.empty())
+    fmt::print("  edges of {:.3g} mm where the tool touches, around {}{}\n", 1e3 * places[0].edge,
+               place_in_mm(places[0].low),
+               places.size() == 1 ? "" : fmt::format(" and {} more places of its way", places.size() - 1));
+  fineness.fine.insert(fineness.fine.end(), places.begin(), places.end());
 }
 
 void finish_mesh(TetMesh mesh, const MeshOptions& o) {

@@ -9,7 +9,7 @@ namespace palpate {
 
 /// The options that `palpate mesh` and `palpate organ` share.
 struct MeshOptions {
-  std::string output, report;
+  std::string output, report, scene;
   int nodes = 1500;
   double edge = 0, inside = 0, deviation = 0, density = 1060, tool_radius = 0;
   std::vector<std::string> fine, groups;
@@ -20,9 +20,9 @@ void add_mesh_options(cli::Command& command, MeshOptions& options);
 /// Throws std::runtime_error where a place cannot be read, or a tool has no group to be opposite to.
 Fineness fineness_of(const MeshOptions& options);
 
-/// Where --tool-radius asks for it: a place on the surface, told by points of it [m], opposite to the first group,
-/// whose edges are half the radius. Throws std::runtime_error.
-void add_touched_place(Fineness& fineness, const MeshOptions& options, const std::vector<Eigen::Vector3d>& surface);
+/// Where tools touch a surface that is told by points of it [m], if --tool-radius (opposite to the first group) or
+/// --for asks for it: edges there are half the tip's radius. Throws std::runtime_error.
+void add_touched_places(Fineness& fineness, const MeshOptions& options, const std::vector<Eigen::Vector3d>& surface);
 
 /// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and prints its measures and what
 /// it will take. Throws std::runtime_error.

@@ -46,7 +46,7 @@ void make_mesh(const SurfaceOptions& o) {
   findings.insert(findings.end(), surface.findings.begin(), surface.findings.end());
   tell_findings(findings, o.report);
   if (findings.empty()) fmt::print("  found: nothing to repair\n");
-  add_touched_place(fineness, o, surface.mesh.nodes);
+  add_touched_places(fineness, o, surface.mesh.nodes);
   std::fflush(stdout);
   SurfaceSolid solid = of_file(o.surface, [&] {
     check_extent(surface.mesh);  // again: what made it large may be left out

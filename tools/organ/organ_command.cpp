@@ -155,7 +155,7 @@ Fineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const 
   fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * share));
   std::vector<Eigen::Vector3d> surface;
   for (const Eigen::Vector3d& x : solid.border) surface.push_back(volume.in_world(x));
-  add_touched_place(fineness, o, surface);
+  add_touched_places(fineness, o, surface);
   for (FinePlace& place : fineness.fine) place = in_image(place, volume);
   return fineness;
 }

@@ -26,6 +26,7 @@ constexpr double kNearEnough = 0.08;  // of the number of nodes
 constexpr double kSameVolume = 1e-4;
 constexpr double kWorstAngle = 12;     // [degrees] that every mesh has
 constexpr double kKeptAngle = 14;      // [degrees] to which moving a node to the surface may lower one
+constexpr int kBetterings = 3;         // after the surface is exact
 constexpr int kOtherEdges = 5;         // tried where a mesh is no good
 constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds both sides of a wall that is longer
 constexpr double kLongestOfGuess = 2;  // where the deviation asks for more nodes, longer edges do not help
@@ -93,10 +94,11 @@ std::vector<double> volumes_of(const FilledSolid& filled, std::size_t parts) {
   return volumes;
 }
 
-/// Adds to each part's nodes on the outer surface what brings its volume nearer; true once all are right.
+/// Adds to each part's nodes on the outer surface what brings its volume nearer, more where triangles are large, since
+/// those have lost it; true once all are right.
 bool step_to_volumes(const Surface& surface, const std::vector<double>& volumes, FilledSolid& filled) {
   TetMesh& mesh = filled.mesh;
-  std::vector<double> missing = volumes_of(filled, volumes.size()), area(volumes.size(), 0);
+  std::vector<double> missing = volumes_of(filled, volumes.size()), squares(volumes.size(), 0);
   bool right = true;
   for (std::size_t p = 0; p < volumes.size(); ++p) {
     missing[p] = volumes[p] - missing[p];
@@ -106,15 +108,16 @@ bool step_to_volumes(const Surface& surface, const std::vector<double>& volumes,
   std::vector<Eigen::Vector3d> normals(mesh.nodes.size());
   vertex_normals(mesh.nodes, surface.triangles, normals);
   std::vector<double> of_node(mesh.nodes.size(), 0), share(mesh.nodes.size(), 0);
+  std::vector<double> area;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const auto& [a, b, c] = surface.triangles[i];
-    area[filled.part[surface.tetrahedra[i]] - 1] +=
-        0.5 * (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]).norm();
+    area.push_back(0.5 * (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]).norm());
+    squares[filled.part[surface.tetrahedra[i]] - 1] += area[i] * area[i];
   }
   for (std::size_t i = 0; i < surface.triangles.size(); ++i)
     for (const int n : surface.triangles[i]) {
       const int part = filled.part[surface.tetrahedra[i]] - 1;
-      of_node[n] += missing[part] / area[part], share[n] += 1;
+      of_node[n] += missing[part] / squares[part] * area[i], share[n] += 1;
     }
   for (const int n : surface.nodes) mesh.nodes[n] += of_node[n] / share[n] * normals[n];
   return false;
@@ -186,8 +189,10 @@ FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, cons
   FilledSolid filled = fill_solid(solid, sizes);
   check_complete(measures, filled);
   project(solid, filled.mesh);
-  better_angles(kKeptAngle, filled);
-  if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
+  for (int i = 0; i < kBetterings; ++i) {
+    better_angles(kKeptAngle, filled);
+    if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
+  }
   check_tet_mesh(filled.mesh, "the mesh that was made");
   if (const double angle = measures_of(filled.mesh).smallest_angle; angle < kWorstAngle)
     throw std::runtime_error(
