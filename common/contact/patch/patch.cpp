@@ -162,21 +162,17 @@ double Patch::gap(int square, const Step& step, const Rise& of_nodes) const {
   return cells_[square].gap + normal_.dot(step.middle - laid_at_) - rise(foot(square), of_nodes);
 }
 
-double Patch::depth(const Step& step) const {
-  const Rise of_nodes = rise_of_nodes(step.moved);
-  double deepest = -std::numeric_limits<double>::infinity();
-  for (int p = 0; p < grid_.size(); ++p)
-    if (laid(p)) deepest = std::max(deepest, gap(p, step, of_nodes));
-  return deepest;
-}
-
-void Patch::step(const Ground& ground, const Step& step) {
+std::span<double> Patch::sink(const Ground& ground, const Step& step) {
   lift_nodes(ground, step.give);
   const Rise of_nodes = rise_of_nodes(step.moved);
   for (int p = 0; p < grid_.size(); ++p) {
     if (!laid(p)) active_[p] = 0;
-    wanted_[p] = laid(p) ? gap(p, step, of_nodes) - step.ease : cells_[p].gap;
+    wanted_[p] = laid(p) ? gap(p, step, of_nodes) : cells_[p].gap;
   }
+  return wanted_;
+}
+
+void Patch::step(const Ground& ground, const Step& step) {
   settle_pressures();
   sum_pressures();
   at_ = step.middle + grid_.radius() * normal_;

@@ -67,7 +67,6 @@ class Patch {
     std::span<const Eigen::Vector3d> moved;  ///< [m] from rest to the step's end, by all but this patch
     std::span<const Eigen::Vector3d> went;   ///< [m] of that within the step
     std::span<const NodeGive> give;          ///< each pair of nodes once; those left out do not move one another
-    double ease = 0;                         ///< [m] of the depth that is not to be put right yet
   };
   /// The nodes that lie under the part now, found by where its axis lies, of a sphere a point; empty: it does not
   /// touch, and forgets its shear. `above` [m]: how far above the rest surface a sphere may be, where that may come
@@ -84,11 +83,11 @@ class Patch {
   /// nodes do under forces comes from its steps, and K is what the body's compliance has beyond both the half-space's
   /// and the nodes' own. `give`: as in Step; the same in all steps of the tick.
   void meet(const Ground& ground, std::span<const NodeGive> give);
-  /// Solves for the pressures and the shear at the end of a step within that tick.
+  /// A step within that tick, first half: [m] by how much the sphere reaches below the surface at each square without
+  /// this patch's forces; -infinity where it lies beside it. What the caller takes off is not put right yet.
+  std::span<double> sink(const Ground& ground, const Step& step);
+  /// Second half: solves for the pressures and the shear at its end.
   void step(const Ground& ground, const Step& step);
-  /// [m] By how much the sphere reaches below the surface at most, in such a step without this patch's forces;
-  /// -infinity where it lies beside it.
-  double depth(const Step& step) const;
   /// Ends a step on tissue that relaxes. `moved` [m]: displacement of those nodes by forces() alone.
   void remember(std::span<const Eigen::Vector3d> moved);
   void lift();  ///< no contact any more

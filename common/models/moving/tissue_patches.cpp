@@ -20,8 +20,7 @@ constexpr double kAbout = 3;    // radii, or longest edges, about a patch over w
 // By which the tissue may go [radii] and turn [rad] under a patch before that goes with it: one that followed each
 // swing would feed it.
 constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
-constexpr double kResolved = 4;     // edges over which linear elements know the true compliance
-constexpr double kFoundDeep = 0.1;  // radii beyond the tool's own motion from which it counts as such
+constexpr double kResolved = 4;  // edges over which linear elements know the true compliance
 
 std::array<int, 3> ascending(std::array<int, 3> nodes) {
   std::ranges::sort(nodes);
@@ -201,11 +200,12 @@ void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
   Vector3d place;
   if (!find_place(tip, tool, place)) return lift(tip);
   const Eigen::Isometry3d motion = motion_about(place, kAbout * std::max(tip.radius, longest_edge_));
-  tip.motion = tip.patch.touches() ? followed(tip.motion, motion, place, kSlackWay * tip.radius) : motion;
+  const Eigen::Isometry3d before = tip.patch.touches() ? tip.motion : motion;
+  tip.motion = followed(before, motion, place, kSlackWay * tip.radius);
   const Eigen::Isometry3d to_rest = tip.motion.inverse();
   const Vector3d middle = tool.axis(kTip).start;
-  tip.approach = (middle - tool.axis_before(kTip).start).norm();
-  tip.met = tip.patch.touches();
+  tip.approach = (to_rest * middle - before.inverse() * tool.axis_before(kTip).start).norm();
+  tip.relaid = true;
   const std::span<const int> nodes =
       tip.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before, to_rest * tool.now,
                     {to_rest * middle, to_rest * middle}, kAbove * tip.radius);
@@ -221,8 +221,8 @@ void TissuePatches::lift(Tip& tip) {
   nodes_->release(number(tip));
   tip.patch.lift();
   tip.nodes.clear();
-  tip.ease = 0;
-  tip.met = false;
+  tip.ease.fill(0);
+  tip.depth.fill(0);
 }
 
 void TissuePatches::step(std::span<const MovingTool> tools, double dt) {
@@ -246,18 +246,31 @@ void TissuePatches::press(Tip& tip, const MovingTool& tool, double dt) {
                    .moved = moved_,
                    .went = went_,
                    .give = tip.give};
-  if (!tip.met) {
-    const double due = tip.cut ? 0 : 2 * tip.approach + kFoundDeep * tip.radius;
-    tip.ease = std::max(tip.patch.depth(step) - due, 0.0);
-    tip.met = true;
-    tip.cut = false;
+  const Patch::Ground ground{surface_, *near_field_, friction_};
+  const std::span<double> depth = tip.patch.sink(ground, step);
+  if (tip.relaid) ease_in(tip, depth);
+  tip.relaid = tip.cut = false;
+  for (std::size_t p = 0; p < depth.size(); ++p) {
+    tip.depth[p] = depth[p];
+    depth[p] -= tip.ease[p];
+    tip.ease[p] = std::max(tip.ease[p] - kWayOut * dt, 0.0);
   }
-  step.ease = tip.ease;
-  tip.ease = std::max(tip.ease - kWayOut * dt, 0.0);
-  tip.patch.step({surface_, *near_field_, friction_}, step);
+  tip.patch.step(ground, step);
   nodes_->push(number(tip), seen_from_world(tip), dt);
   for (std::size_t i = 0; i < tip.nodes.size(); ++i) tip.last[i] = nodes_->displacement(tip.nodes[i]);
   tip.impulse += dt * (tip.motion.linear() * tip.patch.force());
+}
+
+// What stands deeper than in the last step, beyond what the tip and the tissue have moved, has come onto the tissue
+// whole: a square over a rim, or all of a tip that is put into it.
+void TissuePatches::ease_in(Tip& tip, std::span<const double> depth) const {
+  double swing = 0;  // [m]
+  for (const Vector3d& went : went_) swing = std::max(swing, std::abs(tip.patch.normal().dot(went)));
+  const double due = tip.cut ? 0 : 2 * tip.approach + swing;
+  for (std::size_t p = 0; p < depth.size(); ++p) {
+    const double deeper = depth[p] - std::max(tip.depth[p], 0.0);
+    tip.ease[p] = std::clamp(tip.ease[p] + std::max(deeper - due, 0.0), 0.0, std::max(depth[p], 0.0));
+  }
 }
 
 // [N] on the nodes under it.
@@ -306,6 +319,7 @@ void TissuePatches::state(State& s) {
     s.require(tip.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
     s.value(tip.motion.matrix());
     s.value(tip.ease);
+    s.value(tip.depth);
     s.value(tip.cut);
     s.value(tip.contact.touch);
     palpate::state(s, tip.contact.anchor);

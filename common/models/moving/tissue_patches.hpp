@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -68,6 +69,8 @@ class TissuePatches {
   void state(State& s);
 
  private:
+  using OfSquares = std::array<double, Patch::kMaxSquares>;
+
   struct Tip {
     int tool;
     Patch patch;
@@ -77,10 +80,11 @@ class TissuePatches {
     std::vector<int> known;                                    ///< those that `world_give` is of
     std::vector<NodeGive> world_give, give;                    ///< as they are, and seen from rest
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
-    double ease = 0;                                           ///< [m] that it stands too deep, and is led out of
-    bool met = false;                                          ///< it has been so since before this tick
+    OfSquares ease{};                                          ///< [m] that it stands too deep, and is led out of
+    OfSquares depth{};                                         ///< [m] in the last step
+    bool relaid = false;                                       ///< no step has been done since it was laid
     bool cut = false;                                          ///< what it lay on has gone
-    double approach = 0;                                       ///< [m] that it moves in this tick
+    double approach = 0;                                       ///< [m] that it goes over the tissue in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
   };
@@ -99,6 +103,7 @@ class TissuePatches {
   void find_give(Tip& tip);
   void lay(Tip& tip, const MovingTool& tool);
   void lift(Tip& tip);
+  void ease_in(Tip& tip, std::span<const double> depth) const;
   void press(Tip& tip, const MovingTool& tool, double dt);
   std::span<const PatchForce> seen_from_world(const Tip& tip);
   int number(const Tip& tip) const { return static_cast<int>(&tip - tips_.data()); }
