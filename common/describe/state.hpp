@@ -68,7 +68,7 @@ class State {
     std::uint64_t count = values.size();
     value(count);
     if (restoring_) {
-      if (count > left_ / sizeof(T)) throw std::runtime_error("the recorded state is cut short");
+      if (count > left_ / sizeof(T)) throw_short();
       values.resize(count);
     }
     bytes(values.data(), count * sizeof(T));
@@ -97,8 +97,11 @@ class State {
 
  private:
   State() = default;
+  [[noreturn]] static void throw_short() {
+    throw std::runtime_error("the recorded state is cut short, or of another version of palpate");
+  }
   const std::uint8_t* take(std::size_t count) {
-    if (count > left_) throw std::runtime_error("the recorded state is cut short");
+    if (count > left_) throw_short();
     left_ -= count;
     return std::exchange(from_, from_ + count);
   }

@@ -61,9 +61,9 @@ Edge edge_along(const Slice& slice, const Eigen::Vector2d& x, const Eigen::Vecto
 }
 
 /// Minimises pull (x - target)^2 + stiffness |x'' |^2 over a closed line of even points.
-class Bending {
+class LineBending {
  public:
-  explicit Bending(double stiffness) : stiffness_(stiffness) {}
+  explicit LineBending(double stiffness) : stiffness_(stiffness) {}
 
   Eigen::MatrixX2d solve(const Eigen::VectorXd& pull, const Eigen::MatrixX2d& target) {
     const int n = static_cast<int>(pull.size());
@@ -99,7 +99,7 @@ MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, 
                            const ContourForces& forces) {
   const Slice slice(grey, k);
   const Eigen::Array2d voxel = grey.shape.spacing.head<2>().array() / grey.shape.spacing.head<2>().minCoeff();
-  Bending bending(forces.stiffness);
+  LineBending bending(forces.stiffness);
   const Contour first = resampled(start, 1);
   MovedContour moved{first};
   double furthest = forces.reach;

@@ -3,12 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "common/mesh/normals.hpp"
-#include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/organ/angles_around.hpp"
 
 namespace palpate {
 namespace {
@@ -18,34 +17,34 @@ using Eigen::Vector3d;
 constexpr int kSweeps = 12;
 constexpr double kReach = 0.25;    // of the shortest edge at a node
 constexpr double kLastStep = 0.1;  // of the reach: steps are halved down to it
+constexpr double kGain = 0.01;     // [degrees] by which a place is better, so that steps end
 constexpr double kSmooth = 0.8;    // cosine between a triangle's normal and its node's where the surface is smooth
 
 /// Where a node may go: nowhere, along a plane, anywhere.
 enum class Freedom { none, plane, all };
 
-class Angles {
+class Bettering {
  public:
-  explicit Angles(FilledSolid& filled)
-      : mesh_(filled.mesh),
-        start_(mesh_.nodes),
-        around_(mesh_.nodes.size()),
-        freedom_(mesh_.nodes.size(), Freedom::all) {
-    for (std::size_t t = 0; t < mesh_.tetrahedra.size(); ++t)
-      for (const int n : mesh_.tetrahedra[t]) around_[n].push_back(static_cast<int>(t));
+  explicit Bettering(FilledSolid& filled)
+      : mesh_(filled.mesh), start_(mesh_.nodes), angles_(mesh_), freedom_(mesh_.nodes.size(), Freedom::all) {
     keep_to_surface();
-    for (std::size_t n = 0; n < around_.size(); ++n)
-      if (std::ranges::any_of(around_[n], [&](int t) { return filled.part[t] != filled.part[around_[n][0]]; }))
+    for (int n = 0; n < nodes(); ++n) {
+      const auto around = angles_.tetrahedra(n);
+      if (std::ranges::any_of(around, [&](int t) { return filled.part[t] != filled.part[around[0]]; }))
         freedom_[n] = Freedom::none;
+    }
   }
 
   bool sweep(double wanted) {
     bool moved = false;
-    for (std::size_t n = 0; n < around_.size(); ++n)
-      if (freedom_[n] != Freedom::none && least(n) < wanted) moved |= better(n);
+    for (int n = 0; n < nodes(); ++n)
+      if (freedom_[n] != Freedom::none && angles_.least(n) < wanted) moved |= better(n);
     return moved;
   }
 
  private:
+  int nodes() const { return static_cast<int>(mesh_.nodes.size()); }
+
   void keep_to_surface() {
     const Surface surface = extract_surface(mesh_);
     normals_.resize(mesh_.nodes.size());
@@ -59,28 +58,18 @@ class Angles {
     }
   }
 
-  /// [degrees] The least angle of the tetrahedra at a node; 0 where one is turned over.
-  double least(std::size_t n) const {
-    double angle = std::numbers::pi;
-    for (const int t : around_[n]) {
-      const auto& nodes = mesh_.tetrahedra[t];
-      angle = std::min(angle, tet_volume(mesh_, nodes) > 0 ? min_dihedral_angle(mesh_, nodes) : 0);
-    }
-    return angle * 180 / std::numbers::pi;
-  }
-
-  double shortest_edge(std::size_t n) const {
+  double shortest_edge(int n) const {
     double shortest = std::numeric_limits<double>::infinity();
-    for (const int t : around_[n])
+    for (const int t : angles_.tetrahedra(n))
       for (const int other : mesh_.tetrahedra[t])
-        if (other != static_cast<int>(n)) shortest = std::min(shortest, (start_[other] - start_[n]).norm());
+        if (other != n) shortest = std::min(shortest, (start_[other] - start_[n]).norm());
     return shortest;
   }
 
   /// Goes step by step to the best of the places around it, along the axes and the diagonals.
-  bool better(std::size_t n) {
+  bool better(int n) {
     const double reach = kReach * shortest_edge(n);
-    double best = least(n);
+    double best = angles_.least(n);
     bool moved = false;
     for (double step = reach / 2; step > kLastStep * reach;) {
       const Vector3d from = mesh_.nodes[n];
@@ -90,7 +79,7 @@ class Angles {
         if (freedom_[n] == Freedom::plane) way -= way.dot(normals_[n]) * normals_[n];
         mesh_.nodes[n] = from + step * way.stableNormalized();
         if ((mesh_.nodes[n] - start_[n]).norm() > reach) continue;
-        if (const double angle = least(n); angle > best) best = angle, place = mesh_.nodes[n];
+        if (const double angle = angles_.least(n); angle > best + kGain) best = angle, place = mesh_.nodes[n];
       }
       mesh_.nodes[n] = place;
       if (place == from) step /= 2;
@@ -101,7 +90,7 @@ class Angles {
 
   TetMesh& mesh_;
   const std::vector<Vector3d> start_;
-  std::vector<std::vector<int>> around_;  ///< tetrahedra at each node
+  const AnglesAround angles_;
   std::vector<Freedom> freedom_;
   std::vector<Vector3d> normals_;  ///< of the outer surface, at its nodes
 };
@@ -109,8 +98,8 @@ class Angles {
 }  // namespace
 
 void better_angles(double wanted, FilledSolid& filled) {
-  Angles angles(filled);
-  for (int i = 0; i < kSweeps && angles.sweep(wanted); ++i) continue;
+  Bettering bettering(filled);
+  for (int i = 0; i < kSweeps && bettering.sweep(wanted); ++i) continue;
 }
 
 }  // namespace palpate

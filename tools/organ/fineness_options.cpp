@@ -11,6 +11,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/models/quasi_static/spec.hpp"
+#include "common/scene/scene.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/places.hpp"
 #include "tools/organ/scene_places.hpp"
@@ -91,23 +92,28 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
   command.add_option("--density", o.density, "For the mass that is printed [kg/m3]").positive().show_default();
 }
 
-Fineness fineness_of(const MeshOptions& o) {
-  Fineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
+MeshFineness fineness_of(const MeshOptions& o) {
+  MeshFineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
   for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
   for (const std::string& text : o.groups) check_group(text);
   if (o.tool_radius > 0 && o.groups.empty())
     throw std::runtime_error("--tool-radius needs a --group: the tool comes to the side that lies farthest from it");
+  if (!o.scene.empty()) load_scene(o.scene);  // what cannot be read is told before the organ is
   return f;
 }
 
-void add_touched_places(Fineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
+void add_touched_places(MeshFineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
   std::vector<FinePlace> places;
   if (o.tool_radius > 0) places.push_back(pressed_place(farthest_from_group(o.groups[0], surface), o.tool_radius));
-  if (!o.scene.empty()) places = pressed_places(o.scene, surface);
+  if (!o.scene.empty()) {
+    places = pressed_places(o.scene, surface);
+    if (places.empty())
+      fmt::print("warning: no tool of {} comes here on a way that is written down: nothing is finer for it\n", o.scene);
+  }
   if (!places.empty())
     fmt::print("  edges of {:.3g} mm where the tool touches, around {}{}\n", 1e3 * places[0].edge,
                place_in_mm(places[0].low),
-               places.size() == 1 ? "" : fmt::format(" and {} more places of its way", places.size() - 1));
+               places.size() == 1 ? "" : fmt::format(", and at {} more places of the way", places.size() - 1));
   fineness.fine.insert(fineness.fine.end(), places.begin(), places.end());
 }
 

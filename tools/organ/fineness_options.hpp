@@ -18,11 +18,12 @@ struct MeshOptions {
 void add_mesh_options(cli::Command& command, MeshOptions& options);
 
 /// Throws std::runtime_error where a place cannot be read, or a tool has no group to be opposite to.
-Fineness fineness_of(const MeshOptions& options);
+MeshFineness fineness_of(const MeshOptions& options);
 
 /// Where tools touch a surface that is told by points of it [m], if --tool-radius (opposite to the first group) or
 /// --for asks for it: edges there are half the tip's radius. Throws std::runtime_error.
-void add_touched_places(Fineness& fineness, const MeshOptions& options, const std::vector<Eigen::Vector3d>& surface);
+void add_touched_places(MeshFineness& fineness, const MeshOptions& options,
+                        const std::vector<Eigen::Vector3d>& surface);
 
 /// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and prints its measures and what
 /// it will take. Throws std::runtime_error.

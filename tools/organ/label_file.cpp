@@ -14,14 +14,14 @@ namespace {
 constexpr double kMm = 1e3;
 
 /// A volume's frame in millimetres.
-struct Frame {
+struct ImageFrame {
   std::array<int, 3> count;
   std::array<double, 3> spacing, origin;
   std::array<std::array<double, 3>, 3> axis;  ///< unit vectors along x, y and z of the image
 };
 
-Frame frame_of(const GreyVolume& v) {
-  Frame f{v.shape.count, {}, {}, {}};
+ImageFrame frame_of(const GreyVolume& v) {
+  ImageFrame f{v.shape.count, {}, {}, {}};
   const Eigen::Vector3d origin = v.in_world(v.shape.origin);
   for (int a = 0; a < 3; ++a) {
     f.spacing[a] = kMm * v.shape.spacing[a];
@@ -31,7 +31,7 @@ Frame frame_of(const GreyVolume& v) {
   return f;
 }
 
-std::string meta_header(const Frame& f) {
+std::string meta_header(const ImageFrame& f) {
   return fmt::format(
       "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
       "TransformMatrix = {} {} {}\nOffset = {}\nElementSpacing = {}\nDimSize = {}\nElementType = MET_UCHAR\n"
@@ -40,7 +40,7 @@ std::string meta_header(const Frame& f) {
       fmt::join(f.spacing, " "), fmt::join(f.count, " "));
 }
 
-std::string nrrd_header(const Frame& f) {
+std::string nrrd_header(const ImageFrame& f) {
   std::array<std::string, 3> step;
   for (int a = 0; a < 3; ++a) {
     std::array<double, 3> way = f.axis[a];
@@ -53,7 +53,7 @@ std::string nrrd_header(const Frame& f) {
       fmt::join(f.count, " "), fmt::join(step, " "), fmt::join(f.origin, ","));
 }
 
-std::string inr_header(const Frame& f) {
+std::string inr_header(const ImageFrame& f) {
   std::string text = fmt::format(
       "#INRIMAGE-4#{{\nXDIM={}\nYDIM={}\nZDIM={}\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=decm\n"
       "VX={}\nVY={}\nVZ={}\n",
@@ -63,7 +63,7 @@ std::string inr_header(const Frame& f) {
 }
 
 std::string header_of(const GreyVolume& volume, const std::filesystem::path& file) {
-  const Frame frame = frame_of(volume);
+  const ImageFrame frame = frame_of(volume);
   if (file.extension() == ".mha") return meta_header(frame);
   if (file.extension() == ".nrrd") return nrrd_header(frame);
   if (file.extension() != ".inr")

@@ -37,7 +37,7 @@ RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) {
 }
 
 void make_mesh(const SurfaceOptions& o) {
-  Fineness fineness = fineness_of(o);
+  MeshFineness fineness = fineness_of(o);
   const ReadSurface read = read_surface(o.surface, kUnits.at(o.unit));
   fmt::print("{}: {} triangles\n", o.surface, read.mesh.triangles.size());
   say_progress("checking the surface");

@@ -121,7 +121,7 @@ void make_visual(const LabelVolume& volume, const std::vector<NamedLabel>& label
 }
 
 void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<int>& labels,
-               const LabelSolid& solid, const Fineness& fineness, const OrganOptions& o) {
+               const LabelSolid& solid, const MeshFineness& fineness, const OrganOptions& o) {
   FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
   const std::vector<NamedLabel> named = named_labels(voxels, labels);
   name_parts(filled, named);
@@ -149,8 +149,8 @@ FinePlace in_image(const FinePlace& f, const LabelVolume& volume) {
 }
 
 /// What is asked of one of the meshes; places are told in the world's frame.
-Fineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share) {
-  Fineness fineness = fineness_of(o);
+MeshFineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share) {
+  MeshFineness fineness = fineness_of(o);
   if (fineness.deviation == 0) fineness.deviation = kDeviation * volume.diagonal();
   fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * share));
   std::vector<Eigen::Vector3d> surface;
@@ -195,7 +195,7 @@ void make_organ(const OrganOptions& o) {
   std::fflush(stdout);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const OrganOptions own = meshes.size() == 1 ? o : options_of_one(o, named_labels(voxels, meshes[m]));
-    const Fineness fineness = fineness_for(volume, solids[m], o, solids[m].measures.area / area);
+    const MeshFineness fineness = fineness_for(volume, solids[m], o, solids[m].measures.area / area);
     make_body(volume, voxels, meshes[m], solids[m], fineness, own);
   }
 }

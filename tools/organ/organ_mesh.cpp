@@ -13,6 +13,7 @@
 #include "common/mesh/normals.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/organ/angles_around.hpp"
 #include "tools/organ/better_angles.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/mesh_pieces.hpp"
@@ -24,8 +25,9 @@ constexpr double kNodesOfArea = 1.5;  // times the edge squared over the area of
 constexpr int kTries = 4;             // for a number of nodes
 constexpr double kNearEnough = 0.08;  // of the number of nodes
 constexpr double kSameVolume = 1e-4;
-constexpr double kWorstAngle = 12;     // [degrees] that every mesh has
-constexpr double kKeptAngle = 14;      // [degrees] to which moving a node to the surface may lower one
+constexpr double kWorstAngle = 12;  // [degrees] that every mesh has
+constexpr double kKeptAngle =
+    14;  // [degrees] to which moving a node to the surface may lower one, and worse ones are bettered
 constexpr int kBetterings = 3;         // after the surface is exact
 constexpr int kOtherEdges = 5;         // tried where a mesh is no good
 constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds both sides of a wall that is longer
@@ -35,7 +37,7 @@ constexpr double kMostNodes = 3e6;     // of a mesh
 constexpr double kFoundWithin = 1e-4;  // of the box's diagonal: the mesher finds a surface no more exactly
 constexpr double kMissing = 0.3;       // of a part's volume: more than chords take
 
-MeshSizes sizes_at(const Solid& solid, const Fineness& f, double edge) {
+MeshSizes sizes_at(const Solid& solid, const MeshFineness& f, double edge) {
   const double inside = f.inside > 0 ? f.inside : 2.5 * edge;
   const double deviation = f.deviation > 0 ? f.deviation : edge / 12;
   return {edge, std::max(inside, edge), std::min(deviation, kOfWall * solid.wall.thickness), f.fine};
@@ -45,12 +47,12 @@ double nodes_at(const Solid& solid, const MeshSizes& sizes) {
   return static_cast<double>(fill_solid(solid, sizes, false).mesh.nodes.size());
 }
 
-double first_guess(const SolidMeasures& measures, const Fineness& f) {
+double first_guess(const SolidMeasures& measures, const MeshFineness& f) {
   return std::sqrt(kNodesOfArea * measures.area / f.nodes);
 }
 
 /// The edge that gives about so many nodes, found on meshes that are not bettered.
-double edge_for(const Solid& solid, const SolidMeasures& measures, const Fineness& f,
+double edge_for(const Solid& solid, const SolidMeasures& measures, const MeshFineness& f,
                 const std::function<void(const std::string&)>& say) {
   const double longest = kLongestOfGuess * first_guess(measures, f);
   double edge = first_guess(measures, f);
@@ -68,22 +70,12 @@ double edge_for(const Solid& solid, const SolidMeasures& measures, const Finenes
 /// Puts the surface's nodes where the surface is exactly, as far as the tetrahedra around them stay good.
 void project(const Solid& solid, TetMesh& mesh) {
   if (!solid.nearest) return;
-  std::vector<std::vector<int>> around(mesh.nodes.size());
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    for (const int n : mesh.tetrahedra[t]) around[n].push_back(static_cast<int>(t));
-  const auto least = [&](int n) {
-    double angle = std::numbers::pi;
-    for (const int t : around[n]) {
-      const auto& nodes = mesh.tetrahedra[t];
-      angle = std::min(angle, tet_volume(mesh, nodes) > 0 ? min_dihedral_angle(mesh, nodes) : 0);
-    }
-    return angle * 180 / std::numbers::pi;
-  };
+  const AnglesAround angles(mesh);
   for (const int n : extract_surface(mesh).nodes) {
     const Eigen::Vector3d before = mesh.nodes[n];
-    const double angle = least(n);
+    const double angle = angles.least(n);
     mesh.nodes[n] = solid.nearest(before);
-    if (const double now = least(n); now < kKeptAngle && now < angle) mesh.nodes[n] = before;
+    if (const double now = angles.least(n); now < kKeptAngle && now < angle) mesh.nodes[n] = before;
   }
 }
 
@@ -202,7 +194,7 @@ FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, cons
 
 }  // namespace
 
-FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, const Fineness& fineness,
+FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, const MeshFineness& fineness,
                             const std::function<void(const std::string&)>& say) {
   double edge = fineness.edge > 0 ? fineness.edge : first_guess(measures, fineness);
   if (edge > kLongestOfWall * solid.wall.thickness)

@@ -8,7 +8,7 @@
 namespace palpate {
 
 /// How fine a mesh is asked for.
-struct Fineness {
+struct MeshFineness {
   int nodes = 1500;      ///< aimed at where `edge` is 0
   double edge = 0;       ///< [m] on the surface
   double inside = 0;     ///< [m] inside; 0: 2.5 times that on the surface
@@ -24,7 +24,7 @@ struct SolidMeasures {
 
 /// Fills a solid as finely as is asked, moves the surface's nodes so that the volume is the solid's, and checks the
 /// mesh. `say` hears what is being done. Throws std::runtime_error.
-FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, const Fineness& fineness,
+FilledSolid make_organ_mesh(const Solid& solid, const SolidMeasures& measures, const MeshFineness& fineness,
                             const std::function<void(const std::string&)>& say);
 
 }  // namespace palpate
