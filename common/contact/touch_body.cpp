@@ -32,7 +32,7 @@ LawOutcome TouchBody::hold(std::span<const MovingTool> tools) {
 }
 
 LawOutcome TouchBody::touch(const ToolsInStep& in, std::span<ToolLoad> loads) {
-  collide(in.tools);
+  if (by_mesh()) collide(in.tools);
   const LawOutcome outcome = hold(in.tools);
   load(in.tools, own_);
   for (std::size_t t = 0; t < own_.size(); ++t) loads[t].add(own_[t]);
@@ -52,7 +52,8 @@ void TouchBody::for_each_force(const VisitForce& visit) const {
 
 bool TouchBody::adopt(const TouchContact& contact) {
   const int nodes = static_cast<int>(surface().positions().size());
-  if (law_.full() || !std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n >= 0 && n < nodes; }))
+  if (!by_mesh() || law_.full() ||
+      !std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n >= 0 && n < nodes; }))
     return false;
   contacts_.adopt(contact);
   return true;

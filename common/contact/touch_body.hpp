@@ -46,7 +46,7 @@ class TouchBody : public BodyPart {
   double penetration(const Segment& axis, double radius) const override;
   /// Restoring throws std::runtime_error on a state that does not fit this body and these tools.
   void state(State& s, std::span<const MovingTool> tools) override {
-    surface_.state(s);
+    if (by_mesh()) surface_.state(s);
     contacts_.state(s, tools);
   }
 
@@ -55,6 +55,8 @@ class TouchBody : public BodyPart {
             ToolContacts::Options options = {});
 
   const SurfaceMap& map() const { return map_; }
+  /// Whether a tool may touch it by the mesh. If none may, nothing asks where its surface is, and that stays at rest.
+  virtual bool by_mesh() const { return true; }
   const Compliance<double>& compliance() const { return compliance_; }
   ToolContacts& contacts() { return contacts_; }
   /// Marks the nodes that are near the tools or carry a contact; the derived class then works out where they are.

@@ -70,6 +70,19 @@ TEST_F(PatchRule, ADeepPressAndItsReleaseHaveNoJump) {
   EXPECT_LT(force.norm(), 1e-3 * most);
 }
 
+// Where no part of a tool touches by the mesh, nothing asks where its nodes are: they are not worked out, nor kept.
+TEST_F(PatchRule, StateIsOfOneSizeWhateverTheMesh) {
+  const auto bytes = [](const Archive& archive) {
+    Scene scene = block_->scene;
+    scene.tools.push_back(PatchBlock::probe("probe"));
+    return HapticStep(scene, {archive}).state_size();
+  };
+  const auto& block = std::get<QuasiStaticSpec>(block_->scene.bodies[0]);
+  const double side = 16 * PatchBlock::kRadius;
+  const TetMesh coarser = make_block({-side / 2, -side / 2, -side / 2}, {side / 2, side / 2, 0}, {4, 4, 2});
+  EXPECT_EQ(bytes(precompute(block, coarser)), bytes(block_->archive));
+}
+
 TEST_F(PatchRule, ASlideIsSmoothAndFrictionHoldsBack) {
   for (const double friction : {0.0, 0.3}) {
     SCOPED_TRACE(friction);

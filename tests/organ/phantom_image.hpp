@@ -17,14 +17,20 @@ inline std::string inr_header(const std::array<int, 3>& count, const std::array<
   return text + "##}\n";
 }
 
-/// Writes an INR image of bytes: label(i, j, k) of each voxel; `size_mm` of a voxel.
+/// Writes an INR image of bytes: label(i, j, k) of each voxel; `voxel_mm`: its extents.
 template <class Label>
-void write_phantom(const std::string& file, const std::array<int, 3>& count, double size_mm, const Label& label) {
-  std::string bytes = inr_header(count, {size_mm, size_mm, size_mm});
+void write_phantom(const std::string& file, const std::array<int, 3>& count, const std::array<double, 3>& voxel_mm,
+                   const Label& label) {
+  std::string bytes = inr_header(count, voxel_mm);
   for (int k = 0; k < count[2]; ++k)
     for (int j = 0; j < count[1]; ++j)
       for (int i = 0; i < count[0]; ++i) bytes += static_cast<char>(label(i, j, k));
   std::ofstream(file, std::ios::binary) << bytes;
+}
+
+template <class Label>
+void write_phantom(const std::string& file, const std::array<int, 3>& count, double size_mm, const Label& label) {
+  write_phantom(file, count, {size_mm, size_mm, size_mm}, label);
 }
 
 }  // namespace palpate::testing

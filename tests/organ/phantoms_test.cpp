@@ -37,11 +37,12 @@ double total_mean_curvature(const TetMesh& mesh) {
 
 class Phantom : public ::testing::Test {
  protected:
-  /// The mesh of label 1 of an image of 1 mm voxels.
+  /// The mesh of label 1 of an image of voxels of 1 mm, and `slice` [mm] across slices.
   template <class Inside>
-  TetMesh mesh_of(const std::array<int, 3>& count, const std::string& options, const Inside& inside) const {
+  TetMesh mesh_of(const std::array<int, 3>& count, const std::string& options, const Inside& inside,
+                  double slice = 1) const {
     const std::string image = folder_ / "phantom.inr", mesh = folder_ / "phantom.msh";
-    write_phantom(image, count, 1, inside);
+    write_phantom(image, count, {1, 1, slice}, inside);
     const auto made = run_program(program("palpate") + " organ " + image + " " + options + " -o " + mesh);
     EXPECT_EQ(made.status, 0) << made.out << made.err;
     return load_tet_mesh(mesh, 1);
@@ -70,6 +71,23 @@ TEST_F(Phantom, ATorusHasItsHandleAndItsCurvature) {
   });
   const double square = std::numbers::pi * std::numbers::pi;
   expect_measures(mesh, 2 * square * kRing * kTube * kTube, 1, 2 * square * kRing);
+}
+
+// Between slices the border of the voxels goes in steps, which are no thin walls.
+TEST_F(Phantom, ThickSlicesOfASphereAreNoWalls) {
+  constexpr double kRadius = 22;  // [mm]
+  for (const double slice : {3.0, 5.0}) {
+    const int slices = static_cast<int>(60 / slice);
+    const TetMesh mesh = mesh_of(
+        {60, 60, slices}, "--label 1 --nodes 600",
+        [&](int i, int j, int k) {
+          return Eigen::Vector3d(i - 29.6, j - 29.4, slice * (k - 0.5 * slices + 0.3)).norm() < kRadius;
+        },
+        slice);
+    const double ball = 4.0 / 3 * std::numbers::pi * std::pow(1e-3 * kRadius, 3);
+    EXPECT_NEAR(measures_of(mesh).volume, ball, 0.02 * ball) << slice;
+    EXPECT_EQ(topology_of(mesh), (Topology{1, 0})) << slice;
+  }
 }
 
 TEST_F(Phantom, TwoSpheresThatTouchMakeOneMeshOfTwoParts) {

@@ -22,18 +22,21 @@ class StrangeSizes : public ::testing::Test {
     return write_file(folder_ / "a.obj", text + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   }
   std::string box(double edge, double offset) const {
+    return box(Eigen::Vector3d::Constant(edge), Eigen::Vector3d::Constant(offset));
+  }
+  std::string box(const Eigen::Vector3d& edge, const Eigen::Vector3d& offset) const {
     std::string text;
     for (int n = 0; n < 8; ++n)
-      text += fmt::format("v {} {} {}\n", offset + edge * (n & 1), offset + edge * (n >> 1 & 1),
-                          offset + edge * (n >> 2 & 1));
+      text += fmt::format("v {} {} {}\n", offset.x() + edge.x() * (n & 1), offset.y() + edge.y() * (n >> 1 & 1),
+                          offset.z() + edge.z() * (n >> 2 & 1));
     text += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     return write_file(folder_ / "box.obj", text);
   }
-  std::string made_of(const std::string& surface, const std::string& options = "") const {
-    return program("palpate") + " mesh " + surface + " --nodes 200 " + options + " -o " + mesh_;
+  std::string made_of(const std::string& surface, const std::string& options = "--nodes 200") const {
+    return program("palpate") + " mesh " + surface + " " + options + " -o " + mesh_;
   }
-  double volume_made_of(const std::string& surface) const {
-    const auto made = run_program(made_of(surface));
+  double volume_made_of(const std::string& surface, const std::string& options = "--nodes 200") const {
+    const auto made = run_program(made_of(surface, options));
     EXPECT_EQ(made.status, 0) << made.err;
     return made.status == 0 ? measures_of(load_tet_mesh(mesh_, 1)).volume : 0;
   }
@@ -75,6 +78,12 @@ TEST_F(StrangeSizes, ASurfaceWithoutVolumeIsRefused) {
   expect_last_words(made_of(flat), flat + ": the surface encloses no volume");
   const std::string line = tetrahedron({{{0, 0, 0}, {0.1, 0, 0}, {0.04, 0, 0}, {0.07, 0, 0}}});
   expect_last_words(made_of(line), line + ": the surface encloses no volume");
+}
+
+// Between points that find both sides of a plate no tetrahedron of a rod may have its middle inside.
+TEST_F(StrangeSizes, ARodAHundredTimesAsLongAsThickIsFilled) {
+  const double volume = volume_made_of(box({1e-3, 1e-3, 0.1}, {0, 0, 0}), "--edge 0.002");
+  EXPECT_NEAR(volume, 1e-7, 1e-10);
 }
 
 TEST_F(StrangeSizes, LinesOfAnObjFileThatSayNothingOfPolygonsAreTold) {

@@ -37,11 +37,11 @@ Point point_of(const Eigen::Vector3d& x) {
 /// Begins on every part's surface; CGAL's own domain looks from the middle and overlooks small parts.
 class Domain : public Labels {
  public:
-  Domain(const Solid& solid, const Kernel::Iso_cuboid_3& box, double step)
+  Domain(const Solid& solid, const Kernel::Iso_cuboid_3& box, std::vector<SurfaceSample> samples)
       : Labels(
             CGAL::parameters::function = [&solid](const Point& p) { return solid.part(vector_of(p)); },
             CGAL::parameters::bounding_object = box, CGAL::parameters::relative_error_bound = kBisection),
-        samples_(surface_samples(solid, step)) {}
+        samples_(std::move(samples)) {}
 
   struct Construct_initial_points {
     const Domain& domain;
@@ -116,23 +116,31 @@ FilledSolid in_order(const Complex& complex) {
   return filled;
 }
 
+/// Times the thickness of a wall: how far apart its points are that are begun with. Two find both sides of a plate; in
+/// a rod no tetrahedron between such points may have its middle, and then none is found.
+constexpr double kApart[] = {2, 1, 0.5};
+
 FilledSolid fill(const Solid& solid, const MeshSizes& sizes, bool better) {
   namespace given = CGAL::parameters;
   double step = sizes.edge;
   for (const FinePlace& f : sizes.fine) step = std::min(step, f.edge);
-  const Domain domain(solid, Kernel::Iso_cuboid_3(point_of(solid.low), point_of(solid.high)), step);
+  const Kernel::Iso_cuboid_3 box(point_of(solid.low), point_of(solid.high));
   const Criteria criteria(given::facet_angle = kFacetAngle, given::facet_size = SizeField{solid, sizes, 0.6},
                           given::facet_distance = sizes.deviation,
                           given::facet_topology = solid.parts == 1 ? CGAL::MANIFOLD : CGAL::FACET_VERTICES_ON_SURFACE,
                           given::cell_radius_edge_ratio = kRadiusEdge, given::cell_size = SizeField{solid, sizes, 0.7});
-  Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, given::no_lloyd(), given::no_odt(),
-                                               given::no_perturb(), given::no_exude());
-  if (better) {
-    CGAL::perturb_mesh_3(complex, domain, given::time_limit = 0, given::sliver_bound = kMinAngle);
-    CGAL::exude_mesh_3(complex, given::time_limit = 0, given::sliver_bound = kMinAngle);
+  for (const double apart : kApart) {
+    const Domain domain(solid, box, surface_samples(solid, step, apart));
+    Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, given::no_lloyd(), given::no_odt(),
+                                                 given::no_perturb(), given::no_exude());
+    if (complex.number_of_cells_in_complex() == 0) continue;
+    if (better) {
+      CGAL::perturb_mesh_3(complex, domain, given::time_limit = 0, given::sliver_bound = kMinAngle);
+      CGAL::exude_mesh_3(complex, given::time_limit = 0, given::sliver_bound = kMinAngle);
+    }
+    return in_order(complex);
   }
-  if (complex.number_of_cells_in_complex() == 0) throw std::runtime_error("no tetrahedra came of it");
-  return in_order(complex);
+  throw std::runtime_error("no tetrahedra came of it");
 }
 
 }  // namespace

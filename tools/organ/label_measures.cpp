@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/mesh/measures.hpp"
 #include "common/mesh/surface.hpp"
@@ -34,24 +35,29 @@ void over_triangle(const std::array<Eigen::Vector3d, 3>& corners, double step, c
     for (int j = 0; i + j <= n; ++j) look(corners[0] + (i * u + j * v) / n);
 }
 
-void print_distance(const LabelSolid& labels, const TetMesh& mesh, const Eigen::Vector3d& voxel) {
-  const Surface surface = extract_surface(mesh);
-  const SurfaceTree tree({mesh.nodes, surface.triangles});
-  const double diagonal = voxel.norm();
-  double sum = 0;
+/// How far a label's border and its part's surface, where it touches another part too, are apart.
+void print_distance(const GridShape& shape, const std::vector<char>& inside, const TetMesh& part) {
+  const Surface surface = extract_surface(part);
+  const SurfaceTree tree({part.nodes, surface.triangles});
+  const DistanceGrid voxels = distance_to_border(shape, inside);
+  const double diagonal = shape.spacing.norm();
   Largest largest;
-  for (const Eigen::Vector3d& x : labels.border) {
-    const double distance = tree.distance(x);
-    sum += distance;
-    largest.note(distance, x);
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& x : border_of(shape, inside)) {
+    distances.push_back(tree.distance(x));
+    largest.note(distances.back(), x);
   }
   for (const auto& [a, b, c] : surface.triangles)
-    over_triangle({mesh.nodes[a], mesh.nodes[b], mesh.nodes[c]}, 0.5 * diagonal,
-                  [&](const Eigen::Vector3d& x) { largest.note(labels.from_voxels(x), x); });
-  const double mean = sum / static_cast<double>(labels.border.size());
+    over_triangle({part.nodes[a], part.nodes[b], part.nodes[c]}, 0.5 * diagonal,
+                  [&](const Eigen::Vector3d& x) { largest.note(std::abs(voxels.at(x)), x); });
+  const double mean = std::reduce(distances.begin(), distances.end()) / static_cast<double>(distances.size());
+  const auto nearly_all = distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size()));
+  std::ranges::nth_element(distances, nearly_all);
   fmt::print(
-      "  surface to voxels: mean {:.3g} mm, largest {:.3g} mm, which are {:.2f} and {:.2f} voxel diagonals, at {}\n",
-      1e3 * mean, 1e3 * largest.distance, mean / diagonal, largest.distance / diagonal, place_in_mm(largest.place));
+      "    from its voxels: mean {:.3g} mm, 99 % within {:.3g}, largest {:.3g} at {}; in voxel diagonals {:.2f}, "
+      "{:.2f}, {:.2f}\n",
+      1e3 * mean, 1e3 * *nearly_all, 1e3 * largest.distance, place_in_mm(largest.place), mean / diagonal,
+      *nearly_all / diagonal, largest.distance / diagonal);
 }
 
 std::string say(const Topology& t) {
@@ -70,8 +76,8 @@ void print_label_measures(const LabelVoxels& voxels, const std::vector<int>& lab
                voxels.labels[labels[p]].name, 1e6 * volume, 1e6 * solid.volumes[p],
                100 * (volume / solid.volumes[p] - 1), pieces, pieces == 1 ? "" : "s", say(topology_of(part)),
                say(topology_of(voxels.shape, voxels.inside[labels[p]])));
+    print_distance(voxels.shape, voxels.inside[labels[p]], part);
   }
-  print_distance(solid, filled.mesh, voxels.shape.spacing);
 }
 
 }  // namespace palpate

@@ -41,21 +41,6 @@ Field field_of(const GridShape& shape, const std::vector<char>& inside, double s
   return field;
 }
 
-std::vector<Eigen::Vector3d> border_of(const GridShape& shape, const std::vector<char>& inside) {
-  std::vector<Eigen::Vector3d> faces;
-  for (int k = 1; k < shape.count[2]; ++k)
-    for (int j = 1; j < shape.count[1]; ++j)
-      for (int i = 1; i < shape.count[0]; ++i) {
-        const bool here = inside[shape.index(i, j, k)];
-        const auto note = [&](int di, int dj, int dk) {
-          if (inside[shape.index(i - di, j - dj, k - dk)] != here)
-            faces.push_back(0.5 * (shape.place(i, j, k) + shape.place(i - di, j - dj, k - dk)));
-        };
-        note(1, 0, 0), note(0, 1, 0), note(0, 0, 1);
-      }
-  return faces;
-}
-
 /// [m^2] Of the smooth surface of a solid whose voxels have this border: by the field's slope a face's share of it.
 double area_of(const Field& field, const std::vector<Eigen::Vector3d>& border) {
   const Eigen::Vector3d& s = field.grid.shape.spacing;
@@ -125,13 +110,22 @@ std::vector<char> union_of(const LabelVoxels& voxels, const std::vector<int>& la
   return all;
 }
 
-/// Some of the border's points, and which way is in.
+/// Some of the border's points, and which way is in: a voxel's extent that way, its neighbours' steps are passed.
 std::vector<SurfacePoint> points_of(const Field& field, const std::vector<Eigen::Vector3d>& border) {
   std::vector<SurfacePoint> points;
   const std::size_t step = 1 + border.size() / kWallPoints;
-  for (std::size_t i = 0; i < border.size(); i += step)
-    points.push_back({border[i], -field.slope(border[i]).normalized()});
+  for (std::size_t i = 0; i < border.size(); i += step) {
+    const Eigen::Vector3d inward = -field.slope(border[i]).normalized();
+    points.push_back({border[i], inward, inward.cwiseAbs().dot(field.grid.shape.spacing)});
+  }
   return points;
+}
+
+/// Of the voxels as they are: smoothing closes and opens thin walls.
+ThinWall wall_of(const GridShape& grid, const std::vector<char>& inside, const std::vector<SurfacePoint>& points) {
+  const DistanceGrid sharp = distance_to_border(grid, inside);
+  return thin_wall(
+      points, [&](const Eigen::Vector3d& x) { return -sharp.at(x); }, 0.25 * grid.spacing.minCoeff());
 }
 
 /// Smoothing as wide as a wall makes holes in it: makes it a third of that, and says so.
@@ -155,11 +149,8 @@ LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, L
   std::vector<char> all = union_of(voxels, labels);
   if (labels.size() > 1) fill_cavities(grid, all, all, kSmallCavity, "all of them", result.findings);
   result.border = border_of(grid, all);
-  const auto sharp = std::make_shared<DistanceGrid>(distance_to_border(grid, all));
-  result.from_voxels = [sharp](const Eigen::Vector3d& x) { return std::abs(sharp->at(x)); };
   fields->all = field_of(grid, all, wish.smoothing);
-  result.solid.wall =
-      thin_wall(points_of(fields->all, result.border), result.from_voxels, 0.25 * grid.spacing.minCoeff());
+  result.solid.wall = wall_of(grid, all, points_of(fields->all, result.border));
   if (smooth_less(result.solid.wall, grid, wish.smoothing, result.findings))
     fields->all = field_of(grid, all, wish.smoothing);
   for (const int l : labels) {

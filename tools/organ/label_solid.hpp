@@ -15,10 +15,9 @@ struct LabelShape {
 struct LabelSolid {
   Solid solid;
   SolidMeasures measures;
-  std::vector<double> volumes;                                ///< [m^3] of each label's voxels, less the gap
-  std::vector<Eigen::Vector3d> border;                        ///< [m] middles of the voxel faces around all of them
-  std::function<double(const Eigen::Vector3d&)> from_voxels;  ///< [m] to the border of the voxels, not smoothed
-  std::vector<Finding> findings;                              ///< what is filled between them
+  std::vector<double> volumes;          ///< [m^3] of each label's voxels, less the gap
+  std::vector<Eigen::Vector3d> border;  ///< [m] middles of the voxel faces around all of them
+  std::vector<Finding> findings;        ///< what is filled between them
 };
 
 /// Surfaces are where a smoothed distance to the voxels' border has the level that keeps each label's volume. Several

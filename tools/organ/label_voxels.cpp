@@ -112,4 +112,19 @@ std::vector<std::vector<int>> touching_labels(const LabelVoxels& voxels) {
   return together;
 }
 
+std::vector<Eigen::Vector3d> border_of(const GridShape& shape, const std::vector<char>& inside) {
+  std::vector<Eigen::Vector3d> faces;
+  for (int k = 1; k < shape.count[2]; ++k)
+    for (int j = 1; j < shape.count[1]; ++j)
+      for (int i = 1; i < shape.count[0]; ++i) {
+        const bool here = inside[shape.index(i, j, k)];
+        const auto note = [&](int di, int dj, int dk) {
+          if (inside[shape.index(i - di, j - dj, k - dk)] != here)
+            faces.push_back(0.5 * (shape.place(i, j, k) + shape.place(i - di, j - dj, k - dk)));
+        };
+        note(1, 0, 0), note(0, 1, 0), note(0, 0, 1);
+      }
+  return faces;
+}
+
 }  // namespace palpate

@@ -26,6 +26,9 @@ LabelVoxels voxels_of(const LabelVolume& volume, const std::vector<NamedLabel>& 
 /// Labels that hang together through faces of voxels, ascending; each is in one of these.
 std::vector<std::vector<int>> touching_labels(const LabelVoxels& voxels);
 
+/// [m] Middles of the faces of voxels between inside and outside.
+std::vector<Eigen::Vector3d> border_of(const GridShape& shape, const std::vector<char>& inside);
+
 /// [m^3]
 double volume_of_voxels(const GridShape& shape, const std::vector<char>& inside);
 

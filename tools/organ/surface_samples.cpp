@@ -8,7 +8,6 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kOfEachSurface = 40, kMostOfEach = 3000, kLookedAt = 30000;
-constexpr double kOfThickness = 2;  // apart at most, for the mesher to find both sides of a wall
 constexpr double kMaxSteps = 1000;  // along an axis: lines are no denser than that,
 constexpr double kMaxPlaces = 4e6;  // nor do they cross in more places
 
@@ -57,7 +56,7 @@ void at_changes(const Solid& solid, double h, const Note& note) {
 
 }  // namespace
 
-std::vector<SurfaceSample> surface_samples(const Solid& solid, double step) {
+std::vector<SurfaceSample> surface_samples(const Solid& solid, double step, double apart) {
   const Eigen::Vector3d size = solid.high - solid.low;
   const double finest = std::max(size.maxCoeff() / kMaxSteps, std::cbrt(size.prod() / kMaxPlaces));
   const double h = std::max(0.5 * std::min(step, solid.wall.thickness), finest);
@@ -68,7 +67,7 @@ std::vector<SurfaceSample> surface_samples(const Solid& solid, double step) {
   });
   std::vector<SurfaceSample> samples;
   for (const auto& [parts, all] : found) {
-    const auto few = spread(all, kOfThickness * solid.wall.thickness);
+    const auto few = spread(all, apart * solid.wall.thickness);
     samples.insert(samples.end(), few.begin(), few.end());
   }
   return samples;

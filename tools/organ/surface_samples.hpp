@@ -13,7 +13,7 @@ struct SurfaceSample {
 };
 
 /// Points on every surface that lines `step` [m] apart cross, or closer where the solid is thin: a few dozen of each
-/// surface, spread over it, and on thin walls as many as find their two sides.
-std::vector<SurfaceSample> surface_samples(const Solid& solid, double step);
+/// surface, spread over it, and on thin walls so many that none is farther than `apart` times their thickness away.
+std::vector<SurfaceSample> surface_samples(const Solid& solid, double step, double apart);
 
 }  // namespace palpate

@@ -11,26 +11,26 @@ constexpr double kParallel = 0.8;   // cosine between the sides of a wall
 constexpr double kFarthest = 1e6;   // times what is near: the way misses the surface
 
 /// Infinite where it meets no surface that lies nearly parallel to that at the point: there is an edge, or a corner.
-double thickness_at(const SurfacePoint& point, const std::function<double(const Eigen::Vector3d&)>& distance,
+double thickness_at(const SurfacePoint& point, const std::function<double(const Eigen::Vector3d&)>& depth,
                     double near) {
   constexpr int kSteps = 1000;
-  double deep = 3 * near;
+  double deep = point.begin;
   for (int i = 0; i < kSteps && deep < kFarthest * near; ++i) {
-    const double free = distance(point.place + deep * point.inward);
+    const double free = depth(point.place + deep * point.inward);
     if (free < near) break;
     deep += free;
   }
   const double middle = 0.5 * deep;
-  const bool wall = distance(point.place + middle * point.inward) > kParallel * middle;
+  const bool wall = depth(point.place + middle * point.inward) > kParallel * middle;
   return wall ? deep : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-ThinWall thin_wall(const std::vector<SurfacePoint>& points,
-                   const std::function<double(const Eigen::Vector3d&)>& distance, double near) {
+ThinWall thin_wall(const std::vector<SurfacePoint>& points, const std::function<double(const Eigen::Vector3d&)>& depth,
+                   double near) {
   std::vector<ThinWall> walls;
-  for (const SurfacePoint& point : points) walls.push_back({thickness_at(point, distance, near), point.place});
+  for (const SurfacePoint& point : points) walls.push_back({thickness_at(point, depth, near), point.place});
   const auto chosen = walls.begin() + static_cast<std::ptrdiff_t>(kThinnest * static_cast<double>(walls.size()));
   std::ranges::nth_element(walls, chosen, {}, &ThinWall::thickness);
   return *chosen;

@@ -10,15 +10,16 @@ namespace palpate {
 struct SurfacePoint {
   Eigen::Vector3d place;   ///< [m]
   Eigen::Vector3d inward;  ///< of length 1
+  double begin;            ///< [m] so far in, steps of the surface itself are passed; at most as thick as any wall
 };
 
 /// So many points tell how thick a body is.
 inline constexpr std::size_t kWallPoints = 2000;
 
-/// How thick the thinnest twentieth of a surface's points find the body, going inward until `distance` to the surface
-/// [m] is below `near` [m] again. Infinite where few points face a surface nearly parallel to theirs: edges and tips
-/// are no walls. Needs a point.
-ThinWall thin_wall(const std::vector<SurfacePoint>& points,
-                   const std::function<double(const Eigen::Vector3d&)>& distance, double near);
+/// How thick the thinnest twentieth of a surface's points find the body, going inward until `depth` below the surface
+/// [m], which may be negative outside, is less than `near` [m]. Infinite where few points face a surface nearly
+/// parallel to theirs: edges and tips are no walls. Needs a point.
+ThinWall thin_wall(const std::vector<SurfacePoint>& points, const std::function<double(const Eigen::Vector3d&)>& depth,
+                   double near);
 
 }  // namespace palpate

@@ -18,6 +18,7 @@ class PatchTouch {
   PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
              const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep = {});
 
+  std::size_t parts() const { return parts_.size(); }
   /// Whether a part has a patch.
   bool has(int tool, int part) const;
 

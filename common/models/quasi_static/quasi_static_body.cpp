@@ -36,6 +36,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   if (by_patch(settings))
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
                                           edges_resolved(offline_of(body, map().size())), creep);
+  by_mesh_ = !patch_ || patch_->parts() < parts_of(settings.tools);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
@@ -56,6 +57,7 @@ ToolContacts::Options QuasiStaticBody::beside_patches() {
 }
 
 void QuasiStaticBody::update_surface(std::span<const MovingTool> tools) {
+  if (!by_mesh_) return;
   const std::span<const int> marked = mark(tools);
   displacement_.assign(3 * marked.size(), 0.0);
   if (memory_)

@@ -29,6 +29,7 @@ class QuasiStaticBody : public TouchBody {
   void tell(BodyMessage& message) override;
 
  protected:
+  bool by_mesh() const override { return by_mesh_; }
   Eigen::Vector3d press_of(int tool) const override;
 
  private:
@@ -49,6 +50,7 @@ class QuasiStaticBody : public TouchBody {
   std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
   std::unique_ptr<PatchTouch> patch_;    ///< null: all parts touch by the mesh
+  bool by_mesh_ = true;                  ///< set by the constructor
   std::optional<LoadSum<double>> sum_;   ///< set by the constructor, behind the compliance
   std::vector<double> displacement_, of_tool_;
   std::vector<int> held_;               ///< places among the marked nodes
