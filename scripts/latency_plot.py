@@ -1,7 +1,10 @@
 """Draws what `palpate latency -o DIR` measured: latency_plot.py DIR reads DIR/latency.json, writes DIR/latency.png."""
 import json
 import pathlib
+import signal
 import sys
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends it without a word: its caller has one
 
 import matplotlib
 import small_png

@@ -8,7 +8,10 @@ import html
 import io
 import json
 import pathlib
+import signal
 import sys
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends it without a word: its caller has one
 
 import matplotlib
 

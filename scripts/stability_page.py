@@ -8,8 +8,11 @@ import os
 import platform
 import re
 import subprocess
+import signal
 import sys
 from datetime import date
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends it without a word: its caller has one
 
 import matplotlib
 

@@ -51,6 +51,15 @@ class Parser {
     return value;
   }
 
+  Components displacement(std::string_view text) const {
+    constexpr double kLargest = 1e3;  // [m]
+    const Components result = components(text);
+    for (const auto& part : result)
+      if (part && std::abs(*part) > kLargest)
+        fail(fmt::format("{:g} m is more than {:g} m, the largest displacement that is taken", *part, kLargest));
+    return result;
+  }
+
   Components components(std::string_view text) const {
     Components result;
     for (int axis = 0; axis < 3; ++axis) {
@@ -86,7 +95,7 @@ std::vector<Constraint> parse_hold(const std::string& text, const GroupNodes& gr
   const std::string_view name = trim(left);
   const bool named = group && !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
   const auto nodes = named ? group(std::string(name)) : std::vector<int>{parser.number<int>(name, "a node number")};
-  const auto displacement = parser.components(right);
+  const auto displacement = parser.displacement(right);
   if (empty(displacement)) parser.fail("no axis is held");
   std::vector<Constraint> holds;
   for (const int node : nodes)
@@ -100,7 +109,7 @@ TouchArgument parse_touch(const std::string& text) {
   const auto [left, right] = parser.halves(text);
   const auto point = parser.components(left);
   if (!point[0] || !point[1] || !point[2]) parser.fail("the point needs all of x, y, z");
-  TouchArgument touch{{*point[0], *point[1], *point[2]}, parser.components(right)};
+  TouchArgument touch{{*point[0], *point[1], *point[2]}, parser.displacement(right)};
   if (empty(touch.displacement)) parser.fail("no axis is held");
   return touch;
 }

@@ -17,7 +17,8 @@ namespace {
 struct OtherProgram {
   const char *name, *where;
 };
-constexpr OtherProgram kOrgan{"palpate_organ", "it is built where CGAL is, on Debian with libcgal-dev"};
+constexpr OtherProgram kOrgan{
+    "palpate_organ", "`scripts/build.sh release palpate_organ` builds it where CGAL is, on Debian with libcgal-dev"};
 constexpr OtherProgram kFilm{"palpate_film", "`scripts/build.sh release palpate_film` builds it"};
 constexpr OtherProgram kStudy{"palpate_study", "`scripts/build.sh release palpate_study` builds it"};
 

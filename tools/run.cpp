@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -290,7 +291,16 @@ void say_where_to_look(const Scene& scene, const RunOptions& o) {
              log.empty() ? "" : fmt::format(", `palpate film {} -o FILE.mp4` one of the log", log));
 }
 
+void check_port(const std::string& port) {
+  if (port.empty() || port == kScenesPort) return;
+  int number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc() || end != port.data() + port.size() || number < 0 || number > 65535)
+    throw std::runtime_error(fmt::format("--web: '{}' is no port, 0 to 65535", port));
+}
+
 void run(const RunOptions& o) {
+  check_port(o.web);
   const Scene scene = load_scene(o.scene);
   if (!o.keep.empty() && log_of(scene, o).empty())
     throw std::runtime_error("--keep: there is no log; --record names one, or `file` in the scene's [record]");

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -211,7 +212,7 @@ void print_json(const SolutionTable& table, const std::string& method, std::opti
 
 void require_numbers(const SolutionTable& table) {
   for (std::size_t i = 0; i < table.node.size(); ++i)
-    if (!table.displacement[i].allFinite() || !table.force[i].allFinite())
+    if (!std::isfinite(table.displacement[i].norm()) || !std::isfinite(table.force[i].norm()))
       throw std::runtime_error(
           fmt::format("there is no solution in numbers: at node {} it is not finite", table.node[i]));
 }

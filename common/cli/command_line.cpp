@@ -48,6 +48,13 @@ std::string refuse_kind(const std::string& name, const std::vector<std::string>&
   return fmt::format("{} is {}, and would be replaced by {}: give another name", name, kind_in_words(kind), written);
 }
 
+/// The first word that looks like an option and is none; empty: there is no such word.
+std::string unknown_option(const CLI::App& app) {
+  for (const std::string& word : app.remaining(true))
+    if (word.starts_with('-')) return word;
+  return "";
+}
+
 /// Nothing of another kind is written over unless that is asked for, where --force asks for it.
 void keep_other_kinds(const CLI::App& app) {
   const CLI::Option* const force = app.get_option_no_throw(kForce);
@@ -237,6 +244,12 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     app_->parse(std::move(words));
     keep_inputs(*app_);
     keep_other_kinds(*app_);
+  } catch (const CLI::RequiredError& error) {
+    if (const std::string unknown = unknown_option(*app_); !unknown.empty()) {
+      fmt::print(stderr, "there is no option {}; --help names all\n", printable(unknown));
+      return 1;
+    }
+    return app_->exit(error);
   } catch (const CLI::ParseError& error) {
     return app_->exit(error);
   }
@@ -246,7 +259,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
 int CommandLine::run(int argc, char** argv, const std::function<void()>& first) {
   try {
     if (first) first();
-    if (const auto status = read(argc, argv)) return *status;
+    if (const int status = read(argc, argv).value_or(0); status != 0) return status;
   } catch (const std::exception& error) {
     fmt::print(stderr, "palpate: {}\n", printable(error.what()));
     return 1;

@@ -113,5 +113,16 @@ TEST_F(ToolsFilm, AReportHasTheSessionsSideBySide) {
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
 }
 
+TEST_F(ToolsFilm, StoppedByCtrlCThereIsNoFilm) {
+  const std::string command =
+      fmt::format("timeout --preserve-status -s INT 2 {} film {} -o {} --speed 0.01 --width 640 --height 480",
+                  program("palpate"), (*folder_ / "a.lcmlog").string(), film("stopped").string());
+  const auto stopped = run_program(command);
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
+  EXPECT_NE(stopped.err.find("stopped.mp4: stopped before its end"), std::string::npos) << stopped.err;
+  for (const auto& file : fs::directory_iterator(film("stopped").parent_path()))
+    EXPECT_FALSE(file.path().filename().string().starts_with("stopped")) << file.path();
+}
+
 }  // namespace
 }  // namespace palpate

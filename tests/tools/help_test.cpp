@@ -71,5 +71,17 @@ TEST(ToolsHelp, WhatIsToldByItsPlaceIsInCapitalsAndTheFolderOrFileThatIsMadeIsTh
   }
 }
 
+TEST(ToolsHelp, AnOptionThatIsNoneIsNamedBeforeWhatIsMissing) {
+  for (const auto& [command, text] : all_help()) {
+    const auto result = run_program(program("palpate") + " " + command + " --no-such-option");
+    EXPECT_NE(result.status, 0) << command;
+    EXPECT_NE(result.err.find("--no-such-option"), std::string::npos) << command << ": " << result.err;
+  }
+}
+
+TEST(ToolsHelp, HelpThatCannotBeWrittenIsTold) {
+  EXPECT_EQ(run_program("{ " + program("palpate") + " --help > /dev/full; }").status, 1);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -245,9 +245,11 @@ TEST_F(ToolsSolve, ABodyHangsUnderItsOwnWeight) {
 TEST_F(ToolsSolve, WhatIsNoNumberIsNoSolution) {
   const int node = nearest_node(plate_mesh(), {0.015, 0.01, 0.008});
   for (const char* method : {"direct", "tensors"})
-    testing::expect_refusal(fmt::format("{} solve {} --method {} --hold {}:1e308,1e308,1e308", program("palpate"),
+    testing::expect_refusal(fmt::format("{} solve {} --method {} --force {}:1e308,1e308,1e308", program("palpate"),
                                         plate().string(), method, node),
                             {"it is not finite"});
+  testing::expect_refusal(fmt::format("{} solve {} --hold {}:0,0,1e200", program("palpate"), plate().string(), node),
+                          {"--hold", "1e+200 m is more than 1000 m"});
 }
 
 // The measured curves of the specimen hold: at a press of 1 mm the force is not the linear one, what is held stays, and

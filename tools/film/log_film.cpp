@@ -44,7 +44,8 @@ LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, 
   Film film(s.film, width, height, s.rate);
   const long due = static_cast<long>(std::floor((stretch.end - stretch.begin) * s.rate / s.speed + 1e-6)) + 1;
   Image image;
-  for (long i = 0; i < due && progress(i, due); ++i) {
+  for (long i = 0; i < due; ++i) {
+    if (!progress(i, due)) throw std::runtime_error(fmt::format("{}: stopped before its end", s.film));
     renderer.draw(pictures.at(stretch.begin + static_cast<double>(i) * s.speed / s.rate), image);
     film.add(image);
   }

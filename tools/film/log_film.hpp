@@ -23,7 +23,8 @@ struct LogFilmReport {
 };
 
 /// Draws every picture that is due: what was known at its time, whatever the log's own pictures were, and the same
-/// bytes each time. `progress` is told the pictures done and due; false ends the film there. Throws std::runtime_error.
+/// bytes each time. `progress` is told the pictures done and due; where it is false there is no film. Throws
+/// std::runtime_error.
 LogFilmReport film_log(const LogFilmSettings& settings, const std::function<bool(long, long)>& progress);
 
 }  // namespace palpate

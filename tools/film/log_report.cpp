@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/realtime/shutdown.hpp"
 #include "render_node/renderer.hpp"
 #include "tools/film/log_figures.hpp"
 #include "tools/film/log_pictures.hpp"
@@ -50,6 +51,7 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
   Renderer renderer(kWidth, kWidth * picture.height / picture.width, 4);
   Image image;
   for (const double time : picture_times(contents, s.pictures)) {
+    if (shutdown_requested()) break;
     Frame frame = pictures.at(time);
     frame.overlay = {};  // too small to read
     renderer.draw(frame, image);
@@ -65,7 +67,7 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session) {
   const Scene& scene = logged.scene();
   LogFigures figures(scene);
   LogReader reader(s.logs[session]);
-  for (LogEvent event; reader.next(event);) figures.look(event);
+  for (LogEvent event; !shutdown_requested() && reader.next(event);) figures.look(event);
   const std::string course = fmt::format("course_{}.csv", session);
   write_course(s.folder / course, figures, scene);
   ordered_json report{{"log", s.logs[session]},
@@ -85,6 +87,7 @@ std::string report_logs(const LogReportSettings& s, const std::function<void(con
   for (std::size_t i = 0; i < s.logs.size(); ++i) {
     progress(s.logs[i]);
     all["sessions"].push_back(report_of(s, i));
+    if (shutdown_requested()) throw std::runtime_error("stopped before its end");
   }
   write_text(s.folder / "report.json", all.dump(2) + "\n");
   return run_script("report_page.py", s.folder);

@@ -58,6 +58,7 @@ void add_report_command(cli::Command& app) {
   command.tells_progress();
   command.examples({"palpate report monday.lcmlog friday.lcmlog -o out/report"});
   command.does([s] {
+    catch_shutdown_signals();
     const std::string missing = report_logs(*s, [](const std::string& log) { cli::say(log); });
     if (!missing.empty()) fmt::print(stderr, "palpate: {}\n", missing);
   });

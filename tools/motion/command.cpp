@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -64,7 +65,7 @@ void make_motion(const MotionOptions& o) {
     fmt::print(stderr, "palpate: {}: the tool touches nothing on all of its way\n", o.out);
   fmt::print(
       "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
-      o.out, maker.rows().time(), o.scene, scene.tools[tool].name, o.out);
+      o.out, maker.rows().time(), o.scene, scene.tools[tool].name, std::filesystem::absolute(o.out).string());
 }
 
 }  // namespace

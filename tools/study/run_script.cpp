@@ -1,8 +1,11 @@
 #include "tools/study/run_script.hpp"
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 
+#include <csignal>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace palpate {
 namespace {
@@ -31,7 +34,10 @@ std::string run_script(const std::string& name, const std::filesystem::path& fol
         "no page was made: {} is neither installed nor in the source tree; the figures are in the CSV files", name);
   // The system's interpreter first: it is the one that has the packages of scripts/install.sh.
   const std::string python = std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
-  if (std::system(fmt::format("{} {} {}", python, quoted(script), quoted(folder)).c_str()) == 0) return {};
+  const int status = std::system(fmt::format("{} {} {}", python, quoted(script), quoted(folder)).c_str());
+  if (status == 0) return {};
+  if (WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + SIGINT)
+    throw std::runtime_error(fmt::format("stopped before the page of {} was made", folder.string()));
   return "no page was made, for which python3 needs matplotlib; the figures are in the CSV files";
 }
 
