@@ -15,8 +15,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kStandOff = 0.02;   // [m] between tip and tissue at the start
-constexpr double kFieldOfView = 50;  // [degrees]
+constexpr double kStandOff = 0.02;                  // [m] between tip and tissue at the start
+constexpr double kFieldOfView = 50;                 // [degrees]
+constexpr double kShortest = 0.12, kLongest = 1.5;  // [m] from the pivot to the tissue; no tool is longer than 2 m
 
 struct Spot {
   Eigen::Vector3d place, normal;
@@ -142,7 +143,7 @@ SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const st
   const Spot spot = farthest_spot(mesh, surface, held->second.nodes);
   const double extent = extent_of(mesh, surface);
   const double press = wishes.press > 0 ? wishes.press : std::min(extent / 40, 0.01);
-  const double reach = std::max(0.12, 0.5 * extent);
+  const double reach = std::clamp(0.5 * extent, kShortest, kLongest);
   const Eigen::Vector3d pivot = spot.place + reach * spot.normal;
   SceneTexts texts;  // body and device are of the tables' first kinds: solved beforehand, moved by a file
   texts.trajectory = trajectory_text(reach - wishes.radius, press);

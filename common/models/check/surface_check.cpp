@@ -114,7 +114,7 @@ std::vector<std::string> size_warnings(const CheckSettings& settings, const std:
   std::vector<std::string> warnings;
   Eigen::Vector3d low = surface.position[0], high = low;
   for (const Eigen::Vector3d& p : surface.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double h = mean_edge(surface), across = (high - low).norm();
+  const double h = mean_edge(surface), across = (high - low).maxCoeff();
   for (const Tool& tool : settings.tools) {
     const EndAbilities end = abilities_of(tool);
     const double radius = end.radius;
