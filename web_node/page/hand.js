@@ -155,7 +155,8 @@ export class Hand {
 
   tell() {
     if (!this.pose) return;
-    this.link.send(wire.sample(this.tool, ++this.number, this.pose));
+    this.number += wire.numbersApart;
+    this.link.send(wire.sample(this.tool, this.number, this.pose));
   }
 
   // The picture that has just been drawn shows this frame.

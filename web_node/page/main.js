@@ -37,7 +37,7 @@ class App {
     this.input = new Input(canvas, this);
     wireButtons(this);
     this.setMode('press');
-    setInterval(() => this.lead(), 16);  // also while pictures take longer
+    setInterval(() => this.lead(), 16);  // the display's pictures may come more seldom
     addEventListener('pagehide', () => this.hand.release());
     this.everyPicture();
   }

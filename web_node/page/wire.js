@@ -90,3 +90,13 @@ export function sample(tool, number, { tip, roll, grip, pedal }) {
   [...tip, roll, grip, pedal].forEach((value, k) => view.setFloat32(8 + 4 * k, value, true));
   return view.buffer;
 }
+
+// Numbers of two samples of the hand are so far apart: those between are of the first one's repetitions.
+export const numbersApart = 64;
+const kind = (message) => new DataView(message).getUint8(0);
+export const isSample = (message) => kind(message) === SAMPLE;
+export const endsHand = (message) => kind(message) === RELEASE || kind(message) === GIVE;
+export function renumber(message) {
+  const view = new DataView(message);
+  view.setUint32(4, view.getUint32(4, true) + 1, true);
+}
