@@ -193,6 +193,9 @@ palpate.picture.draw = (...of) => {
   draw(...of);
   while (performance.now() < end);
 };"""
+NOTES = """const note = document.getElementById('note');
+globalThis.notes = [''];
+new MutationObserver(() => notes.push(note.textContent)).observe(note, { childList: true });"""
 HIDDEN = """Object.defineProperty(document, 'hidden', { value: true });
 document.dispatchEvent(new Event('visibilitychange'));"""
 
@@ -208,7 +211,7 @@ def slow(options):
             page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
             watch = HoldWatch(nodes.port)
             watch.start()
-            browser.execute_script(SLOW_PICTURES)
+            browser.execute_script(SLOW_PICTURES + NOTES)
             time.sleep(0.5)
             held = watch.during(3)
             least, most = min(force for _, force, _ in held), max(force for _, force, _ in held)
@@ -220,6 +223,10 @@ def slow(options):
             hung = watch.during(2.5)
             expect(any(let_go for *_, let_go in hung), "a page that hangs holds the tool")
             browser.execute_script("slowness = [0]")
+            page.wait("notes.some((said) => said.startsWith('this page is too slow'))", 5)
+            page.wait("!notes.at(-1).includes('too slow')", 5)
+            notes = page.get("notes")
+            expect(not any("driver elsewhere" in said for said in notes), notes)
             page.wait(f"{FORCE} > 0.05 && !(palpate.next.tools[0].flags & {HoldWatch.LET_GO})", 5)
             browser.execute_script(HIDDEN)
             hidden = watch.during(0.7)

@@ -31,6 +31,12 @@ export class Hand {
     return frame?.tools[this.tool]?.holder === me;
   }
 
+  // Let go though it is held: this page's samples came too late.
+  isLate(frame, me) {
+    const state = frame.tools[this.tool];
+    return this.holds(frame, me) && state.sample > 0 && (state.flags & wire.SILENT) !== 0;
+  }
+
   // Where the tool is now becomes what is wanted.
   take(frame) {
     const state = frame.tools[this.tool];

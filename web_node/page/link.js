@@ -12,8 +12,9 @@ export class Link {
     document.addEventListener('visibilitychange', () => { if (document.hidden) this.rest(); });
   }
 
-  hear({ open, data }) {
+  hear({ open, late, data }) {
     if (open !== undefined) this.turn(open);
+    else if (late) this.on.late();
     else if (typeof data === 'string') this.on.text(JSON.parse(data));
     else this.on.binary(data);
     this.bytes += data?.byteLength ?? data?.length ?? 0;

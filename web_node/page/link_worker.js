@@ -32,7 +32,11 @@ function send(message) {
 // A page that draws is silent, and its hand stands meanwhile: what it told last is told again, but not for one that
 // hangs.
 function repeat(told) {
-  if (hand !== told || performance.now() - told.since > longest) return;
+  if (hand !== told) return;
+  if (performance.now() - told.since > longest) {
+    postMessage({ late: true });
+    return;
+  }
   wire.renumber(told.message);
   send(told.message);
   setTimeout(() => repeat(told), again);

@@ -13,7 +13,7 @@ import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
-const picturesApart = 12, wordsApart = 50;  // [ms]
+const picturesApart = 12, wordsApart = 50, lateSeen = 1000;  // [ms]
 
 class App {
   constructor(sources) {
@@ -29,6 +29,7 @@ class App {
     this.link = new Link({
       open: () => this.panel.link('connected', true),
       close: () => this.lost(),
+      late: () => { this.lateAt = performance.now(); },
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });
@@ -45,6 +46,7 @@ class App {
   lost() {
     this.hand.rest();
     this.frame = this.next = this.shown = this.topology = undefined;
+    this.panel.hand(false, false);
     this.panel.link('no connection; trying again', false);
   }
 
@@ -61,6 +63,7 @@ class App {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
+    if (this.hand.isLate(this.next, this.me)) this.lateAt = performance.now();
     if (document.hidden) return;
     this.link.tellTaken();
     this.drawIn(0);  // once what else has come is taken: the newest is drawn
@@ -154,6 +157,8 @@ class App {
     if (!this.frame) return;
     this.panel.scale(() => this.picture.scale(128));
     this.panel.frame(this.frame, this.me);
+    const holds = this.hand.holds(this.next, this.me);
+    this.panel.hand(holds, holds && performance.now() - this.lateAt < lateSeen);
     this.panel.legend(this.look);
     this.curve.draw();
     this.askOrGive();

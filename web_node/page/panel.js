@@ -14,6 +14,8 @@ function row(tag, ...children) {
 }
 
 export class Panel {
+  said = [];  // by the nodes
+
   setScenery(scenery) {
     this.scenery = scenery;
     byId('title').textContent = scenery.title;
@@ -53,8 +55,8 @@ export class Panel {
     const scale = (max, unit) => [1, 0.75, 0.5, 0.25, 0].map((share) => `${+(share * max).toPrecision(3)} ${unit}`);
     const newtons = scale(forceMax, 'N'), lengths = byScalar ? scale(1e3 * legendMax, 'mm') : [];
     const said = [...newtons, ...lengths].join();
-    if (this.said === said) return;
-    this.said = said;
+    if (this.scales === said) return;
+    this.scales = said;
     byId('newtons').replaceChildren(...newtons.map((text) => row('li', text)));
     byId('lengths').replaceChildren(...lengths.map((text) => row('li', text)));
   }
@@ -82,9 +84,23 @@ export class Panel {
       ['received', `${(page.bytes / 1e6).toFixed(2)} MB/s`], ['watching', status.viewers]];
     byId('rates').replaceChildren(...lines.filter(([, value]) => value !== undefined)
       .flatMap(([name, value]) => [row('dt', name), row('dd', String(value))]));
-    const said = [...status.said, ...status.nodes.map((node) => node.text).filter(Boolean)];
-    byId('note').textContent = said.join('; ');
+    // Of a tool in this page's hand the page itself knows, and at once.
+    const told = status.nodes.filter((node) => node.text && !(node.driver_silent && this.holds));
+    this.said = [...status.said, ...told.map((node) => node.text)];
+    this.note();
     this.tasks(status.tasks);
+  }
+
+  // `late`: a tool in this page's hand has been let go within the last second.
+  hand(holds, late) {
+    this.holds = holds;
+    this.late = late;
+    this.note();
+  }
+
+  note() {
+    const own = this.late ? ['this page is too slow to hold the tool: it stands and its force fades'] : [];
+    byId('note').textContent = [...own, ...this.said].join('; ');
   }
 
   tasks(tasks) {

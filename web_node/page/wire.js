@@ -1,5 +1,6 @@
 // Messages between this page and web_node; docs/live.md has the layout. All numbers are little-endian.
 export const SEEN = 1 << 31, OFFERED = 1 << 30;
+export const SILENT = 64;  // a ForceFlag: the tool is let go
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
 const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5;
 
