@@ -30,6 +30,20 @@ def expect(holds, said):
         raise AssertionError(said)
 
 
+# What a curve of a few millinewtons with a gap of three seconds draws: its ticks, and how many lines it is made of.
+SMALL_CURVE = """const done = arguments[0];
+import(new URL('curve.js', location.href).href).then(({ Curve }) => {
+  const ticks = [];
+  let starts = 0;
+  const to = { clearRect() {}, beginPath() {}, stroke() {}, lineTo() {}, fillText: (text) => ticks.push(text),
+    moveTo: () => ++starts };
+  const curve = new Curve({ clientWidth: 200, clientHeight: 100, getContext: () => to });
+  for (const t of [0, 0.1, 0.2, 3.2, 3.3]) curve.add(t, [0.013]);
+  curve.draw();
+  done([ticks.slice(0, 3), starts - 3]);
+}, (error) => done(String(error)));"""
+
+
 def press(options):
     """Click and drag deform the organ, the curve rises, release brings it back."""
     with Nodes(options, "liver.toml") as nodes:
@@ -49,6 +63,8 @@ def press(options):
             page.let_go(0.54, 0.56)
             page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
             expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+            curve = browser.execute_async_script(SMALL_CURVE)
+            expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
@@ -161,7 +177,7 @@ def share(options):
 
 
 class HoldWatch(Watcher):
-    """Notes what is told of the first tool while a hand holds it: when, how strong its force is, whether it is let go."""
+    """Notes of the first tool, while a hand holds it: when, how strong its force is, whether it is let go."""
 
     FORCE_AT, FLAGS_AT = 32 + 4 * 36, 32 + 4 * 40
     LET_GO = 64

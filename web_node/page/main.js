@@ -22,7 +22,7 @@ class App {
     this.camera = new ViewCamera();
     this.curve = new Curve(document.getElementById('curve'));
     this.bodies = [];
-    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.1, through: false, arrows: true };
+    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.01, through: false, arrows: true };
     this.mode = 'press';
     this.scale = Math.min(devicePixelRatio, 2);
     this.pictures = 0;
@@ -156,10 +156,10 @@ class App {
   words() {
     if (!this.frame) return;
     this.panel.scale(() => this.picture.scale(128));
+    this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
     const holds = this.hand.holds(this.next, this.me);
     this.panel.hand(holds, holds && performance.now() - this.lateAt < lateSeen);
-    this.panel.legend(this.look);
     this.curve.draw();
     this.askOrGive();
   }
