@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/devices/lease.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
@@ -9,7 +10,7 @@ namespace palpate {
 void Interventions::look(const Seen& seen) {
   struct Kind {
     bool now;
-    const char* said;
+    std::string_view said;
   };
   // The worst first.
   const std::array kinds{
@@ -25,7 +26,7 @@ void Interventions::look(const Seen& seen) {
            "the force of moving tissue is limited: a local contact model asks for more than the tissue can give"},
       Kind{(seen.flags & stale_model) != 0, "the force of moving tissue fades: its local contact models come too late"},
       Kind{(seen.flags & late_tissue) != 0, "the tissue that is felt moves too slowly: its time is late"},
-      Kind{(seen.flags & silent_device) != 0, "a tool stands and its force fades: its driver elsewhere is silent"},
+      Kind{(seen.flags & silent_device) != 0, kDriverSilent},
       Kind{(seen.flags & force_limited) != 0, "the force is limited: more was asked for than the tool's port gives"},
       Kind{(seen.flags & slew_limited) != 0, "the force is limited: it rises no faster than the tool's port lets it"},
       Kind{(seen.flags & passivity_limited) != 0,

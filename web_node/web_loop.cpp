@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/devices/lease.hpp"
 #include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
@@ -167,7 +168,10 @@ void WebLoop::send_status(std::int64_t now) {
   json nodes = json::array(), said = json::array(), tasks = json::array();
   for (const auto& [name, peer] : presence_.peers())
     if (peer.accepted && now - peer.heard_ns < 10 * kNsPerS)
-      nodes.push_back({{"role", peer.status.role}, {"rate_hz", peer.status.rate_hz}, {"text", peer.status.text}});
+      nodes.push_back({{"role", peer.status.role},
+                       {"rate_hz", peer.status.rate_hz},
+                       {"text", peer.status.text},
+                       {"driver_silent", peer.status.text == kDriverSilent}});
   if (!presence_.matched("haptic")) said.push_back("waiting for a haptic node");
   for (const char* role : {"haptic", "deform"})
     if (const std::string silence = link_.silence(role, now); !silence.empty()) said.push_back(silence);

@@ -3,9 +3,11 @@
 to it. Exit status 77: no browser."""
 import argparse
 import json
+import math
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import tempfile
 import threading
@@ -28,6 +30,20 @@ def expect(holds, said):
         raise AssertionError(said)
 
 
+# What a curve of a few millinewtons with a gap of three seconds draws: its ticks, and how many lines it is made of.
+SMALL_CURVE = """const done = arguments[0];
+import(new URL('curve.js', location.href).href).then(({ Curve }) => {
+  const ticks = [];
+  let starts = 0;
+  const to = { clearRect() {}, beginPath() {}, stroke() {}, lineTo() {}, fillText: (text) => ticks.push(text),
+    moveTo: () => ++starts };
+  const curve = new Curve({ clientWidth: 200, clientHeight: 100, getContext: () => to });
+  for (const t of [0, 0.1, 0.2, 3.2, 3.3]) curve.add(t, [0.013]);
+  curve.draw();
+  done([ticks.slice(0, 3), starts - 3]);
+}, (error) => done(String(error)));"""
+
+
 def press(options):
     """Click and drag deform the organ, the curve rises, release brings it back."""
     with Nodes(options, "liver.toml") as nodes:
@@ -47,6 +63,8 @@ def press(options):
             page.let_go(0.54, 0.56)
             page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
             expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+            curve = browser.execute_async_script(SMALL_CURVE)
+            expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
@@ -158,6 +176,82 @@ def share(options):
             second.quit()
 
 
+class HoldWatch(Watcher):
+    """Notes of the first tool, while a hand holds it: when, how strong its force is, whether it is let go."""
+
+    FORCE_AT, FLAGS_AT = 32 + 4 * 36, 32 + 4 * 40
+    LET_GO = 64
+
+    def __init__(self, port):
+        super().__init__(port)
+        self.told = []
+
+    def take(self, kind, body):
+        super().take(kind, body)
+        if kind != 2 or body[:4] != FRAME:
+            return
+        force = math.hypot(*struct.unpack_from("<3f", body, self.FORCE_AT))
+        flags, _, holder = struct.unpack_from("<3I", body, self.FLAGS_AT)
+        if holder:
+            self.told.append((time.monotonic(), force, bool(flags & self.LET_GO)))
+
+    def during(self, seconds):
+        """Of the next seconds."""
+        begin = time.monotonic()
+        time.sleep(seconds)
+        return [told for told in self.told if told[0] > begin]
+
+
+SLOW_PICTURES = """const draw = palpate.picture.draw.bind(palpate.picture);
+globalThis.slowness = [300];  // [ms] of the pictures to come; the last one of all that follow
+palpate.picture.draw = (...of) => {
+  const end = performance.now() + (slowness.length > 1 ? slowness.shift() : slowness[0]);
+  draw(...of);
+  while (performance.now() < end);
+};"""
+NOTES = """const note = document.getElementById('note');
+globalThis.notes = [''];
+new MutationObserver(() => notes.push(note.textContent)).observe(note, { childList: true });"""
+HIDDEN = """Object.defineProperty(document, 'hidden', { value: true });
+document.dispatchEvent(new Event('visibilitychange'));"""
+
+
+def slow(options):
+    """Pictures that take longer than a silent hand is held do not lose it; a page that hangs or is hidden does."""
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_small_browser()
+        try:
+            page = Page(browser, nodes.address)
+            page.wait("palpate.frame.tools[0].seen", 20)
+            page.press(0.45, 0.6)
+            page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
+            watch = HoldWatch(nodes.port)
+            watch.start()
+            browser.execute_script(SLOW_PICTURES + NOTES)
+            time.sleep(0.5)
+            held = watch.during(3)
+            least, most = min(force for _, force, _ in held), max(force for _, force, _ in held)
+            print(f"{len(held)} frames with slow pictures: {least:.3f} to {most:.3f} N, "
+                  f"{sum(let_go for *_, let_go in held)} of them let go")
+            expect(len(held) > 60 and least > 0.9 * most, (len(held), least, most))
+            expect(not any(let_go for *_, let_go in held), "let go while pictures are slow")
+            browser.execute_script("slowness.unshift(2500)")
+            hung = watch.during(2.5)
+            expect(any(let_go for *_, let_go in hung), "a page that hangs holds the tool")
+            browser.execute_script("slowness = [0]")
+            page.wait("notes.some((said) => said.startsWith('this page is too slow'))", 5)
+            page.wait("!notes.at(-1).includes('too slow')", 5)
+            notes = page.get("notes")
+            expect(not any("driver elsewhere" in said for said in notes), notes)
+            page.wait(f"{FORCE} > 0.05 && !(palpate.next.tools[0].flags & {HoldWatch.LET_GO})", 5)
+            browser.execute_script(HIDDEN)
+            hidden = watch.during(0.7)
+            expect(any(let_go for *_, let_go in hidden), "a hidden page holds the tool")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
 def triangles_at_rest(options, scene):
     said = subprocess.run([f"{options.bin}/palpate", "check", f"{options.source}/scenes/{scene}"], check=True,
                           capture_output=True, text=True).stdout
@@ -214,14 +308,15 @@ def attack(port):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("case", choices=["press", "touch", "share", "cut", "hostile"])
+    parser.add_argument("case", choices=["press", "touch", "share", "slow", "cut", "hostile"])
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
     options = parser.parse_args()
     if options.case != "hostile":
         need_browser()
-    {"press": press, "touch": touch, "share": share, "cut": cut, "hostile": hostile}[options.case](options)
+    cases = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "hostile": hostile}
+    cases[options.case](options)
 
 
 if __name__ == "__main__":

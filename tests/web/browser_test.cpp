@@ -42,6 +42,10 @@ TEST(WebBrowserShared, TwoPagesShareAToolAndAServerThatReturnsIsFoundAgain) {
   run("share");
 }
 
+TEST(WebBrowser, SlowPicturesDoNotLoseTheHand) {
+  run("slow");
+}
+
 TEST(WebBrowser, ACutAppears) {
   run("cut");
 }

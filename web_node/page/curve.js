@@ -1,5 +1,8 @@
 // Force over time: the last seconds of every tool.
-const seconds = 10;
+import { forceMark, forceUnit } from './units.js';
+
+const seconds = 10, gap = 0.4;  // [s]; samples that are further apart are not joined
+const least = 0.005;  // [N] of the scale
 export const inks = ['#ffb454', '#6fc3ff', '#9be564', '#ff7ab8', '#c9a6ff', '#5fe0c9', '#ffd866', '#ff8a65'];
 
 export class Curve {
@@ -24,14 +27,19 @@ export class Curve {
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     const to = canvas.getContext('2d'), end = points.at(-1)?.t ?? 0;
     to.clearRect(0, 0, width, height);
-    const top = roundUp(Math.max(0.05, ...points.map((p) => Math.max(...p.forces, 0))));
+    const top = roundUp(Math.max(least, ...points.map((p) => Math.max(...p.forces, 0))));
     const x = (t) => width * (1 - (end - t) / seconds), y = (f) => height * (0.96 - 0.86 * f / top);
     this.grid(to, width, y, top, ratio);
     to.lineWidth = 1.6 * ratio;
     (points[0]?.forces ?? []).forEach((_, tool) => {
       to.strokeStyle = inks[tool % inks.length];
       to.beginPath();
-      for (const p of points) to.lineTo(x(p.t), y(p.forces[tool]));
+      let before = -Infinity;
+      for (const p of points) {
+        if (p.t - before > gap) to.moveTo(x(p.t), y(p.forces[tool]));
+        else to.lineTo(x(p.t), y(p.forces[tool]));
+        before = p.t;
+      }
       to.stroke();
     });
   }
@@ -47,7 +55,7 @@ export class Curve {
       to.moveTo(0, y(f));
       to.lineTo(width, y(f));
       to.stroke();
-      to.fillText(`${+f.toFixed(2)} N`, 4 * ratio, word(f));
+      to.fillText(`${forceMark(f, top)} ${forceUnit(top)}`, 4 * ratio, word(f));
     }
     to.textAlign = 'right';
     to.fillText(`last ${seconds} s`, width - 4 * ratio, word(top));

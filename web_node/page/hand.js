@@ -31,6 +31,12 @@ export class Hand {
     return frame?.tools[this.tool]?.holder === me;
   }
 
+  // Let go though it is held: this page's samples came too late.
+  isLate(frame, me) {
+    const state = frame.tools[this.tool];
+    return this.holds(frame, me) && state.sample > 0 && (state.flags & wire.SILENT) !== 0;
+  }
+
   // Where the tool is now becomes what is wanted.
   take(frame) {
     const state = frame.tools[this.tool];
@@ -155,7 +161,8 @@ export class Hand {
 
   tell() {
     if (!this.pose) return;
-    this.link.send(wire.sample(this.tool, ++this.number, this.pose));
+    this.number += wire.numbersApart;
+    this.link.send(wire.sample(this.tool, this.number, this.pose));
   }
 
   // The picture that has just been drawn shows this frame.

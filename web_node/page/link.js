@@ -1,41 +1,30 @@
 import { taken } from './wire.js';
 
-// The WebSocket: connects, and connects again when the server has gone and come back.
+// The connection to the server, which a worker keeps.
 export class Link {
   constructor(on) {
     this.on = on;
+    this.open = false;
     this.received = 0;
     this.bytes = 0;
-    this.wait = 250;
-    this.connect();
+    this.worker = new Worker('link_worker.js', { type: 'module' });
+    this.worker.onmessage = ({ data }) => this.hear(data);
+    document.addEventListener('visibilitychange', () => { if (document.hidden) this.rest(); });
   }
 
-  connect() {
-    const address = new URL('live', location.href);
-    address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
-    const socket = new WebSocket(address);
-    socket.binaryType = 'arraybuffer';
-    socket.onopen = () => {
-      this.socket = socket;
-      this.received = this.told = 0;
-      this.wait = 250;
-      this.on.open();
-    };
-    socket.onmessage = (event) => {
-      this.bytes += event.data.byteLength ?? event.data.length;
-      if (typeof event.data === 'string') this.on.text(JSON.parse(event.data));
-      else this.on.binary(event.data);
-    };
-    socket.onclose = () => {
-      this.socket = undefined;
-      this.on.close();
-      setTimeout(() => this.connect(), this.wait);
-      this.wait = Math.min(2 * this.wait, 2000);
-    };
+  hear({ open, late, data }) {
+    if (open !== undefined) this.turn(open);
+    else if (late) this.on.late();
+    else if (typeof data === 'string') this.on.text(JSON.parse(data));
+    else this.on.binary(data);
+    this.bytes += data?.byteLength ?? data?.length ?? 0;
   }
 
-  get open() {
-    return this.socket?.readyState === WebSocket.OPEN;
+  turn(open) {
+    this.open = open;
+    this.received = this.told = 0;
+    if (open) this.on.open();
+    else this.on.close();
   }
 
   // So that the server sends no more than is taken.
@@ -46,6 +35,11 @@ export class Link {
   }
 
   send(message) {
-    if (this.open && this.socket.bufferedAmount < 4096) this.socket.send(message);
+    if (this.open) this.worker.postMessage(message);
+  }
+
+  // The last sample is not repeated any more.
+  rest() {
+    this.worker.postMessage(undefined);
   }
 }

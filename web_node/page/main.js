@@ -13,7 +13,7 @@ import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
-const picturesApart = 12, wordsApart = 50;  // [ms]
+const picturesApart = 12, wordsApart = 50, lateSeen = 1000;  // [ms]
 
 class App {
   constructor(sources) {
@@ -22,13 +22,14 @@ class App {
     this.camera = new ViewCamera();
     this.curve = new Curve(document.getElementById('curve'));
     this.bodies = [];
-    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.1, through: false, arrows: true };
+    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.01, through: false, arrows: true };
     this.mode = 'press';
     this.scale = Math.min(devicePixelRatio, 2);
     this.pictures = 0;
     this.link = new Link({
       open: () => this.panel.link('connected', true),
       close: () => this.lost(),
+      late: () => { this.lateAt = performance.now(); },
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });
@@ -37,7 +38,7 @@ class App {
     this.input = new Input(canvas, this);
     wireButtons(this);
     this.setMode('press');
-    setInterval(() => this.lead(), 16);  // also while pictures take longer
+    setInterval(() => this.lead(), 16);  // the display's pictures may come more seldom
     addEventListener('pagehide', () => this.hand.release());
     this.everyPicture();
   }
@@ -45,6 +46,7 @@ class App {
   lost() {
     this.hand.rest();
     this.frame = this.next = this.shown = this.topology = undefined;
+    this.panel.hand(false, false);
     this.panel.link('no connection; trying again', false);
   }
 
@@ -61,6 +63,7 @@ class App {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
+    if (this.hand.isLate(this.next, this.me)) this.lateAt = performance.now();
     if (document.hidden) return;
     this.link.tellTaken();
     this.drawIn(0);  // once what else has come is taken: the newest is drawn
@@ -153,8 +156,10 @@ class App {
   words() {
     if (!this.frame) return;
     this.panel.scale(() => this.picture.scale(128));
-    this.panel.frame(this.frame, this.me);
     this.panel.legend(this.look);
+    this.panel.frame(this.frame, this.me);
+    const holds = this.hand.holds(this.next, this.me);
+    this.panel.hand(holds, holds && performance.now() - this.lateAt < lateSeen);
     this.curve.draw();
     this.askOrGive();
   }

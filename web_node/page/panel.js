@@ -1,5 +1,6 @@
 // The words beside the picture.
 import { inks } from './curve.js';
+import { forceMark, forceReading, forceUnit } from './units.js';
 import { size } from './vec.js';
 
 const flagWords = [[4, 'fault: force off'], [64, 'let go: force fades'], [16, 'tissue late: force fades'],
@@ -13,7 +14,11 @@ function row(tag, ...children) {
   return made;
 }
 
+const strongest = (task) => forceReading(task.max_force_n, Math.max(task.max_force_n, 0.001));
+
 export class Panel {
+  said = [];  // by the nodes
+
   setScenery(scenery) {
     this.scenery = scenery;
     byId('title').textContent = scenery.title;
@@ -38,23 +43,20 @@ export class Panel {
   scale(colours) {
     if (this.scaled) return;
     this.scaled = true;
-    const pixels = colours();
-    const canvas = document.querySelector('#legend canvas'), to = canvas.getContext('2d');
-    const image = to.createImageData(canvas.width, canvas.height);
-    for (let y = 0; y < canvas.height; ++y)
-      for (let x = 0; x < canvas.width; ++x)
-        image.data.set(pixels.subarray(4 * (canvas.height - 1 - y), 4 * (canvas.height - y)),
-          4 * (y * canvas.width + x));
-    to.putImageData(image, 0, 0);
+    const canvas = document.querySelector('#legend canvas');
+    const image = new ImageData(new Uint8ClampedArray(colours()), canvas.width, 1);
+    canvas.getContext('2d').putImageData(image, 0, 0);
   }
 
   // `look`: the arrows' force, and the tissue's displacement where it is coloured by it, of the last colour.
   legend({ forceMax, legendMax, byScalar }) {
-    const scale = (max, unit) => [1, 0.75, 0.5, 0.25, 0].map((share) => `${+(share * max).toPrecision(3)} ${unit}`);
-    const newtons = scale(forceMax, 'N'), lengths = byScalar ? scale(1e3 * legendMax, 'mm') : [];
+    this.forceMax = forceMax;
+    const scale = (mark, unit) => [0, 0.25, 0.5, 0.75, 1].map((share) => mark(share) + (share === 1 ? ` ${unit}` : ''));
+    const newtons = scale((share) => forceMark(share * forceMax, forceMax), forceUnit(forceMax));
+    const lengths = byScalar ? scale((share) => String(+(share * 1e3 * legendMax).toPrecision(3)), 'mm') : [];
     const said = [...newtons, ...lengths].join();
-    if (this.said === said) return;
-    this.said = said;
+    if (this.scales === said) return;
+    this.scales = said;
     byId('newtons').replaceChildren(...newtons.map((text) => row('li', text)));
     byId('lengths').replaceChildren(...lengths.map((text) => row('li', text)));
   }
@@ -63,7 +65,7 @@ export class Panel {
     frame.tools.forEach((tool, i) => {
       const item = byId('forces').children[i];
       if (!item) return;
-      item.querySelector('b').textContent = `${size(tool.force).toFixed(2)} N`;
+      item.querySelector('b').textContent = forceReading(size(tool.force), this.forceMax);
       const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text);
       item.classList.toggle('flag', (tool.flags & (4 | 16 | 64)) !== 0);
       const hand = !tool.holder ? '' : tool.holder === me ? 'in your hand' : `in the hand of page ${tool.holder}`;
@@ -82,9 +84,23 @@ export class Panel {
       ['received', `${(page.bytes / 1e6).toFixed(2)} MB/s`], ['watching', status.viewers]];
     byId('rates').replaceChildren(...lines.filter(([, value]) => value !== undefined)
       .flatMap(([name, value]) => [row('dt', name), row('dd', String(value))]));
-    const said = [...status.said, ...status.nodes.map((node) => node.text).filter(Boolean)];
-    byId('note').textContent = said.join('; ');
+    // Of a tool in this page's hand the page itself knows, and at once.
+    const told = status.nodes.filter((node) => node.text && !(node.driver_silent && this.holds));
+    this.said = [...status.said, ...told.map((node) => node.text)];
+    this.note();
     this.tasks(status.tasks);
+  }
+
+  // `late`: a tool in this page's hand has been let go within the last second.
+  hand(holds, late) {
+    this.holds = holds;
+    this.late = late;
+    this.note();
+  }
+
+  note() {
+    const own = this.late ? ['this page is too slow to hold the tool: it stands and its force fades'] : [];
+    byId('note').textContent = [...own, ...this.said].join('; ');
   }
 
   tasks(tasks) {
@@ -92,7 +108,7 @@ export class Panel {
       row('h2', `Task: ${task.body}`),
       row('p', `${(1e3 * task.inserted_m).toFixed(0)} mm inserted, ${(1e3 * task.deepest_m).toFixed(0)} mm at the ` +
         `deepest in ${task.inserting_s.toFixed(1)} s`),
-      row('p', `${task.wall_contacts} wall contacts, ${task.drops} drops, at most ${task.max_force_n.toFixed(2)} N`)]));
+      row('p', `${task.wall_contacts} wall contacts, ${task.drops} drops, at most ${strongest(task)}`)]));
   }
 
   link(words, good) {

@@ -132,7 +132,7 @@ export class Picture {
 
   // The force on the tool, at its tip, over whatever is in front of it.
   drawArrow({ tool }, forceMax) {
-    const { gl } = this, place = arrowPlace(origin(tool.parts[0]), tool.force, this.axes.reach);
+    const { gl } = this, place = arrowPlace(origin(tool.parts[0]), tool.force, forceMax, this.axes.reach);
     if (!place) return;
     const arrow = this.programs.get('arrow');
     gl.useProgram(arrow.program);

@@ -1,5 +1,6 @@
 // Messages between this page and web_node; docs/live.md has the layout. All numbers are little-endian.
 export const SEEN = 1 << 31, OFFERED = 1 << 30;
+export const SILENT = 64;  // a ForceFlag: the tool is let go
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
 const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5;
 
@@ -89,4 +90,14 @@ export function sample(tool, number, { tip, roll, grip, pedal }) {
   view.setUint32(4, number >>> 0, true);
   [...tip, roll, grip, pedal].forEach((value, k) => view.setFloat32(8 + 4 * k, value, true));
   return view.buffer;
+}
+
+// Numbers of two samples of the hand are so far apart: those between are of the first one's repetitions.
+export const numbersApart = 64;
+const kind = (message) => new DataView(message).getUint8(0);
+export const isSample = (message) => kind(message) === SAMPLE;
+export const endsHand = (message) => kind(message) === RELEASE || kind(message) === GIVE;
+export function renumber(message) {
+  const view = new DataView(message);
+  view.setUint32(4, view.getUint32(4, true) + 1, true);
 }
