@@ -93,7 +93,7 @@ TEST_F(ToolsScene, ASurfaceToBeLookedAtComesInByItself) {
 
 TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {
   change("block.toml", "name = \"kidney\"\n", "name = \"kidney\"\nscale = 20\n");
-  expect_warning("is 2.83 m across: is its scale right?");
+  expect_warning("is 2 m across: is its scale right?");
 }
 
 TEST_F(ToolsScene, ATipInMillimetresIsWarnedOf) {
