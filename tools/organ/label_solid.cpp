@@ -110,14 +110,12 @@ std::vector<char> union_of(const LabelVoxels& voxels, const std::vector<int>& la
   return all;
 }
 
-/// Some of the border's points, and which way is in: a voxel's extent that way, its neighbours' steps are passed.
+/// Some of the border's points, and which way is in.
 std::vector<SurfacePoint> points_of(const Field& field, const std::vector<Eigen::Vector3d>& border) {
   std::vector<SurfacePoint> points;
   const std::size_t step = 1 + border.size() / kWallPoints;
-  for (std::size_t i = 0; i < border.size(); i += step) {
-    const Eigen::Vector3d inward = -field.slope(border[i]).normalized();
-    points.push_back({border[i], inward, inward.cwiseAbs().dot(field.grid.shape.spacing)});
-  }
+  for (std::size_t i = 0; i < border.size(); i += step)
+    points.push_back({border[i], -field.slope(border[i]).normalized()});
   return points;
 }
 

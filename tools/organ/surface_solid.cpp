@@ -39,7 +39,7 @@ GridShape grid_around(const TriangleMesh& surface) {
 }
 
 /// Evenly over the surface; of a triangle that has one, about its middle.
-std::vector<SurfacePoint> points_of(const TriangleMesh& surface, double begin) {
+std::vector<SurfacePoint> points_of(const TriangleMesh& surface) {
   std::vector<SurfacePoint> points;
   const double share = surface_area(surface) / static_cast<double>(kWallPoints);
   double due = 0.5;  // points
@@ -50,7 +50,7 @@ std::vector<SurfacePoint> points_of(const TriangleMesh& surface, double begin) {
     const double count = std::floor(due);
     due -= count;
     for (double i = 0.5, turn = 0.5; i < count; ++i, turn = std::fmod(turn + std::numbers::phi, 1))
-      points.push_back({x + std::sqrt(i / count) * ((1 - turn) * u + turn * v), -normal.normalized(), begin});
+      points.push_back({x + std::sqrt(i / count) * ((1 - turn) * u + turn * v), -normal.normalized()});
   }
   return points;
 }
@@ -100,7 +100,7 @@ SurfaceSolid solid_of(const TriangleMesh& surface) {
   const GridShape shape = grid_around(surface);
   const double cell = shape.spacing.x();
   const ThinWall wall = thin_wall(
-      points_of(surface, 0.03 * cell), [&](const Eigen::Vector3d& x) { return tree->distance(x); }, 0.01 * cell);
+      points_of(surface), [&](const Eigen::Vector3d& x) { return tree->distance(x); }, 0.01 * cell);
   if (wall.thickness < kCellsOfWall * cell)
     throw std::runtime_error(fmt::format(
         "its walls are {:.3g} mm thick at {}, less than is told apart in a body of that size: {:.3g} mm; cut "

@@ -14,7 +14,7 @@ constexpr double kFarthest = 1e6;   // times what is near: the way misses the su
 double thickness_at(const SurfacePoint& point, const std::function<double(const Eigen::Vector3d&)>& depth,
                     double near) {
   constexpr int kSteps = 1000;
-  double deep = point.begin;
+  double deep = 3 * near;
   for (int i = 0; i < kSteps && deep < kFarthest * near; ++i) {
     const double free = depth(point.place + deep * point.inward);
     if (free < near) break;

@@ -10,7 +10,6 @@ namespace palpate {
 struct SurfacePoint {
   Eigen::Vector3d place;   ///< [m]
   Eigen::Vector3d inward;  ///< of length 1
-  double begin;            ///< [m] so far in, steps of the surface itself are passed; at most as thick as any wall
 };
 
 /// So many points tell how thick a body is.
