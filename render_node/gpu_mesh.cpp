@@ -14,7 +14,8 @@ GpuMesh::GpuMesh(GpuMesh&& other) noexcept
       shape_(other.shape_),
       vertices_(other.vertices_),
       triangles_(other.triangles_),
-      scalars_(other.scalars_) {}
+      scalars_(other.scalars_),
+      edges_(other.edges_) {}
 
 GpuMesh::~GpuMesh() {
   release();
@@ -37,6 +38,7 @@ void GpuMesh::build(const MeshView& mesh) {
   vertices_ = mesh.position.size();
   triangles_ = mesh.triangles.size();
   scalars_ = mesh.scalar.size();
+  edges_ = mesh.edges.size();
   gl_->CreateVertexArrays(1, &array_);
   gl_->CreateBuffers(buffers, buffer_.data());
   const GLenum usage = mesh.moving ? GL_STREAM_DRAW : GL_STATIC_DRAW;
@@ -46,6 +48,7 @@ void GpuMesh::build(const MeshView& mesh) {
   gl_->NamedBufferData(buffer_[scalar], mesh.scalar.size_bytes(), mesh.scalar.data(), usage);
   gl_->NamedBufferData(buffer_[image], mesh.image.size_bytes(), mesh.image.data(), GL_STATIC_DRAW);
   gl_->NamedBufferData(buffer_[index], mesh.triangles.size_bytes(), mesh.triangles.data(), GL_STATIC_DRAW);
+  gl_->NamedBufferData(buffer_[wires], mesh.edges.size_bytes(), mesh.edges.data(), GL_STATIC_DRAW);
   for (const GLuint slot : {position, normal, rest, scalar, image}) {
     if ((slot == scalar && mesh.scalar.empty()) || (slot == image && mesh.image.empty())) continue;
     const int components = slot == scalar ? 1 : slot == image ? 2 : 3;
@@ -66,6 +69,13 @@ void GpuMesh::update(const MeshView& mesh) {
 void GpuMesh::draw() const {
   gl_->BindVertexArray(array_);
   gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles_), GL_UNSIGNED_INT, nullptr);
+}
+
+void GpuMesh::draw_edges() const {
+  gl_->VertexArrayElementBuffer(array_, buffer_[wires]);
+  gl_->BindVertexArray(array_);
+  gl_->DrawElements(GL_LINES, static_cast<GLsizei>(2 * edges_), GL_UNSIGNED_INT, nullptr);
+  gl_->VertexArrayElementBuffer(array_, buffer_[index]);
 }
 
 GpuQuads::GpuQuads(GlContext& context) : gl_(&context.gl) {

@@ -20,9 +20,10 @@ class GpuMesh {
   void build(const MeshView& mesh);   ///< everything, into new buffers
   void update(const MeshView& mesh);  ///< positions, normals and scalars, into the same buffers
   void draw() const;
+  void draw_edges() const;
 
  private:
-  enum Buffer { position, normal, rest, scalar, image, index, buffers };
+  enum Buffer { position, normal, rest, scalar, image, index, wires, buffers };
 
   void release();
 
@@ -30,7 +31,7 @@ class GpuMesh {
   GLuint array_ = 0;
   std::array<GLuint, buffers> buffer_{};
   std::uint64_t shape_ = 0;
-  std::size_t vertices_ = 0, triangles_ = 0, scalars_ = 0;
+  std::size_t vertices_ = 0, triangles_ = 0, scalars_ = 0, edges_ = 0;
 };
 
 /// Flat triangles that change every frame; its buffer grows and never shrinks.

@@ -42,7 +42,7 @@ struct Renderer::Impl {
   GlContext context;
   GlFunctions& gl = context.gl;
   RenderTarget target;
-  GLuint bone, lining, metal, cavity, flat;
+  GLuint bone, lining, metal, cavity, flat, edge;
   std::map<std::tuple<Finish, bool, bool, std::size_t>, GLuint>
       soft;  ///< by (finish, coloured by scalar, textured, number of instruments)
   GLuint block = 0, empty_array = 0, glyph_texture = 0;
@@ -70,6 +70,7 @@ Renderer::Impl::Impl(int width, int height, int samples) : target(context, width
   metal = context.link_program("metal", rigid, lit + shaders::metal_frag);
   cavity = context.link_program("cavity", scene + shaders::cavity_vert, lit + shaders::cavity_frag);
   flat = context.link_program("flat", scene + shaders::flat_vert, kHead + shaders::colours + shaders::flat_frag);
+  edge = context.link_program("edge", scene + shaders::edge_vert, kHead + shaders::edge_frag);
   gl.CreateBuffers(1, &block);
   gl.NamedBufferData(block, sizeof(SceneBlock), nullptr, GL_DYNAMIC_DRAW);
   gl.CreateVertexArrays(1, &empty_array);
@@ -145,7 +146,11 @@ void Renderer::Impl::draw_soft(const Frame& frame) {
     gl.ProgramUniform4f(program, 4, float(c[0]), float(c[1]), float(c[2]), 1);
     gl.UseProgram(program);
     if (!mesh.image.empty()) wear(mesh.texture);
-    upload(mesh).draw();
+    const GpuMesh& gpu = upload(mesh);
+    gpu.draw();
+    if (mesh.edges.empty()) continue;
+    gl.UseProgram(edge);
+    gpu.draw_edges();
   }
 }
 

@@ -13,7 +13,12 @@ Stage make_stage(const LoadedScene& loaded) {
   const auto& render = loaded.scene.render;
   if (render && !render->backdrop.empty()) backdrop = load_triangle_mesh(render->backdrop, render->backdrop_scale);
   const Eigen::Vector3d origin = view_origin(loaded.archives);
-  return Stage(loaded.scene, surfaces, backdrop, load_visuals(loaded.scene, loaded.archives, origin), origin);
+  if (!render || render->colour != Colouring::parts)
+    return Stage(loaded.scene, surfaces, backdrop, load_visuals(loaded.scene, loaded.archives, origin), origin);
+  Stage stage(loaded.scene, surfaces, backdrop, {}, origin);
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+    stage.colour_parts(static_cast<int>(b), loaded.archives[b].tetrahedra);
+  return stage;
 }
 
 void write_still(const Stage& stage, int width, int height, const std::filesystem::path& file) {

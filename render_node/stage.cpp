@@ -19,6 +19,19 @@ double round_up(double value) {
   return 10 * decade;
 }
 
+void add_parts(MeshView view, const PartsOnStage& parts, int moving_id, Frame& frame) {
+  view.finish = Finish::membrane;
+  view.colour = kPrecomputedColour;
+  view.triangles = parts.precomputed();
+  view.edges = parts.precomputed_edges();
+  frame.meshes.push_back(view);
+  view.id = moving_id;
+  view.colour = kMovingColour;
+  view.triangles = parts.moving();
+  view.edges = parts.moving_edges();
+  frame.meshes.push_back(view);
+}
+
 }  // namespace
 
 Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
@@ -59,9 +72,10 @@ Stage::Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const Tri
 // A new surface over the body's nodes: what the picture sticks to is the rest shape refined alike.
 void Stage::refine(Soft& body, std::span<const std::array<int, 3>> triangles) const {
   body.rest.resize(body.coarse);
-  const int levels = refinement_levels(triangles.size(), body.max_triangles);
+  const int levels = body.parts ? 0 : refinement_levels(triangles.size(), body.max_triangles);
   body.refinement = Refinement(triangles, static_cast<int>(body.coarse), levels, body.rest);
   body.triangles.assign(triangles.begin(), triangles.end());
+  if (body.parts) body.parts->sort(triangles);
   body.rest_normal.resize(body.coarse);
   vertex_normals(body.rest, triangles, body.rest_normal);
   body.rest.resize(body.refinement.vertices());
@@ -91,6 +105,13 @@ void Stage::add_wall(Soft& body, const BodyLook& look) const {
   }
   for (const int v : body.wall.inner().from) body.inner_texture.push_back(body.texture[v]);
   if (!body.displacement.empty()) body.inner_displacement.resize(body.inner_texture.size());
+}
+
+void Stage::colour_parts(int index, std::span<const std::array<int, 4>> moving) {
+  Soft& body = bodies_.at(index);
+  if (body.finish != Finish::tissue) return;
+  body.parts.emplace(moving);
+  set_triangles(index, std::vector(body.triangles));
 }
 
 void Stage::set_triangles(int index, std::span<const std::array<int, 3>> triangles) {
@@ -176,6 +197,7 @@ void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {
                 .normal = body.normal,
                 .scalar = body.displacement,
                 .triangles = body.refinement.triangles()};
+  if (body.parts) return add_parts(view, *body.parts, inner_id, frame);
   if (body.finish != Finish::duct) {
     frame.meshes.push_back(view);
     return;

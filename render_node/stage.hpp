@@ -11,6 +11,7 @@
 #include "common/view/looks.hpp"
 #include "common/view/visual_body.hpp"
 #include "idl/messages.hpp"
+#include "render_node/parts_on_stage.hpp"
 #include "render_node/refine.hpp"
 #include "render_node/thick_wall.hpp"
 #include "render_node/visual_on_stage.hpp"
@@ -27,6 +28,9 @@ class Stage {
   Stage(const Scene& scene, std::span<const SurfaceMap> surfaces, const TriangleMesh& backdrop,
         std::vector<std::optional<VisualBody>> visuals = {}, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
+  /// Colours a solid body by its parts and shows its mesh: `moving`, node indices of its tetrahedra that move. Nothing
+  /// of a duct or a catheter.
+  void colour_parts(int body, std::span<const std::array<int, 4>> moving);
   /// Shape of one body: position [m] from the origin on and unit normal per surface node; empty spans leave it as it
   /// is. `dents`: which the positions show at the nodes; between these they are drawn as they are, round.
   void set_surface(int body, std::span<const Eigen::Vector3f> position, std::span<const Eigen::Vector3f> normal,
@@ -67,6 +71,7 @@ class Stage {
     ThickWall wall;                        ///< of a modal shell
     std::vector<Eigen::Vector3f> inner_texture;
     std::vector<float> inner_displacement;
+    std::optional<PartsOnStage> parts;      ///< if it is coloured by them
     std::optional<VisualOnStage> visual;    ///< is seen in place of the body's own surface
     std::vector<std::array<int, 3>> uncut;  ///< own surface before any cut, where there is a visual one
   };

@@ -29,10 +29,10 @@ inline void describe(Description& d, Camera& c) {
 }
 
 /// What the tissue's colour shows.
-enum class Colouring { tissue, displacement };
+enum class Colouring { tissue, displacement, parts };
 
 inline const auto& words_of(Colouring) {
-  static constexpr std::array<std::string_view, 2> words{"tissue", "displacement"};
+  static constexpr std::array<std::string_view, 3> words{"tissue", "displacement", "parts"};
   return words;
 }
 
@@ -52,7 +52,12 @@ inline void describe(Description& d, Render& r) {
   d.integer({"width", "pixel", "of the picture", Need::optional, Use::local}, r.width, 16, 8192);
   d.integer({"height", "pixel", "of the picture", Need::optional, Use::local}, r.height, 16, 8192);
   d.table({"camera", "", "the endoscope", Need::optional, Use::local, "defaults"}, r.camera);
-  d.choice({"colour", "", "`\"displacement\"` has a legend", Need::optional, Use::local}, r.colour);
+  d.choice(
+      {"colour", "",
+       "`\"displacement\"` has a legend; `\"parts\"`: the mesh with its edges, blue what is precomputed, orange what "
+       "moves with inertia (the live page draws tissue)",
+       Need::optional, Use::local},
+      r.colour);
   d.colour({"tissue_colour", "", "linear, each 0 to 1; a modal shell has a paler one unless this is given",
             Need::optional, Use::local},
            r.tissue_colour);

@@ -44,6 +44,7 @@ struct MeshView {
   std::span<const Eigen::Vector2f> image;          ///< per vertex, from the texture's upper left corner; empty: none
   TextureView texture;
   std::span<const std::array<int, 3>> triangles;  ///< vertex indices, outward by the right-hand rule
+  std::span<const std::array<int, 2>> edges;      ///< vertex indices of wires over it
   bool moving = true;                             ///< false: uploaded once per shape
 };
 

@@ -23,6 +23,8 @@ extern const char* const cavity_vert;
 extern const char* const cavity_frag;
 extern const char* const flat_vert;
 extern const char* const flat_frag;
+extern const char* const edge_vert;
+extern const char* const edge_frag;
 
 /// One of them under its name here.
 struct Source {
