@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "common/contact/patch/patch_parts.hpp"
 #include "common/geometry/arrays.hpp"
 #include "common/geometry/segment.hpp"
 #include "common/tool/safety.hpp"
@@ -17,6 +18,8 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
+constexpr double kSquare =
+    1.12;  // the middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2))
 
 // What a contact can bear: it never pulls, and friction is a share of its pressure.
 Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {
@@ -29,13 +32,16 @@ Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double frict
 
 }  // namespace
 
-LocalBody::LocalBody(const Tool& tool, double friction, double dt)
+LocalBody::LocalBody(const Tool& tool, const ContactSpec& contact, double dt)
     : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       jaws_(abilities_of(tool).holding),
-      friction_(friction),
+      patches_(contact.rule == ContactRule::patch),
+      by_patch_(tool_parts(tool).size(), false),
+      friction_(contact.friction),
       dt_(dt),
       rises_(static_cast<std::uint64_t>(std::lround(kRises / dt))),
       silent_(static_cast<std::uint64_t>(std::lround(kSilent / dt))) {
+  for (const PatchPart& p : patch_parts({&tool, 1}, false)) by_patch_[p.part] = true;
   position_.fill(Vector3d::Zero());
   for (auto& box : box_) box.fill(Vector3d::Zero());
 }
@@ -85,7 +91,7 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most
     Touched touched;
     const double radius = tool.radius(p);
     const Segment axis = tool.axis(p);
-    if (!holds(axis, radius, p, held) && touch(axis, radius, touched)) add(touched.at, touched.force, tool, load);
+    if (!holds(axis, radius, p, held) && touch(tool, p, touched)) add(touched.at, touched.force, tool, load);
   }
   keep_within(most, load);
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
@@ -167,8 +173,10 @@ void LocalBody::extrapolate(double seconds) {
 
 // How deep a part has come into the near surface, judged where its axis and the surface are nearest; on which side of
 // the surface the axis lies, by the triangle that faces it most among those that share that point.
-bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) const {
+bool LocalBody::touch(const MovingTool& tool, int part, Touched& touched) const {
   const LocalModel& m = state_.model;
+  const Segment axis = tool.axis(part);
+  const double radius = tool.radius(part);
   double nearest = radius * radius, facing = 0;
   int found = -1;
   ClosestOfTriangle at;
@@ -205,8 +213,16 @@ bool LocalBody::touch(const Segment& axis, double radius, Touched& touched) cons
   const Vector3d into =
       distance > 1e-6 * radius ? Vector3d(side * (touched.at - axis.at(at.share)) / distance) : Vector3d(-outward);
   const double along = into.dot(stiffness * into), depth = radius - side * distance;
-  touched.force = depth * along * into;
-  return depth > 0 && along > 0;
+  if (!(depth > 0 && along > 0)) return false;
+  touched.force = depth / (1 / along + 1 / half_space(part, radius, depth)) * into;
+  return true;
+}
+
+// [N/m] With which a half-space resists a part that is as deep: a sphere that presses by a patch by Hertz's law, any
+// other one as a square of its width. Infinite where contacts are the mesh's alone.
+double LocalBody::half_space(int part, double radius, double depth) const {
+  if (!patches_) return std::numeric_limits<double>::infinity();
+  return state_.model.modulus * (by_patch_[part] ? 4.0 / 3 * std::sqrt(radius * depth) : 2 * radius / kSquare);
 }
 
 // A part that held tissue in the model, or jaws with tissue between them, are felt by that alone, not twice.

@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
 #include <limits>
+#include <vector>
 
 #include "common/contact/jaw_obstacles.hpp"
+#include "common/contact/spec.hpp"
 #include "common/describe/state.hpp"
 #include "common/models/moving/local_model.hpp"
 #include "common/models/moving/tool_reach.hpp"
@@ -13,7 +15,8 @@ namespace palpate {
 
 /// Moving tissue as one tool feels it: the force of all dynamic bodies, from the newest local contact model that the
 /// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
-/// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface.
+/// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface,
+/// which gives way as its nodes do and, where the tissue's own contacts do so, as a half-space under the part.
 /// Age counts in haptic steps, so that a replay gives the same bits. While no model comes the force rises no more, then
 /// fades; what comes after a silence, or from another deform node, comes in from the present force. Tissue whose own
 /// time stands still or goes slower is felt as it is, and told. Never allocates.
@@ -27,8 +30,8 @@ class LocalBody {
   static constexpr double kLately = 0.1;         ///< [s] over which time that the tissue lost is forgotten
   static constexpr double kLate = 0.01;          ///< [s] lost lately from which on the tissue is late
 
-  /// `friction`: Coulomb's coefficient of the scene; dt [s]: the haptic step.
-  LocalBody(const Tool& tool, double friction, double dt);
+  /// `contact`: of the scene; dt [s]: the haptic step.
+  LocalBody(const Tool& tool, const ContactSpec& contact, double dt);
 
   /// From the next step on this model is used.
   void consume(const LocalModel& model);
@@ -82,11 +85,14 @@ class LocalBody {
   void come_from_before(ToolLoad& load);
   double weight() const { return state_.weight + state_.from_share * state_.from_weight; }  ///< of all that is rendered
   void extrapolate(double seconds);
-  bool touch(const Segment& axis, double radius, Touched& touched) const;
+  bool touch(const MovingTool& tool, int part, Touched& touched) const;
+  double half_space(int part, double radius, double depth) const;
   bool holds(const Segment& axis, double radius, int part, int held) const;
 
   Trocar trocar_;
   JawParts jaws_;
+  bool patches_;                ///< tissue gives way under parts as a half-space
+  std::vector<char> by_patch_;  ///< per part: a patch presses
   double friction_, dt_;
   std::uint64_t rises_, silent_;  ///< steps in kRises and kSilent
   Memory state_;

@@ -7,6 +7,7 @@ bool copy_model(const LocalContactModel& from, const TissueLimits& limits, Local
   const double stiffness = limits.stiffness_of(from);
   if (stiffness < 0) return false;
   to.stiffness = stiffness;
+  to.modulus = limits.modulus_of(from);
   to.run = from.run;
   to.seq = from.seq;
   to.tool_step = from.tool_step;

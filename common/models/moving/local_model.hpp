@@ -34,6 +34,7 @@ struct LocalModel {
   std::int64_t late_ns = 0;        ///< by which the tissue's own time is behind its node's clock
   Dofs dofs{};                     ///< that pose
   double stiffness = 0;            ///< [N/m] that the tissue in it has at most, by TissueLimits
+  double modulus = 0;              ///< [Pa] E / (1 - nu^2) at its surface, likewise
   std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;
   std::array<Contact, kMaxContacts> contact{};
   std::array<Node, kMaxNodes> node{};

@@ -10,7 +10,7 @@ namespace palpate {
 
 LocalPart::LocalPart(const StepSettings& settings, const TissueLimits& limits) : limits_(limits) {
   for (const Tool& tool : settings.tools) {
-    of_tool_.emplace_back(tool, settings.contact.friction, settings.dt);
+    of_tool_.emplace_back(tool, settings.contact, settings.dt);
     pressing_.push_back(2 * limits.contact_modulus() * abilities_of(tool).radius);
   }
 }

@@ -40,8 +40,9 @@ TissueLimits::TissueLimits(const std::vector<Archive>& archives, std::span<const
         body.stiffness[nodes[v]] += shape.volume * modulus * shape.gradient.row(v).squaredNorm();
       weight_ += shape.volume * a.density[m] * gravity[b].norm();
     }
-    for (std::size_t m = 0; m < a.young.size(); ++m)
-      contact_modulus_ = std::max(contact_modulus_, a.young[m] / (1 - a.poisson[m] * a.poisson[m]));
+    const auto plane_modulus = [&](std::size_t m) { return a.young[m] / (1 - a.poisson[m] * a.poisson[m]); };
+    body.modulus = plane_modulus(0);
+    for (std::size_t m = 0; m < a.young.size(); ++m) contact_modulus_ = std::max(contact_modulus_, plane_modulus(m));
     body.most = *std::ranges::max_element(body.stiffness);
     for (const Eigen::Vector3d& p : a.surface.position) body.rest.extend(p);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kAway * body.rest.diagonal().norm());
@@ -89,6 +90,15 @@ double TissueLimits::stiffness_of(const LocalContactModel& model) const {
     if (model.nodes.empty()) most = std::max(most, body->most);
   }
   return most;
+}
+
+double TissueLimits::modulus_of(const LocalContactModel& model) const {
+  double modulus = 0;
+  for (const LocalNode& n : model.nodes) {
+    const OfBody* body = of(n.body);
+    modulus = std::max(modulus, body && body->known ? body->modulus : std::numeric_limits<double>::infinity());
+  }
+  return modulus;
 }
 
 }  // namespace palpate

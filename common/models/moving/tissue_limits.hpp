@@ -28,12 +28,16 @@ class TissueLimits {
   /// scene: it names a body that does not move, a node that a body lacks, or tissue far from where the body is. What
   /// stiffness it tells itself does not count: of a node that is held or cut off it may be any.
   double stiffness_of(const LocalContactModel& model) const;
+  /// [Pa] E / (1 - nu^2) of the bodies whose surface is in a model of this scene, the largest; infinite where one is
+  /// not known.
+  double modulus_of(const LocalContactModel& model) const;
 
  private:
   struct OfBody {
     bool moves = false, known = false;
     std::vector<double> stiffness;   ///< [N/m] per surface node, 0: not among the moving elements
     double most = 0;                 ///< [N/m] of all nodes
+    double modulus = 0;              ///< [Pa] E / (1 - nu^2) of its first material, as patches take it
     Eigen::AlignedBox3d rest, near;  ///< at rest, and where its tissue may come to
   };
   const OfBody* of(std::uint32_t body) const;
