@@ -29,7 +29,6 @@ class App {
     this.link = new Link({
       open: () => this.panel.link('connected', true),
       close: () => this.lost(),
-      late: () => { this.lateAt = performance.now(); },
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });
@@ -40,6 +39,7 @@ class App {
     this.setMode('press');
     setInterval(() => this.lead(), 16);  // the display's pictures may come more seldom
     addEventListener('pagehide', () => this.hand.release());
+    document.addEventListener('visibilitychange', () => this.hand.pause());
     this.everyPicture();
   }
 
@@ -63,8 +63,8 @@ class App {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
-    if (this.hand.isLate(this.next, this.me)) this.lateAt = performance.now();
     if (document.hidden) return;
+    this.hand.watch(this.next, this.me);
     this.link.tellTaken();
     this.drawIn(0);  // once what else has come is taken: the newest is drawn
   }
@@ -159,7 +159,7 @@ class App {
     this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
     const holds = this.hand.holds(this.next, this.me);
-    this.panel.hand(holds, holds && performance.now() - this.lateAt < lateSeen);
+    this.panel.hand(holds, holds && performance.now() - this.hand.lateAt < lateSeen);
     this.curve.draw();
     this.askOrGive();
   }
