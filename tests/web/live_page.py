@@ -84,7 +84,7 @@ class Page:
         self.handle = browser.current_window_handle
         browser.get(address)
         # There is a picture to press on.
-        self.wait("globalThis.palpate?.frame && palpate.picture.axes && palpate.bodies.length", 20)
+        self.wait("globalThis.palpate?.firstDrawn", 40)
 
     def front(self):
         self.browser.switch_to.window(self.handle)

@@ -128,12 +128,10 @@ class App {
   // may have moved.
   draw() {
     const now = performance.now(), since = now - (this.last ?? now - picturesApart);
-    if (!this.paused && this.next === this.shown && since < 100) return;
-    if (this.picture.busy() || since < picturesApart) {
-      this.drawIn(4);
-      return;
-    }
+    if (this.picture.busy()) return this.drawIn(4);
     if (this.shown) this.firstDrawn ??= now;
+    if (!this.paused && this.next === this.shown && since < 100) return;
+    if (since < picturesApart) return this.drawIn(4);
     if (!this.paused) this.build();
     if (!this.frame || document.hidden) return;
     this.last = now;
@@ -150,6 +148,7 @@ class App {
     readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
     this.hand.drawn(this.frame, this.me);
     ++this.pictures;
+    this.drawIn(4);  // until it is complete
   }
 
   // What stands beside the picture; nobody reads faster.
@@ -175,7 +174,7 @@ class App {
   // Fewer pixels where the machine does not keep up: pictures that wait for one another make the hand late too.
   adapt(seconds) {
     const full = Math.min(devicePixelRatio, 2);
-    this.slow = (this.slow ?? 0) + (seconds > 0.02 ? 1 : -0.5);
+    this.slow = (this.slow ?? 0) + (seconds > 0.02 ? Math.min(50 * seconds, 4) : -0.5);
     if (this.slow > 12 && this.scale > 0.4) this.scale = Math.max(0.4, 0.75 * this.scale);
     if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
     if (this.slow > 12 || this.slow < -400) this.slow = 0;
