@@ -74,6 +74,16 @@ def open_browser(width=1100, height=720):
     return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
 
+def open_small_browser():
+    """A picture drawn without a graphics card takes the processor's time by its pixels."""
+    return open_browser(740, 480)
+
+
+def expect(holds, said):
+    if not holds:
+        raise AssertionError(said)
+
+
 class Page:
     """One window of a browser with the live view in it."""
 

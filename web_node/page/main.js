@@ -46,7 +46,7 @@ class App {
   lost() {
     this.hand.rest();
     this.frame = this.next = this.shown = this.topology = undefined;
-    this.panel.hand(false, false);
+    this.panel.hand(false);
     this.panel.link('no connection; trying again', false);
   }
 
@@ -157,8 +157,7 @@ class App {
     this.panel.scale(() => this.picture.scale(128));
     this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
-    const holds = this.hand.holds(this.next, this.me);
-    this.panel.hand(holds, holds && performance.now() - this.hand.lateAt < lateSeen);
+    this.panel.hand(this.hand.holds(this.next, this.me) && performance.now() - this.hand.lateAt < lateSeen);
     this.curve.draw();
     this.askOrGive();
   }
@@ -216,6 +215,10 @@ class App {
   deeper(by) {
     this.hand.deeper(by, this.picture.axes);
     if (this.hand.drag?.kind === 'press') this.setDepth(1e3 * this.hand.depth);
+  }
+
+  pan(right, up) {
+    if (this.picture.axes) this.camera.pan(right, up, this.picture.axes.halfHeight);
   }
 
   setDepth(mm) {
