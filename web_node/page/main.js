@@ -142,7 +142,9 @@ class App {
   // `seconds`: since the last picture.
   show(seconds) {
     this.adapt(seconds);
-    const width = Math.round(canvas.clientWidth * this.scale), height = Math.round(canvas.clientHeight * this.scale);
+    const early = this.picture.software && !this.firstDrawn;  // fewer pixels are there sooner
+    const scale = early ? 0.4 * this.scale : this.scale;
+    const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
     this.picture.resize(Math.max(width, 16), Math.max(height, 16));
     this.picture.draw(this.camera.fitted(width, height), this.bodies, this.frame.tools, this.look);
     readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
