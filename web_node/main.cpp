@@ -64,6 +64,7 @@ class Pages {
       case web::Said::sample:
         return move(page, said, now);
       case web::Said::taken:
+      case web::Said::rest:
         break;
     }
   }

@@ -125,7 +125,7 @@ std::optional<Said> decode(std::string_view bytes) {
   if (bytes.size() != 8 && bytes.size() != 32) return {};
   Said said{};
   const auto kind = get<std::uint8_t>(bytes, 0);
-  if (kind < Said::sample || kind > Said::taken || (kind == Said::sample) != (bytes.size() == 32)) return {};
+  if (kind < Said::sample || kind > Said::rest || (kind == Said::sample) != (bytes.size() == 32)) return {};
   said.kind = static_cast<Said::Kind>(kind);
   said.tool = get<std::uint8_t>(bytes, 1);
   said.number = get<std::uint32_t>(bytes, 4);

@@ -77,7 +77,7 @@ struct Sample {
   double pedal = 0;           ///< 0 or 1
 };
 struct Said {
-  enum Kind : std::uint8_t { sample = 1, take, release, give, taken } kind;
+  enum Kind : std::uint8_t { sample = 1, take, release, give, taken, rest } kind;
   std::uint8_t tool = 0;
   Sample motion;             ///< of a sample
   std::uint32_t number = 0;  ///< frames that have been taken

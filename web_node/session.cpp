@@ -7,7 +7,7 @@ namespace palpate::web {
 namespace websocket = beast::websocket;
 
 Session::Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number)
-    : socket_(std::move(socket)), host_(host), number_(number) {}
+    : socket_(std::move(socket)), host_(host), number_(number), again_(socket_.get_executor()) {}
 
 void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) {
   beast::get_lowest_layer(socket_).expires_never();
@@ -17,6 +17,7 @@ void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) 
   timeout.keep_alive_pings = true;
   socket_.set_option(timeout);
   socket_.read_message_max(kMaxBytesSaid);
+  socket_.control_callback([this](websocket::frame_type, beast::string_view) { hand_.answered(now_ns()); });
   socket_.async_accept(upgrade, [self = shared_from_this()](beast::error_code error) {
     if (error) return self->end();
     self->host_.opened(self);
@@ -38,13 +39,34 @@ void Session::heard(std::size_t bytes) {
       socket_.got_binary() ? decode({static_cast<const char*>(buffer_.data().data()), bytes}) : std::optional<Said>();
   buffer_.consume(buffer_.size());
   if (!said || flooded()) return throw_out();
+  hand_.heard(*said, now_ns());
   if (said->kind == Said::taken) {
     taken_ = std::min(said->number, sent_);
     write_next();
   } else {
     host_.said(*this, *said);
+    if (said->kind == Said::sample) stand();
   }
   read();
+}
+
+// Says the last sample again and again. What the page says itself begins the wait anew.
+void Session::stand() {
+  again_.expires_after(std::chrono::nanoseconds(StandingHand::kApart));
+  again_.async_wait([self = shared_from_this()](beast::error_code error) {
+    if (error || self->over_) return;
+    const std::optional<Said> again = self->hand_.again(now_ns());
+    if (!again) return;
+    self->host_.said(*self, *again);
+    self->ping();
+    self->stand();
+  });
+}
+
+void Session::ping() {
+  if (pinging_) return;
+  pinging_ = true;
+  socket_.async_ping({}, [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
 }
 
 bool Session::flooded() {
@@ -99,6 +121,7 @@ void Session::close() {
 void Session::end() {
   if (over_) return;
   over_ = true;
+  again_.cancel();
   host_.closed(*this);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "web_node/protocol.hpp"
+#include "web_node/standing_hand.hpp"
 
 namespace palpate::web {
 
@@ -53,6 +55,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void read();
   void heard(std::size_t bytes);
   bool flooded();
+  void stand();
+  void ping();
   void write_next();
   bool may_send(std::size_t slot) const;
   void throw_out();
@@ -67,6 +71,9 @@ class Session : public std::enable_shared_from_this<Session> {
   std::uint32_t sent_ = 0, taken_ = 0;  ///< frames
   int said_ = 0;                        ///< in the second that began at second_ns_
   std::int64_t second_ns_ = 0;
+  StandingHand hand_;
+  boost::asio::steady_timer again_;
+  bool pinging_ = false;
   bool over_ = false;
 };
 

@@ -13,21 +13,12 @@ import tempfile
 import threading
 import time
 
-from live_page import Nodes, Page, need_browser, open_browser
+import views
+from live_page import Nodes, Page, expect, need_browser, open_browser, open_small_browser
 from watcher import FRAME, Connection, Watcher
 
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
 MOVED = "Math.max(...palpate.bodies[0].displacement)"
-
-
-def open_small_browser():
-    """A picture drawn without a graphics card takes the processor's time by its pixels."""
-    return open_browser(740, 480)
-
-
-def expect(holds, said):
-    if not holds:
-        raise AssertionError(said)
 
 
 # What a curve of a few millinewtons with a gap of three seconds draws: its ticks, and how many lines it is made of.
@@ -104,6 +95,13 @@ def touch(options):
             browser.quit()
 
 
+SILENCE_TOLD = """const status = palpate.panel.status.bind(palpate.panel);
+palpate.panel.status = (said, page) => {
+  status(said, page);
+  globalThis.silenceTold ||= said.nodes.some((node) => node.driver_silent);
+};"""
+
+
 class HolderWatch(Watcher):
     """Notes the page that holds the first tool, and since when: as it is told, not as a page draws it."""
 
@@ -165,6 +163,13 @@ def share(options):
             took, of_it = 1e3 * (watch.since - asked), 1e3 * (let_go - asked)
             print(f"a closed page's hand was off the tool after {took:.0f} ms, its link gone after {of_it:.0f} ms")
             expect(watch.holder != mine and (took < 200 or took - of_it < 100), (watch.holder, took, of_it))
+            there.wait("palpate.next.tools[0].holder === palpate.me", 5)  # it had asked
+            second.execute_script(NOTES + SILENCE_TOLD)
+            there.get("palpate.hand.release()")
+            there.wait("globalThis.silenceTold", 10)
+            time.sleep(0.2)
+            notes = there.get("notes")
+            expect(not any("elsewhere" in said for said in notes), notes)
             nodes.stop()
             there.wait("!palpate.link.open", 10)
             with Nodes(options, "liver.toml", port):
@@ -306,17 +311,20 @@ def attack(port):
         pass
 
 
+CASES = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "camera": views.camera,
+         "through": views.through, "hostile": hostile}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("case", choices=["press", "touch", "share", "slow", "cut", "hostile"])
+    parser.add_argument("case", choices=CASES)
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
     options = parser.parse_args()
     if options.case != "hostile":
         need_browser()
-    cases = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "hostile": hostile}
-    cases[options.case](options)
+    CASES[options.case](options)
 
 
 if __name__ == "__main__":

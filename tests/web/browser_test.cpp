@@ -50,6 +50,14 @@ TEST(WebBrowser, ACutAppears) {
   run("cut");
 }
 
+TEST(WebBrowser, TheCameraGoesWhereTheMouseLeadsItAndTheEndoscopeIsTheScenesOwn) {
+  run("camera");
+}
+
+TEST(WebBrowser, ACatheterIsSeenInsideADuctThatIsSeenThrough) {
+  run("through");
+}
+
 TEST(WebHostile, PagesThatMisbehaveAreThrownOutAndTheForceKeepsItsRate) {
   const auto file = std::filesystem::temp_directory_path() / fmt::format("palpate-ticks-{}", getpid());
   const testing::HostWatch host;

@@ -69,6 +69,14 @@ class Client {
     return write(bytes);
   }
 
+  /// A hand's sample at the origin.
+  bool sample(std::uint32_t number) {
+    std::string bytes(32, '\0');
+    bytes[0] = 1;
+    std::memcpy(bytes.data() + 4, &number, 4);
+    return write(bytes);
+  }
+
   std::string body;
 
  private:

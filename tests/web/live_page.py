@@ -74,6 +74,16 @@ def open_browser(width=1100, height=720):
     return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
 
+def open_small_browser():
+    """A picture drawn without a graphics card takes the processor's time by its pixels."""
+    return open_browser(740, 480)
+
+
+def expect(holds, said):
+    if not holds:
+        raise AssertionError(said)
+
+
 class Page:
     """One window of a browser with the live view in it."""
 
@@ -84,7 +94,7 @@ class Page:
         self.handle = browser.current_window_handle
         browser.get(address)
         # There is a picture to press on.
-        self.wait("globalThis.palpate?.frame && palpate.picture.axes && palpate.bodies.length", 20)
+        self.wait("globalThis.palpate?.firstDrawn", 40)
 
     def front(self):
         self.browser.switch_to.window(self.handle)

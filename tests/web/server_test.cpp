@@ -152,6 +152,22 @@ TEST_F(WebServer, AFloodThrowsThePageOutAndOthersGoOn) {
   EXPECT_EQ(number_of(*good.read()), 7u);
 }
 
+TEST_F(WebServer, SaysTheSampleOfASilentPageAgainWhileItsBrowserAnswers) {
+  Client page(server_.port());
+  ASSERT_TRUE(page.enter());
+  page.read();
+  std::jthread browser([&] { page.read(); });  // answers, and waits for a message
+  page.sample(64);
+  EXPECT_TRUE(within(2s, [&] { return said_ > 10; })) << said_;
+  show(1);
+  browser.join();
+  ASSERT_TRUE(page.sample(128));  // and now nobody answers
+  std::this_thread::sleep_for(300ms);
+  const int before = said_;
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(said_, before);
+}
+
 TEST_F(WebServer, BytesThatAreNoRequestAreDropped) {
   for (int i = 0; i < 20; ++i) {
     boost::asio::io_context context;

@@ -23,11 +23,11 @@ export class ViewCamera {
     this.free = true;
   }
 
-  // By shares of the picture's height.
-  pan(right, up) {
+  // By shares of the picture's height, half of which is `halfHeight` at distance 1.
+  pan(right, up, halfHeight) {
     const { now } = this, forward = sub(now.target, now.eye);
     const x = unit(cross(forward, now.up)), y = unit(cross(x, forward));
-    const extent = 2 * size(forward) * Math.tan(0.5 * now.field_of_view * Math.PI / 180);
+    const extent = 2 * size(forward) * halfHeight;
     const by = add(scale(-extent * right, x), scale(-extent * up, y));
     now.eye = add(now.eye, by);
     now.target = add(now.target, by);

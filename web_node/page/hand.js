@@ -6,7 +6,7 @@ import { origin } from './scene_block.js';
 import { add, dot, scale, sub, unit } from './vec.js';
 
 const hover = 0.012, nearLine = 0.004, open = 0.6;  // [m] above the surface; from the line; [rad]
-const settle = 1000, apart = 8;  // [ms]
+const settle = 1000, apart = 8, longest = 1000;  // [ms]; longest: that the server says a sample again
 
 const standing = (state) => ({ tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 });
 
@@ -18,6 +18,7 @@ export class Hand {
     this.depth = 0.01;
     this.pending = [];
     this.delays = [];
+    this.lateAt = -Infinity;  // when samples came too late, the last time [ms]
     this.led = 0;  // time [ms] of the event that led the tool on last
     this.rest();
   }
@@ -25,6 +26,14 @@ export class Hand {
   rest() {
     this.drag = this.wanted = undefined;
     this.pose = undefined;  // {tip, roll, grip, pedal} that is told
+    this.told = undefined;  // when it was [ms]
+  }
+
+  // A page that is hidden lets go at once, and tells its hand again when it is seen.
+  pause() {
+    if (document.hidden) this.link.send(wire.rest());
+    this.changed = performance.now();
+    this.told = undefined;
   }
 
   holds(frame, me) {
@@ -32,9 +41,10 @@ export class Hand {
   }
 
   // Let go though it is held: this page's samples came too late.
-  isLate(frame, me) {
-    const state = frame.tools[this.tool];
-    return this.holds(frame, me) && state.sample > 0 && (state.flags & wire.SILENT) !== 0;
+  watch(frame, me) {
+    const state = frame.tools[this.tool], now = performance.now();
+    const letGo = this.holds(frame, me) && state.sample > 0 && (state.flags & wire.SILENT) !== 0;
+    if (letGo && now - (this.changed ?? 0) > settle) this.lateAt = now;
   }
 
   // Where the tool is now becomes what is wanted.
@@ -161,6 +171,9 @@ export class Hand {
 
   tell() {
     if (!this.pose) return;
+    const now = performance.now();
+    if (now - this.told > longest) this.lateAt = now;
+    this.told = now;
     this.number += wire.numbersApart;
     this.link.send(wire.sample(this.tool, this.number, this.pose));
   }

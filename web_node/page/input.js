@@ -46,7 +46,7 @@ export class Input {
     this.touches.set(event.pointerId, now);
     this.leadTool(event);
     if (this.kind === 'orbit') this.app.camera.orbit(3.5 * by[0], 3.5 * by[1]);
-    if (this.kind === 'pan') this.app.camera.pan(by[0], -by[1]);
+    if (this.kind === 'pan') this.app.pan(by[0], -by[1]);
   }
 
   leadTool(event) {

@@ -1,45 +1,51 @@
-import { taken } from './wire.js';
+import * as wire from './wire.js';
 
-// The connection to the server, which a worker keeps.
+// The WebSocket: connects, and connects again when the server has gone and come back.
 export class Link {
   constructor(on) {
     this.on = on;
-    this.open = false;
     this.received = 0;
     this.bytes = 0;
-    this.worker = new Worker('link_worker.js', { type: 'module' });
-    this.worker.onmessage = ({ data }) => this.hear(data);
-    document.addEventListener('visibilitychange', () => { if (document.hidden) this.rest(); });
+    this.wait = 250;
+    this.connect();
   }
 
-  hear({ open, late, data }) {
-    if (open !== undefined) this.turn(open);
-    else if (late) this.on.late();
-    else if (typeof data === 'string') this.on.text(JSON.parse(data));
-    else this.on.binary(data);
-    this.bytes += data?.byteLength ?? data?.length ?? 0;
+  connect() {
+    const address = new URL('live', location.href);
+    address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = new WebSocket(address);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.socket = socket;
+      this.received = this.told = 0;
+      this.wait = 250;
+      this.on.open();
+    };
+    socket.onmessage = ({ data }) => {
+      this.bytes += data.byteLength ?? data.length;
+      if (typeof data === 'string') this.on.text(JSON.parse(data));
+      else this.on.binary(data);
+    };
+    socket.onclose = () => {
+      this.socket = undefined;
+      this.on.close();
+      setTimeout(() => this.connect(), this.wait);
+      this.wait = Math.min(2 * this.wait, 2000);
+    };
   }
 
-  turn(open) {
-    this.open = open;
-    this.received = this.told = 0;
-    if (open) this.on.open();
-    else this.on.close();
+  get open() {
+    return this.socket?.readyState === WebSocket.OPEN;
   }
 
   // So that the server sends no more than is taken.
   tellTaken() {
     if (this.told === this.received) return;
     this.told = this.received;
-    this.send(taken(this.received));
+    this.send(wire.taken(this.received));
   }
 
   send(message) {
-    if (this.open) this.worker.postMessage(message);
-  }
-
-  // The last sample is not repeated any more.
-  rest() {
-    this.worker.postMessage(undefined);
+    if (this.open && this.socket.bufferedAmount < 4096) this.socket.send(message);
   }
 }

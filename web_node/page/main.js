@@ -29,7 +29,6 @@ class App {
     this.link = new Link({
       open: () => this.panel.link('connected', true),
       close: () => this.lost(),
-      late: () => { this.lateAt = performance.now(); },
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });
@@ -40,13 +39,14 @@ class App {
     this.setMode('press');
     setInterval(() => this.lead(), 16);  // the display's pictures may come more seldom
     addEventListener('pagehide', () => this.hand.release());
+    document.addEventListener('visibilitychange', () => this.hand.pause());
     this.everyPicture();
   }
 
   lost() {
     this.hand.rest();
     this.frame = this.next = this.shown = this.topology = undefined;
-    this.panel.hand(false, false);
+    this.panel.hand(false);
     this.panel.link('no connection; trying again', false);
   }
 
@@ -63,8 +63,8 @@ class App {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
     this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
-    if (this.hand.isLate(this.next, this.me)) this.lateAt = performance.now();
     if (document.hidden) return;
+    this.hand.watch(this.next, this.me);
     this.link.tellTaken();
     this.drawIn(0);  // once what else has come is taken: the newest is drawn
   }
@@ -128,12 +128,10 @@ class App {
   // may have moved.
   draw() {
     const now = performance.now(), since = now - (this.last ?? now - picturesApart);
-    if (!this.paused && this.next === this.shown && since < 100) return;
-    if (this.picture.busy() || since < picturesApart) {
-      this.drawIn(4);
-      return;
-    }
+    if (this.picture.busy()) return this.drawIn(4);
     if (this.shown) this.firstDrawn ??= now;
+    if (!this.paused && this.next === this.shown && since < 100) return;
+    if (since < picturesApart) return this.drawIn(4);
     if (!this.paused) this.build();
     if (!this.frame || document.hidden) return;
     this.last = now;
@@ -144,12 +142,15 @@ class App {
   // `seconds`: since the last picture.
   show(seconds) {
     this.adapt(seconds);
-    const width = Math.round(canvas.clientWidth * this.scale), height = Math.round(canvas.clientHeight * this.scale);
+    const early = this.picture.software && !this.firstDrawn;  // fewer pixels are there sooner
+    const scale = early ? 0.4 * this.scale : this.scale;
+    const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
     this.picture.resize(Math.max(width, 16), Math.max(height, 16));
     this.picture.draw(this.camera.fitted(width, height), this.bodies, this.frame.tools, this.look);
     readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
     this.hand.drawn(this.frame, this.me);
     ++this.pictures;
+    this.drawIn(4);  // until it is complete
   }
 
   // What stands beside the picture; nobody reads faster.
@@ -158,8 +159,7 @@ class App {
     this.panel.scale(() => this.picture.scale(128));
     this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
-    const holds = this.hand.holds(this.next, this.me);
-    this.panel.hand(holds, holds && performance.now() - this.lateAt < lateSeen);
+    this.panel.hand(this.hand.holds(this.next, this.me) && performance.now() - this.hand.lateAt < lateSeen);
     this.curve.draw();
     this.askOrGive();
   }
@@ -175,7 +175,7 @@ class App {
   // Fewer pixels where the machine does not keep up: pictures that wait for one another make the hand late too.
   adapt(seconds) {
     const full = Math.min(devicePixelRatio, 2);
-    this.slow = (this.slow ?? 0) + (seconds > 0.02 ? 1 : -0.5);
+    this.slow = (this.slow ?? 0) + (seconds > 0.02 ? Math.min(50 * seconds, 4) : -0.5);
     if (this.slow > 12 && this.scale > 0.4) this.scale = Math.max(0.4, 0.75 * this.scale);
     if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
     if (this.slow > 12 || this.slow < -400) this.slow = 0;
@@ -217,6 +217,10 @@ class App {
   deeper(by) {
     this.hand.deeper(by, this.picture.axes);
     if (this.hand.drag?.kind === 'press') this.setDepth(1e3 * this.hand.depth);
+  }
+
+  pan(right, up) {
+    if (this.picture.axes) this.camera.pan(right, up, this.picture.axes.halfHeight);
   }
 
   setDepth(mm) {

@@ -2,8 +2,9 @@
 import { inks } from './curve.js';
 import { forceMark, forceReading, forceUnit } from './units.js';
 import { size } from './vec.js';
+import { SILENT } from './wire.js';
 
-const flagWords = [[4, 'fault: force off'], [64, 'let go: force fades'], [16, 'tissue late: force fades'],
+const flagWords = [[4, 'fault: force off'], [SILENT, 'let go: force fades'], [16, 'tissue late: force fades'],
   [256, 'tissue late: moves slowly'],
   [1, 'limited'], [32, 'damped']];
 const byId = (id) => document.getElementById(id);
@@ -62,12 +63,13 @@ export class Panel {
   }
 
   frame(frame, me) {
+    this.elsewhere = frame.tools.some((tool) => !tool.offered && tool.flags & SILENT);
     frame.tools.forEach((tool, i) => {
       const item = byId('forces').children[i];
       if (!item) return;
       item.querySelector('b').textContent = forceReading(size(tool.force), this.forceMax);
       const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text);
-      item.classList.toggle('flag', (tool.flags & (4 | 16 | 64)) !== 0);
+      item.classList.toggle('flag', (tool.flags & (4 | 16 | SILENT)) !== 0);
       const hand = !tool.holder ? '' : tool.holder === me ? 'in your hand' : `in the hand of page ${tool.holder}`;
       const asked = tool.asker === me ? ['you have asked for it'] : [];
       item.querySelector('small').textContent = [hand, ...asked, ...words].filter(Boolean).join(', ');
@@ -84,16 +86,15 @@ export class Panel {
       ['received', `${(page.bytes / 1e6).toFixed(2)} MB/s`], ['watching', status.viewers]];
     byId('rates').replaceChildren(...lines.filter(([, value]) => value !== undefined)
       .flatMap(([name, value]) => [row('dt', name), row('dd', String(value))]));
-    // Of a tool in this page's hand the page itself knows, and at once.
-    const told = status.nodes.filter((node) => node.text && !(node.driver_silent && this.holds));
+    // Of a tool that people may take its own line says so, and at once.
+    const told = status.nodes.filter((node) => node.text && !(node.driver_silent && !this.elsewhere));
     this.said = [...status.said, ...told.map((node) => node.text)];
     this.note();
     this.tasks(status.tasks);
   }
 
-  // `late`: a tool in this page's hand has been let go within the last second.
-  hand(holds, late) {
-    this.holds = holds;
+  // A tool in this page's hand has been let go within the last second.
+  hand(late) {
     this.late = late;
     this.note();
   }

@@ -1,27 +1,29 @@
 // Draws the scene with WebGL 2.
 import { Backdrop } from './backdrop.js';
+import { Carried, resize } from './carried.js';
 import { GpuMesh } from './gpu_mesh.js';
 import { Programs } from './programs.js';
 import { Textures } from './textures.js';
 import { axesOf, axis, blockBytes, origin, sceneBlock } from './scene_block.js';
 import { arrowMesh, arrowPlace } from './arrow.js';
 
+const options = { alpha: false, preserveDrawingBuffer: true };
+
 // Without a graphics card smooth edges and fine surfaces would cost most of the pictures.
-function drawsBySoftware() {
-  const gl = document.createElement('canvas').getContext('webgl2');
+function drawsBySoftware(gl) {
   const info = gl?.getExtension('WEBGL_debug_renderer_info');
-  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
-  gl?.getExtension('WEBGL_lose_context')?.loseContext();
-  return /swiftshader|llvmpipe|software/i.test(name);
+  return info && /swiftshader|llvmpipe|software/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
 }
 
 export class Picture {
   constructor(canvas, sources) {
-    this.software = drawsBySoftware();
-    const gl = canvas.getContext('webgl2', { antialias: !this.software, alpha: false, preserveDrawingBuffer: true });
+    const beside = document.createElement('canvas').getContext('webgl2', { ...options, antialias: false });
+    this.software = drawsBySoftware(beside);
+    if (!this.software) beside?.getExtension('WEBGL_lose_context')?.loseContext();
+    const gl = this.software ? beside : canvas.getContext('webgl2', { ...options, antialias: true });
     if (!gl) throw new Error('this browser has no WebGL 2');
-    this.canvas = canvas;
     this.gl = gl;
+    if (this.software) this.carried = new Carried(gl, canvas);
     this.programs = new Programs(gl, sources);
     for (const name of ['cavity', 'cover', 'metal', 'legend', 'arrow']) this.programs.prepare(name);
     this.block = gl.createBuffer();
@@ -53,9 +55,7 @@ export class Picture {
   }
 
   resize(width, height) {
-    if (this.canvas.width === width && this.canvas.height === height) return;
-    this.canvas.width = width;
-    this.canvas.height = height;
+    resize(this.gl.canvas, width, height);
   }
 
   // The last picture is still being made: another one would only wait behind it, and this page with it.
@@ -64,12 +64,13 @@ export class Picture {
     if (!fence || gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return Boolean(fence);
     gl.deleteSync(fence);
     this.fence = undefined;
+    this.carried?.arrive();
     return false;
   }
 
   // `bodies`: SoftBody; `tools`: of the frame. `look`: {byScalar, legendMax, through, arrows}.
   draw(camera, bodies, tools, look) {
-    const { gl, canvas } = this, width = canvas.width, height = canvas.height;
+    const { gl } = this, { width, height } = gl.canvas;
     this.axes = axesOf(camera, width, height);
     const seen = tools.map((tool, i) => ({ tool, index: i, shape: this.scenery.tools[i], pose: tool.parts[0] }))
       .filter(({ tool, shape }) => tool.seen && shape);
@@ -85,6 +86,7 @@ export class Picture {
     for (const one of seen) this.drawInstrument(one);
     this.drawBodies(bodies, look, Math.min(seen.length, 8));
     if (look.arrows) for (const one of seen) this.drawArrow(one, look.forceMax);
+    this.carried?.send(width, height);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
   }

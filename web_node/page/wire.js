@@ -2,7 +2,7 @@
 export const SEEN = 1 << 31, OFFERED = 1 << 30;
 export const SILENT = 64;  // a ForceFlag: the tool is let go
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
-const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5;
+const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5, REST = 6;
 
 const types = { f32: Float32Array, u32: Uint32Array, i32: Int32Array, u8: Uint8Array };
 
@@ -80,6 +80,7 @@ function short(kind, tool, number) {
 export const take = (tool) => short(TAKE, tool, 0);
 export const release = (tool) => short(RELEASE, tool, 0);
 export const give = (tool) => short(GIVE, tool, 0);
+export const rest = () => short(REST, 0, 0);
 export const taken = (count) => short(TAKEN, 0, count);
 
 // tip [m], roll and grip [rad], pedal 0 or 1.
@@ -92,12 +93,5 @@ export function sample(tool, number, { tip, roll, grip, pedal }) {
   return view.buffer;
 }
 
-// Numbers of two samples of the hand are so far apart: those between are of the first one's repetitions.
+// Numbers of two samples of the hand are so far apart: those between are of the first one's repetitions by the server.
 export const numbersApart = 64;
-const kind = (message) => new DataView(message).getUint8(0);
-export const isSample = (message) => kind(message) === SAMPLE;
-export const endsHand = (message) => kind(message) === RELEASE || kind(message) === GIVE;
-export function renumber(message) {
-  const view = new DataView(message);
-  view.setUint32(4, view.getUint32(4, true) + 1, true);
-}

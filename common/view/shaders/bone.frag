@@ -13,6 +13,8 @@ void main() {
   vec4 strands = noise_slope(sticky / strand + stain), pores = noise_slope(sticky / 0.0011);
   float fibre = strands.w - 0.5, pore = pores.w - 0.5;
   vec3 n = tilt(n0, 0.00035 / strand * strands.xyz + 0.03 * pores.xyz);
+  // Between the corners of a rim's triangle the normal looks away from the eye, and ribs would have dotted black rims.
+  n = normalize(n + max(0.0, 0.45 - dot(n, lit.to_eye)) * lit.to_eye);
   float moist = smoothstep(0.30, 0.95, 0.6 * stain + 0.4 * vein);
   vec3 base = mix(colour.rgb * vec3(1.0, 0.88, 0.74), colour.rgb * vec3(0.70, 0.34, 0.26), moist);
   base *= 0.92 + 0.25 * fibre + 0.15 * pore;

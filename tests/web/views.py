@@ -1,0 +1,176 @@
+"""What the live view's camera and its buttons do to the picture, in headless Chromium."""
+import math
+
+from live_page import Nodes, Page, expect, open_small_browser
+
+GRID = (64, 48)  # squares of the picture that are looked at
+HIGHER_THAN_WIDE = {"width": 420, "height": 760, "deviceScaleFactor": 1, "mobile": False}
+# The scene stands, and pictures have one size.
+STAND = """palpate.toggle('pause');
+palpate.adapt = () => {};
+palpate.scale = 0.5;
+globalThis.begun = 0;
+const draw = palpate.picture.draw.bind(palpate.picture);
+palpate.picture.draw = (...of) => { ++begun; draw(...of); };"""
+# Colours of the picture, once one that was begun after now is complete: the next one has been begun then.
+LOOK = """const [columns, rows, done] = arguments, before = begun;
+(function wait() {
+  if (begun < before + 2) return void setTimeout(wait, 10);
+  const picture = document.getElementById('picture'), paper = document.createElement('canvas');
+  paper.width = columns || picture.width;
+  paper.height = rows || picture.height;
+  const to = paper.getContext('2d');
+  to.drawImage(picture, 0, 0, paper.width, paper.height);
+  const { data } = to.getImageData(0, 0, paper.width, paper.height);
+  if (columns) return void done([...data]);
+  done(globalThis.places.flatMap(([x, y]) => [...data.slice(4 * (y * paper.width + x), 4 * (y * paper.width + x) + 4)]));
+})();"""
+
+
+def look(page, grid=GRID):
+    """Without a grid at the pixels `places`."""
+    return page.browser.execute_async_script(LOOK, *(grid or (0, 0)))
+
+
+def apart(one, other):
+    """Mean difference of two pictures, of 255."""
+    return sum(abs(a - b) for a, b in zip(one, other)) / len(one)
+
+
+def added(a, b, by=1.0):
+    return [x + by * y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    return [x / math.sqrt(dot(a, a)) for x in a]
+
+
+def turned(v, axis, angle):
+    """Right-handed about a unit axis (Rodrigues)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return [c * v[i] + s * cross(axis, v)[i] + (1 - c) * dot(axis, v) * axis[i] for i in range(3)]
+
+
+def drag(page, button, to):
+    """From the middle of the picture by shares of its height, y downwards."""
+    x, y = page.place(0.5, 0.5)
+    height = page.get("document.getElementById('picture').clientHeight")
+    held = {"left": 1, "right": 2, "middle": 4}[button]
+    for kind, share, buttons in (("mousePressed", 0, held), ("mouseMoved", 0.5, held), ("mouseMoved", 1, held),
+                                 ("mouseReleased", 1, 0)):
+        page.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": kind, "x": x + share * to[0] * height, "y": y + share * to[1] * height, "button": button,
+            "buttons": buttons, "clickCount": 1, "pointerType": "mouse"})
+
+
+def wheel(page, notches):
+    x, y = page.place(0.5, 0.5)
+    page.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {
+        "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": -100 * notches, "pointerType": "mouse"})
+
+
+def orbited(eye, target, up, by):
+    """What faces the camera goes the mouse's way: the camera goes the other, about its target."""
+    back, up = added(eye, target, -1), unit(up)
+    right = unit(cross(up, back))
+    sideways = -3.5 * by[0]
+    return added(target, turned(turned(back, up, sideways), turned(right, up, sideways), -3.5 * by[1])), target
+
+
+def panned(eye, target, up, by, half_height):
+    """What is as far as the target stays under the mouse. `half_height`: of the picture, at distance 1."""
+    back = added(eye, target, -1)
+    right = unit(cross(up, back))
+    high = 2 * half_height * math.sqrt(dot(back, back))
+    by = added(added([0, 0, 0], right, -high * by[0]), unit(cross(back, right)), high * by[1])
+    return added(eye, by), added(target, by)
+
+
+def camera(options):
+    """Orbit, pan and zoom lead to the pictures of cameras computed here; the endoscope comes back to the scene's."""
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_small_browser()
+        try:
+            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", HIGHER_THAN_WIDE)
+            page = Page(browser, nodes.address)
+            page.wait("palpate.frame.tools[0].seen", 30)
+            browser.execute_script(STAND)
+            begin = look(page)
+            now = page.get("palpate.camera.now")
+            eye, target, up = now["eye"], now["target"], now["up"]
+            half_height = page.get("palpate.picture.axes.halfHeight")
+            back = added(eye, target, -1)
+            for name, act, (to_eye, to_target) in (
+                    ("orbit", lambda: drag(page, "right", (0.2, 0.1)), orbited(eye, target, up, (0.2, 0.1))),
+                    ("pan", lambda: drag(page, "middle", (0.2, 0.1)),
+                     panned(eye, target, up, (0.2, 0.1), half_height)),
+                    ("zoom", lambda: wheel(page, 3), (added(target, back, math.exp(-0.36)), target))):
+                act()
+                seen = look(page)
+                browser.execute_script("[palpate.camera.now.eye, palpate.camera.now.target] = arguments", to_eye,
+                                       to_target)
+                wanted = look(page)
+                page.get("palpate.keys.e(true)")
+                again = look(page)
+                print(f"{name}: {apart(seen, begin):.1f} from the endoscope's picture, {apart(seen, wanted):.2f} from "
+                      f"where it should lead, {apart(again, begin):.2f} when back")
+                expect(apart(seen, begin) > 5, f"{name}: the picture stays")
+                expect(apart(seen, wanted) < 0.2, f"{name}: another picture than it should be")
+                expect(apart(again, begin) < 0.2, f"{name}: the endoscope does not come back")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
+# Pixels where vertices of the catheter lie that are at least 3 mm past the duct's ends.
+PLACES_INSIDE = """const { axes, gl: { canvas: { width, height } } } = palpate.picture;
+const of = (finish) => palpate.bodies.find((body) => body.spec.finish === finish).position;
+const duct = of('duct'), catheter = of('plastic'), [low, high] = [Math.min, Math.max].map((best) =>
+  duct.reduce((found, value, i) => (i % 3 ? found : best(found, value)), duct[0]));
+globalThis.places = [];
+for (let i = 0; i < catheter.length; i += 3) {
+  if (catheter[i] < low + 0.003 || catheter[i] > high - 0.003) continue;
+  const d = [0, 1, 2].map((k) => catheter[i + k] - axes.eye[k]);
+  const along = (axis) => d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2], far = along(axes.forward);
+  places.push([Math.floor((0.5 + 0.5 * along(axes.right) / far / axes.halfWidth) * width),
+    Math.floor((0.5 - 0.5 * along(axes.up) / far / axes.halfHeight) * height)]);
+}
+globalThis.places = places.filter(([x, y]) => x >= 0 && y >= 0 && x < width && y < height);
+return places.length;"""
+CATHETER_IS_HIDDEN = """palpate.bodies.find((body) => body.spec.finish === 'plastic').views = () => [];"""
+INSERTED = "parseInt(document.querySelector('#tasks p')?.textContent) >= 5"  # [mm]
+
+
+def through(options):
+    """The catheter in the duct is in the picture where ducts are seen through, and only there."""
+    with Nodes(options, "catheter_insertion.toml") as nodes:
+        browser = open_small_browser()
+        try:
+            page = Page(browser, nodes.address)
+            page.wait(INSERTED, 60)
+            browser.execute_script(STAND)
+            look(page)
+            count = browser.execute_script(PLACES_INSIDE)
+            expect(count > 30, f"{count} places of the catheter are in the duct")
+            closed = look(page, None)
+            page.get("palpate.keys.t(true)")
+            clear = look(page, None)
+            browser.execute_script(CATHETER_IS_HIDDEN)
+            clear_without = look(page, None)
+            page.get("palpate.keys.t(true)")
+            closed_without = look(page, None)
+            print(f"{count} places: the catheter makes {apart(clear, clear_without):.1f} in a clear duct, "
+                  f"{apart(closed, closed_without):.1f} in a closed one")
+            expect(apart(clear, clear_without) > 8, "the catheter is not seen in a clear duct")
+            expect(apart(closed, closed_without) < 1, "the catheter is seen in a closed duct")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()

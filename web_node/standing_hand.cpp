@@ -1,0 +1,19 @@
+#include "web_node/standing_hand.hpp"
+
+namespace palpate::web {
+
+void StandingHand::heard(const Said& said, std::int64_t now) {
+  answered_ = now;
+  if (said.kind == Said::release || said.kind == Said::give || said.kind == Said::rest) last_.reset();
+  if (said.kind != Said::sample) return;
+  last_ = said;
+  since_ = now;
+}
+
+std::optional<Said> StandingHand::again(std::int64_t now) {
+  if (now - since_ > kLongest || now - answered_ > kAnswers) last_.reset();
+  if (last_) ++last_->motion.number;
+  return last_;
+}
+
+}  // namespace palpate::web
