@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -73,6 +74,15 @@ class Bus {
   /// Sleeps until a reader of this bus has something to take, or the time is over. True if there may be
   /// something.
   virtual bool wait(std::chrono::nanoseconds timeout) = 0;
+
+  /// From now on `news` is called whenever something has come to a reader of this bus, on the thread that brings it, so
+  /// that nobody has to be woken first. Nothing else comes to this bus meanwhile: it has to be short. One call at a
+  /// time; for what comes during it another follows. Where it returns false, wait() returns, as it does once for what
+  /// had come before, and for nothing else. Empty: wait() as ever, once a call under way is over; not from within it.
+  /// False, and nothing is done, where the bus has no thread that brings anything.
+  virtual bool serve(std::function<bool()> /*news*/) {
+    return false;
+  }
 };
 
 /// Takes everything that waits and returns the last sample. Meant for topics with one key.

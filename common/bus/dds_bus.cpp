@@ -10,6 +10,7 @@
 #include "common/bus/dds_domain.hpp"
 #include "common/bus/dds_entity.hpp"
 #include "common/bus/dds_gate.hpp"
+#include "common/bus/dds_wake.hpp"
 #include "common/bus/peers.hpp"
 #include "common/bus/stamp.hpp"
 #include "common/bus/version_watch.hpp"
@@ -124,13 +125,13 @@ class DdsWriter final : public Writer<M> {
 /// kept.
 class DdsInlet {
  public:
-  DdsInlet(dds_entity_t participant, dds_entity_t waitset, const dds_topic_descriptor_t& type, const std::string& name,
+  DdsInlet(dds_entity_t participant, DdsWake& wake, const dds_topic_descriptor_t& type, const std::string& name,
            const Qos& qos, Keep keep, const dds_topic_filter& gate)
       : topic_(gated_topic(participant, type, name, gate), fmt::format("creating topic {}", name)),
-        reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), nullptr),
+        reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), wake.listener()),
                 fmt::format("creating the reader of {}", name)),
         condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
-    dds_waitset_attach(waitset, condition_, 0);
+    wake.attach(condition_);
   }
 
   /// As take_message() has it.
@@ -171,11 +172,11 @@ std::string stream_name(const Topic<M>& topic, Keep keep) {
 template <class M>
 class DdsReader final : public Reader<M> {
  public:
-  DdsReader(dds_entity_t participant, dds_entity_t waitset, const Topic<M>& topic, Keep keep, const Peers& peers,
+  DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, const Peers& peers,
             std::atomic<std::uint64_t>& refused)
       : at_once_(keep == Keep::all ? dds::Gate<M>::kSamples : kKeysAtOnce),
         gate_(peers, refused, keep == Keep::all),
-        inlet_(participant, waitset, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
+        inlet_(participant, wake, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
                {.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG,
                 .f = {.sample_sampleinfo_arg = &dds::Gate<M>::filter},
                 .arg = &gate_}) {}
@@ -232,16 +233,16 @@ class DdsBus final : public Bus {
         place_(dds_place(settings)),
         domain_(join_domain(settings)),
         participant_(make_participant(settings), fmt::format("joining domain {}", settings.domain)),
-        waitset_(dds_create_waitset(participant_), "creating a wait set"),
+        wake_(participant_),
         versions_(participant_),
         peers_(participant_) {}
 
-#define PALPATE_DDS_PORTS(M)                                                                      \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                             \
-    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                        \
-  }                                                                                               \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {                  \
-    return std::make_unique<DdsReader<M>>(participant_, waitset_, topic, keep, peers_, refused_); \
+#define PALPATE_DDS_PORTS(M)                                                                   \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                          \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                     \
+  }                                                                                            \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {               \
+    return std::make_unique<DdsReader<M>>(participant_, wake_, topic, keep, peers_, refused_); \
   }
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
@@ -258,7 +259,11 @@ class DdsBus final : public Bus {
   }
 
   bool wait(std::chrono::nanoseconds timeout) override {
-    return dds_waitset_wait(waitset_, nullptr, 0, std::max<dds_duration_t>(timeout.count(), 0)) > 0;
+    return wake_.wait(timeout);
+  }
+  bool serve(std::function<bool()> news) override {
+    wake_.serve(std::move(news));
+    return true;
   }
 
  private:
@@ -266,7 +271,8 @@ class DdsBus final : public Bus {
   std::string place_;
   std::shared_ptr<const void> domain_;
   std::atomic<std::uint64_t> refused_ = 0;
-  Entity participant_, waitset_;
+  Entity participant_;
+  DdsWake wake_;
   VersionWatch versions_;
   Peers peers_;
 };

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -263,6 +265,75 @@ TEST_P(BusContract, WaitLastsAsLongAsNothingComes) {
   EXPECT_TRUE(b->wait(10s));
   EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
   later.join();
+}
+
+TEST_P(BusContract, WhoServesIsCalledByTheThreadThatBringsWhatComesAndWaitWakesForWhatIsLeft) {
+  auto reader = b->reader(topics::tool_state);
+  auto writer = a->writer(topics::tool_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1 && reader->writers() == 1; }));
+  std::vector<std::uint64_t> served;  // of this thread alone: within a process the writer's brings it
+  bool leave = false;
+  const auto news = [&] {
+    if (leave) return false;
+    while (const auto message = reader->take()) served.push_back(message->seq);
+    return true;
+  };
+  if (!b->serve(news)) {  // wait() as ever
+    ASSERT_TRUE(writer->write(tool_sample(1)));
+    EXPECT_TRUE(b->wait(10s));
+    EXPECT_EQ(reader->take()->seq, 1u);
+    EXPECT_STREQ(GetParam(), "memory");
+    return;
+  }
+  EXPECT_TRUE(b->wait(10s)) << "something may have come before";
+  for (const std::uint64_t seq : {1, 2}) {
+    ASSERT_TRUE(writer->write(tool_sample(seq)));
+    EXPECT_EQ(served.size(), seq);
+  }
+  EXPECT_FALSE(b->wait(20ms)) << "it was served";
+  leave = true;
+  ASSERT_TRUE(writer->write(tool_sample(3)));
+  EXPECT_TRUE(b->wait(10s));
+  EXPECT_FALSE(b->wait(20ms)) << "once";
+  EXPECT_EQ(reader->take()->seq, 3u);
+  leave = false;
+  b->serve({});
+  ASSERT_TRUE(writer->write(tool_sample(4)));
+  EXPECT_EQ(served, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_TRUE(b->wait(10s)) << "as ever";
+  EXPECT_EQ(reader->take()->seq, 4u);
+}
+
+TEST_P(BusContract, WhatComesWhileWhoServesIsCalledIsServedAfterIt) {
+  auto reader = b->reader(topics::tool_state, Keep::all);
+  auto answers = b->reader(topics::force_state, Keep::all);
+  auto writer = a->writer(topics::tool_state);
+  auto answer = b->writer(topics::force_state);
+  ASSERT_TRUE(eventually([&] { return writer->readers() == 1 && answer->readers() == 1; }));
+  int under_way = 0, most = 0;
+  std::atomic<std::uint64_t> served = 0, answered = 0;
+  const bool serves = b->serve([&] {
+    most = std::max(most, ++under_way);
+    while (reader->take()) {
+      ++served;
+      answer->write(force_sample());  // comes to this bus at once, on this thread
+    }
+    while (answers->take()) ++answered;
+    --under_way;
+    return true;
+  });
+  if (!serves) return;
+  constexpr std::uint64_t each = 200;
+  const auto write = [&] {
+    const auto own = a->writer(topics::tool_state);
+    for (std::uint64_t seq = 1; seq <= each; ++seq) own->write(tool_sample(seq));
+  };
+  std::thread one(write), other(write);
+  one.join();
+  other.join();
+  EXPECT_TRUE(eventually([&] { return served == 2 * each && answered == 2 * each; })) << served << " " << answered;
+  b->serve({});
+  EXPECT_EQ(most, 1) << "one call at a time";
 }
 
 INSTANTIATE_TEST_SUITE_P(Buses, BusContract, ::testing::Values("memory", "dds"),

@@ -4,14 +4,16 @@
 namespace palpate::latency {
 namespace {
 
-constexpr Topic<ToolState> kQuestion{"palpate/latency_question", "ToolState", topics::tool_state.qos};
-constexpr Topic<ForceState> kAnswer{"palpate/latency_answer", "ForceState", topics::force_state.qos};
+/// Delivered as contacts and surfaces are between nodes, which want the newest alone.
+constexpr Topic<ToolState> kQuestion{"palpate/latency_question", "ToolState", topics::contact_state.qos};
+constexpr Topic<ForceState> kAnswer{"palpate/latency_answer", "ForceState", topics::surface_state.qos};
 
 template <class Out, class In>
 class BusEcho : public Echo {
  public:
   BusEcho(const BusSettings& settings, const Topic<Out>& out, const Topic<In>& in)
-      : bus_(make_dds_bus(settings)), writer_(bus_->writer(out)), reader_(bus_->reader(in, Keep::all)) {}
+      : bus_(make_dds_bus(settings)), writer_(bus_->writer(out)), reader_(bus_->reader(in)) {}
+  ~BusEcho() override { bus_->serve({}); }
   void send(std::uint64_t seq) override {
     message_.seq = seq;
     writer_->write(message_);
@@ -23,6 +25,12 @@ class BusEcho : public Echo {
       message = reader_->take();
     }
     return message ? message->seq : 0;
+  }
+  bool listen(const std::function<void(std::uint64_t)>& receive) override {
+    return bus_->serve([this, receive] {
+      while (const auto message = reader_->take()) receive(message->seq);
+      return true;
+    });
   }
 
  private:
