@@ -123,24 +123,6 @@ TEST_P(LaidShaftSlides, HasNoJumpFromTriangleToTriangle) {
   EXPECT_LT(worst, 0.15);
 }
 
-// Drawn along itself at 20 mm/s: what friction has bent where a point gives way stays bent as the point slides. Where
-// it went straight again in each step that slid, the shaft stuck and slipped by turns.
-TEST_P(LaidShaftSlides, FrictionOfWhatSlidesStays) {
-  const double friction = GetParam();
-  PressRig rig = laid_rig(laid_scene(friction));
-  lay_down(rig, 0);
-  double least = 1, jump = 0;
-  for (int i = 1; i <= 400; ++i) {
-    const Vector3d before = rig.force();
-    rig.press(laid_tip(0, kLaid) + Vector3d(2e-5 * i, 0, 0));
-    if (i <= 200) continue;  // until all points slide
-    least = std::min(least, rig.force().x() / -rig.force().z());
-    jump = std::max(jump, (rig.force() - before).norm() / rig.force().norm());
-  }
-  EXPECT_GT(least, 0.75 * friction);
-  EXPECT_LT(jump, 0.002);
-}
-
 // Laid down, drawn aside and lifted, over and over: what the tool gets back is never more than what it has put in.
 TEST_P(LaidShaftSlides, ContactNeverPutsOutWork) {
   PressRig rig = laid_rig(laid_scene(GetParam()));
