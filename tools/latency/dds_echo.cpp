@@ -4,8 +4,8 @@
 namespace palpate::latency {
 namespace {
 
-/// Delivered as contacts and surfaces are between nodes, which want the newest alone.
-constexpr Topic<ToolState> kQuestion{"palpate/latency_question", "ToolState", topics::contact_state.qos};
+/// Reliable, the newest sample alone: as surfaces are delivered, and as bare DDS beside them here.
+constexpr Topic<ToolState> kQuestion{"palpate/latency_question", "ToolState", topics::surface_state.qos};
 constexpr Topic<ForceState> kAnswer{"palpate/latency_answer", "ForceState", topics::surface_state.qos};
 
 template <class Out, class In>
