@@ -1,8 +1,5 @@
 #include "deform_node/deform_loop.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -59,53 +56,27 @@ void DeformLoop::record_latency(std::int64_t ns) {
   recent_latency_.record(ns);
 }
 
-// What has come, and the shapes that it changes; those of all bodies where `all` says so.
-void DeformLoop::answer(bool all) {
-  const std::int64_t begin = now_ns();
-  clock_.follow();
-  const bool news = feed_.take();
-  // What the network has not carried yet is not followed by more of the same, or it would never carry anything.
-  if (!all && !(news && surfaces_.delivered())) return;
-  publish(all);
-  if (news) record_latency(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
-  if (!all) took_ns_ = now_ns() - begin;
-}
-
-// On the thread that brings messages, which does not wait for the loop. What it spends here it gets back for its own
-// work, or messages that come faster than they are answered would queue before it, and the newest be answered last.
-bool DeformLoop::serve() {
-  if (!turn_.try_acquire()) return false;
-  const std::int64_t now = now_ns();
-  owed_ns_ = std::max<std::int64_t>(owed_ns_ - (now - std::exchange(owed_at_ns_, now)), 0);
-  const bool mine = std::max(took_ns_, owed_ns_) <= kShortNs;
-  if (mine) {
-    answer(false);
-    owed_ns_ += 2 * (now_ns() - now);
-  }
-  turn_.release();
-  return mine;
-}
-
 const DeformReport& DeformLoop::run(double seconds) {
   const std::int64_t begin = now_ns();
   std::int64_t next_frame = begin, next_house = begin;
-  bus_.serve([this] { return serve(); });
   while (!shutdown_requested()) {
     std::int64_t now = now_ns();
     if (seconds > 0 && 1e-9 * static_cast<double>(now - begin) >= seconds) break;
-    bus_.wait(std::chrono::nanoseconds(std::min(next_frame, next_house) - now));
-    turn_.acquire();
-    now = now_ns();
     if (now >= next_house) {
       keep_house(now);
       next_house = now + 50'000'000;
     }
+    if (next_frame > now) bus_.wait(std::chrono::nanoseconds(next_frame - now));
+    clock_.follow();
+    const bool news = feed_.take();
+    now = now_ns();
     const bool frame = now >= next_frame;
-    answer(frame);
+    // What the network has not carried yet is not followed by more of the same, or it would never carry anything.
+    if (!frame && !(news && surfaces_.delivered())) continue;
+    publish(frame);
+    if (news) record_latency(surfaces_.last_publish_ns() - clock_.to_own(deformer_.sense_ns()));
     if (frame) next_frame = now + frame_ns_;
-    turn_.release();
   }
-  bus_.serve({});
   report_.refused = feed_.refused() + bus_.refused();
   report_.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
   return report_;

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <semaphore>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/clock_link.hpp"
@@ -23,13 +22,10 @@ struct DeformReport {
 };
 
 /// Takes contacts and reduced states, rebuilds the shapes and publishes: what has changed at once when a message comes,
-/// and everything at least at the visual rate. Where the bus has a thread that brings messages, and answers are short,
-/// that thread gives them: no other has to be woken for it.
+/// and everything at least at the visual rate.
 class DeformLoop {
  public:
   DeformLoop(const Scene& scene, Deformer& deformer, Bus& bus, Presence& presence);
-  ~DeformLoop() { bus_.serve({}); }
-  DeformLoop(const DeformLoop&) = delete;
 
   const RangeMonitor& range() const { return range_; }
 
@@ -37,12 +33,6 @@ class DeformLoop {
   const DeformReport& run(double seconds);
 
  private:
-  /// How long an answer may take on the thread that brings messages, and how far that thread may be behind with its own
-  /// work for such answers: longer ones gain nothing by it, and contacts would queue behind them.
-  static constexpr std::int64_t kShortNs = 200'000;
-
-  bool serve();
-  void answer(bool all);
   void publish(bool all);
   void keep_house(std::int64_t now);
   void record_latency(std::int64_t ns);
@@ -60,9 +50,6 @@ class DeformLoop {
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_frames_ = 0;
   DeformReport report_;
-  std::int64_t took_ns_ = 0;                   ///< the newest answer to a message
-  std::int64_t owed_ns_ = 0, owed_at_ns_ = 0;  ///< to the thread that brings messages, and at what time
-  std::binary_semaphore turn_{1};              ///< to use any of these: the loop's, or that thread's
 };
 
 }  // namespace palpate

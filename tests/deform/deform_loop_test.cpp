@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <thread>
 #include <utility>
 
-#include "common/bus/dds_bus.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
-#include "tests/bus/domain.hpp"
 #include "tests/models/duct_scene.hpp"
 
 namespace palpate {
@@ -117,120 +114,6 @@ TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
     const double moved = s.body == kCatheterBody ? 0.02 : 0;
     for (std::size_t n = 0; n < rest.size(); ++n) EXPECT_NEAR(s.position[3 * n + 2] - rest[n].z(), moved, 1e-6);
   }
-}
-
-/// A bus over DDS whose writer of surfaces takes its time, and notes which thread writes.
-class WatchedBus : public Bus {
- public:
-  std::atomic<std::int64_t> write_ns = 0;    ///< how long writing a surface lasts
-  std::atomic<int> served = 0, by_loop = 0;  ///< surfaces that the thread which brings messages wrote, and the others
-
-#define PALPATE_WATCHED_PORTS(M)                                                 \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {            \
-    return watched(bus_->writer(topic));                                         \
-  }                                                                              \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override { \
-    return bus_->reader(topic, keep);                                            \
-  }
-  PALPATE_MESSAGES(PALPATE_WATCHED_PORTS)
-#undef PALPATE_WATCHED_PORTS
-
-  std::string place() const override {
-    return bus_->place();
-  }
-  std::vector<std::string> misfits() override {
-    return bus_->misfits();
-  }
-  std::uint64_t refused() const override {
-    return bus_->refused();
-  }
-  bool wait(std::chrono::nanoseconds timeout) override {
-    return bus_->wait(timeout);
-  }
-  bool serve(std::function<bool()> news) override {
-    return bus_->serve(std::move(news));
-  }
-
- private:
-  class WatchedWriter : public Writer<SurfaceState> {
-   public:
-    WatchedWriter(WatchedBus& bus, std::unique_ptr<Writer<SurfaceState>> writer)
-        : bus_(bus), writer_(std::move(writer)) {}
-    bool write(const SurfaceState& message) override {
-      if (message.run != 0) ++(std::this_thread::get_id() == bus_.loop_ ? bus_.by_loop : bus_.served);
-      std::this_thread::sleep_for(std::chrono::nanoseconds(bus_.write_ns.load()));
-      return writer_->write(message);
-    }
-    int readers() const override { return writer_->readers(); }
-    std::uint64_t refused() const override { return writer_->refused(); }
-    bool delivered() const override { return writer_->delivered(); }
-
-   private:
-    WatchedBus& bus_;
-    std::unique_ptr<Writer<SurfaceState>> writer_;
-  };
-
-  template <class M>
-  std::unique_ptr<Writer<M>> watched(std::unique_ptr<Writer<M>> writer) {
-    if constexpr (std::same_as<M, SurfaceState>)
-      return std::make_unique<WatchedWriter>(*this, std::move(writer));
-    else
-      return writer;
-  }
-
-  std::unique_ptr<Bus> bus_ = make_dds_bus({.domain = own_domain()});
-  std::thread::id loop_ = std::this_thread::get_id();
-};
-
-/// A loop over DDS of one frame a second, so that hardly any surface but those that answer a message is written, while
-/// another bus of this process sends `states` in a row: within a process the thread that writes is the one that brings.
-struct WatchedLoop {
-  static constexpr int kStates = 40;
-  DuctScene s;
-  WatchedBus bus;
-  std::unique_ptr<Bus> haptic_bus = make_dds_bus({.domain = own_domain()});
-  Presence haptic{*haptic_bus, "haptic", 5, "scene", "archive"};
-  Presence presence{bus, "deform", 0, "scene", "archive"};
-  Deformer deformer{s.scene, s.archives};
-  std::unique_ptr<Writer<ModalState>> modes = haptic_bus->writer(topics::modal_state);
-  std::unique_ptr<Reader<SurfaceState>> surfaces = haptic_bus->reader(topics::surface_state, Keep::latest);
-  std::uint64_t newest = 0;  ///< step of the newest surface
-
-  void run() {
-    s.scene.rates.visual_hz = 1;
-    DeformLoop loop(s.scene, deformer, bus, presence);
-    std::thread other([&] {
-      for (int i = 1; i <= kStates; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        if (i == 1)
-          std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until the loop knows the haptic node
-        ModalState state = s.modal_state();
-        state.seq = state.step = static_cast<std::uint64_t>(i);
-        state.sense_ns = now_ns();
-        modes->write(state);
-      }
-    });
-    loop.run(1.9);
-    other.join();
-    while (const auto surface = surfaces->take())
-      if (surface->body == kDuctBody) newest = surface->step;
-  }
-};
-
-TEST(DeformLoop, ShortAnswersAreGivenByTheThreadThatBringsTheMessage) {
-  WatchedLoop l;
-  l.run();
-  EXPECT_GE(l.bus.served, WatchedLoop::kStates / 2) << "the machine may be busy; by the loop: " << l.bus.by_loop;
-  EXPECT_EQ(l.newest, WatchedLoop::kStates);
-}
-
-TEST(DeformLoop, LongAnswersAreLeftToTheLoop) {
-  WatchedLoop l;
-  l.bus.write_ns = 2'000'000;
-  l.run();
-  EXPECT_LE(l.bus.served, 4) << "the first, by which it shows";
-  EXPECT_GE(l.bus.by_loop, WatchedLoop::kStates / 2) << "the machine may be busy";
-  EXPECT_EQ(l.newest, WatchedLoop::kStates);
 }
 
 }  // namespace
