@@ -62,30 +62,5 @@ TEST(FirstTouch, OfATipRisesWithoutAFallWhereverItComesDown) {
       }
 }
 
-// Level along x, over all of the block.
-TEST(FirstTouch, OfALaidShaftRisesWithoutAFall) {
-  Scene scene = moving_block_scene(TensorMassSpec{}, 0.3);
-  Tool& tool = scene.tools[0];
-  tool.shaft_radius = 0.003;
-  tool.shaft_length = 0.12;
-  tool.pivot = {-0.2, 0, kTouchedTop + tool.shaft_radius};
-  tool.axis = Vector3d::UnitX();
-  tool.up = Vector3d::UnitZ();
-  for (const double aside : {0.0013, 0.004}) {
-    PressRig rig(scene, {precompute_on(scene.bodies[0], middle_block_mesh(6))});
-    const auto tip = [&](double way) { return Vector3d(0.06, aside, kTouchedTop + tool.shaft_radius - way); };
-    rig.start(tip(-0.001));
-    FirstRise rise;
-    for (double way = -0.001; way < 0.001; way += 1e-5) {
-      rig.step(tip(way));
-      rise.feel(rig.haptic().force(0).z());
-    }
-    fmt::print("shaft at {:.4f}: {:.2f} mN in the end, falls by {:.3f} mN, by {:.3f} mN a tick\n", aside,
-               1e3 * rise.force, 1e3 * rise.fall, 1e3 * rise.step);
-    EXPECT_GT(rise.force, 0.01);
-    EXPECT_LT(rise.fall, 0.01 * rise.force);
-  }
-}
-
 }  // namespace
 }  // namespace palpate

@@ -18,8 +18,9 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
-constexpr double kSquare =
-    1.12;  // the middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2))
+// [1] The middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2)): 4/pi asinh(1) (Love 1929),
+// rounded; HalfSpace::pressed() has it for any place.
+constexpr double kSquare = 1.12;
 
 // What a contact can bear: it never pulls, and friction is a share of its pressure.
 Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {
