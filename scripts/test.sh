@@ -5,5 +5,4 @@ cd "$(dirname "$0")/.."
 ./scripts/install.sh libcgal-dev libinsighttoolkit5-dev libspnav-dev pybind11-dev python3-dev  # for what is optional, and its tests
 ./scripts/build.sh release
 ./scripts/format.sh --check
-# One more than there are cores: tests that start nodes mostly wait.
-ctest --preset release --timeout 300 --parallel $(($(nproc) + 1)) "$@"
+ctest --preset release --timeout 300 --parallel "$(nproc)" "$@"
