@@ -55,6 +55,11 @@ std::string unknown_option(const CLI::App& app) {
   return "";
 }
 
+/// Says what was wrong, or the help that was asked for; the status is that of any other mistake, or 0.
+int tell(const CLI::App& app, const CLI::ParseError& error) {
+  return app.exit(error) == 0 ? 0 : 1;
+}
+
 /// Nothing of another kind is written over unless that is asked for, where --force asks for it.
 void keep_other_kinds(const CLI::App& app) {
   const CLI::Option* const force = app.get_option_no_throw(kForce);
@@ -249,9 +254,9 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
       fmt::print(stderr, "there is no option {}; --help names all\n", printable(unknown));
       return 1;
     }
-    return app_->exit(error);
+    return tell(*app_, error);
   } catch (const CLI::ParseError& error) {
-    return app_->exit(error);
+    return tell(*app_, error);
   }
   return std::nullopt;
 }

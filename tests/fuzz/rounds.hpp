@@ -17,10 +17,10 @@ void repeat(int rounds, std::chrono::seconds in_long_tests, Round&& round) {
   for (int i = 0; for_long ? Clock::now() < end : i < rounds; ++i) round(i);
 }
 
-/// The same in twelve minutes that so many cases share. Each suite has twelve.
+/// The same in nine minutes that so many cases share. Each suite has nine.
 template <class Round>
 void fuzz(int rounds, int cases, Round&& round) {
-  repeat(rounds, std::chrono::seconds(12 * 60) / cases, round);
+  repeat(rounds, std::chrono::seconds(9 * 60) / cases, round);
 }
 
 /// Where programs break: numbers that are none, that are not what was meant, that end a type.

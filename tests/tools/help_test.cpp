@@ -79,6 +79,18 @@ TEST(ToolsHelp, AnOptionThatIsNoneIsNamedBeforeWhatIsMissing) {
   }
 }
 
+TEST(ToolsHelp, EveryMistakeHasTheSameStatus) {
+  const std::string scene = std::string(PALPATE_SOURCE) + "/scenes/plate.toml";
+  for (const std::string& words :
+       {std::string("no-such-command"), std::string("check"), std::string("check no_such_file.toml"),
+        "check " + scene + " --no-such-option", "check " + scene + " one more", "drive " + scene + " --seconds ten",
+        "drive " + scene + " --quiet --verbose", "study " + scene + " -o never --budget 50"}) {
+    const auto result = run_program(program("palpate") + " " + words);
+    EXPECT_EQ(result.status, 1) << words;
+    EXPECT_FALSE(result.err.empty()) << words;
+  }
+}
+
 TEST(ToolsHelp, HelpThatCannotBeWrittenIsTold) {
   EXPECT_EQ(run_program("{ " + program("palpate") + " --help > /dev/full; }").status, 1);
 }

@@ -20,7 +20,7 @@ struct Arguments {
   bool quick = false, growth = false;
 };
 
-/// "1ms", "250us", "0.5 ms", "0.001s" or plain seconds.
+/// "1ms", "250us", "0.5 ms" or "0.001s".
 double seconds_of(const std::string& text) {
   std::size_t end = 0;
   double value = 0;
@@ -31,9 +31,9 @@ double seconds_of(const std::string& text) {
   }
   std::string unit = end == 0 ? "?" : text.substr(end);
   std::erase(unit, ' ');
-  const double scale = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" || unit.empty() ? 1 : 0;
+  const double scale = unit == "us" ? 1e-6 : unit == "ms" ? 1e-3 : unit == "s" ? 1 : 0;
   if (!(value * scale > 0))
-    throw std::runtime_error(fmt::format("--budget {}: not a time, such as 1ms or 250us", text));
+    throw std::runtime_error(fmt::format("--budget {}: not a time with its unit, such as 1ms or 250us", text));
   return value * scale;
 }
 
