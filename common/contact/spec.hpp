@@ -25,7 +25,7 @@ struct ContactSpec {
 inline void describe(Description& d, ContactSpec& c) {
   d.choice({"rule", "",
             "`\"patch\"` spreads the pressure of a probe's tip over squares of its own, on solid bodies, and "
-            "that of shafts where such a body has no inertia and does not relax, so that the mesh is not felt; all "
+            "that of shafts where such a body does not relax, so that the mesh is not felt; all "
             "else touches as under `\"barycentric\"`, which holds the touched point; "
             "`\"alpha\"` holds the three nodes of its triangle, for comparison, where tissue is not moving of itself"},
            c.rule);

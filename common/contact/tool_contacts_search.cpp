@@ -184,7 +184,8 @@ bool ToolContacts::triangle_taken(int tool, const std::array<int, 3>& nodes, int
   return false;
 }
 
-// The anchor comes along with the tool. How far the tool has slipped over it in this step is kept in the offset.
+// The anchor comes along with the tool. How far the tool has slipped over it in this step is kept in the offset, and
+// how far friction has bent what gives way between the two: slipping does not straighten that.
 void ToolContacts::follow(int contact, const MovingTool& moving, std::span<const int> near) {
   const ToolPoint by = law_.contacts()[contact].tool_point();
   const Segment axis = moving.axis(by.part);
@@ -193,7 +194,8 @@ void ToolContacts::follow(int contact, const MovingTool& moving, std::span<const
   const double share = length > 0 ? std::clamp(by.offset.z(), 0.0, length) / length : 0.0;
   follow(contact, axis.at(share), near);
   TouchContact& followed = law_.contacts().back();
-  const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + slipped;
+  const Eigen::Vector3d bent = followed.softness() * followed.force;
+  const Eigen::Vector3d on_tool = anchor_position(followed.anchor, surface_.positions()) + bent + slipped;
   const Eigen::Vector3d centre = nearest_point(axis, on_tool);
   followed.tool_point().offset = moving.to_part(by.part, centre + size * (on_tool - centre).normalized());
 }

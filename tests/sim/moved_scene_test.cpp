@@ -85,7 +85,7 @@ void is_the_same_half_a_metre_away(const std::string& name, int ticks, std::size
 }
 
 TEST(MovedScene, OfACutPlateIsTheSame) {
-  is_the_same_half_a_metre_away("plate_cut.toml", 6000, 170);
+  is_the_same_half_a_metre_away("plate_cut.toml", 5700, 170);
 }
 
 TEST(MovedScene, OfALobeCutOffIsTheSame) {

@@ -6,6 +6,7 @@
 #include "common/devices/device.hpp"
 #include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "tests/deform/work_of_cycles.hpp"
 #include "tools/rig/example_bodies.hpp"
 #include "tools/rig/kinds.hpp"
 #include "tools/rig/press_rig.hpp"
@@ -29,28 +30,69 @@ struct Felt {
   }
 };
 
-// A block with a notch from x = 0 on: the tip comes down within it, clear of all, and goes at 10 mm/s over its rim,
-// which it presses as deep as it lies.
-TEST(TipOverARim, ComesOntoTheTissueBySmallSteps) {
-  Scene scene = moving_block_scene(TensorMassSpec{}, 0.3);
-  std::get<ProbeSpec>(scene.tools[0].end).radius = kRadius;
-  PressRig rig(scene, {precompute_on(scene.bodies[0], middle_block_mesh())});
-  const ElasticMesh& mesh = rig.organ().mesh();
-  std::vector<std::uint32_t> notch;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    if (std::ranges::all_of(mesh.tetrahedra[t],
-                            [&](int n) { return mesh.rest[n].x() > -1e-6 && mesh.rest[n].z() > kFloor - 1e-6; }))
-      notch.push_back(static_cast<std::uint32_t>(t));
-  ASSERT_TRUE(rig.tissue().organ(0).begin_without(notch));
-  for (int k = 0; k < 200; ++k) rig.press(Vector3d(0.015, 0.0012, kLow + 5e-5 * (200 - k)));
-  Felt felt;
-  for (int k = 0; k < 1800; ++k) {
-    rig.press(Vector3d(0.015 - 1e-5 * k, 0.0012, kLow));
-    felt.feel(rig.force());
+/// A block under a tip, with a notch from x = 0 on.
+class NotchedBlock {
+ public:
+  NotchedBlock() : rig_(scene(), {precompute_on(scene().bodies[0], middle_block_mesh())}) {
+    const ElasticMesh& mesh = rig_.organ().mesh();
+    std::vector<std::uint32_t> notch;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+      if (std::ranges::all_of(mesh.tetrahedra[t],
+                              [&](int n) { return mesh.rest[n].x() > -1e-6 && mesh.rest[n].z() > kFloor - 1e-6; }))
+        notch.push_back(static_cast<std::uint32_t>(t));
+    EXPECT_TRUE(rig_.tissue().organ(0).begin_without(notch));
   }
-  fmt::print("{:.3f} N at most, changed by {:.4f} N in a tick at most\n", felt.force, felt.change);
+  /// The tip comes down from 40 mm above: clear of all for as long as the cut tissue wants a tool to be that has come.
+  void come_to(const Vector3d& at) {
+    for (int k = 0; k < 1600; ++k) rig_.press(Vector3d(at + Vector3d(0, 0, 2.5e-5 * (1600 - k))));
+  }
+  /// The tip comes down at one place, and goes at 10 mm/s to another, as deep as it lies.
+  Felt felt_on_the_way(double from, double to) {
+    come_to({from, 0.0012, kLow});
+    Felt felt{.last = rig_.force()};
+    const int ticks = static_cast<int>(std::abs(to - from) / 1e-5);
+    for (int k = 0; k < ticks; ++k) {
+      rig_.press(Vector3d(from + (to - from) * k / ticks, 0.0012, kLow));
+      felt.feel(rig_.force());
+    }
+    fmt::print("{:.3f} N at most, changed by {:.4f} N in a tick at most\n", felt.force, felt.change);
+    return felt;
+  }
+  PressRig& rig() { return rig_; }
+
+ private:
+  static Scene scene() {
+    Scene scene = moving_block_scene(TensorMassSpec{}, 0.3);
+    std::get<ProbeSpec>(scene.tools[0].end).radius = kRadius;
+    return scene;
+  }
+  PressRig rig_;
+};
+
+// From within the notch, clear of all, over its rim.
+TEST(TipOverARim, ComesOntoTheTissueBySmallSteps) {
+  const Felt felt = NotchedBlock().felt_on_the_way(0.015, -0.003);
   ASSERT_GT(felt.force, 0.1);
   EXPECT_LT(felt.change, 0.05 * felt.force);
+}
+
+TEST(TipOverARim, LeavesTheTissueBySmallSteps) {
+  const Felt felt = NotchedBlock().felt_on_the_way(-0.006, 0.015);
+  ASSERT_GT(felt.force, 0.1);
+  EXPECT_LT(felt.change, 0.05 * felt.force);
+}
+
+// Round by round over the rim, deep where it goes one way and high where it comes back.
+TEST(TipOverARim, ContactNeverPutsOutWork) {
+  NotchedBlock block;
+  const auto tip = [](double turn) { return Vector3d(0.006 * std::cos(turn), 0.0012, kLow + 0.001 * std::sin(turn)); };
+  block.come_to(tip(0));
+  for (const double way : {1.0, -1.0}) {
+    const auto work = testing::work_of_cycles(block.rig(), tip(0), [&](double turn) { return tip(way * turn); });
+    fmt::print("work from {:.3g} to {:.3g} J\n", work.least, work.most);
+    EXPECT_GT(work.most, 1e-5);
+    EXPECT_GT(work.least, -1e-3 * work.most);
+  }
 }
 
 /// What a tool of a scene feels in its own motion, from one tick to another.

@@ -11,8 +11,7 @@ using Eigen::Vector3d;
 
 constexpr int kPasses = 24;               // at most, of the active set
 constexpr double kTouchTolerance = 1e-9;  // [m]
-constexpr int kMaxCells = 128;            // of any grid
-using PerCell = Eigen::Array<double, Eigen::Dynamic, 1, 0, kMaxCells, 1>;
+using PerCell = Eigen::Array<double, Eigen::Dynamic, 1, 0, Patch::kMaxCells, 1>;
 constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which pivots are raised: G leaves more
 
 }  // namespace
@@ -78,17 +77,18 @@ void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
   if (memory_) add_slip(bent_before);
 }
 
+// [m] Along a segment's first axis.
+double Patch::middle_of_pressure() const {
+  if (!grid_.strip()) return 0;
+  if (!(pressing_ > 0)) return window_ + 0.5 * grid_.columns() * cell_length_;
+  double along = 0;
+  for (int p = 0; p < grid_.size(); ++p) along += pressure_force_[p] / pressing_ * cell_middle(grid_.column(p));
+  return along;
+}
+
 // Pressures act through the part's axis.
 Vector3d Patch::place_of_force() const {
-  double along = 0;
-  if (grid_.strip()) {
-    along = window_ + 0.5 * grid_.columns() * cell_length_;
-    if (pressing_ > 0) {
-      along = 0;
-      for (int p = 0; p < grid_.size(); ++p) along += pressure_force_[p] / pressing_ * cell_middle(grid_.column(p));
-    }
-  }
-  return laid_at_ + along * (across_ + flank_.slope * normal_) + grid_.radius() * normal_;
+  return laid_at_ + middle_of_pressure() * (across_ + flank_.slope * normal_) + grid_.radius() * normal_;
 }
 
 // G of a force that is spread over a cell, by a distance that is as long for the cell itself.
@@ -157,9 +157,18 @@ double Patch::rise(const Foot& f, const Rise& of_nodes) const {
   return rise;
 }
 
-// Within a tick the squares stay where they are on the tissue; the sphere goes on along the normal.
-double Patch::gap(int square, const Step& step, const Rise& of_nodes) const {
-  return cells_[square].gap + normal_.dot(step.middle - laid_at_) - rise(foot(square), of_nodes);
+// Of a sphere its middle; of a segment what lies over a place along the patch's first axis.
+Vector3d Patch::on_axis(const Segment& axis, double along) const {
+  if (!grid_.strip()) return axis.start;
+  const Vector3d way = axis.end - axis.start;
+  return axis.at((along - across_.dot(axis.start - laid_at_)) / across_.dot(way));
+}
+
+// Within a tick the cells stay where they are on the tissue; the part goes on along the normal.
+double Patch::gap(int cell, const Step& step, const Rise& of_nodes) const {
+  const double along = grid_.strip() ? cell_middle(grid_.column(cell)) : 0;
+  const double nearer = normal_.dot(on_axis(step.axis, along) - laid_at_) - flank_.slope * along;
+  return cells_[cell].gap + nearer - cells_[cell].dent - rise(foot(cell), of_nodes);
 }
 
 std::span<double> Patch::sink(const Ground& ground, const Step& step) {
@@ -175,7 +184,7 @@ std::span<double> Patch::sink(const Ground& ground, const Step& step) {
 void Patch::step(const Ground& ground, const Step& step) {
   settle_pressures();
   sum_pressures();
-  at_ = step.middle + grid_.radius() * normal_;
+  at_ = on_axis(step.axis, middle_of_pressure()) + grid_.radius() * normal_;
   shear(ground, {at_ - step.before * (step.now.inverse() * at_), step.went, step.give});
 }
 

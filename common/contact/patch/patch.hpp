@@ -48,8 +48,8 @@ struct TriangleCut {
 /// length, their place and their common normal follow the tool's pose without a jump.
 class Patch {
  public:
-  static constexpr int kMaxNodes = 64;    ///< near nodes that a patch may rest on
-  static constexpr int kMaxSquares = 44;  ///< of a sphere's grid
+  static constexpr int kMaxNodes = 64;  ///< near nodes that a patch may rest on
+  static constexpr int kMaxCells = 80;  ///< of any grid
 
   /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
   explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
@@ -63,14 +63,14 @@ class Patch {
   /// One step of tissue that moves, as the patch meets it. Of `moved` and `went`, one entry for each node of lay().
   struct Step {
     Eigen::Isometry3d before, now;           ///< of the tool
-    Eigen::Vector3d middle;                  ///< [m] of the sphere, now
+    Segment axis;                            ///< [m] of the part, now; of a sphere a point
     std::span<const Eigen::Vector3d> moved;  ///< [m] from rest to the step's end, by all but this patch
     std::span<const Eigen::Vector3d> went;   ///< [m] of that within the step
     std::span<const NodeGive> give;          ///< each pair of nodes once; those left out do not move one another
   };
   /// The nodes that lie under the part now, found by where its axis lies, of a sphere a point; empty: it does not
-  /// touch, and forgets its shear. `above` [m]: how far above the rest surface a sphere may be, where that may come
-  /// towards it.
+  /// touch, and forgets its shear. `above` [m]: how far above the rest surface it may be, where that may come towards
+  /// it.
   std::span<const int> lay(const Ground& ground, const Eigen::Isometry3d& before, const Eigen::Isometry3d& now,
                            const Segment& axis, double above = 0);
   /// After lay(): another patch's last forces lie on this tissue too. What they do to the cells by the half-space; what
@@ -83,7 +83,7 @@ class Patch {
   /// nodes do under forces comes from its steps, and K is what the body's compliance has beyond both the half-space's
   /// and the nodes' own. `give`: as in Step; the same in all steps of the tick.
   void meet(const Ground& ground, std::span<const NodeGive> give);
-  /// A step within that tick, first half: [m] by how much the sphere reaches below the surface at each square without
+  /// A step within that tick, first half: [m] by how much the part reaches below the surface at each cell without
   /// this patch's forces; -infinity where it lies beside it. What the caller takes off is not put right yet.
   std::span<double> sink(const Ground& ground, const Step& step);
   /// Second half: solves for the pressures and the shear at its end.
@@ -96,12 +96,15 @@ class Patch {
   /// Goes on from a force [N] on the tissue that the same patch had in an earlier life.
   void resume(const Eigen::Vector3d& force) { resumed_ = force; }
 
+  /// After lay(): the share of the last step's pressures whose cells have left the tissue, over a rim.
+  double lost() const { return lost_; }
+
   bool touches() const { return pressing_ > 0; }
   double pressing() const { return pressing_; }              ///< [N]
   const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
   const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
   const Eigen::Vector3d& normal() const { return normal_; }  ///< unit, into the tissue
-  const Anchor& anchor() const { return anchor_; }           ///< of the surface, at its middle
+  const Anchor& anchor() const { return anchor_; }           ///< of the surface, at the middle of what it has passed
   /// [m/N] By how much the tissue gives way under the patch as it is pressed and sheared now, beyond what its nodes do.
   Eigen::Matrix3d give() const;
   bool sticks() const { return sticks_; }
@@ -152,7 +155,9 @@ class Patch {
   using Rise = std::array<double, kMaxNodes>;
   Rise rise_of_nodes(std::span<const Eigen::Vector3d> moved) const;
   double rise(const Foot& foot, const Rise& of_nodes) const;
-  double gap(int square, const Step& step, const Rise& of_nodes) const;
+  double gap(int cell, const Step& step, const Rise& of_nodes) const;
+  Eigen::Vector3d on_axis(const Segment& axis, double along) const;
+  double middle_of_pressure() const;
   /// Triangles in which the sphere or strip may have feet.
   std::span<int> near(const SmoothSurface& surface, const Segment& axis) const;
   bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);
@@ -162,6 +167,7 @@ class Patch {
   Overlap overlap(const Ground& ground) const;
   void add_overlap(const Ground& ground, int triangle, double under, TriangleCut cut, Overlap& all) const;
   void lay_window(const Overlap& overlap);
+  void lay_anchor(const Ground& ground);
   void lay_strip(const Ground& ground);
   void keep_below(const Ground& ground);
   void lay_row(int row, const std::array<Eigen::Vector3d, 3>& triangle);
@@ -208,10 +214,13 @@ class Patch {
   std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
   double pressing_ = 0, depth_ = 0;
+  double lost_ = 0;
   std::span<int> near_;  ///< triangles, of lay() alone
   PatchKernel kernel_;
   Flank flank_;
   double window_ = 0, cell_length_ = 0;       ///< [m] along the first axis: where the columns begin, and a column's
+  double passed_ = 0;                         ///< [m] likewise: the middle of what a segment has passed
+  double above_ = 0;                          ///< [m] of lay()
   std::vector<Cell> cells_;                   ///< per cell of the grid
   std::vector<Foot> feet_;                    ///< per foot of the grid
   std::vector<Eigen::Vector2d> foot_middle_;  ///< [m] about the patch's middle, likewise

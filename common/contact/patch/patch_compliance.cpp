@@ -103,7 +103,7 @@ void Patch::list_laid() {
 
 // Those that are too small.
 void Patch::raise_eigenvalues() {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSquares, kMaxSquares>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCells, kMaxCells>;
   const int n = grid_.size(), m = static_cast<int>(rows_.size());
   Matrix a(m, m);
   for (int r = 0; r < m; ++r)

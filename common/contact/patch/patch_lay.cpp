@@ -5,7 +5,6 @@
 #include "common/contact/patch/overlap_normal.hpp"
 #include "common/contact/patch/patch.hpp"
 #include "common/contact/patch/surface_place.hpp"
-#include "common/geometry/barycentric.hpp"
 #include "common/geometry/direction.hpp"
 
 namespace palpate {
@@ -25,24 +24,6 @@ Vector3d across_of(const Eigen::Isometry3d& tool, const Vector3d& normal) {
   return turn_between(tool.linear().col(2), normal) * tool.linear().col(0);
 }
 
-/// The outermost place where the line through a point along `out` meets the surface; no triangle where it does not.
-TrianglePoint highest_along(const SmoothSurface& surface, std::span<const int> near, const Vector3d& point,
-                            const Vector3d& out) {
-  TrianglePoint highest{.triangle = -1, .weights = Vector3d::Zero()};
-  double most = -std::numeric_limits<double>::infinity();
-  for (const int t : near) {
-    const double facing = surface.facet_normal(t).dot(out);
-    if (facing < kFacing) continue;
-    const Triangle c = surface.corners(t);
-    const double s = surface.facet_normal(t).dot(c[0] - point) / facing;
-    const Vector3d w = plane_coordinates(c, point + s * out);
-    if (w.minCoeff() < -1e-9 || s < most) continue;
-    most = s;
-    highest = {t, w};
-  }
-  return highest;
-}
-
 }  // namespace
 
 int Patch::local(int node) {
@@ -59,6 +40,7 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   nodes_.clear();
   for (Cell& cell : cells_) cell = {.gap = -std::numeric_limits<double>::infinity()};
   laid_at_ = axis.start;
+  above_ = above;
   back_ = before * now.inverse();
   if (grid_.strip()) {
     if (find_along(ground, axis)) lay_strip(ground);
@@ -72,6 +54,9 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   for (const Cell& cell : cells_) depth = std::max(depth, cell.gap);
   depth_ = std::max(depth, 0.0);
   at_ = place_of_force();
+  lost_ = 0;
+  for (int p = 0; p < grid_.size() && touches(); ++p)
+    if (!laid(p)) lost_ += pressure_force_[p] / pressing_;
   if (nodes_.empty() || depth <= -above) lift();
   return nodes_;
 }
@@ -108,11 +93,11 @@ bool Patch::find_below(const Ground& ground, const Vector3d& middle, double abov
   const bool overlaps = passed.squaredNorm() > 0;
   if (overlaps) out = passed.normalized();
   for (int turn = 0; turn < kTurns; ++turn) {
-    const TrianglePoint below = highest_along(surface, near_, middle, out);
-    if (below.triangle < 0) break;
-    anchor_ = {surface.map().triangles[below.triangle], below.weights};
+    const auto below = highest_along(surface, near_, middle, out, kFacing);
+    if (!below) break;
+    anchor_ = {surface.map().triangles[below->triangle], below->weights};
     if (overlaps) break;
-    const Vector3d next = surface.normal(below.triangle, below.weights);
+    const Vector3d next = surface.normal(below->triangle, below->weights);
     const bool done = (next - out).squaredNorm() < 1e-20;
     out = next;
     if (done) break;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/contact/patch/patch.hpp"
+#include "common/contact/patch/surface_place.hpp"
 
 namespace palpate {
 namespace {
@@ -80,7 +81,7 @@ bool Patch::find_along(const Ground& ground, const Segment& axis) {
 }
 
 bool Patch::find_nearest(const Ground& ground, const Segment& axis) {
-  double least = grid_.radius() * grid_.radius();
+  double least = std::pow(grid_.radius() + above_, 2);
   bool found = false;
   for (const int t : near_) {
     if (!ground.surface.touchable(t)) continue;
@@ -117,7 +118,7 @@ Patch::Overlap Patch::overlap(const Ground& ground) const {
   const auto is_aside = [&](const std::array<Vector3d, 3>& t) {
     const auto [low, high] = std::minmax({t[0].x(), t[1].x(), t[2].x()});
     const auto over = [&](const Vector3d& p) { return flank_.slope * p.x() - p.z(); };
-    const double gap = std::max({over(t[0]), over(t[1]), over(t[2])}) + radius * flank_.steep;
+    const double gap = std::max({over(t[0]), over(t[1]), over(t[2])}) + radius * flank_.steep + above_;
     return high < flank_.from - hair || low > flank_.to + hair || gap < -hair;
   };
   for (const int t : near_) {
@@ -132,7 +133,7 @@ Patch::Overlap Patch::overlap(const Ground& ground) const {
     for (const double share : kLines) {
       TriangleCut cut;
       if (reaches(low, high, share * radius) && cut_at(flat, share * radius, cut) && clip(cut, flank_.from, flank_.to))
-        add_overlap(ground, t, radius * std::sqrt(1 - share * share) * flank_.steep, cut, all);
+        add_overlap(ground, t, radius * std::sqrt(1 - share * share) * flank_.steep + above_, cut, all);
     }
   }
   return all;
@@ -164,6 +165,14 @@ void Patch::lay_window(const Overlap& o) {
   const double from = std::max(flank_.from, middle - half), to = std::min(flank_.to, middle + half);
   cell_length_ = std::max((to - from) / grid_.columns(), 1e-6 * grid_.radius());
   window_ = from;
+  passed_ = middle;
+}
+
+void Patch::lay_anchor(const Ground& ground) {
+  const Vector3d middle = laid_at_ + passed_ * (across_ + flank_.slope * normal_);
+  const TrianglePoint below =
+      highest_along(ground.surface, near_, middle, -normal_, 0).value_or(nearest_point(ground.surface, middle, near_));
+  anchor_ = {ground.surface.map().triangles[below.triangle], below.weights};
 }
 
 void Patch::lay_strip(const Ground& ground) {
@@ -189,7 +198,8 @@ void Patch::lay_strip(const Ground& ground) {
             .at = laid_at_ + x * across_ + y * up_ + (there ? depth : 0.0) * normal_};
     any |= there;
   }
-  if (!any) return;
+  if (!any || near_.empty()) return;
+  lay_anchor(ground);
   lay_feet(ground);
   for (int i = 0; i < grid_.feet(); ++i)
     if (!std::isfinite(feet_[i].depth)) stand_on_nearest(ground, i);
@@ -238,20 +248,10 @@ void Patch::lay_row(int row, const std::array<Vector3d, 3>& triangle) {
 void Patch::stand_on_nearest(const Ground& ground, int foot) {
   const double x = cell_middle(foot);
   const Vector3d under = laid_at_ + x * across_ + (flank_.slope * x + grid_.radius() * flank_.steep) * normal_;
-  double least = std::numeric_limits<double>::infinity();
-  int nearest = -1;
-  Vector3d weights;
-  for (const int t : near_) {
-    const ClosestPoint p = closest_point(under, ground.surface.corners(t));
-    if (p.squared_distance >= least) continue;
-    least = p.squared_distance;
-    nearest = t;
-    weights = p.weights;
-  }
-  if (nearest < 0) return;
+  const TrianglePoint nearest = nearest_point(ground.surface, under, near_);
   std::array<int, 3> corners;
-  for (int v = 0; v < 3; ++v) corners[v] = local(ground.surface.map().triangles[nearest][v]);
-  if (std::ranges::min(corners) >= 0) feet_[foot] = {corners, weights, 0};
+  for (int v = 0; v < 3; ++v) corners[v] = local(ground.surface.map().triangles[nearest.triangle][v]);
+  if (std::ranges::min(corners) >= 0) feet_[foot] = {corners, nearest.weights, 0};
 }
 
 }  // namespace palpate

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "common/geometry/barycentric.hpp"
+
 namespace palpate {
 
 SurfacePlace place_at(const SmoothSurface& surface, int triangle, const Eigen::Vector3d& weights) {
@@ -21,6 +23,23 @@ TrianglePoint nearest_point(const SmoothSurface& surface, const Eigen::Vector3d&
     best = t;
   }
   return {best, closest.weights};
+}
+
+std::optional<TrianglePoint> highest_along(const SmoothSurface& surface, std::span<const int> triangles,
+                                           const Eigen::Vector3d& point, const Eigen::Vector3d& out, double facing) {
+  std::optional<TrianglePoint> highest;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const int t : triangles) {
+    const double along = surface.facet_normal(t).dot(out);
+    if (along < facing) continue;
+    const Triangle c = surface.corners(t);
+    const double s = surface.facet_normal(t).dot(c[0] - point) / along;
+    const Eigen::Vector3d w = plane_coordinates(c, point + s * out);
+    if (w.minCoeff() < -1e-9 || s < most) continue;
+    most = s;
+    highest = {t, w};
+  }
+  return highest;
 }
 
 SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "common/contact/patch/smooth_surface.hpp"
@@ -29,6 +30,10 @@ struct TrianglePoint {
 
 /// The nearest of some triangles, one at least.
 TrianglePoint nearest_point(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles);
+/// The outermost place where the line through a point along `out` meets some triangles whose normals are at least as
+/// near to `out` as `facing` says, a cosine; none where it meets none.
+std::optional<TrianglePoint> highest_along(const SmoothSurface& surface, std::span<const int> triangles,
+                                           const Eigen::Vector3d& point, const Eigen::Vector3d& out, double facing);
 SurfacePlace nearest_place(const SmoothSurface& surface, const Eigen::Vector3d& point, std::span<const int> triangles);
 
 }  // namespace palpate

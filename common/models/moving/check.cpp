@@ -136,7 +136,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
                          : d.element == TetElement::nodal_strain ? ", strain averaged at the nodes"
                                                                  : ""));
   predict(body, kind, settings, solid, archive, report);
-  say_patches(settings, body.name, false, report);
+  say_patches(settings, body.name, true, report);
   const std::vector<std::string> of_material = material_warnings(body);
   report.warnings.insert(report.warnings.end(), of_material.begin(), of_material.end());
   if (body.tearing)
@@ -147,7 +147,7 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   if (kind.own_mesh && !d.gravity.isZero())
     report.left_out.emplace_back("no sag is told of two meshes that are joined");
   report.memory = memory(body, kind, settings, archive);
-  add_near_field("deform_node", settings, archive.surface, false, report);
+  add_near_field("deform_node", settings, archive.surface, true, report);
   warn_of_averaged_strain(body, settings, report);
   if (settings.contact.rule == ContactRule::alpha)
     report.warnings.push_back(

@@ -122,9 +122,9 @@ void DynamicOrgan::advance(std::span<const ToolInTick> tools, double dt) {
   take_tools(tools);
   work_jaws(tools);
   let_pass(tools);
-  tissue_.begin_tick();
   if (still_) still_->find(in_tick_);
-  contacts_.find(in_tick_, dt / steps_in(dt, true), [this](int tool) { return holds(tool); });
+  for (const auto& [node, force] : contacts_.find(in_tick_, dt / steps_in(dt, true))) tissue_.fade(node, force);
+  tissue_.begin_tick();
   const bool touched = contacts_.touched();
   const int steps = steps_in(dt, touched);
   in_step_ = in_tick_;

@@ -19,7 +19,7 @@ SurfaceMap quasi_static_surface(const Archive& archive) {
 ToolContacts::Options beside_patches(const StepSettings& settings) {
   ToolContacts::Options options;
   if (settings.contact.rule == ContactRule::patch)
-    options.elsewhere = [parts = patch_parts(settings.tools, false)](int tool, int part, int) {
+    options.elsewhere = [parts = patch_parts(settings.tools, true)](int tool, int part, int) {
       return std::ranges::any_of(parts, [&](const PatchPart& p) { return p.tool == tool && p.part == part; });
     };
   return options;

@@ -5,7 +5,7 @@
 
 #include "common/contact/patch/local_motion.hpp"
 #include "common/contact/patch/patch_parts.hpp"
-#include "common/geometry/triangle.hpp"
+#include "common/geometry/segment.hpp"
 #include "common/models/moving/hybrid_nodes.hpp"
 
 namespace palpate {
@@ -14,9 +14,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kTip = 0;         // among a probe's parts
-constexpr double kAbove = 0.5;  // radii above the surface from which a patch is laid: tissue swings up to it
-constexpr double kAbout = 3;    // radii, or longest edges, about a patch over which the tissue's motion is taken
+// Radii above the surface from which a patch is laid, since tissue swings up to it: of a sphere, and of a segment.
+constexpr double kAbove = 0.5, kSegmentAbove = 0.25;
+constexpr double kAbout = 3;  // radii, or longest edges, about a patch over which the tissue's motion is taken
 // By which the tissue may go [radii] and turn [rad] under a patch before that goes with it: one that followed each
 // swing would feed it.
 constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
@@ -38,6 +38,10 @@ Eigen::Isometry3d followed(const Eigen::Isometry3d& before, const Eigen::Isometr
   const double left = gone.norm() > slack ? 1 - slack / gone.norm() : 0.0;
   motion.translation() = before * place + left * gone - motion.linear() * place;
   return motion;
+}
+
+Segment seen_from(const Eigen::Isometry3d& motion, const Segment& segment) {
+  return {motion * segment.start, motion * segment.end};
 }
 
 }  // namespace
@@ -66,28 +70,32 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   }
   grounds_.push_back({surface, triangle_of_facet_});
   double largest = 0;
-  for (const PatchPart& part : patch_parts(settings.tools, false)) {
-    tips_.push_back({.tool = part.tool, .patch = Patch(grids_.of(part.radius)), .radius = part.radius});
+  for (const PatchPart& part : patch_parts(settings.tools, true)) {
+    parts_.push_back({.tool = part.tool,
+                      .part = part.part,
+                      .patch = Patch(grids_.of(part.radius, part.length)),
+                      .radius = part.radius,
+                      .above = (part.length > 0 ? kSegmentAbove : kAbove) * part.radius});
     largest = std::max(largest, part.radius);
   }
   constexpr int pairs = Patch::kMaxNodes * (Patch::kMaxNodes + 1) / 2;
-  for (Tip& tip : tips_) {
-    for (std::vector<int>* nodes : {&tip.nodes, &tip.known}) nodes->reserve(Patch::kMaxNodes);
-    for (std::vector<NodeGive>* give : {&tip.world_give, &tip.give}) give->reserve(still ? pairs : Patch::kMaxNodes);
-    tip.last.reserve(Patch::kMaxNodes);
+  for (Part& own : parts_) {
+    for (std::vector<int>* nodes : {&own.nodes, &own.known}) nodes->reserve(Patch::kMaxNodes);
+    for (std::vector<NodeGive>* give : {&own.world_give, &own.give}) give->reserve(still ? pairs : Patch::kMaxNodes);
+    for (std::vector<Vector3d>* of_nodes : {&own.last, &own.beside}) of_nodes->reserve(Patch::kMaxNodes);
   }
   moved_.reserve(Patch::kMaxNodes);
   went_.reserve(Patch::kMaxNodes);
   forces_.reserve(Patch::kMaxNodes);
   if (still) {
-    nodes_ = std::make_unique<HybridNodes>(model, response, still->part(), static_cast<int>(tips_.size()));
+    nodes_ = std::make_unique<HybridNodes>(model, response, still->part(), static_cast<int>(parts_.size()));
     grounds_.push_back({still->surface(), {}});
     for (int t = 0; t < still->surface().triangle_count(); ++t) grounds_.back().triangle.push_back(t);
     for (int node = 0; node < mesh.nodes(); ++node) ground_of_node_[node] = still->part().owns(node);
   } else {
     nodes_ = std::make_unique<TissueNodes>(model, response);
   }
-  if (tips_.empty()) return;
+  if (parts_.empty()) return;
   const auto compliance = Compliance<double>::at_rest(archive);
   near_field_ = std::make_unique<NearField>(surface_, compliance, material_, largest, kResolved);
   near_field_->subtract(compliance);
@@ -99,8 +107,8 @@ bool TissuePatches::has_gone(int triangle, const CutMesh& topology) const {
 }
 
 // Of the triangles that share nodes with it, in the last cut.
-bool TissuePatches::loses(const Tip& tip, const CutMesh& topology) const {
-  const auto under = [&](int node) { return std::ranges::count(tip.nodes, node) > 0; };
+bool TissuePatches::loses(const Part& own, const CutMesh& topology) const {
+  const auto under = [&](int node) { return std::ranges::count(own.nodes, node) > 0; };
   for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t)
     if (!surface_.is_left_out(t) && has_gone(t, topology) && std::ranges::any_of(map_.triangles[t], under)) return true;
   return false;
@@ -111,27 +119,32 @@ void TissuePatches::leave_out(const CutMesh& topology) {
     if (has_gone(t, topology)) surface_.leave_out(t);
 }
 
-void TissuePatches::follow_cut(const CutMesh& topology, std::vector<PatchForce>& loose,
-                               const std::function<void(const TouchContact&)>& leave) {
-  for (Tip& tip : tips_) {
-    if (tip.contact.touch == Touch::open || !loses(tip, topology)) continue;
-    const std::span<const PatchForce> forces = seen_from_world(tip);
-    loose.insert(loose.end(), forces.begin(), forces.end());
-    leave(tip.contact);
-    lift(tip);
-    tip.contact.touch = Touch::open;
-    tip.cut = true;
+// A share of what it did in the last tick.
+void TissuePatches::come_loose(const Part& own, double share, std::span<const PatchForce> forces, const Loose& loose) {
+  for (const PatchForce& f : forces) loose.forces.push_back({f.node, share * f.force});
+  TouchContact contact = own.contact;
+  contact.force *= share;
+  loose.leave(contact);
+}
+
+void TissuePatches::follow_cut(const CutMesh& topology, const Loose& loose) {
+  for (Part& own : parts_) {
+    if (own.contact.touch == Touch::open || !loses(own, topology)) continue;
+    come_loose(own, 1, seen_from_world(own), loose);
+    lift(own);
+    own.contact.touch = Touch::open;
+    own.cut = true;
   }
   leave_out(topology);
   follow_response();
 }
 
 void TissuePatches::follow_response() {
-  for (Tip& tip : tips_) tip.known.clear();
+  for (Part& own : parts_) own.known.clear();
 }
 
 bool TissuePatches::has(int tool, int part) const {
-  return part == kTip && std::ranges::find(tips_, tool, &Tip::tool) != tips_.end();
+  return std::ranges::any_of(parts_, [&](const Part& own) { return own.tool == tool && own.part == part; });
 }
 
 double TissuePatches::give_of_point(double radius) const {
@@ -140,33 +153,35 @@ double TissuePatches::give_of_point(double radius) const {
 }
 
 bool TissuePatches::laid() const {
-  return std::ranges::any_of(tips_, [](const Tip& tip) { return !tip.nodes.empty(); });
+  return std::ranges::any_of(parts_, [](const Part& own) { return !own.nodes.empty(); });
 }
 
-void TissuePatches::find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds) {
-  for (Tip& tip : tips_) {
-    tip.impulse.setZero();
-    if (holds(tip.tool))
-      lift(tip);
+void TissuePatches::find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps,
+                         const Loose& loose) {
+  for (Part& own : parts_) {
+    own.impulse.setZero();
+    if (grasps(own.tool))
+      let_go(own, loose);
     else
-      lay(tip, tools[tip.tool]);
+      lay(own, tools[own.tool], loose);
   }
+  for (Part& own : parts_) meet_others(own);
 }
 
-// At rest, below the tip: where it pressed, or what is nearest to it now.
-bool TissuePatches::find_place(const Tip& tip, const MovingTool& tool, Vector3d& place) const {
-  if (tool.size() == 0) return false;
-  if (tip.patch.touches()) {
-    place = anchor_position(tip.patch.anchor(), map_.position);
+// At rest, below the part: where it pressed, or what is nearest to it now.
+bool TissuePatches::find_place(const Part& own, const MovingTool& tool, Vector3d& place) const {
+  if (tool.size() <= own.part) return false;  // it passes
+  if (own.patch.touches()) {
+    place = anchor_position(own.patch.anchor(), map_.position);
     return true;
   }
-  const Vector3d middle = tool.axis(kTip).start;
-  double least = std::pow((1 + kAbove) * tip.radius, 2);
+  const Segment axis = tool.axis(own.part);
+  double least = std::pow(own.radius + own.above, 2);
   bool found = false;
   for (const Ground& ground : grounds_)
-    for (const int t : ground.surface.find(tool.axis_before(kTip).start, middle, std::sqrt(least))) {
+    for (const int t : ground.surface.find(axis.start, axis.end, std::sqrt(least))) {
       if (ground.triangle[t] < 0) continue;
-      const ClosestPoint p = closest_point(middle, ground.surface.corners(t));
+      const ClosestOfTriangle p = closest_points(axis, ground.surface.corners(t));
       if (!is_nearer(p.squared_distance, least)) continue;
       least = p.squared_distance;
       place = anchor_position({ground.surface.triangle(t), p.weights}, map_.position);
@@ -185,147 +200,166 @@ Eigen::Isometry3d TissuePatches::motion_about(const Vector3d& place, double with
 }
 
 // From one tick to the next the nodes are mostly the same.
-void TissuePatches::find_give(Tip& tip) {
-  if (tip.known != tip.nodes) {
-    tip.known = tip.nodes;
-    tip.world_give.clear();
-    nodes_->add_give(tip.nodes, tip.world_give);
+void TissuePatches::find_give(Part& own) {
+  if (own.known != own.nodes) {
+    own.known = own.nodes;
+    own.world_give.clear();
+    nodes_->add_give(own.nodes, own.world_give);
   }
-  const Matrix3d turn = tip.motion.linear();
-  tip.give = tip.world_give;
-  for (NodeGive& give : tip.give) give.block = turn.transpose() * give.block * turn;
+  const Matrix3d turn = own.motion.linear();
+  own.give = own.world_give;
+  for (NodeGive& give : own.give) give.block = turn.transpose() * give.block * turn;
 }
 
-void TissuePatches::lay(Tip& tip, const MovingTool& tool) {
+void TissuePatches::let_go(Part& own, const Loose& loose) {
+  if (own.patch.touches()) come_loose(own, 1, seen_from_world(own), loose);
+  lift(own);
+}
+
+void TissuePatches::lay(Part& own, const MovingTool& tool, const Loose& loose) {
+  const std::span<const PatchForce> last = seen_from_world(own);
   Vector3d place;
-  if (!find_place(tip, tool, place)) return lift(tip);
-  const Eigen::Isometry3d motion = motion_about(place, kAbout * std::max(tip.radius, longest_edge_));
-  const Eigen::Isometry3d before = tip.patch.touches() ? tip.motion : motion;
-  tip.motion = followed(before, motion, place, kSlackWay * tip.radius);
-  const Eigen::Isometry3d to_rest = tip.motion.inverse();
-  const Vector3d middle = tool.axis(kTip).start;
-  tip.approach = (to_rest * middle - before.inverse() * tool.axis_before(kTip).start).norm();
-  tip.relaid = true;
+  if (!find_place(own, tool, place)) return let_go(own, loose);
+  const Eigen::Isometry3d motion = motion_about(place, kAbout * std::max(own.radius, longest_edge_));
+  const Eigen::Isometry3d before = own.patch.touches() ? own.motion : motion;
+  own.motion = followed(before, motion, place, kSlackWay * own.radius);
+  const Eigen::Isometry3d to_rest = own.motion.inverse();
+  const Segment axis = seen_from(to_rest, tool.axis(own.part));
+  const Segment axis_before = seen_from(before.inverse(), tool.axis_before(own.part));
+  own.approach = std::max((axis.start - axis_before.start).norm(), (axis.end - axis_before.end).norm());
+  own.relaid = true;
   const std::span<const int> nodes =
-      tip.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before, to_rest * tool.now,
-                    {to_rest * middle, to_rest * middle}, kAbove * tip.radius);
-  if (nodes.empty()) return lift(tip);
-  tip.nodes.assign(nodes.begin(), nodes.end());
-  find_give(tip);
-  tip.last.clear();
-  for (const int node : nodes) tip.last.push_back(nodes_->displacement(node));
-  tip.patch.meet({surface_, *near_field_, friction_}, tip.give);
+      own.patch.lay({surface_, *near_field_, friction_}, to_rest * tool.before, to_rest * tool.now, axis, own.above);
+  if (own.patch.lost() > 0) come_loose(own, own.patch.lost(), last, loose);
+  if (nodes.empty()) return lift(own);
+  own.nodes.assign(nodes.begin(), nodes.end());
+  find_give(own);
+  own.last.clear();
+  for (const int node : nodes) own.last.push_back(nodes_->displacement(node));
+  own.patch.meet({surface_, *near_field_, friction_}, own.give);
 }
 
-void TissuePatches::lift(Tip& tip) {
-  nodes_->release(number(tip));
-  tip.patch.lift();
-  tip.nodes.clear();
-  tip.ease.fill(0);
-  tip.depth.fill(0);
+// A patch lies in the others' dents, which the nodes' own motion does not show.
+void TissuePatches::meet_others(Part& own) {
+  own.beside.assign(own.nodes.size(), Vector3d::Zero());
+  for (const Part& other : parts_) {
+    if (&other == &own || own.nodes.empty() || other.nodes.empty() || !other.patch.touches()) continue;
+    own.patch.lie_beside(other.patch);
+    for (const PatchForce& f : other.patch.forces())
+      for (std::size_t i = 0; i < own.nodes.size(); ++i)
+        own.beside[i] += near_field_->between(own.nodes[i], f.node) * f.force;
+  }
+}
+
+void TissuePatches::lift(Part& own) {
+  nodes_->release(number(own));
+  own.patch.lift();
+  own.nodes.clear();
+  own.ease.fill(0);
+  own.depth.fill(0);
 }
 
 void TissuePatches::step(std::span<const MovingTool> tools, double dt) {
-  for (Tip& tip : tips_)
-    if (!tip.nodes.empty()) press(tip, tools[tip.tool], dt);
+  for (Part& own : parts_)
+    if (!own.nodes.empty()) press(own, tools[own.tool], dt);
 }
 
-void TissuePatches::press(Tip& tip, const MovingTool& tool, double dt) {
-  const Eigen::Isometry3d to_rest = tip.motion.inverse();
-  nodes_->release(number(tip));
+void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
+  const Eigen::Isometry3d to_rest = own.motion.inverse();
+  nodes_->release(number(own));
   moved_.clear();
   went_.clear();
-  for (std::size_t i = 0; i < tip.nodes.size(); ++i) {
-    const Vector3d u = nodes_->displacement(tip.nodes[i]), &rest = mesh_.rest[tip.nodes[i]];
-    moved_.push_back(to_rest * (rest + u) - rest);
-    went_.push_back(to_rest.linear() * (u - tip.last[i]));
+  for (std::size_t i = 0; i < own.nodes.size(); ++i) {
+    const Vector3d u = nodes_->displacement(own.nodes[i]), &rest = mesh_.rest[own.nodes[i]];
+    moved_.push_back(to_rest * (rest + u) - rest + own.beside[i]);
+    went_.push_back(to_rest.linear() * (u - own.last[i]));
   }
   Patch::Step step{.before = to_rest * tool.before,
                    .now = to_rest * tool.now,
-                   .middle = to_rest * tool.axis(kTip).start,
+                   .axis = seen_from(to_rest, tool.axis(own.part)),
                    .moved = moved_,
                    .went = went_,
-                   .give = tip.give};
+                   .give = own.give};
   const Patch::Ground ground{surface_, *near_field_, friction_};
-  const std::span<double> depth = tip.patch.sink(ground, step);
-  if (tip.relaid) ease_in(tip, depth);
-  tip.relaid = tip.cut = false;
+  const std::span<double> depth = own.patch.sink(ground, step);
+  if (own.relaid) ease_in(own, depth);
+  own.relaid = own.cut = false;
   for (std::size_t p = 0; p < depth.size(); ++p) {
-    tip.depth[p] = depth[p];
-    depth[p] -= tip.ease[p];
-    tip.ease[p] = std::max(tip.ease[p] - kWayOut * dt, 0.0);
+    own.depth[p] = depth[p];
+    depth[p] -= own.ease[p];
+    own.ease[p] = std::max(own.ease[p] - kWayOut * dt, 0.0);
   }
-  tip.patch.step(ground, step);
-  nodes_->push(number(tip), seen_from_world(tip), dt);
-  for (std::size_t i = 0; i < tip.nodes.size(); ++i) tip.last[i] = nodes_->displacement(tip.nodes[i]);
-  tip.impulse += dt * (tip.motion.linear() * tip.patch.force());
+  own.patch.step(ground, step);
+  nodes_->push(number(own), seen_from_world(own), dt);
+  for (std::size_t i = 0; i < own.nodes.size(); ++i) own.last[i] = nodes_->displacement(own.nodes[i]);
+  own.impulse += dt * (own.motion.linear() * own.patch.force());
 }
 
-// What stands deeper than in the last step, beyond what the tip and the tissue have moved, has come onto the tissue
-// whole: a square over a rim, or all of a tip that is put into it.
-void TissuePatches::ease_in(Tip& tip, std::span<const double> depth) const {
+// What stands deeper than in the last step, beyond what the part and the tissue have moved, has come onto the tissue
+// whole: a cell over a rim, or all of a part that is put into it.
+void TissuePatches::ease_in(Part& own, std::span<const double> depth) const {
   double swing = 0;  // [m]
-  for (const Vector3d& went : went_) swing = std::max(swing, std::abs(tip.patch.normal().dot(went)));
-  const double due = tip.cut ? 0 : 2 * tip.approach + swing;
+  for (const Vector3d& went : went_) swing = std::max(swing, std::abs(own.patch.normal().dot(went)));
+  const double due = own.cut ? 0 : 2 * own.approach + swing;
   for (std::size_t p = 0; p < depth.size(); ++p) {
-    const double deeper = depth[p] - std::max(tip.depth[p], 0.0);
-    tip.ease[p] = std::clamp(tip.ease[p] + std::max(deeper - due, 0.0), 0.0, std::max(depth[p], 0.0));
+    const double deeper = depth[p] - std::max(own.depth[p], 0.0);
+    own.ease[p] = std::clamp(own.ease[p] + std::max(deeper - due, 0.0), 0.0, std::max(depth[p], 0.0));
   }
 }
 
 // [N] on the nodes under it.
-std::span<const PatchForce> TissuePatches::seen_from_world(const Tip& tip) {
-  forces_.assign(tip.patch.forces().begin(), tip.patch.forces().end());
-  for (PatchForce& f : forces_) f.force = tip.motion.linear() * f.force;
+std::span<const PatchForce> TissuePatches::seen_from_world(const Part& own) {
+  forces_.assign(own.patch.forces().begin(), own.patch.forces().end());
+  for (PatchForce& f : forces_) f.force = own.motion.linear() * f.force;
   return forces_;
 }
 
 void TissuePatches::end_tick(std::span<const MovingTool> tools, double dt) {
-  for (Tip& tip : tips_) {
-    TouchContact& c = tip.contact;
-    c = {.by = ToolPoint{.tool = tip.tool, .part = kTip}, .face = true};
-    if (tip.impulse.isZero(0)) continue;
-    const Matrix3d turn = tip.motion.linear();
-    c.touch = friction_ > 0 && tip.patch.sticks() ? Touch::sticking : Touch::sliding;
-    c.anchor = tip.patch.anchor();
-    c.normal = turn * tip.patch.normal();
-    c.force = tip.impulse / dt;
-    c.give = turn * tip.patch.give() * turn.transpose();
-    c.at = c.target = c.position = tip.motion * tip.patch.at();
-    c.tool_point().offset = tools[tip.tool].to_part(kTip, c.at);
+  for (Part& own : parts_) {
+    TouchContact& c = own.contact;
+    c = {.by = ToolPoint{.tool = own.tool, .part = own.part}, .face = true};
+    if (own.impulse.isZero(0)) continue;
+    const Matrix3d turn = own.motion.linear();
+    c.touch = friction_ > 0 && own.patch.sticks() ? Touch::sticking : Touch::sliding;
+    c.anchor = own.patch.anchor();
+    c.normal = turn * own.patch.normal();
+    c.force = own.impulse / dt;
+    c.give = turn * own.patch.give() * turn.transpose();
+    c.at = c.target = c.position = own.motion * own.patch.at();
+    c.tool_point().offset = tools[own.tool].to_part(own.part, c.at);
   }
 }
 
 void TissuePatches::add_contacts(std::vector<TouchContact>& contacts) const {
-  for (const Tip& tip : tips_)
-    if (tip.contact.touch != Touch::open) contacts.push_back(tip.contact);
+  for (const Part& own : parts_)
+    if (own.contact.touch != Touch::open) contacts.push_back(own.contact);
 }
 
 void TissuePatches::forget_factor() {
-  for (Tip& tip : tips_) tip.patch.forget_factor();
+  for (Part& own : parts_) own.patch.forget_factor();
 }
 
 void TissuePatches::drop_tool(int tool) {
-  for (Tip& tip : tips_) {
-    if (tip.tool != tool) continue;
-    lift(tip);
-    tip.contact.touch = Touch::open;
+  for (Part& own : parts_) {
+    if (own.tool != tool) continue;
+    lift(own);
+    own.contact.touch = Touch::open;
   }
 }
 
 void TissuePatches::state(State& s) {
-  for (Tip& tip : tips_) {
-    tip.patch.state(s);
-    s.require(tip.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
-    s.value(tip.motion.matrix());
-    s.value(tip.ease);
-    s.value(tip.depth);
-    s.value(tip.cut);
-    s.value(tip.contact.touch);
-    palpate::state(s, tip.contact.anchor);
-    for (Vector3d* v : {&tip.contact.normal, &tip.contact.force, &tip.contact.at}) s.value(*v);
-    s.value(tip.contact.give);
-    if (s.restoring()) nodes_->resume(number(tip), seen_from_world(tip));
+  for (Part& own : parts_) {
+    own.patch.state(s);
+    s.require(own.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
+    s.value(own.motion.matrix());
+    s.value(own.ease);
+    s.value(own.depth);
+    s.value(own.cut);
+    s.value(own.contact.touch);
+    palpate::state(s, own.contact.anchor);
+    for (Vector3d* v : {&own.contact.normal, &own.contact.force, &own.contact.at}) s.value(*v);
+    s.value(own.contact.give);
+    if (s.restoring()) nodes_->resume(number(own), seen_from_world(own));
   }
 }
 

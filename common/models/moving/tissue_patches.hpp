@@ -18,15 +18,15 @@
 
 namespace palpate {
 
-/// The patches of probes' tips on moving tissue. Once a tick each is laid on the tissue's rest shape, seen from the
-/// rigid motion that the tissue has made there; in each step of the tissue its pressures and its shear are solved for
-/// the step's end, where
+/// The patches of tools' tips and shafts on moving tissue. Once a tick each is laid on the tissue's rest shape, seen
+/// from the rigid motion that the tissue has made there; in each step of the tissue its pressures and its shear are
+/// solved for the step's end, where
 ///   (L + Phi D Phi^T) p = gap of the step without them,   p >= 0, one of them an equality,
 ///   L = G + Phi (K - C) Phi^T,
 /// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
 /// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
-/// patch lies on both parts of a hybrid alike. What has been cut open, and shafts and jaws, are left to contacts by
-/// points.
+/// patch lies on both parts of a hybrid alike, and in the dents that the others made in the tick before. What has been
+/// cut open, and jaws, are left to contacts by points.
 class TissuePatches {
  public:
   /// [m/s] At which tissue that is found deep within a tool is led out of it.
@@ -38,8 +38,15 @@ class TissuePatches {
                 DynamicModel& model, HybridTouch* still, const InertialResponse& response,
                 const StepSettings& settings);
 
-  /// Once a tick: lays the patches of what is near; none of a tool whose jaws hold the tissue.
-  void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& holds);
+  /// What presses no more though it was not lifted: what it did to nodes is added to `forces`, and `leave` is told of a
+  /// contact that was its own.
+  struct Loose {
+    std::vector<PatchForce>& forces;
+    std::function<void(const TouchContact&)> leave;
+  };
+  /// Once a tick: lays the patches of what is near; none of a tool that grasps the tissue. Cells that have gone over a
+  /// rim come loose.
+  void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps, const Loose& loose);
   /// Whether one is laid.
   bool laid() const;
   /// Whether a part of a tool has one.
@@ -62,29 +69,29 @@ class TissuePatches {
   /// Steps are of another length from now on.
   void follow_response();
   void drop_tool(int tool);
-  /// After a cut. A patch that has lost tissue under it is laid anew: adds what it did to nodes to `loose`. `leave`:
-  /// what becomes of its contact.
-  void follow_cut(const CutMesh& topology, std::vector<PatchForce>& loose,
-                  const std::function<void(const TouchContact&)>& leave);
+  /// After a cut. A patch that has lost tissue under it comes loose, and is laid anew.
+  void follow_cut(const CutMesh& topology, const Loose& loose);
   void state(State& s);
 
  private:
-  using OfSquares = std::array<double, Patch::kMaxSquares>;
+  using OfCells = std::array<double, Patch::kMaxCells>;
 
-  struct Tip {
-    int tool;
+  struct Part {
+    int tool, part;
     Patch patch;
     double radius;                                             ///< [m]
+    double above;                                              ///< [m] from which it is laid
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< of the tissue from rest
     std::vector<int> nodes;                                    ///< under it; empty: it is not laid
     std::vector<int> known;                                    ///< those that `world_give` is of
     std::vector<NodeGive> world_give, give;                    ///< as they are, and seen from rest
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
-    OfSquares ease{};                                          ///< [m] that it stands too deep, and is led out of
-    OfSquares depth{};                                         ///< [m] in the last step
+    std::vector<Eigen::Vector3d> beside;                       ///< [m] what other patches do to nodes beyond C
+    OfCells ease{};                                            ///< [m] that it stands too deep, and is led out of
+    OfCells depth{};                                           ///< [m] in the last step
     bool relaid = false;                                       ///< no step has been done since it was laid
     bool cut = false;                                          ///< what it lay on has gone
-    double approach = 0;                                       ///< [m] that it goes over the tissue in this tick
+    double approach = 0;                                       ///< [m] its way over the tissue in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
   };
@@ -96,17 +103,20 @@ class TissuePatches {
   };
 
   bool has_gone(int triangle, const CutMesh& topology) const;
-  bool loses(const Tip& tip, const CutMesh& topology) const;
+  bool loses(const Part& own, const CutMesh& topology) const;
   void leave_out(const CutMesh& topology);
-  bool find_place(const Tip& tip, const MovingTool& tool, Eigen::Vector3d& place) const;
+  bool find_place(const Part& own, const MovingTool& tool, Eigen::Vector3d& place) const;
   Eigen::Isometry3d motion_about(const Eigen::Vector3d& place, double within);
-  void find_give(Tip& tip);
-  void lay(Tip& tip, const MovingTool& tool);
-  void lift(Tip& tip);
-  void ease_in(Tip& tip, std::span<const double> depth) const;
-  void press(Tip& tip, const MovingTool& tool, double dt);
-  std::span<const PatchForce> seen_from_world(const Tip& tip);
-  int number(const Tip& tip) const { return static_cast<int>(&tip - tips_.data()); }
+  void find_give(Part& own);
+  void lay(Part& own, const MovingTool& tool, const Loose& loose);
+  static void come_loose(const Part& own, double share, std::span<const PatchForce> forces, const Loose& loose);
+  void meet_others(Part& own);
+  void lift(Part& own);
+  void let_go(Part& own, const Loose& loose);
+  void ease_in(Part& own, std::span<const double> depth) const;
+  void press(Part& own, const MovingTool& tool, double dt);
+  std::span<const PatchForce> seen_from_world(const Part& own);
+  int number(const Part& own) const { return static_cast<int>(&own - parts_.data()); }
 
   const ElasticMesh& mesh_;
   double friction_;
@@ -120,7 +130,7 @@ class TissuePatches {
   std::unique_ptr<NearField> near_field_;
   HalfSpace material_;
   PatchGrids grids_;
-  std::vector<Tip> tips_;
+  std::vector<Part> parts_;
   std::vector<Eigen::Vector3d> moved_, went_;
   std::vector<PatchForce> forces_;
   std::vector<int> ground_of_node_;        ///< per node: the one that knows where it is

@@ -8,11 +8,11 @@ namespace palpate {
 namespace {
 
 // What is not a patch's rests on points, under each of which the tissue gives way as under a patch of one square.
-ToolContacts::Options beside_patches(const TissuePatches* patches) {
+ToolContacts::Options beside_patches(const TissuePatches* patches, const ContactLaw& law) {
   ToolContacts::Options options;
   if (!patches) return options;
-  options.elsewhere = [patches](int tool, int part, int facet) {
-    return patches->has(tool, part) && patches->covers(facet);
+  options.elsewhere = [patches, &law](int tool, int part, int facet) {
+    return patches->has(tool, part) && patches->covers(facet) && !law.grasps(tool);
   };
   options.face_give = [patches](double radius) { return patches->give_of_point(radius); };
   return options;
@@ -40,19 +40,24 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
           settings.contact.rule == ContactRule::patch
               ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
               : nullptr),
-      contacts_(surface, law_, parts_of(settings.tools), beside_patches(patches_.get())),
+      contacts_(surface, law_, parts_of(settings.tools), beside_patches(patches_.get(), law_)),
       fading_ticks_(fading_ticks(settings.dt)) {
   aimed_.reserve(kMaxContacts);
-  all_.reserve(2 * kMaxContacts + settings.tools.size());
-  leavers_.reserve(kMaxContacts);
+  const std::size_t leavers = kMaxContacts + 2 * settings.tools.size() * fading_ticks_;  // a tip's and a shaft's a tick
+  all_.reserve(kMaxContacts + leavers + 2 * settings.tools.size());
+  leavers_.reserve(leavers);
   holds_.reserve(kMaxContacts);
 }
 
-void TissueTouch::find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds) {
+std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools, double dt) {
   if (dt != dt_) follow_response(dt);
   contacts_.look(tools);
   contacts_.collide(tools);
-  if (patches_) patches_->find(tools, holds);
+  loose_.clear();
+  if (patches_)
+    patches_->find(
+        tools, [this](int tool) { return law_.grasps(tool); }, loose());
+  return loose_;
 }
 
 void TissueTouch::drop_tool(int tool) {
@@ -130,7 +135,7 @@ std::span<const PatchForce> TissueTouch::follow_cut(const CutMesh& topology) {
       if (c.anchor.weights[v] != 0) loose_.push_back({c.anchor.nodes[v], c.anchor.weights[v] * c.force});
     leave(c);
   }
-  if (patches_) patches_->follow_cut(topology, loose_, [&](const TouchContact& c) { leave(c); });
+  if (patches_) patches_->follow_cut(topology, loose());
   follow_response(dt_);
   return loose_;
 }

@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,8 +34,9 @@ class TissueTouch {
   bool touched() const { return !law_.contacts().empty() || (patches_ && patches_->laid()); }
 
   /// Once a tick of steps of `dt` [s]: which points the tools' parts touch. Contacts that go on keep where they stick.
-  /// `holds`: whether a tool's jaws hold the body.
-  void find(std::span<const MovingTool> tools, double dt, const std::function<bool(int tool)>& holds);
+  /// Returns what cells of patches did to nodes that have gone over a rim, until the next call: to let it fade is for
+  /// the caller.
+  std::span<const PatchForce> find(std::span<const MovingTool> tools, double dt);
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
@@ -57,7 +57,7 @@ class TissueTouch {
   void state(State& s, std::span<const MovingTool> tools);
 
  private:
-  /// What pressed tissue that has been cut away.
+  /// What pressed tissue that has been cut away, or has gone over a rim.
   struct Leaver {
     ToolPoint by;
     Anchor anchor;
@@ -67,6 +67,9 @@ class TissueTouch {
   };
 
   void leave(const TouchContact& contact);
+  TissuePatches::Loose loose() {
+    return {loose_, [this](const TouchContact& c) { leave(c); }};
+  }
   void tell(const Leaver& leaver);
   void fade(std::span<const MovingTool> tools);
   void leavers_state(State& s, std::span<const MovingTool> tools);
@@ -90,7 +93,7 @@ class TissueTouch {
   std::vector<JawHold> holds_;
   int fading_ticks_;
   std::vector<Leaver> leavers_;
-  std::vector<PatchForce> loose_;  ///< [N] of the last cut
+  std::vector<PatchForce> loose_;  ///< [N] of the last cut or find()
   double dt_ = 0;                  ///< [s] of the step that the response is for
 };
 
