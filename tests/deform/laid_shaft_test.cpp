@@ -56,7 +56,7 @@ TEST(LaidShaft, FeelsAtRestWhatItsStripDoesOnTissueWithoutInertia) {
   still.bodies[0] = body;
   for (const double aside : {-0.004, 0.0, 0.003}) {
     const double wanted = felt_when_laid(still, aside), felt = felt_when_laid(moving, aside);
-    EXPECT_NEAR(felt, wanted, 1e-3 * wanted) << "at y = " << aside;
+    EXPECT_NEAR(felt, wanted, 2e-3 * wanted) << "at y = " << aside;
   }
 }
 
@@ -140,7 +140,7 @@ TEST_P(LaidShaftSlides, HasNoJumpFromTriangleToTriangle) {
     rig.press(laid_tip(-0.01 * std::cos(2 * std::numbers::pi * i / ticks), kLaid));
     worst = std::max(worst, (rig.force() - before).norm() / rig.force().norm());
   }
-  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(worst, 0.015);
 }
 
 // Drawn along itself at 20 mm/s over the block without its uppermost layer: what friction has bent where a point gives

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kCombinations = 500, kQuickCombinations = 30;
 constexpr int kAveraged = 100, kQuickAveraged = 4;  // combinations of elements of averaged strain
+constexpr int kShafts = 100, kQuickShafts = 12;     // combinations of level shafts; quickly those narrower than an edge
 constexpr std::array kLongPoints{6, 14};            // seconds each
 constexpr int kTelling = 106;  // fails if the patch follows each swing of the tissue; no quick one does
 using Tried = TriedContact;
@@ -124,6 +125,13 @@ std::vector<Point> moving_points(const Extent& extent) {
     MovingPress p = any_press(of_averaged);
     p.element = TetElement::nodal_strain;
     add("moving contact, averaged strain", "combination", fmt::format("{}: {}", i, words_of(p)), p);
+  }
+  std::mt19937 of_shafts(7);
+  for (int i = 0; i < (extent.quick ? kQuickShafts : kShafts); ++i) {
+    MovingPress p = any_press(of_shafts);
+    p.shaft = true;
+    if (extent.quick && p.radius > p.cell.x()) continue;
+    add("moving contact, shafts", "combination", fmt::format("{}: {}", i, words_of(p)), p);
   }
   return points;
 }

@@ -15,8 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;  // [s]
-constexpr double kPivot = 1e3;  // [m] above the tissue: all of a tool so long moves as its tip does
+constexpr double kTick = 1e-3;    // [s]
+constexpr double kPivot = 1e3;    // [m] from the tissue: all of a tool so long moves as its tip does
+constexpr double kBeyond = 0.75;  // [1] of the block, from its middle: there a shaft ends
 constexpr double kStabSpeed = TriedContact::kMaxSpeed, kSlideSpeed = 0.02;  // [m/s]
 constexpr double kStand = 1;         // [s] of standing before nothing but chatter is left
 constexpr double kDecay = 8;         // [1] time constants that slow tissue is given to come to rest
@@ -32,12 +33,17 @@ double smooth(double t) {
   return x * x * (3 - 2 * x);
 }
 
+double length_of(const MovingPress& p) {
+  return p.cells.x() * p.cell.x();
+}
+
 /// The tip's centre, as the gesture leads it.
 Stroke stroke_of(const MovingPress& p) {
-  const Vector3d place = p.origin + Vector3d(p.beside.x() * p.cell.x(), p.beside.y() * p.cell.y(), p.radius);
+  const double x = p.shaft ? kBeyond * length_of(p) : p.beside.x() * p.cell.x();
+  const Vector3d place = p.origin + Vector3d(x, p.beside.y() * p.cell.y(), p.radius);
   const double above = 0.1 * p.depth, way = p.depth + above, slide = 0.5 * p.cell.x();
   const auto at = [=](double share, double along = 0) -> Vector3d {
-    return place + Vector3d(along, 0, above - share * way);
+    return place + Vector3d(p.shaft ? 0 : along, p.shaft ? along : 0, above - share * way);
   };
   if (p.gesture == "stabbed") {
     const int ticks = std::max(1, static_cast<int>(std::ceil(way / kStabSpeed / kTick)));
@@ -73,9 +79,18 @@ Scene scene_of(const MovingPress& p) {
   scene.contact.rule = p.rule;
   scene.passivity.controller = false;
   Tool& tool = scene.tools[0];
-  tool.pivot = p.origin + Vector3d(0, 0, kPivot);
-  std::get<ProbeSpec>(tool.end).radius = p.radius;
-  tool.shaft_length = 0;
+  if (p.shaft) {
+    tool.pivot = p.origin - Vector3d(kPivot, 0, 0);
+    tool.axis = Vector3d::UnitX();
+    tool.up = Vector3d::UnitZ();
+    tool.shaft_radius = p.radius;
+    tool.shaft_length = 2 * kBeyond * length_of(p);
+    std::get<ProbeSpec>(tool.end).radius = 0.1 * p.radius;
+  } else {
+    tool.pivot = p.origin + Vector3d(0, 0, kPivot);
+    std::get<ProbeSpec>(tool.end).radius = p.radius;
+    tool.shaft_length = 0;
+  }
   tool.max_force = 1e12;
   tool.max_force_rate = 1e15;
   return scene;

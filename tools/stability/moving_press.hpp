@@ -5,7 +5,8 @@
 
 namespace palpate::stability {
 
-/// A block of moving tissue on its bottom, and a ball that is pressed into its top beside any node and stands there.
+/// A block of moving tissue on its bottom, and a ball, or a level shaft, that is pressed into its top beside any node
+/// and stands there.
 struct MovingPress {
   Eigen::Vector3i cells{6, 6, 4};
   Eigen::Vector3d cell{0.01, 0.01, 0.01};              ///< [m]
@@ -14,6 +15,7 @@ struct MovingPress {
   double damping = 5;                                  ///< [1/s]
   Integrator integrator = Integrator::rk4;
   Precision precision = Precision::float32;
+  bool shaft = false;                    ///< over all of the block along x, and slid across
   double radius = 0.005, depth = 0.002;  ///< [m]
   Eigen::Vector2d beside{0.12, -0.23};   ///< [1] of a cell, from the node nearest to the middle
   double friction = 0;

@@ -70,7 +70,7 @@ void Patch::fill_cell(int q) {
   for (int column = 0; column < grid_.columns(); ++column) {
     const int begin = grid_.first(column), count = grid_.first(column + 1) - begin;
     const double* const pressed = kernel_.pressed(std::abs(column - grid_.column(q)), grid_.row(q)) + grid_.row(begin);
-    if (grid_.strip())
+    if (grid_.column_feet())
       add_to_each<PatchGrid::kStripRows>(pressed, at_feet[column], row + begin);
     else
       for (int i = 0; i < count; ++i) row[begin + i] = pressed[i] + at_feet[begin + i];

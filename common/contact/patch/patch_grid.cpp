@@ -16,13 +16,14 @@ int squares_across() {
 
 }  // namespace
 
-PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space)
+PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet)
     : radius_(radius),
       length_(length),
       edge_(strip() ? 2 * radius / kStripRows : radius / kSquaresPerRadius),
       half_space_(half_space),
       columns_(strip() ? kStripColumns : squares_across()),
-      rows_(strip() ? kStripRows : squares_across()) {
+      rows_(strip() ? kStripRows : squares_across()),
+      column_feet_(strip() && feet == Feet::of_columns) {
   for (int i = 0; i < columns_; ++i) {
     first_.push_back(size());
     for (int j = 0; j < rows_; ++j) {
@@ -68,11 +69,13 @@ void PatchKernel::lay(double length) {
     }
 }
 
-const PatchGrid& PatchGrids::of(double radius, double length) {
-  const auto known =
-      std::ranges::find_if(grids_, [&](const auto& g) { return g->radius() == radius && g->length() == length; });
+const PatchGrid& PatchGrids::of(double radius, double length, PatchGrid::Feet feet) {
+  const bool of_columns = length > 0 && feet == PatchGrid::Feet::of_columns;
+  const auto known = std::ranges::find_if(grids_, [&](const auto& g) {
+    return g->radius() == radius && g->length() == length && g->column_feet() == of_columns;
+  });
   return known != grids_.end() ? **known
-                               : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, length, half_space_));
+                               : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, length, half_space_, feet));
 }
 
 }  // namespace palpate

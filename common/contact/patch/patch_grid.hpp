@@ -14,8 +14,10 @@ class PatchGrid {
  public:
   static constexpr int kStripRows = 8;
 
+  enum class Feet { of_columns, of_cells };  ///< of a segment's; a sphere's cells have their own
+
   /// Of a sphere where `length` [m] is 0.
-  PatchGrid(double radius, double length, const HalfSpace& half_space);
+  PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet = Feet::of_columns);
 
   int size() const { return static_cast<int>(cells_.size()); }
   double radius() const { return radius_; }  ///< [m] of the sphere, or about the segment
@@ -36,11 +38,12 @@ class PatchGrid {
   /// last one how many there are.
   int first(int column) const { return first_[column]; }
 
-  /// Places at which the tissue under the cells is asked for what it has beyond the half-space: each square's own, one
+  /// Places at which the tissue under the cells is asked for what it has beyond the half-space: each cell's own, or one
   /// for a column of rectangles.
-  int feet() const { return strip() ? columns_ : size(); }
-  int foot(int p) const { return strip() ? column(p) : p; }
-  int first_foot(int column) const { return strip() ? column : first(column); }  ///< of a column, like first()
+  bool column_feet() const { return column_feet_; }
+  int feet() const { return column_feet_ ? columns_ : size(); }
+  int foot(int p) const { return column_feet_ ? column(p) : p; }
+  int first_foot(int column) const { return column_feet_ ? column : first(column); }  ///< of a column, like first()
   /// Of cell p, for each cell q: which of columns() * rows() ways lies between them, whatever its sign.
   const int* ways_from(int p) const { return &ways_[p * cells_.size()]; }
 
@@ -52,6 +55,7 @@ class PatchGrid {
   double radius_, length_, edge_;
   HalfSpace half_space_;
   int columns_, rows_;
+  bool column_feet_;
   std::vector<Cell> cells_;
   std::vector<double> rise_;
   std::vector<Eigen::Vector2d> middle_;
@@ -90,7 +94,7 @@ class PatchGrids {
  public:
   explicit PatchGrids(const HalfSpace& half_space) : half_space_(half_space) {}
   /// Stays where it is while this object lives.
-  const PatchGrid& of(double radius, double length = 0);
+  const PatchGrid& of(double radius, double length = 0, PatchGrid::Feet feet = PatchGrid::Feet::of_columns);
 
  private:
   HalfSpace half_space_;

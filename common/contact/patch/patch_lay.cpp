@@ -112,7 +112,9 @@ Vector3d Patch::in_plane(const Vector3d& p) const {
 }
 
 Vector2d Patch::foot_middle(int foot) const {
-  return grid_.strip() ? Vector2d(cell_middle(foot), 0) : grid_.middle(foot);
+  if (!grid_.strip()) return grid_.middle(foot);
+  if (grid_.column_feet()) return {cell_middle(foot), 0};
+  return {cell_middle(grid_.column(foot)), grid_.across(grid_.row(foot))};
 }
 
 // Where the lines through the feet along the normal meet the surface; the outermost place counts.
@@ -124,7 +126,8 @@ void Patch::lay_feet(const Ground& ground) {
     if (!presses(ground, t)) continue;
     const Triangle c = surface.corners(t);
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
-    if (grid_.strip() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0)) continue;
+    if (grid_.column_feet() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0))
+      continue;
     const Vector2d low = flat[0].cwiseMin(flat[1]).cwiseMin(flat[2]).head<2>().array() - kOnEdge * grid_.radius();
     const Vector2d high = flat[0].cwiseMax(flat[1]).cwiseMax(flat[2]).head<2>().array() + kOnEdge * grid_.radius();
     const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();

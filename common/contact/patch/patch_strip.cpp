@@ -202,7 +202,9 @@ void Patch::lay_strip(const Ground& ground) {
   lay_anchor(ground);
   lay_feet(ground);
   for (int i = 0; i < grid_.feet(); ++i)
-    if (!std::isfinite(feet_[i].depth)) stand_on_nearest(ground, i);
+    if (!std::isfinite(feet_[i].depth) && (grid_.column_feet() || laid(i))) stand_on_nearest(ground, i);
+  for (int p = 0; p < grid_.size(); ++p)
+    if (!foot(p).stands()) cells_[p].gap = -std::numeric_limits<double>::infinity();
 }
 
 // Of the triangles that are near, those that the window lies over.
@@ -244,10 +246,11 @@ void Patch::lay_row(int row, const std::array<Vector3d, 3>& triangle) {
   }
 }
 
-// Of a column beyond the surface's edge.
+// Beyond the surface's edge.
 void Patch::stand_on_nearest(const Ground& ground, int foot) {
-  const double x = cell_middle(foot);
-  const Vector3d under = laid_at_ + x * across_ + (flank_.slope * x + grid_.radius() * flank_.steep) * normal_;
+  const double x = foot_middle_[foot].x();
+  const Vector3d under = laid_at_ + x * across_ + foot_middle_[foot].y() * up_ +
+                         (flank_.slope * x + grid_.radius() * flank_.steep) * normal_;
   const TrianglePoint nearest = nearest_point(ground.surface, under, near_);
   std::array<int, 3> corners;
   for (int v = 0; v < 3; ++v) corners[v] = local(ground.surface.map().triangles[nearest.triangle][v]);

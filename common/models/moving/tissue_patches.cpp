@@ -73,7 +73,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   for (const PatchPart& part : patch_parts(settings.tools, true)) {
     parts_.push_back({.tool = part.tool,
                       .part = part.part,
-                      .patch = Patch(grids_.of(part.radius, part.length)),
+                      .patch = Patch(grids_.of(part.radius, part.length, PatchGrid::Feet::of_cells)),
                       .radius = part.radius,
                       .above = (part.length > 0 ? kSegmentAbove : kAbove) * part.radius});
     largest = std::max(largest, part.radius);
