@@ -47,6 +47,7 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
   all_.reserve(kMaxContacts + leavers + 2 * settings.tools.size());
   leavers_.reserve(leavers);
   holds_.reserve(kMaxContacts);
+  loose_.reserve(3 * kMaxContacts + 2 * settings.tools.size() * Patch::kMaxNodes);
 }
 
 std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools, double dt) {
