@@ -28,11 +28,10 @@ palpate.binary = (buffer) => {
 };
 const go = palpate.hand.go.bind(palpate.hand);
 palpate.hand.go = (frame) => { go(frame); waiting.push(palpate.hand.pending.at(-1)); };
-const busy = palpate.picture.busy.bind(palpate.picture), drawn = palpate.hand.drawn.bind(palpate.hand), making = [];
-palpate.picture.busy = () => {
-  const waits = busy();
-  if (!waits) for (const event of making.splice(0)) madeDelays.push(performance.now() - event);
-  return waits;
+const made = palpate.made.bind(palpate), drawn = palpate.hand.drawn.bind(palpate.hand), making = [];
+palpate.made = (what) => {
+  for (const event of making.splice(0)) madeDelays.push(performance.now() - event);
+  made(what);
 };
 palpate.hand.drawn = (frame, me) => {
   const before = [...palpate.hand.pending];
@@ -44,9 +43,9 @@ palpate.hand.drawn = (frame, me) => {
 
 COUNTS = """
 globalThis.bytes = globalThis.pictures = 0;
-const on = palpate.binary, draw = palpate.picture.draw.bind(palpate.picture);
+const on = palpate.binary, draw = palpate.drawn.bind(palpate);
 palpate.binary = (buffer) => { bytes += buffer.byteLength; on(buffer); };
-palpate.picture.draw = (...of) => { ++pictures; draw(...of); };
+palpate.drawn = (what) => { ++pictures; draw(what); };
 """
 
 
@@ -59,6 +58,12 @@ def row(name, unit, *values):
     print(f"{name},{unit},{','.join(f'{v:.4g}' for v in values)}", flush=True)
 
 
+def slide(page, moves):
+    for step in range(moves):
+        page.drag(0.45 + 0.1 * (step % 40) / 40, 0.6 - 0.05 * (step % 40) / 40)
+        time.sleep(0.02)
+
+
 def one_page(options):
     with Nodes(options, "liver.toml") as nodes:
         browser = open_browser()
@@ -69,10 +74,10 @@ def one_page(options):
             browser.execute_script(COUNTS)
             page.press(0.45, 0.6)
             page.wait("palpate.hand.drag?.down", 10)
+            slide(page, 100)  # meanwhile the page finds how many pixels the machine draws in time
+            page.get("[palpate.hand.delays, madeDelays, stateDelays].map((of) => { of.length = 0; })")
             begin, counted = time.monotonic(), page.get("[bytes, pictures]")
-            for step in range(options.moves):
-                page.drag(0.45 + 0.1 * (step % 40) / 40, 0.6 - 0.05 * (step % 40) / 40)
-                time.sleep(0.02)
+            slide(page, options.moves)
             seconds = time.monotonic() - begin
             if options.picture:
                 browser.save_screenshot(options.picture)
@@ -128,7 +133,8 @@ def main():
     options.source = str(ROOT)
     need_browser()
     one_page(options)
-    viewers(options)
+    if options.rounds:
+        viewers(options)
 
 
 if __name__ == "__main__":

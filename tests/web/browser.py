@@ -15,10 +15,10 @@ import time
 
 import views
 from live_page import Nodes, Page, expect, need_browser, open_browser, open_small_browser
-from watcher import FRAME, Connection, Watcher
+from watcher import FRAME, TAKEN, Connection, Watcher
 
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
-MOVED = "Math.max(...palpate.bodies[0].displacement)"
+MOVED = "Math.max(...palpate.bodies()[0].displacement)"
 
 
 # What a curve of a few millinewtons with a gap of three seconds draws: its ticks, and how many lines it is made of.
@@ -207,11 +207,11 @@ class HoldWatch(Watcher):
         return [told for told in self.told if told[0] > begin]
 
 
-SLOW_PICTURES = """const draw = palpate.picture.draw.bind(palpate.picture);
-globalThis.slowness = [300];  // [ms] of the pictures to come; the last one of all that follow
-palpate.picture.draw = (...of) => {
+SLOW_PAGE = """const drawn = palpate.drawn.bind(palpate);
+globalThis.slowness = [300];  // [ms] with the pictures to come; the last one with all that follow
+palpate.drawn = (what) => {
   const end = performance.now() + (slowness.length > 1 ? slowness.shift() : slowness[0]);
-  draw(...of);
+  drawn(what);
   while (performance.now() < end);
 };"""
 NOTES = """const note = document.getElementById('note');
@@ -222,7 +222,7 @@ document.dispatchEvent(new Event('visibilitychange'));"""
 
 
 def slow(options):
-    """Pictures that take longer than a silent hand is held do not lose it; a page that hangs or is hidden does."""
+    """A page that stands for longer than a silent hand is held does not lose it; one that hangs or is hidden does."""
     with Nodes(options, "liver.toml") as nodes:
         browser = open_small_browser()
         try:
@@ -232,14 +232,14 @@ def slow(options):
             page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
             watch = HoldWatch(nodes.port)
             watch.start()
-            browser.execute_script(SLOW_PICTURES + NOTES)
+            browser.execute_script(SLOW_PAGE + NOTES)
             time.sleep(0.5)
             held = watch.during(3)
             least, most = min(force for _, force, _ in held), max(force for _, force, _ in held)
-            print(f"{len(held)} frames with slow pictures: {least:.3f} to {most:.3f} N, "
+            print(f"{len(held)} frames of a slow page: {least:.3f} to {most:.3f} N, "
                   f"{sum(let_go for *_, let_go in held)} of them let go")
             expect(len(held) > 60 and least > 0.9 * most, (len(held), least, most))
-            expect(not any(let_go for *_, let_go in held), "let go while pictures are slow")
+            expect(not any(let_go for *_, let_go in held), "let go while the page is slow")
             browser.execute_script("slowness.unshift(2500)")
             hung = watch.during(2.5)
             expect(any(let_go for *_, let_go in hung), "a page that hangs holds the tool")
@@ -257,6 +257,57 @@ def slow(options):
             browser.quit()
 
 
+class StandingPage:
+    """Takes the tool where its script presses the organ, and holds it there, sixty times a second."""
+
+    TOOL_AT = 32
+
+    def __init__(self, port):
+        self.connection = Connection(port)
+        self.frames, self.number, self.tip = 0, 0, None
+
+    def hold(self, seconds):
+        """The time of its last word: none follow, the connection stays, and pings are not answered."""
+        end = told = None
+        while end is None or time.monotonic() < end:
+            kind, body = self.connection.read()
+            if kind == 9:
+                self.connection.send(body, 10)
+            if kind != 2 or body[:4] != FRAME:
+                continue
+            self.frames += 1
+            self.connection.send(TAKEN + self.frames.to_bytes(4, "little"))
+            tool = struct.unpack_from("<48f", body, self.TOOL_AT)
+            if self.tip is None and math.hypot(*tool[36:39]) > 0.1:
+                self.tip = tool[3], tool[7], tool[11]
+                self.connection.send(b"\2" + bytes(7))
+                end = time.monotonic() + seconds
+            if self.tip:
+                self.number += 64
+                self.connection.send(struct.pack("<BBHI6f", 1, 0, 0, self.number, *self.tip, 0, 0, 0))
+                told = time.monotonic()
+        return told
+
+
+def cut_off(options):
+    """A page whose network is cut loses the tool, which lets go without a kick."""
+    with Nodes(options, "liver.toml") as nodes:
+        watch = HoldWatch(nodes.port)
+        watch.start()
+        page = StandingPage(nodes.port)
+        cut = page.hold(1)
+        time.sleep(1)
+        before = [force for at, force, _ in watch.told if cut - 0.3 < at < cut]
+        after = [(at - cut, force, let_go) for at, force, let_go in watch.told if at > cut]
+        took = next((at for at, _, let_go in after if let_go), math.inf)
+        most, last = max(force for _, force, _ in after), after[-1][1]
+        print(f"held with {min(before):.3f} to {max(before):.3f} N; let go {1e3 * took:.0f} ms after the last word, "
+              f"never above {most:.3f} N, {last:.3f} N in the end")
+        expect(min(before) > 0.05, "nothing was held")
+        expect(0.1 < took < 0.5, took)
+        expect(most < 1.05 * max(before) and last == 0, (most, last))
+
+
 def triangles_at_rest(options, scene):
     said = subprocess.run([f"{options.bin}/palpate", "check", f"{options.source}/scenes/{scene}"], check=True,
                           capture_output=True, text=True).stdout
@@ -270,8 +321,8 @@ def cut(options):
         browser = open_small_browser()
         try:
             page = Page(browser, nodes.address)
-            page.wait("palpate.built && palpate.built.number > 0", 15)
-            page.wait(f"palpate.bodies[0].refinement.coarseTriangles.length !== {3 * whole}", 5)
+            page.wait("palpate.frame?.topology > 0", 15)
+            page.wait(f"palpate.bodies()[0].refinement.coarseTriangles.length !== {3 * whole}", 5)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
@@ -311,7 +362,7 @@ def attack(port):
         pass
 
 
-CASES = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "camera": views.camera,
+CASES = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "cut_off": cut_off, "camera": views.camera,
          "through": views.through, "hostile": hostile}
 
 
@@ -322,7 +373,7 @@ def main():
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
     options = parser.parse_args()
-    if options.case != "hostile":
+    if options.case not in ("cut_off", "hostile"):
         need_browser()
     CASES[options.case](options)
 

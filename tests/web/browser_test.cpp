@@ -42,8 +42,12 @@ TEST(WebBrowserShared, TwoPagesShareAToolAndAServerThatReturnsIsFoundAgain) {
   run("share");
 }
 
-TEST(WebBrowser, SlowPicturesDoNotLoseTheHand) {
+TEST(WebBrowser, ASlowPageDoesNotLoseTheHand) {
   run("slow");
+}
+
+TEST(WebBrowser, APageWhoseNetworkIsCutLetsGo) {
+  run("cut_off");
 }
 
 TEST(WebBrowser, ACutAppears) {

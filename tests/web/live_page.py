@@ -115,7 +115,7 @@ class Page:
     def state(self):
         return self.get("""palpate.frame && (() => { const tool = palpate.frame.tools[0]; return {
             force: Math.hypot(...tool.force), holder: tool.holder, asker: tool.asker, flags: tool.flags,
-            me: palpate.me, moved: Math.max(...palpate.bodies[0].displacement), sample: tool.sample,
+            me: palpate.me, moved: Math.max(...palpate.bodies()[0]?.displacement ?? []), sample: tool.sample,
             topology: palpate.topology?.number }; })()""")
 
     def place(self, x, y):

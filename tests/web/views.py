@@ -9,13 +9,15 @@ HIGHER_THAN_WIDE = {"width": 420, "height": 760, "deviceScaleFactor": 1, "mobile
 STAND = """palpate.toggle('pause');
 palpate.adapt = () => {};
 palpate.scale = 0.5;
-globalThis.begun = 0;
-const draw = palpate.picture.draw.bind(palpate.picture);
-palpate.picture.draw = (...of) => { ++begun; draw(...of); };"""
-# Colours of the picture, once one that was begun after now is complete: the next one has been begun then.
-LOOK = """const [columns, rows, done] = arguments, before = begun;
-(function wait() {
-  if (begun < before + 2) return void setTimeout(wait, 10);
+globalThis.complete = 0;
+const made = palpate.made.bind(palpate);
+palpate.made = (what) => { ++complete; made(what); };"""
+# Colours of the picture, once one is complete that was begun after now, and in the page: two more are complete then.
+LOOK = """const [columns, rows, done] = arguments;
+let until;
+requestAnimationFrame(() => requestAnimationFrame(() => { until = complete + 4; wait(); }));
+function wait() {
+  if (complete < until) return void setTimeout(wait, 10);
   const picture = document.getElementById('picture'), paper = document.createElement('canvas');
   paper.width = columns || picture.width;
   paper.height = rows || picture.height;
@@ -24,7 +26,7 @@ LOOK = """const [columns, rows, done] = arguments, before = begun;
   const { data } = to.getImageData(0, 0, paper.width, paper.height);
   if (columns) return void done([...data]);
   done(globalThis.places.flatMap(([x, y]) => [...data.slice(4 * (y * paper.width + x), 4 * (y * paper.width + x) + 4)]));
-})();"""
+}"""
 
 
 def look(page, grid=GRID):
@@ -131,8 +133,8 @@ def camera(options):
 
 
 # Pixels where vertices of the catheter lie that are at least 3 mm past the duct's ends.
-PLACES_INSIDE = """const { axes, gl: { canvas: { width, height } } } = palpate.picture;
-const of = (finish) => palpate.bodies.find((body) => body.spec.finish === finish).position;
+PLACES_INSIDE = """const { axes, canvas: { width, height } } = palpate.picture, bodies = palpate.bodies();
+const of = (finish) => bodies.find((body) => body.spec.finish === finish).position;
 const duct = of('duct'), catheter = of('plastic'), [low, high] = [Math.min, Math.max].map((best) =>
   duct.reduce((found, value, i) => (i % 3 ? found : best(found, value)), duct[0]));
 globalThis.places = [];
@@ -145,7 +147,14 @@ for (let i = 0; i < catheter.length; i += 3) {
 }
 globalThis.places = places.filter(([x, y]) => x >= 0 && y >= 0 && x < width && y < height);
 return places.length;"""
-CATHETER_IS_HIDDEN = """palpate.bodies.find((body) => body.spec.finish === 'plastic').views = () => [];"""
+# The frame that is shown again and again, with the catheter a kilometre away.
+CATHETER_IS_HIDDEN = """const { words } =
+  palpate.frame.bodies[palpate.scenery.bodies.findIndex((body) => body.finish === 'plastic')];
+const without = words.buffer.slice(), take = palpate.picture.take.bind(palpate.picture);
+new DataView(without).setFloat32(words.byteOffset - 28, 1000, true);
+palpate.picture.take = () => take(without);
+palpate.picture.take();
+palpate.toggle('pause');"""
 INSERTED = "parseInt(document.querySelector('#tasks p')?.textContent) >= 5"  # [mm]
 
 

@@ -5,7 +5,7 @@ import { Input } from './input.js';
 import { Link } from './link.js';
 import { Panel } from './panel.js';
 import { Picture } from './picture.js';
-import { SoftBody } from './soft_body.js';
+import { Shapes } from './shapes.js';
 import { ViewCamera } from './camera.js';
 import { keyTable, wireButtons } from './controls.js';
 import { readGamepad } from './gamepad.js';
@@ -13,16 +13,19 @@ import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
-const picturesApart = 12, wordsApart = 50, lateSeen = 1000;  // [ms]
+const wordsApart = 50, lateSeen = 1000, mostGiven = 100;  // [ms]; frames
 
 class App {
   constructor(sources) {
-    this.picture = new Picture(canvas, sources);
+    this.picture = new Picture(canvas, sources, {
+      ready: (thread) => this.ready(thread), drawn: (what) => this.drawn(what), made: (what) => this.made(what),
+      failed: (words) => this.failed(words),
+    });
     this.panel = new Panel();
     this.camera = new ViewCamera();
     this.curve = new Curve(document.getElementById('curve'));
-    this.bodies = [];
-    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.01, through: false, arrows: true };
+    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.01, through: false };
+    this.given = [];  // frames that the picture has been given since the one that is shown
     this.mode = 'press';
     this.scale = Math.min(devicePixelRatio, 2);
     this.pictures = 0;
@@ -43,9 +46,22 @@ class App {
     this.everyPicture();
   }
 
+  // The thread that draws. `fineness`: of its bodies, which are those that a hand presses.
+  ready({ software, fineness }) {
+    this.software = software;
+    this.shapes = new Shapes(fineness);
+    if (this.scenery) this.shapes.setScenery(this.scenery);
+    this.shapes.topology = this.topology;
+  }
+
+  failed(words) {
+    document.getElementById('note').textContent = words;
+  }
+
   lost() {
     this.hand.rest();
-    this.frame = this.next = this.shown = this.topology = undefined;
+    this.frame = this.next = this.topology = undefined;
+    this.given = [];
     this.panel.hand(false);
     this.panel.link('no connection; trying again', false);
   }
@@ -57,24 +73,35 @@ class App {
 
   binary(buffer) {
     const kind = wire.kindOf(buffer);
+    if (kind === wire.FRAME) return this.take(buffer);
+    this.picture.take(buffer);
     if (kind === wire.SCENERY) this.setScenery(wire.decodeContainer(buffer));
-    if (kind === wire.TOPOLOGY) this.topology = wire.decodeContainer(buffer);
-    if (kind !== wire.FRAME) return;
+    if (kind === wire.TOPOLOGY) this.setTopology(wire.decodeContainer(buffer));
+  }
+
+  take(buffer) {
     ++this.link.received;
     this.next = wire.decodeFrame(buffer);
-    this.curve.add(this.next.sense, this.next.tools.map((tool) => size(tool.force)));
+    const forces = this.next.tools.map((tool) => size(tool.force)), strongest = Math.max(0, ...forces);
+    this.curve.add(this.next.sense, forces);
+    if (strongest > this.look.forceMax) this.look.forceMax = roundUp(strongest);
     if (document.hidden) return;
     this.hand.watch(this.next, this.me);
     this.link.tellTaken();
-    this.drawIn(0);  // once what else has come is taken: the newest is drawn
+    this.picture.take(buffer);
+    this.given.push(this.next);
+    if (this.given.length > mostGiven) this.given.shift();
+  }
+
+  setTopology(topology) {
+    this.topology = topology;
+    if (this.shapes) this.shapes.topology = topology;
   }
 
   setScenery(scenery) {
     this.scenery = scenery;
-    this.bodies = [];
-    this.built = undefined;
     this.topology = undefined;
-    this.picture.setScenery(scenery);
+    this.shapes?.setScenery(scenery);
     this.panel.setScenery(scenery);
     const back = this.camera.scene;
     if (JSON.stringify(back) !== JSON.stringify(scenery.camera)) this.camera.setScene(scenery.camera);
@@ -84,79 +111,48 @@ class App {
     this.showToggles();
   }
 
-  // What came last becomes what is shown.
-  build() {
-    const { topology, next, scenery } = this;
-    if (!scenery || !topology || !next || next.topology !== topology.number) return;
-    if (this.built !== topology) {
-      topology.bodies.forEach((triangles, b) => this.setTriangles(b, triangles, topology.pieces[b]));
-      this.built = topology;
-    }
-    if (this.frame === next) return;
-    this.frame = next;
-    const strongest = Math.max(0, ...next.tools.map((tool) => size(tool.force)));
-    if (strongest > this.look.forceMax) this.look.forceMax = roundUp(strongest);
-    let most = 0;
-    this.bodies.forEach((body, b) => { most = Math.max(most, body.place(next.bodies[b])); });
-    if (most > this.look.legendMax) this.look.legendMax = roundUp(most);
-  }
-
-  setTriangles(b, triangles, pieces) {
-    const body = this.bodies[b];
-    const spec = this.scenery.bodies[b], most = this.picture.software ? spec.max_triangles / 4 : spec.max_triangles;
-    if (!body) this.bodies[b] = new SoftBody(spec, triangles, most);
-    else if (!same(body.refinement.coarseTriangles, triangles)) body.setTriangles(triangles);
-    if (pieces) this.bodies[b].visual.part(pieces);
+  // The bodies as they are shown: a press begins on them.
+  bodies() {
+    const { shapes } = this;
+    if (!shapes?.take(this.frame)) shapes?.take(this.next);
+    return shapes?.bodies ?? [];
   }
 
   // With every picture of the display.
   everyPicture() {
     requestAnimationFrame(() => this.everyPicture());
-    this.draw();
-    const now = performance.now();
+    if (!this.shapes || !this.scenery) return;
+    const now = performance.now(), seconds = Math.min((now - (this.displayed ?? now)) / 1e3, 0.1);
+    this.displayed = now;
+    const early = this.software && !this.firstDrawn;  // fewer pixels are there sooner
+    this.picture.show(this.camera, early ? 0.4 * this.scale : this.scale, this.look, Boolean(this.paused));
+    if (!this.frame) return;
+    readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
     if (!this.firstDrawn || now - (this.worded ?? -wordsApart) < wordsApart) return;
     this.worded = now;
     this.words();
   }
 
-  // [ms]
-  drawIn(wait) {
-    this.again ??= setTimeout(() => { this.again = undefined; this.draw(); }, wait);
-  }
-
-  // A frame is drawn when it comes: to wait for the display would delay it once more. Where nothing comes, the camera
-  // may have moved.
-  draw() {
-    const now = performance.now(), since = now - (this.last ?? now - picturesApart);
-    if (this.picture.busy()) return this.drawIn(4);
-    if (this.shown) this.firstDrawn ??= now;
-    if (!this.paused && this.next === this.shown && since < 100) return;
-    if (since < picturesApart) return this.drawIn(4);
-    if (!this.paused) this.build();
-    if (!this.frame || document.hidden) return;
-    this.last = now;
-    this.shown = this.next;
-    this.show(Math.min(since / 1e3, 0.1));
-  }
-
-  // `seconds`: since the last picture.
-  show(seconds) {
-    this.adapt(seconds);
-    const early = this.picture.software && !this.firstDrawn;  // fewer pixels are there sooner
-    const scale = early ? 0.4 * this.scale : this.scale;
-    const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
-    this.picture.resize(Math.max(width, 16), Math.max(height, 16));
-    this.picture.draw(this.camera.fitted(width, height), this.bodies, this.frame.tools, this.look);
-    readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
+  // `seconds`: since the picture before it was begun. `most`: the largest displacement in it [m].
+  drawn({ number, seconds, most }) {
+    const at = this.given.findIndex((frame) => frame.number === number);
+    if (at >= 0) [this.frame] = this.given.splice(0, at + 1).slice(-1);
+    if (!this.frame) return;
+    if (most > this.look.legendMax) this.look.legendMax = roundUp(most);
     this.hand.drawn(this.frame, this.me);
+    this.adapt(Math.min(seconds, 0.1));
     ++this.pictures;
-    this.drawIn(4);  // until it is complete
+  }
+
+  // `scale`: the colours of the legend, with the first picture.
+  made({ scale }) {
+    this.firstDrawn ??= performance.now();
+    if (scale) this.panel.scale(scale);
   }
 
   // What stands beside the picture; nobody reads faster.
   words() {
     if (!this.frame) return;
-    this.panel.scale(() => this.picture.scale(128));
     this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
     this.panel.hand(this.hand.holds(this.next, this.me) && performance.now() - this.hand.lateAt < lateSeen);
@@ -176,7 +172,7 @@ class App {
   adapt(seconds) {
     const full = Math.min(devicePixelRatio, 2);
     this.slow = (this.slow ?? 0) + (seconds > 0.02 ? Math.min(50 * seconds, 4) : -0.5);
-    if (this.slow > 12 && this.scale > 0.4) this.scale = Math.max(0.4, 0.75 * this.scale);
+    if (this.slow > 12 && this.scale > 0.5) this.scale = Math.max(0.5, 0.75 * this.scale);
     if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
     if (this.slow > 12 || this.slow < -400) this.slow = 0;
   }
@@ -203,7 +199,7 @@ class App {
   beginDrag(at) {
     if (!this.frame || this.mode === 'look') return false;
     if (this.mode === 'move') return this.hand.beginMove(this.frame, this.picture.axes, at);
-    return this.hand.beginPress(this.frame, this.bodies, this.picture.axes, at);
+    return this.hand.beginPress(this.frame, this.bodies(), this.picture.axes, at);
   }
 
   dragTo(at, event) {
@@ -262,21 +258,18 @@ class App {
     if (this.frame && (this.hand.pose || this.hand.take(this.frame))) act();
   }
 
-  save() {
+  async save() {
     const link = document.createElement('a');
     link.download = `palpate-${new Date().toISOString().replace(/[:.]/g, '-')}.png`;
-    link.href = canvas.toDataURL('image/png');
+    link.href = URL.createObjectURL(await this.picture.file());
     link.click();
+    URL.revokeObjectURL(link.href);
   }
 
   fullScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
     else document.getElementById('stage').requestFullscreen?.();
   }
-}
-
-function same(a, b) {
-  return a.length === b.length && a.every((value, i) => value === b[i]);
 }
 
 try {

@@ -40,12 +40,10 @@ export class Panel {
     document.querySelector('[data-do=pedal]').hidden = !scenery.tools.some((tool) => tool.cuts);
   }
 
-  // `colours`: makes the pixels of the scale; asked once, after the first picture.
+  // `colours`: the pixels of the scale.
   scale(colours) {
-    if (this.scaled) return;
-    this.scaled = true;
     const canvas = document.querySelector('#legend canvas');
-    const image = new ImageData(new Uint8ClampedArray(colours()), canvas.width, 1);
+    const image = new ImageData(new Uint8ClampedArray(colours), canvas.width, 1);
     canvas.getContext('2d').putImageData(image, 0, 0);
   }
 

@@ -1,171 +1,40 @@
-// Draws the scene with WebGL 2.
-import { Backdrop } from './backdrop.js';
-import { Carried, resize } from './carried.js';
-import { GpuMesh } from './gpu_mesh.js';
-import { Programs } from './programs.js';
-import { Textures } from './textures.js';
-import { axesOf, axis, blockBytes, origin, sceneBlock } from './scene_block.js';
-import { arrowMesh, arrowPlace } from './arrow.js';
-
-const options = { alpha: false, preserveDrawingBuffer: true };
-
-// Without a graphics card smooth edges and fine surfaces would cost most of the pictures.
-function drawsBySoftware(gl) {
-  const info = gl?.getExtension('WEBGL_debug_renderer_info');
-  return info && /swiftshader|llvmpipe|software/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
-}
+// The picture is drawn on a thread of its own: the mouse and the link do not wait where that takes long.
+import { axesOf } from './scene_block.js';
 
 export class Picture {
-  constructor(canvas, sources) {
-    const beside = document.createElement('canvas').getContext('webgl2', { ...options, antialias: false });
-    this.software = drawsBySoftware(beside);
-    if (!this.software) beside?.getExtension('WEBGL_lose_context')?.loseContext();
-    const gl = this.software ? beside : canvas.getContext('webgl2', { ...options, antialias: true });
-    if (!gl) throw new Error('this browser has no WebGL 2');
-    this.gl = gl;
-    if (this.software) this.carried = new Carried(gl, canvas);
-    this.programs = new Programs(gl, sources);
-    for (const name of ['cavity', 'cover', 'metal', 'legend', 'arrow']) this.programs.prepare(name);
-    this.block = gl.createBuffer();
-    gl.bindBuffer(gl.UNIFORM_BUFFER, this.block);
-    gl.bufferData(gl.UNIFORM_BUFFER, blockBytes, gl.DYNAMIC_DRAW);
-    gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.block);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
-    this.arrow = new GpuMesh(gl).upload({ shape: 1, ...arrowMesh() });
-    this.backdrop = new Backdrop(gl, this.programs);
-    this.meshes = new Map();
-    this.textures = new Textures(gl);
-  }
-
-  setScenery(scenery) {
-    const { gl } = this;
-    this.scenery = scenery;
-    this.meshes.clear();
-    this.backdrop.set(scenery.backdrop);
-    for (const { finish } of scenery.backdrop) this.programs.prepare(finish);
-    const tools = Math.min(scenery.tools.length, 8);
-    for (const { finish, visual } of scenery.bodies) {
-      this.programs.prepare(finish, tools);
-      for (const part of visual?.parts ?? [])
-        this.programs.prepare(part.finish, tools, part.textured ? 'TEXTURED' : '');
-    }
-    this.instruments = scenery.tools.map((tool) => tool.parts.map((part) =>
-      new GpuMesh(gl).upload({ shape: 1, ...part, rest: part.position })));
-  }
-
-  resize(width, height) {
-    resize(this.gl.canvas, width, height);
-  }
-
-  // The last picture is still being made: another one would only wait behind it, and this page with it.
-  busy() {
-    const { gl, fence } = this;
-    if (!fence || gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return Boolean(fence);
-    gl.deleteSync(fence);
-    this.fence = undefined;
-    this.carried?.arrive();
-    return false;
-  }
-
-  // `bodies`: SoftBody; `tools`: of the frame. `look`: {byScalar, legendMax, through, arrows}.
-  draw(camera, bodies, tools, look) {
-    const { gl } = this, { width, height } = gl.canvas;
-    this.axes = axesOf(camera, width, height);
-    const seen = tools.map((tool, i) => ({ tool, index: i, shape: this.scenery.tools[i], pose: tool.parts[0] }))
-      .filter(({ tool, shape }) => tool.seen && shape);
-    const words = sceneBlock(this.axes, width, height, seen, look.legendMax);
-    gl.bindBuffer(gl.UNIFORM_BUFFER, this.block);
-    gl.bufferSubData(gl.UNIFORM_BUFFER, 0, words);
-    gl.enable(gl.CULL_FACE);
-    this.backdrop.prepare(words.subarray(16, 40), width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, width, height);
-    gl.clear(gl.DEPTH_BUFFER_BIT);
-    this.backdrop.cover();
-    for (const one of seen) this.drawInstrument(one);
-    this.drawBodies(bodies, look, Math.min(seen.length, 8));
-    if (look.arrows) for (const one of seen) this.drawArrow(one, look.forceMax);
-    this.carried?.send(width, height);
-    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    gl.flush();
-  }
-
-  drawBodies(bodies, look, tools) {
-    const views = bodies.flatMap((body, b) =>
-      body.views(this.scenery.mucosa_colour).map((view, i) => ({ view, key: `${b} ${i}` })));
-    const clear = ({ view }) => look.through && (view.finish === 'duct' || view.finish === 'mucosa');
-    const { gl } = this;
-    for (const one of views) if (!clear(one)) this.drawSoft(one, look, tools);
-    if (!look.through) return;
-    gl.enable(gl.BLEND);
-    gl.blendColor(0, 0, 0, 0.35);
-    gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
-    gl.depthMask(false);
-    for (const one of views) if (clear(one)) this.drawSoft(one, look, tools);
-    gl.depthMask(true);
-    gl.disable(gl.BLEND);
-  }
-
-  drawSoft({ view, key }, look, tools) {
-    const { gl } = this, byScalar = look.byScalar && view.finish !== 'plastic';
-    const variant = byScalar ? 'BY_SCALAR' : view.image ? 'TEXTURED' : '';
-    const program = this.programs.get(byScalar ? 'tissue' : view.finish, tools, variant);
-    if (!this.meshes.has(key)) this.meshes.set(key, new GpuMesh(gl));
-    gl.useProgram(program.program);
-    gl.uniform4f(program.colour, ...view.colour, 1);
-    if (variant === 'TEXTURED') {
-      this.textures.bind(view.texture);
-      gl.uniform1i(program.image, 0);
-    }
-    this.meshes.get(key).upload(view).draw();
-  }
-
-  drawInstrument({ tool, index, shape, pose }) {
-    const { gl } = this, metal = this.programs.get('metal');
-    gl.useProgram(metal.program);
-    gl.uniform4f(metal.colour, shape.polish, 0, 0, shape.bare);
-    gl.uniform4f(metal.shaft, ...axis(pose, 2), shape.shaft_radius);
-    this.instruments[index].forEach((mesh, part) => {
-      gl.uniformMatrix4fv(metal.placement, false, tool.parts[part]);
-      mesh.draw();
+  // `on`: what is called when the thread is ready, and of each picture when it has been drawn and when it is complete.
+  constructor(canvas, sources, on) {
+    if (!canvas.transferControlToOffscreen) throw new Error('this browser is too old: it cannot draw beside its page');
+    this.canvas = canvas;
+    this.thread = new Worker('render_thread.js', { type: 'module' });
+    this.thread.addEventListener('message', ({ data }) => {
+      for (const [what, of] of Object.entries(data)) on[what](of);
     });
+    this.thread.addEventListener('error', (event) => on.failed(event.message ?? 'the page has no thread to draw on'));
+    const surface = canvas.transferControlToOffscreen();
+    this.thread.postMessage({ canvas: surface, sources }, [surface]);
   }
 
-  // The force on the tool, at its tip, over whatever is in front of it.
-  drawArrow({ tool }, forceMax) {
-    const { gl } = this, place = arrowPlace(origin(tool.parts[0]), tool.force, forceMax, this.axes.reach);
-    if (!place) return;
-    const arrow = this.programs.get('arrow');
-    gl.useProgram(arrow.program);
-    gl.uniformMatrix4fv(arrow.placement, false, place);
-    gl.uniform1f(arrow.share, Math.hypot(...tool.force) / forceMax);
-    gl.disable(gl.DEPTH_TEST);
-    this.arrow.draw();
-    gl.enable(gl.DEPTH_TEST);
+  // Scenery, topology or frame, as it came.
+  take(buffer) {
+    this.thread.postMessage(buffer);
   }
 
-  // The colour scale as pixels, lowest first.
-  scale(height) {
-    const { gl } = this, target = gl.createFramebuffer(), colour = gl.createRenderbuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    gl.bindRenderbuffer(gl.RENDERBUFFER, colour);
-    gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, 1, height);
-    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, colour);
-    gl.viewport(0, 0, 1, height);
-    const legend = this.programs.get('legend');
-    gl.disable(gl.CULL_FACE);
-    gl.disable(gl.DEPTH_TEST);
-    gl.useProgram(legend.program);
-    gl.uniform1f(legend.height, height);
-    gl.bindVertexArray(null);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.enable(gl.DEPTH_TEST);
-    const pixels = new Uint8Array(4 * height);
-    gl.readPixels(0, 0, 1, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    gl.deleteFramebuffer(target);
-    gl.deleteRenderbuffer(colour);
-    return pixels;
+  // What is seen from now on. `scale`: pixels of the picture in one of the page's; `look`: as Renderer's.
+  show(camera, scale, look, paused) {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight]
+      .map((length) => Math.max(Math.round(length * scale), 16));
+    this.axes = axesOf(camera.fitted(width, height), width, height);
+    const view = { width, height, axes: this.axes, look, paused }, said = JSON.stringify(view);
+    if (said === this.said) return;
+    this.said = said;
+    this.thread.postMessage(view);
+  }
+
+  // As a PNG file.
+  async file() {
+    const image = await createImageBitmap(this.canvas), paper = new OffscreenCanvas(image.width, image.height);
+    paper.getContext('2d').drawImage(image, 0, 0);
+    return paper.convertToBlob({ type: 'image/png' });
   }
 }
-
