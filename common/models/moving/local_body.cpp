@@ -18,6 +18,7 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
+constexpr double kDent = 3;         // radii of a part: a place this near to a contact lies in that one's dent
 // [1] The middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2)): 4/pi asinh(1) (Love 1929),
 // rounded; HalfSpace::pressed() has it for any place.
 constexpr double kSquare = 1.12;
@@ -92,7 +93,9 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most
     Touched touched;
     const double radius = tool.radius(p);
     const Segment axis = tool.axis(p);
-    if (!holds(axis, radius, p, held) && touch(tool, p, touched)) add(touched.at, touched.force, tool, load);
+    if (holds(axis, radius, p, held) || !touch(tool, p, touched)) continue;
+    if (patches_ && dented(touched.at, radius, held)) continue;
+    add(touched.at, touched.force, tool, load);
   }
   keep_within(most, load);
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
@@ -233,6 +236,13 @@ bool LocalBody::holds(const Segment& axis, double radius, int part, int held) co
     return (h.grasped && part >= jaws_.first && part < jaws_.end) ||
            (h.at - nearest_point(axis, h.at)).squaredNorm() < reach * reach;
   });
+}
+
+// What the tool holds beside this place makes a dent there that the surface does not show.
+bool LocalBody::dented(const Vector3d& at, double radius, int held) const {
+  const double reach = kDent * radius;
+  return std::any_of(held_.begin(), held_.begin() + held,
+                     [&](const Held& h) { return (h.at - at).squaredNorm() < reach * reach; });
 }
 
 BetweenJaws LocalBody::between(const OpenJaws& jaws) {

@@ -88,6 +88,7 @@ class LocalBody {
   bool touch(const MovingTool& tool, int part, Touched& touched) const;
   double half_space(int part, double radius, double depth) const;
   bool holds(const Segment& axis, double radius, int part, int held) const;
+  bool dented(const Eigen::Vector3d& at, double radius, int held) const;
 
   Trocar trocar_;
   JawParts jaws_;
