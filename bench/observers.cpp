@@ -34,7 +34,7 @@ using testing::TwoHosts;
 namespace fs = std::filesystem;
 
 const std::string kScene = PALPATE_SCENES "/liver.toml";
-constexpr int kPublisherPriority = 40;  // of haptic_node's thread that writes to the bus
+constexpr int kPublisherPriority = 60;  // of haptic_node's thread that writes to the bus
 
 struct Case {
   int observers;

@@ -4,6 +4,7 @@
 
 #include "common/log/log.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/core_share.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 
 constexpr std::uint64_t kReminderTicks = 64;
 constexpr double kSettlingShare = 0.8;  // of a tick's time
-constexpr int kLoopPriority = 50;       // below the haptic loop, above the picture
+constexpr int kLoopPriority = 50;       // below the haptic loop and what it publishes, above the picture
+constexpr double kCoreShare = 0.85;     // what is left is the haptic node's, where they have one core
 
 }  // namespace
 
@@ -223,6 +225,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
   PeriodicTimer timer(1 / world_.dt(), 0);
+  CoreShare share(kCoreShare);
   std::int64_t next_frame = begin, next_house = begin, first_tick = begin;
   while (!shutdown_requested()) {
     timer.wait();
@@ -248,6 +251,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
       keep_house(now);
       next_house = now + 50'000'000;
     }
+    if (const std::int64_t end = now_ns(), rest = share.rest(now, end); rest > 0) sleep_until_ns(end + rest);
   }
   report_.refused += feed_.refused() + bus_.refused();
   report_.period = timer.statistics();

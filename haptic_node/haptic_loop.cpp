@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
-constexpr int kLoopPriority = 80, kPublisherPriority = 40;
+constexpr int kLoopPriority = 80, kPublisherPriority = 60;
 
 }  // namespace
 
