@@ -74,7 +74,7 @@ class App {
   binary(buffer) {
     const kind = wire.kindOf(buffer);
     if (kind === wire.FRAME) return this.take(buffer);
-    this.picture.take(buffer);
+    this.picture.build(buffer);
     if (kind === wire.SCENERY) this.setScenery(wire.decodeContainer(buffer));
     if (kind === wire.TOPOLOGY) this.setTopology(wire.decodeContainer(buffer));
   }
