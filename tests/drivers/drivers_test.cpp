@@ -2,6 +2,7 @@
 #include <csignal>
 
 #include "tests/drivers/driver_rig.hpp"
+#include "tests/sanitized.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -16,11 +17,12 @@ class DevelopmentPrefix {
   }
   ~DevelopmentPrefix() { fs::remove_all(folder_); }
 
-  /// Builds the example of that name from its installed sources; its program.
+  /// Builds the example of that name from its installed sources, with a sanitizer where the library is; its program.
   std::string build(const std::string& name) const {
     const fs::path made = folder_ / ("build-" + name);
-    must(fmt::format("{} -S {} -B {} -DCMAKE_PREFIX_PATH={}", PALPATE_CMAKE,
-                     (folder_ / "share/palpate/drivers" / name).string(), made.string(), folder_.string()));
+    must(fmt::format("{} -S {} -B {} -DCMAKE_PREFIX_PATH={} '-DCMAKE_CXX_FLAGS={}' '-DCMAKE_C_FLAGS={}'", PALPATE_CMAKE,
+                     (folder_ / "share/palpate/drivers" / name).string(), made.string(), folder_.string(),
+                     PALPATE_CXX_FLAGS, PALPATE_C_FLAGS));
     must(fmt::format("{} --build {}", PALPATE_CMAKE, made.string()));
     return made / "press";
   }
@@ -60,6 +62,7 @@ TEST(Drivers, InCppWithTheInstalledLibrary) {
 TEST(Drivers, InPythonWithItsModule) {
   const fs::path module = fs::path(PALPATE_BUILD) / "python";
   if (!fs::exists(module)) GTEST_SKIP() << "built without pybind11";
+  if (kSanitized) GTEST_SKIP() << "Python itself has no sanitizer, which the module needs";
   DriverRig rig;
   expect_a_whole_driver(rig, with({"/usr/bin/env", "PYTHONPATH=" + module.string(), PALPATE_PYTHON3,
                                    PALPATE_SOURCE "/drivers/python/press.py"},

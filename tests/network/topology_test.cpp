@@ -5,6 +5,7 @@
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "tests/network/network_test.hpp"
+#include "tests/sanitized.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -68,7 +69,7 @@ TEST_F(CutOverRelay, EveryChangeArrivesInOrderThroughLossAndACut) {
     count = observer_->changes.size();
 
   const std::set<std::uint32_t> gone = in_order(observer_->changes);
-  EXPECT_GT(gone.size(), 30u);
+  EXPECT_GT(gone.size(), kSanitized ? 10u : 30u);  // a slow tissue begins when the scalpel is on its way
   LateNode late(*hosts_, scene_);
   ASSERT_TRUE(late.has_lost(gone.size(), 20s)) << "who comes late gets every change";
   for (int t = 0; t < late.mesh().size(); ++t)
