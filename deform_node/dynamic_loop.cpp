@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/log/log.hpp"
+#include "common/models/moving/tissue_steps.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/core_share.hpp"
 #include "common/realtime/settings.hpp"
@@ -14,7 +15,6 @@ namespace {
 constexpr std::uint64_t kReminderTicks = 64;
 constexpr double kSettlingShare = 0.8;  // of a tick's time
 constexpr int kLoopPriority = 50;       // below the haptic loop and what it publishes, above the picture
-constexpr double kCoreShare = 0.85;     // what is left is the haptic node's, where they have one core
 
 }  // namespace
 
@@ -225,7 +225,7 @@ const DynamicReport& DynamicLoop::run(double seconds) {
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);
   PeriodicTimer timer(1 / world_.dt(), 0);
-  CoreShare share(kCoreShare);
+  CoreShare share(kTissueShare);
   std::int64_t next_frame = begin, next_house = begin, first_tick = begin;
   while (!shutdown_requested()) {
     timer.wait();

@@ -5,6 +5,10 @@
 
 namespace palpate {
 
+/// Of a core, what moving tissue takes at the most: the rest is the haptic node's, where they have one core
+/// (CoreShare).
+inline constexpr double kTissueShare = 0.85;
+
 /// The steps in which the tissue of a moving body goes on.
 struct TissueSteps {
   double bound;    ///< [s] up to which the scene's integrator is stable
