@@ -101,6 +101,11 @@ class BodyPart {
   /// Visits the forces [N] on the tissue at its nodes, with the tool that each is of.
   using VisitForce = std::function<void(int tool, int node, const Eigen::Vector3d& force)>;
   virtual void for_each_force(const VisitForce&) const {}
+  /// The most that these two visits can come to.
+  struct Capacity {
+    std::size_t contacts = 0, forces = 0;
+  };
+  virtual Capacity capacity() const { return {}; }
   /// Whether its shape follows from the contacts' forces alone.
   virtual bool superposed() const { return false; }
   /// The reduced coordinates from which its shape follows; empty where it follows from the contacts, or is told by

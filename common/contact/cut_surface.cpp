@@ -66,6 +66,15 @@ void CutSurface::enter(int facet) {
                 box_[a][1].cwiseMax(box_[b][1]).cwiseMax(box_[c][1]));
 }
 
+void CutSurface::state(State& s) {
+  std::vector<Vector3d> previous = previous_, present = position_;
+  for (std::vector<Vector3d>* positions : {&previous, &present}) {
+    s.same(positions->size());
+    s.all(*positions);
+    if (s.restoring()) set_positions(*positions);
+  }
+}
+
 void CutSurface::set_positions(std::span<const Vector3d> positions) {
   assert(positions.size() == position_.size());
   for (const auto& [node, at] : placed_) position_[node] = at;

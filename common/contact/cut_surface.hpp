@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/contact/contact_surface.hpp"
+#include "common/describe/state.hpp"
 #include "common/geometry/buckets.hpp"
 #include "common/mesh/cut_mesh.hpp"
 
@@ -25,6 +26,8 @@ class CutSurface : public ContactSurface {
   void set_positions(std::span<const Eigen::Vector3d> positions);
   /// Within a step: where a node is on its way to the present positions, for what asks about it alone.
   void place(int node, const Eigen::Vector3d& position);
+  /// Present and previous positions. Throws std::runtime_error on a state of another surface.
+  void state(State& s);
   /// Follows the last remove() or erase() of the mesh; called after each of them.
   void follow();
 

@@ -32,6 +32,7 @@ class TouchBody : public BodyPart {
   const ContactLaw* held() const override { return &law_; }
   void for_each_contact(const VisitContact& visit) const override;
   void for_each_force(const VisitForce& visit) const override;
+  Capacity capacity() const override { return {kMaxContacts, 3 * kMaxContacts}; }
   bool adopt(const TouchContact& contact) override;
   void pinch(int tool, const Eigen::Isometry3d& pose, const ClosingJaws& jaws) override {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });

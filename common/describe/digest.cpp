@@ -1,6 +1,5 @@
 #include "common/describe/digest.hpp"
 
-#define XXH_INLINE_ALL
 #include <fmt/format.h>
 #include <xxhash.h>
 

@@ -9,12 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "common/describe/hash64.hpp"
+
 namespace palpate {
 
 /// A visitor over what an object remembers from step to step. Each object has one function `state(State&)` that names
-/// its pieces in order; measuring, saving and restoring are the same walk. Lists apart, it never allocates.
+/// its pieces in order; measuring, saving, hashing and restoring are the same walk. Lists apart, it never allocates.
 class State {
  public:
+  static constexpr const char* kOfAnother = "the recorded state is of another body";
+
   static State measure() { return {}; }
   /// Into room that has been measured.
   static State save(std::uint8_t* to) {
@@ -26,6 +30,12 @@ class State {
   static State save(std::vector<std::uint8_t>& to) {
     State s;
     s.grown_ = &to;
+    return s;
+  }
+  /// Into a hash. What is walked must have no padding.
+  static State hash(Hash64& to) {
+    State s;
+    s.hash_ = &to;
     return s;
   }
   /// From what has the measured size.
@@ -77,6 +87,7 @@ class State {
     size_ += count;
     if (count == 0) return;
     if (to_) std::memcpy(std::exchange(to_, to_ + count), data, count);
+    if (hash_) hash_->add_bytes(data, count);
     if (grown_) {
       const auto* first = static_cast<const std::uint8_t*>(data);
       grown_->insert(grown_->end(), first, first + count);
@@ -89,6 +100,12 @@ class State {
     if (to_) std::memset(std::exchange(to_, to_ + count), 0, count);
     if (grown_) grown_->resize(grown_->size() + count, 0);
     if (restoring_) take(count);
+  }
+  /// A number, as of a list that never changes its length, that must be what it was.
+  void same(std::uint64_t number) {
+    const std::uint64_t own = number;
+    value(number);
+    require(number == own, kOfAnother);
   }
   /// What has been restored must be good.
   void require(bool good, const char* sentence) const {
@@ -109,6 +126,7 @@ class State {
   bool restoring_ = false;
   std::uint8_t* to_ = nullptr;
   std::vector<std::uint8_t>* grown_ = nullptr;
+  Hash64* hash_ = nullptr;
   const std::uint8_t* from_ = nullptr;
   std::size_t left_ = std::numeric_limits<std::size_t>::max();  ///< [bytes] that may be taken
   std::size_t size_ = 0;

@@ -95,9 +95,10 @@ void DynamicWorld::restore(std::span<const std::uint8_t> from) {
 }
 
 std::uint64_t DynamicWorld::hash() const {
-  std::uint64_t hash = 0;
-  for (const auto& organ : organs_) hash = hash * 31 + organ->hash();
-  return hash;
+  Hash64 hash;
+  State s = State::hash(hash);
+  for (const auto& organ : organs_) organ->state(s, {});
+  return hash.value();
 }
 
 }  // namespace palpate

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "common/bus/codec.hpp"
-#include "common/sim/digest.hpp"
+#include "common/describe/hash64.hpp"
 #include "common/sim/simulator.hpp"
 
 namespace palpate::sim {
@@ -50,7 +50,7 @@ void Simulator::restore(std::span<const std::uint8_t> from) {
 }
 
 std::uint64_t Simulator::hash() const {
-  Digest digest;
+  Hash64 digest;
   digest.add(steps_);
   for (int t = 0; t < tools(); ++t) {
     const ToolView view = tool(t);

@@ -51,10 +51,10 @@ void describe_contacts(const StepRecord& r, int tool, ContactState& m) {
   m.press = r.of_tool[tool].press;
   m.forces.clear();
   m.contacts.clear();
-  for (int i = 0; i < r.contacts; ++i)
-    if (r.contact_tool[i] == tool) m.contacts.push_back(r.contact[i]);
-  for (int i = 0; i < r.forces; ++i)
-    if (r.nodal_tool[i] == tool) m.forces.push_back(r.nodal[i]);
+  for (const auto& [by, contact] : r.contacts)
+    if (by == tool) m.contacts.push_back(contact);
+  for (const auto& [by, force] : r.forces)
+    if (by == tool) m.forces.push_back(force);
 }
 
 std::vector<TaskRecord> task_records(const HapticStep& haptic) {

@@ -13,6 +13,13 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 
 void prepare_record(const HapticStep& haptic, StepRecord& r) {
   r.news = haptic.news();
+  BodyPart::Capacity most;
+  for (const auto& [body, part] : haptic.entries()) {
+    most.contacts += part->capacity().contacts;
+    most.forces += part->capacity().forces;
+  }
+  r.contacts.reserve(most.contacts);
+  r.forces.reserve(most.forces);
 }
 
 namespace {
@@ -26,8 +33,7 @@ void fill_news(const HapticStep& haptic, StepRecord& r) {
 }
 
 void add_contact(const TouchContact& c, std::uint32_t body, StepRecord& r) {
-  if (r.contacts == StepRecord::kMaxContacts) return;
-  HeldContact& to = r.contact[r.contacts];
+  HeldContact to{};
   to.body = body;
   for (int v = 0; v < 3; ++v) to.nodes[v] = static_cast<std::uint32_t>(c.anchor.nodes[v]);
   to.weights = plain(c.anchor.weights);
@@ -36,7 +42,7 @@ void add_contact(const TouchContact& c, std::uint32_t body, StepRecord& r) {
   to.force = plain(c.force);
   to.sample = static_cast<std::uint32_t>(c.tool_point().part);
   to.sticking = c.touch == Touch::sticking;
-  r.contact_tool[r.contacts++] = static_cast<std::uint8_t>(c.tool_point().tool);
+  r.contacts.push_back({c.tool_point().tool, to});
 }
 
 }  // namespace
@@ -47,7 +53,8 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
   r.sense_ns = sense_ns;
   r.energy = haptic.energy();
   r.tools = haptic.tools();
-  r.contacts = r.forces = 0;
+  r.contacts.clear();
+  r.forces.clear();
   for (int t = 0; t < r.tools; ++t) {
     const bool moving = haptic.has_moving_tissue();
     const Eigen::Vector4d& along = haptic.force_along_dofs(t);
@@ -70,9 +77,7 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
     part->for_each_contact([&r, body](const TouchContact& c) { add_contact(c, body, r); });
     if (!part->superposed()) continue;  // its shape follows from its own state
     part->for_each_force([&r, body](int tool, int node, const Eigen::Vector3d& f) {
-      if (r.forces == StepRecord::kMaxForces) return;
-      r.nodal[r.forces] = {body, static_cast<std::uint32_t>(node), plain(f)};
-      r.nodal_tool[r.forces++] = static_cast<std::uint8_t>(tool);
+      r.forces.push_back({tool, {body, static_cast<std::uint32_t>(node), plain(f)}});
     });
   }
   fill_news(haptic, r);

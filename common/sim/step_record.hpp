@@ -12,8 +12,6 @@ namespace palpate {
 /// What one haptic step hands to the publisher: filled in place in the ring, in memory that prepare_record() took.
 struct StepRecord {
   static constexpr int kMaxTools = 8;
-  static constexpr int kMaxContacts = TouchBody::kMaxContacts;
-  static constexpr int kMaxForces = 3 * kMaxContacts;
 
   struct OfTool {
     ToolDofs dofs;
@@ -27,16 +25,20 @@ struct StepRecord {
     std::uint64_t model_run, model_seq;  ///< local contact model in use
   };
 
+  template <class What>
+  struct By {
+    int tool;
+    What what;
+  };
+
   std::uint64_t step;
   std::int64_t sense_ns;
   std::int64_t pushed_ns;  ///< when it was put into the ring
   double energy;           ///< [J] put in by all tools
-  int tools, contacts, forces;
+  int tools;
   std::array<OfTool, kMaxTools> of_tool;
-  std::array<HeldContact, kMaxContacts> contact;
-  std::array<std::uint8_t, kMaxContacts> contact_tool;
-  std::array<NodalForce, kMaxForces> nodal;
-  std::array<std::uint8_t, kMaxForces> nodal_tool;
+  std::vector<By<HeldContact>> contacts;
+  std::vector<By<NodalForce>> forces;
 
   /// What bodies tell beside their contacts; of this step where it is due, else of an earlier one.
   std::vector<BodyNews> news;

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <memory>
 
+#include "common/describe/hash64.hpp"
 #include "common/devices/device.hpp"
 #include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/scene/ensure_archive.hpp"
-#include "common/sim/digest.hpp"
 #include "common/sim/simulator.hpp"
 
 namespace palpate::sim {

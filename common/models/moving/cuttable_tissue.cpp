@@ -161,9 +161,14 @@ void CuttableTissue::find_floating() {
     if (!held[part]) floating_.emplace_back(std::move(nodes[part]), damping_);
 }
 
-bool CuttableTissue::fits(std::span<const int> removed) const {
-  return removed_.empty() && fading_.fits(mesh_.nodes()) &&
-         std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+void CuttableTissue::state(State& s) {
+  std::vector<int> removed = removed_;
+  s.list(removed);
+  fading_.state(s);
+  if (!s.restoring()) return;
+  const bool own = std::ranges::all_of(removed, [&](int t) { return t >= 0 && t < topology_.size(); });
+  s.require(removed_.empty() && own && fading_.fits(mesh_.nodes()), State::kOfAnother);
+  restore(removed);
 }
 
 void CuttableTissue::restore(std::span<const int> removed) {

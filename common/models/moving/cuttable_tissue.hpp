@@ -69,15 +69,12 @@ class CuttableTissue {
   std::span<const Change> changes() const { return changes_; }
   const std::vector<int>& removed() const { return removed_; }  ///< all so far, in order
 
-  /// Loads that fade.
-  void state(State& s) { fading_.state(s); }
-  /// Whether they, and what is to be gone, can be of this tissue, which is whole.
-  bool fits(std::span<const int> removed) const;
-  /// These are gone, as recorded, and what they did is in the recorded state.
-  void restore(std::span<const int> removed);
+  /// What is gone, and the loads that fade. Only tissue that is whole restores.
+  void state(State& s);
 
  private:
   void remove(int tetrahedron);
+  void restore(std::span<const int> removed);
   bool note_change(RemovalCause cause, std::size_t first);
   void cut_from_model(std::span<const int> gone);
   bool fades(int node) const;  ///< what pressed it can: it is the moving part's alone, and there

@@ -1,7 +1,6 @@
 #include "common/models/moving/dynamic_organ.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +27,7 @@ std::span<const int> joined_nodes(const HybridTouch* still) {
 
 DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const StepSettings& settings,
                            const MakeModel& make)
-    : name_(body.name),
-      mesh_(elastic_mesh(archive, body.dynamic.element)),
+    : mesh_(elastic_mesh(archive, body.dynamic.element)),
       model_(make(mesh_)),
       still_(archive.hybrid ? std::make_unique<HybridTouch>(archive, settings,
                                                             body.dynamic.precision == Precision::float32, *model_)
@@ -45,7 +43,7 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
     const EndAbilities can = abilities_of(tool);
     hands_.push_back({.closing = can.closing, .turning = forceps_shape(tool), .cautery = can.cautery});
   }
-  const TissueSteps steps = tissue_steps(name_, body.dynamic, model_->frequency_bound());
+  const TissueSteps steps = tissue_steps(body.name, body.dynamic, model_->frequency_bound());
   max_step_ = steps.free;
   touched_step_ = steps.touched;
 }
@@ -229,61 +227,23 @@ void DynamicOrgan::shape(std::vector<Eigen::Vector3f>& position, std::vector<Eig
   vertex_normals(position, tissue_.shown(), normal);
 }
 
-std::vector<std::uint8_t> DynamicOrgan::motion() const {
-  std::vector<std::uint8_t> bytes(model_->state_size());
-  model_->save(bytes.data());
-  return bytes;
-}
-
-DynamicOrgan::Memory DynamicOrgan::memory() const {
-  std::vector<char> holding;
-  for (const Hand& hand : hands_) holding.push_back(hand.holding);
-  return {removed(),
-          motion(),
-          holding,
-          {surface().previous().begin(), surface().previous().end()},
-          {surface().positions().begin(), surface().positions().end()}};
-}
-
 void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
-  Memory m = s.restoring() ? Memory{} : memory();
-  s.list(m.removed);
   tissue_.state(s);
-  s.list(m.motion);
-  s.list(m.holding);
+  s.same(model_->state_size());
+  model_->state(s);
+  s.same(hands_.size());
+  for (Hand& hand : hands_) s.value(hand.holding);
   passing_.state(s);
   s.value(calm_left_);
   s.value(moved_with_);
   s.value(touched_before_);
-  s.list(m.previous);
-  s.list(m.present);
-  if (s.restoring()) recall(m);
+  tissue_.surface().state(s);
+  if (s.restoring()) {
+    std::ranges::copy(surface().positions(), position_.begin());
+    contacts_.follow_cut(topology());
+  }
   contacts_.state(s, tools);
   if (still_) still_->state(s, tools);
-}
-
-// Whether what was read can be of this body and these tools.
-bool DynamicOrgan::fits(const Memory& m) const {
-  const bool sizes = m.motion.size() == model_->state_size() && m.holding.size() == hands_.size() &&
-                     passing_.fits(hands_.size()) && m.previous.size() == position_.size() &&
-                     m.present.size() == position_.size();
-  return sizes && tissue_.fits(m.removed);
-}
-
-void DynamicOrgan::recall(const Memory& m) {
-  if (!fits(m)) throw std::runtime_error(fmt::format("the recorded state is not one of body '{}'", name_));
-  tissue_.restore(m.removed);
-  model_->restore(m.motion.data());
-  for (std::size_t t = 0; t < hands_.size(); ++t) hands_[t].holding = m.holding[t] != 0;
-  tissue_.surface().set_positions(m.previous);
-  tissue_.surface().set_positions(m.present);
-  position_ = m.present;
-  contacts_.follow_cut(topology());
-}
-
-std::uint64_t DynamicOrgan::hash() const {
-  const std::vector<std::uint8_t> state = motion();
-  return XXH3_64bits(state.data(), state.size()) ^ XXH3_64bits(removed().data(), removed().size() * sizeof(int));
 }
 
 Eigen::Vector3d moving_gravity(const MovingSpec& body) {

@@ -81,9 +81,9 @@ class DynamicOrgan {
   /// no normal.
   void shape(std::vector<Eigen::Vector3f>& position, std::vector<Eigen::Vector3f>& normal);
 
-  /// For keyframes. `tools`: as they are, where it restores; throws std::runtime_error on a state of another body.
+  /// For keyframes and hashes. `tools`: as they are, where it restores; throws std::runtime_error on a state of another
+  /// body, and is of no use after it.
   void state(State& s, std::span<const MovingTool> tools);
-  std::uint64_t hash() const;  ///< of the state: XXH3, 64 bits
 
  private:
   /// What a tool can do to it, and whether its jaws are shut. It takes hold by one of the two at most.
@@ -93,17 +93,6 @@ class DynamicOrgan {
     std::optional<Cautery> cautery;
     bool holding = false;
   };
-  /// What it remembers, the quasi-static part's apart.
-  struct Memory {
-    std::vector<int> removed;
-    std::vector<std::uint8_t> motion;
-    std::vector<char> holding;
-    std::vector<Eigen::Vector3d> previous, present;
-  };
-  std::vector<std::uint8_t> motion() const;  ///< what the model remembers
-  Memory memory() const;
-  bool fits(const Memory& memory) const;
-  void recall(const Memory& memory);
   void advance(std::span<const ToolInTick> tools, double dt);
   void calm();
   bool put_into(std::span<const ToolInTick> tools) const;
@@ -118,7 +107,6 @@ class DynamicOrgan {
   void tear_and_drop();
   void let_go_of_gone();
 
-  std::string name_;
   std::vector<Hand> hands_;  ///< per tool
   ElasticMesh mesh_;
   std::unique_ptr<DynamicModel> model_;

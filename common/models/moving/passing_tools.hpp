@@ -31,8 +31,10 @@ class PassingTools {
   /// After meet(): those that are withdrawn pass no more.
   void clear(std::span<const ToolInTick> tools, const std::function<ToolDeed(int tool)>& deed);
 
-  void state(State& s) { s.list(passing_); }
-  bool fits(std::size_t tools) const { return passing_.size() == tools; }  ///< of what was restored
+  void state(State& s) {
+    s.same(passing_.size());
+    s.all(passing_);
+  }
 
  private:
   bool runs_through(const MovingTool& tool) const;

@@ -165,6 +165,14 @@ void QuasiStaticBody::for_each_force(const VisitForce& visit) const {
   if (patch_) patch_->for_each_force(visit);
 }
 
+BodyPart::Capacity QuasiStaticBody::capacity() const {
+  Capacity most = TouchBody::capacity();
+  if (!patch_) return most;
+  most.contacts += patch_->parts();
+  most.forces += Patch::kMaxNodes * patch_->parts();
+  return most;
+}
+
 bool QuasiStaticBody::adopt(const TouchContact& contact) {
   return (patch_ && !contact.grasped && patch_->adopt(contact)) || TouchBody::adopt(contact);
 }

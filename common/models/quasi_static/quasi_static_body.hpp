@@ -21,6 +21,7 @@ class QuasiStaticBody : public TouchBody {
   LawOutcome hold(std::span<const MovingTool> tools) override;
   void for_each_contact(const VisitContact& visit) const override;
   void for_each_force(const VisitForce& visit) const override;
+  Capacity capacity() const override;
   bool adopt(const TouchContact& contact) override;
   void state(State& s, std::span<const MovingTool> tools) override;
   void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;

@@ -7,12 +7,12 @@
 
 struct XXH3_state_s;
 
-namespace palpate::sim {
+namespace palpate {
 
 /// XXH3 (64 bits) of plain values, one after the other.
-class Digest {
+class Hash64 {
  public:
-  Digest();
+  Hash64();
 
   template <class T>
   requires std::is_arithmetic_v<T>
@@ -28,15 +28,14 @@ class Digest {
   void add(std::span<const Eigen::Matrix<Scalar, 3, 1>> vectors) {
     add_bytes(vectors.data(), vectors.size_bytes());
   }
+  void add_bytes(const void* data, std::size_t size);
   std::uint64_t value() const;
 
  private:
   struct Free {
     void operator()(XXH3_state_s* state) const;
   };
-  void add_bytes(const void* data, std::size_t size);
-
   std::unique_ptr<XXH3_state_s, Free> state_;
 };
 
-}  // namespace palpate::sim
+}  // namespace palpate
