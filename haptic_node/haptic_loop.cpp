@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
 constexpr int kLoopPriority = 80, kPublisherPriority = 60;
+constexpr std::uint32_t kOfLeaving = silent_device | stale_model;  // no interventions while other nodes end too
 constexpr double kMostLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
 
 }  // namespace
@@ -128,7 +129,7 @@ void HapticLoop::tick(double time) {
     report_.max_force = std::max(report_.max_force, haptic_.force(t).norm());
     flags |= haptic_.flags(t);
   }
-  count(leaves_ ? flags & ~std::uint32_t{silent_device} : flags);
+  count(leaves_ ? flags & ~kOfLeaving : flags);
   report_.min_energy = std::min(report_.min_energy, haptic_.energy());
   std::uint64_t refused = 0, followed = 0;
   for (const MotionGuard& guard : guards_) refused += guard.refused(), followed += guard.followed();
