@@ -15,7 +15,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpate-config-version.cm
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/palpate-config.cmake ${PROJECT_BINARY_DIR}/palpate-config-version.cmake
         DESTINATION lib/cmake/palpate COMPONENT dev)
 
-install(FILES common/bus/bus.hpp common/bus/dds_bus.hpp DESTINATION include/palpate/common/bus COMPONENT dev)
+install(FILES common/bus/bus.hpp common/bus/dds_bus.hpp common/bus/force_follower.hpp DESTINATION include/palpate/common/bus COMPONENT dev)
 install(FILES common/realtime/clock.hpp common/realtime/histogram.hpp common/realtime/periodic.hpp common/realtime/shutdown.hpp
         DESTINATION include/palpate/common/realtime COMPONENT dev)
 foreach(header fields messages topics)

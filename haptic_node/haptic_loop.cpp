@@ -1,5 +1,6 @@
 #include "haptic_node/haptic_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -16,6 +17,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
 constexpr int kLoopPriority = 80, kPublisherPriority = 60;
+constexpr std::uint32_t kOfLeaving = silent_device | stale_model;  // no interventions while other nodes end too
+constexpr double kMostLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
 
 }  // namespace
 
@@ -43,10 +46,16 @@ HapticLoop::HapticLoop(HapticStep& haptic, std::vector<std::unique_ptr<Device>>&
 
 HapticLoop::~HapticLoop() = default;
 
-bool HapticLoop::all_finished(double seconds) const {
-  for (const auto& device : devices_)
-    if (!device->finished(seconds)) return false;
-  return true;
+bool HapticLoop::is_over(double time, double seconds) const {
+  if (shutdown_requested() || gives_way_.load(std::memory_order_relaxed) || (seconds > 0 && time >= seconds))
+    return true;
+  return std::ranges::all_of(devices_, [&](const auto& device) { return device->finished(time); });
+}
+
+bool HapticLoop::pushes() const {
+  for (int t = 0; t < haptic_.tools(); ++t)
+    if (!haptic_.force(t).isZero(0) || !haptic_.torque(t).isZero(0) || haptic_.grip_torque(t) != 0) return true;
+  return false;
 }
 
 const LoopReport& HapticLoop::run(double seconds) {
@@ -65,10 +74,10 @@ const LoopReport& HapticLoop::run(double seconds) {
 
   const std::int64_t begin = now_ns();
   PeriodicTimer timer(1 / haptic_.dt());
-  while (!shutdown_requested() && !gives_way_.load(std::memory_order_relaxed)) {
-    const std::uint64_t tick_number = timer.wait();
-    const double time = static_cast<double>(tick_number) * haptic_.dt();
-    if ((seconds > 0 && time >= seconds) || all_finished(time)) break;
+  for (double end = 0;;) {
+    const double time = static_cast<double>(timer.wait()) * haptic_.dt();
+    if (!leaves_ && is_over(time, seconds)) leaves_ = true, end = time;
+    if (leaves_ && (!pushes() || time >= end + kMostLeaving)) break;
     tick(time);
     wake_.release();
     shown_missed_.store(timer.statistics().skipped, std::memory_order_relaxed);
@@ -93,7 +102,9 @@ void HapticLoop::tick(double time) {
   const std::int64_t sense = now_ns();
   for (std::size_t t = 0; t < devices_.size(); ++t) {
     samples_[t] = devices_[t]->read(time);
-    dofs_[t] = samples_[t].dofs = guards_[t].follow(samples_[t].dofs, samples_[t].seq);
+    dofs_[t] = guards_[t].follow(samples_[t].dofs, samples_[t].seq);
+    if (leaves_) dofs_[t].silent = true;  // the force fades, and a replay does the same
+    samples_[t].dofs = dofs_[t];
   }
   local_feed_.give(haptic_);
   if (step_ % keyframe_interval_ == 0) checkpoint();
@@ -118,7 +129,7 @@ void HapticLoop::tick(double time) {
     report_.max_force = std::max(report_.max_force, haptic_.force(t).norm());
     flags |= haptic_.flags(t);
   }
-  count(flags);
+  count(leaves_ ? flags & ~kOfLeaving : flags);
   report_.min_energy = std::min(report_.min_energy, haptic_.energy());
   std::uint64_t refused = 0, followed = 0;
   for (const MotionGuard& guard : guards_) refused += guard.refused(), followed += guard.followed();

@@ -57,7 +57,8 @@ class HapticLoop {
   /// What has been cut, kept for a deformation node that returns.
   void set_topology(TopologyMemory* topology) { topology_ = topology; }
 
-  /// Until `seconds` are over (0: no limit), every device has finished, or a stop is requested.
+  /// Until `seconds` are over (0: no limit), every device has finished, or a stop is requested; then for as long as it
+  /// takes to let the force fade, as for a driver that is silent.
   const LoopReport& run(double seconds);
   HandlingFigures handling(int tool) const { return publisher_.handling(tool); }  ///< once it has run
 
@@ -71,7 +72,8 @@ class HapticLoop {
   void check_peers();
   void say_interventions();
   std::uint64_t refused_samples() const;
-  bool all_finished(double seconds) const;
+  bool is_over(double time, double seconds) const;
+  bool pushes() const;  ///< some hand is given a force
 
   HapticStep& haptic_;
   Bus& bus_;
@@ -84,6 +86,7 @@ class HapticLoop {
   LocalFeed local_feed_;
   TopologyMemory* topology_ = nullptr;
   std::uint64_t step_ = 0, keyframe_interval_;
+  bool leaves_ = false;  ///< the end has come, and the force fades
   std::vector<DeviceSample> samples_;
   std::vector<MotionGuard> guards_;  ///< per tool
   std::vector<ToolDofs> dofs_;

@@ -167,7 +167,7 @@ void run(const NodeOptions& o) {
     for (const std::string& said : presence.watch()) log_info(said);
     bus->wait(20ms);
   }
-  presence.claim("the tools of this scene");
+  presence.claim("the tools", Presence::Of::domain);
   log_info(fmt::format("haptic loop at {:.0f} Hz, code path {}", scene.rates.haptic_hz, code_path()));
   for (const HapticStep::Entry& entry : haptic.entries())
     if (const std::string said = entry.part->introduction(); !said.empty())

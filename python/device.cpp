@@ -4,8 +4,10 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/bus/dds_bus.hpp"
+#include "common/bus/force_follower.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace py = pybind11;
@@ -17,10 +19,11 @@ namespace {
 class Device {
  public:
   Device(std::uint32_t tool, int domain, const std::string& interface, const std::vector<std::string>& peers,
-         const std::string& keys)
+         const std::string& keys, const MotorLimits& limits)
       : bus_(make_dds_bus({.domain = domain, .interface = interface, .peers = peers, .keys = keys, .role = "driver"})),
         writer_(bus_->writer(topics::device_state)),
-        reader_(bus_->reader(topics::force_state)) {
+        reader_(bus_->reader(topics::force_state, Keep::all)),
+        follower_(tool, limits) {
     state_.tool = tool;
   }
 
@@ -33,22 +36,35 @@ class Device {
     return writer_->write(state_);
   }
 
-  /// The newest force on the tool since the last call.
+  /// The newest force since the last call, as it was told.
   std::optional<ForceState> take() {
-    std::optional<ForceState> newest;
-    while (const auto force = reader_->take())
-      if (force->tool == state_.tool) newest = force;
-    return newest;
+    hear();
+    return std::exchange(newest_, std::nullopt);
   }
+  /// What the motors are to give from now on.
+  MotorForce motors() {
+    hear();
+    return fade();
+  }
+  /// The same for who lets go: what comes is not heard any more.
+  MotorForce fade() { return follower_.give(now_ns()); }
+  const ForceFollower& follower() const { return follower_; }
 
   /// Until something has come.
   bool wait(double seconds) { return bus_->wait(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds))); }
   std::uint64_t written() const { return state_.seq; }
 
  private:
+  void hear() {
+    while (const auto force = reader_->take())
+      if (follower_.hear(*force, now_ns())) newest_ = force;
+  }
+
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Writer<DeviceState>> writer_;
   std::unique_ptr<Reader<ForceState>> reader_;
+  ForceFollower follower_;
+  std::optional<ForceState> newest_;
   DeviceState state_;
 };
 
@@ -66,19 +82,44 @@ PYBIND11_MODULE(_device, module) {
       .def_readonly("torque", &ForceState::torque, "[N m] on the tool about its tip, world")
       .def_readonly("grip", &ForceState::grip, "[N m] on the handle, opening the jaws")
       .def_readonly("flags", &ForceState::flags, "bits of ForceFlag");
+  py::class_<MotorForce>(module, "MotorForce")
+      .def_readonly("force", &MotorForce::force, "[N] on the tool at its tip, world")
+      .def_readonly("torque", &MotorForce::torque, "[N m] on the tool about its tip, world")
+      .def_readonly("along", &MotorForce::along, "[N m, N m, N, N m] the same along yaw, pitch, depth, roll")
+      .def_readonly("grip", &MotorForce::grip, "[N m] on the handle, opening the jaws");
   py::class_<Device>(module, "Device")
-      .def(py::init<std::uint32_t, int, const std::string&, const std::vector<std::string>&, const std::string&>(),
+      .def(py::init([](std::uint32_t tool, int domain, const std::string& interface,
+                       const std::vector<std::string>& peers, const std::string& keys, double max_force,
+                       double max_torque, double max_grip, double max_force_rate) {
+             return std::make_unique<Device>(tool, domain, interface, peers, keys,
+                                             MotorLimits{max_force, max_torque, max_grip, max_force_rate});
+           }),
            py::arg("tool") = 0, py::kw_only(), py::arg("domain") = 0, py::arg("interface") = "",
            py::arg("peers") = std::vector<std::string>(), py::arg("keys") = "",
-           "The driver of a tool whose device is \"bus\": `tool` is its place in the scene's list. Raises RuntimeError "
-           "with one sentence.")
+           py::arg("max_force") = MotorLimits{}.max_force, py::arg("max_torque") = MotorLimits{}.max_torque,
+           py::arg("max_grip") = MotorLimits{}.max_grip, py::arg("max_force_rate") = MotorLimits{}.max_force_rate,
+           "The driver of a tool whose device is \"bus\": `tool` is its place in the scene's list. `max_force` [N], "
+           "`max_torque`,\n"
+           "`max_grip` [N m], `max_force_rate` [N/s]: what its motors give. Raises RuntimeError with one sentence.")
       .def(
           "write", &Device::write, py::arg("dofs"), py::arg("sense_ns") = py::none(),
           "Yaw, pitch [rad], depth [m], roll, grip [rad], pedal. `sense_ns`: time.monotonic_ns() when the hardware was "
           "read, now if\n"
           "it is left out. False if it was not sent.")
-      .def("take", &Device::take, "The newest force since the last call, or None.")
+      .def("motors", &Device::motors,
+           "What the motors are to give from now on: call it once a tick. One haptic loop is followed; within the "
+           "limits, and\n"
+           "without a kick when it begins, falls silent or is another one.")
+      .def("fade", &Device::fade, "The same without hearing what comes: for the end, until `limp`.")
+      .def("take", &Device::take, "The newest force since the last call, as it was told, or None.")
       .def("wait", &Device::wait, py::arg("seconds"), py::call_guard<py::gil_scoped_release>(),
            "Sleeps until something may have come, at most so long.")
-      .def_property_readonly("written", &Device::written, "samples written");
+      .def_property_readonly("written", &Device::written, "samples written")
+      .def_property_readonly(
+          "limp", [](const Device& d) { return d.follower().limp(); }, "without force, since none comes")
+      .def_property_readonly(
+          "strange", [](const Device& d) { return d.follower().strange(); }, "forces of other haptic loops, not felt")
+      .def_property_readonly(
+          "refused", [](const Device& d) { return d.follower().refused(); },
+          "forces that are no numbers, or ten times beyond the limits");
 }

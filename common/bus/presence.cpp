@@ -129,7 +129,8 @@ bool Presence::accepts(std::uint64_t run) const {
 }
 
 bool Presence::is_rival(const Peer& peer, std::int64_t now) const {
-  return peer.accepted && peer.status.role == status_.role && peer.status.run != 0 && now - peer.heard_ns < kAliveNs;
+  return (peer.accepted || claimed_of_ == Of::domain) && peer.status.role == status_.role && peer.status.run != 0 &&
+         now - peer.heard_ns < kAliveNs;
 }
 
 // Of two that begin at once one gives way: the same one for both.
@@ -147,7 +148,8 @@ std::string Presence::fight_with(const NodeStatus& other, const std::string& wha
                      other.node, what, bus_->place());
 }
 
-void Presence::claim(const std::string& what) {
+void Presence::claim(const std::string& what, Of of) {
+  claimed_of_ = of;
   if (const NodeStatus* other = owner()) throw std::runtime_error(fight_with(*other, what));
   claimed_ = what;
   claim_ns_ = now_ns();

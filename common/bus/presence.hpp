@@ -47,12 +47,14 @@ class Presence {
   /// falls silent may only stand still for a moment: for two seconds after its last word none follows it that was there
   /// beside it before, but one that comes then follows at once.
   const Peer* holder(const std::string& role) const;
-  /// Another node that owns what this role owns: it has the same scene and archives, is alive, and began first; nullptr
-  /// if there is none.
+  /// Of what there is one for each scene, or one in the whole domain: a driver elsewhere does not know of scenes.
+  enum class Of { scene, domain };
+  /// Another node that owns what this role owns: it is of the same scene and archives, or of whatever scene once this
+  /// node has claimed it of the domain, is alive, and began first; nullptr if there is none.
   const NodeStatus* owner() const;
   /// Tells the others that this node owns it from now on. Throws std::runtime_error, which names the other, where there
   /// is one.
-  void claim(const std::string& what);
+  void claim(const std::string& what, Of of = Of::scene);
   /// For three seconds after the claim: a sentence where another node claimed the same before the two heard of each
   /// other, and this is the one of them that gives way; else empty.
   std::string lost_claim() const;
@@ -72,8 +74,9 @@ class Presence {
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
   std::map<std::string, Peer> peers_;
-  std::string claimed_;             ///< what this node owns
-  std::int64_t claim_ns_ = 0;       ///< since when
+  std::string claimed_;        ///< what this node owns
+  std::int64_t claim_ns_ = 0;  ///< since when
+  Of claimed_of_ = Of::scene;
   std::uint64_t told_refused_ = 0;  ///< messages that were when it was announced last
   bool said_refused_ = false;
 };

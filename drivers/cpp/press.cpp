@@ -3,6 +3,7 @@
 // DOMAIN: of the running system on this host. TOOL: its place in the scene's list, from 0. FROM, TO: depths beyond the
 // trocar [m], between which the emulated hardware goes in and out. For hardware of your own, replace Hardware.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "common/bus/dds_bus.hpp"
+#include "common/bus/force_follower.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -18,9 +20,10 @@ namespace {
 
 using namespace palpate;
 
-constexpr std::int64_t kSilence = 100'000'000;  // [ns] without a force, after which the motors go limp
+/// What the emulated device's motors give.
+constexpr MotorLimits kLimits{.max_force = 10, .max_torque = 3, .max_grip = 1, .max_force_rate = 500};
 
-/// An emulated device: goes in and out within four seconds, and remembers the largest force.
+/// An emulated device: goes in and out within four seconds, and remembers the largest force and change.
 class Hardware {
  public:
   Hardware(double from, double to) : from_(from), to_(to) {}
@@ -32,51 +35,51 @@ class Hardware {
     state.depth = from_ + (to_ - from_) * 0.5 * (1 - std::cos(2 * std::numbers::pi * seconds / 4));
     return state;
   }
-  void drive_motors(const ForceState& f) {
-    largest_ = std::max(largest_, std::hypot(f.force[0], f.force[1], f.force[2]));
+  void drive_motors(const MotorForce& now) {
+    const auto& f = now.force;
+    largest_ = std::max(largest_, std::hypot(f[0], f[1], f[2]));
+    change_ = std::max(change_, std::hypot(f[0] - force_[0], f[1] - force_[1], f[2] - force_[2]));
+    force_ = f;
   }
-  void go_limp() { std::puts("limp: no force for 100 ms"), std::fflush(stdout); }
   double largest() const { return largest_; }  ///< [N]
+  double change() const { return change_; }    ///< [N] from one tick to the next
 
  private:
   double from_, to_;  // [m]
   std::int64_t begin_ns_ = now_ns();
-  double largest_ = 0;
+  std::array<double, 3> force_{};
+  double largest_ = 0, change_ = 0;
 };
 
-/// True if a force for this tool has come.
-bool take_force(Reader<ForceState>& forces, std::uint32_t tool, Hardware& hardware) {
-  bool heard = false;
-  while (const auto force = forces.take()) {
-    if (force->tool != tool) continue;
-    hardware.drive_motors(*force);
-    heard = true;
-  }
-  return heard;
+/// Says once that the motors have gone limp, and that they have a force again.
+void say_limp(bool limp, bool& said) {
+  if (limp && !said) std::puts("limp: no force for 40 ms"), std::fflush(stdout);
+  said = limp;
 }
 
 void run(int domain, std::uint32_t tool, Hardware hardware) {
   catch_shutdown_signals();
   const auto bus = make_dds_bus({.domain = domain});
   const auto device = bus->writer(topics::device_state);
-  const auto forces = bus->reader(topics::force_state);
+  const auto forces = bus->reader(topics::force_state, Keep::all);  // another's cannot hide those that are followed
+  ForceFollower follower(tool, kLimits);
   PeriodicTimer timer(1000, 0);
   bool limp = true;  // until the first force
-  std::uint64_t seq = 0;
-  for (std::int64_t heard_ns = now_ns(); !shutdown_requested(); timer.wait()) {
-    DeviceState state = hardware.read();
+  DeviceState state;
+  for (std::uint64_t seq = 0; !shutdown_requested(); timer.wait()) {
+    state = hardware.read();
     state.tool = tool;
     state.seq = ++seq;
     device->write(state);
-    if (take_force(*forces, tool, hardware)) {
-      heard_ns = now_ns();
-      limp = false;
-    } else if (!limp && now_ns() - heard_ns > kSilence) {
-      hardware.go_limp();
-      limp = true;
-    }
+    while (const auto force = forces->take()) follower.hear(*force, now_ns());
+    hardware.drive_motors(follower.give(now_ns()));
+    say_limp(follower.limp(), limp);
   }
-  std::printf("%llu samples, the largest force %.3f N\n", static_cast<unsigned long long>(seq), hardware.largest());
+  for (; !follower.limp(); timer.wait()) hardware.drive_motors(follower.give(now_ns()));  // no kick at the end
+  std::printf("%llu samples, the largest force %.3f N, the largest change %.3f N\n",
+              static_cast<unsigned long long>(state.seq), hardware.largest(), hardware.change());
+  std::printf("not felt: %llu forces of another run, %llu out of range\n",
+              static_cast<unsigned long long>(follower.strange()), static_cast<unsigned long long>(follower.refused()));
 }
 
 }  // namespace

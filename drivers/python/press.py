@@ -5,7 +5,7 @@
 
 DOMAIN: of the running system on this host. TOOL: its place in the scene's list, from 0. FROM, TO: depths beyond the
 trocar [m], between which the emulated hardware goes in and out. For hardware of your own, replace read_position() and
-drive_motors()."""
+Motors."""
 import math
 import signal
 import sys
@@ -13,8 +13,8 @@ import time
 
 import palpate
 
-PERIOD = 0.001   # [s]
-SILENCE = 0.100  # [s] without a force, after which the motors go limp
+PERIOD = 0.001  # [s]
+LIMITS = {"max_force": 10.0, "max_torque": 3.0, "max_grip": 1.0, "max_force_rate": 500.0}  # what the motors give
 
 
 def read_position(seconds, shallow, deep):
@@ -22,40 +22,57 @@ def read_position(seconds, shallow, deep):
     return 0, 0, shallow + (deep - shallow) * 0.5 * (1 - math.cos(2 * math.pi * seconds / 4)), 0, 0, 0
 
 
-def drive_motors(force):
-    drive_motors.largest = max(drive_motors.largest, math.hypot(*force))
+class Motors:
+    """Emulated ones: they remember the largest force and the largest change in a tick [N]."""
+
+    def __init__(self):
+        self.force, self.largest, self.change = (0.0, 0.0, 0.0), 0.0, 0.0
+
+    def drive(self, force):
+        self.largest = max(self.largest, math.hypot(*force))
+        self.change = max(self.change, math.dist(force, self.force))
+        self.force = force
 
 
-drive_motors.largest = 0.0
-
-
-def run(device, shallow, deep):
-    begin = time.monotonic()
-    due, heard, limp = begin, begin, True  # limp until the first force
+def ticks():
+    due = time.monotonic()
     while True:
-        sensed = time.monotonic_ns()
-        device.write(read_position(1e-9 * sensed - begin, shallow, deep), sense_ns=sensed)
-        state = device.take()
-        if state is not None:
-            drive_motors(state.force)
-            heard, limp = time.monotonic(), False
-        elif not limp and time.monotonic() - heard > SILENCE:
-            drive_motors((0, 0, 0))
-            limp = True
-            print("limp: no force for 100 ms", flush=True)
+        yield
         due += PERIOD
         time.sleep(max(0.0, due - time.monotonic()))
+
+
+def run(device, motors, shallow, deep):
+    begin, limp = time.monotonic(), True  # limp until the first force
+    for _ in ticks():
+        sensed = time.monotonic_ns()
+        device.write(read_position(1e-9 * sensed - begin, shallow, deep), sense_ns=sensed)
+        motors.drive(device.motors().force)
+        if device.limp and not limp:
+            print("limp: no force for 40 ms", flush=True)
+        limp = device.limp
+
+
+def let_go(device, motors):
+    """No kick at the end either."""
+    for _ in ticks():
+        if device.limp:
+            return
+        motors.drive(device.fade().force)
 
 
 def main():
     domain, tool = (int(value) for value in (sys.argv[1:3] + ["0", "0"][len(sys.argv[1:3]):]))
     shallow, deep = (float(value) for value in (sys.argv[3:5] or ("0.10", "0.12")))
-    device = palpate.Device(tool, domain=domain)
+    device, motors = palpate.Device(tool, domain=domain, **LIMITS), Motors()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        run(device, shallow, deep)
+        run(device, motors, shallow, deep)
     except KeyboardInterrupt:
-        print(f"{device.written} samples, the largest force {drive_motors.largest:.3f} N")
+        let_go(device, motors)
+        print(f"{device.written} samples, the largest force {motors.largest:.3f} N, "
+              f"the largest change {motors.change:.3f} N")
+        print(f"not felt: {device.strange} forces of another run, {device.refused} out of range")
 
 
 if __name__ == "__main__":

@@ -54,6 +54,14 @@ TEST_F(PresenceTest, AnOwnerThatRunsKeepsItAndTheNextIsTold) {
   EXPECT_NO_THROW(render.claim("the picture")) << "there may be any number of them";
 }
 
+TEST_F(PresenceTest, WhatIsThereOncePerDomainHasOneOwnerWhateverTheScene) {
+  Presence second(*here_, "haptic", 4, "scene", "archive");
+  say("haptic", 9, 700, "another scene");
+  second.watch();
+  EXPECT_NO_THROW(second.claim("the moving tissue"));
+  EXPECT_THROW(second.claim("the tools", Presence::Of::domain), std::runtime_error);
+}
+
 TEST_F(PresenceTest, OfTwoThatClaimedBeforeTheyMetOneGivesWay) {
   Presence lower(*here_, "haptic", 4, "scene", "archive"), higher(*here_, "haptic", 900, "scene", "archive");
   lower.claim("the tools");

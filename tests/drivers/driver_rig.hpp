@@ -5,7 +5,9 @@
 #include <thread>
 
 #include "common/bus/dds_bus.hpp"
+#include "common/realtime/clock.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/hostile/attacker.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 
@@ -30,7 +32,11 @@ class DriverRig {
         "haptic_node",
         std::vector{program("haptic_node"), scene(), std::string("--domain"), std::to_string(own_domain())});
   }
-  void stop() { haptic_.reset(); }
+  /// The haptic node gets a signal; false if it has not ended after five seconds.
+  bool end(int signal) {
+    kill(haptic_->pid(), signal);
+    return haptic_->wait(std::chrono::seconds(5));
+  }
 
   /// Until a force is as asked; false if none is within the limit.
   template <class Until>
@@ -55,10 +61,52 @@ inline double newtons(const ForceState& f) {
   return std::hypot(f.force[0], f.force[1], f.force[2]);
 }
 
-/// Presses, is killed, comes back, and outlives the haptic node.
+/// One that says in the real haptic node's run, and in a run of its own, what no motor must be given.
+class Forger {
+ public:
+  explicit Forger(const ForceState& real)
+      : attacker_({.domain = own_domain()}), forces_(attacker_.writer(topics::force_state)), real_(real) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the driver finds it
+  }
+  /// For half a second, two of each kind for each of the real ones.
+  void forge() {
+    constexpr double huge = 1e12, none = std::numeric_limits<double>::quiet_NaN();
+    for (int k = 0; k < 500; ++k) {
+      for (const std::uint64_t run : {real_.run, real_.run + 1})
+        for (const double newtons : {huge, none}) say(run, newtons);
+      say(real_.run + 2, 5);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+ private:
+  void say(std::uint64_t run, double newtons) {
+    ForceState force = real_;
+    force.run = run;
+    force.force = {newtons, newtons, -newtons};
+    forces_.write(force);
+  }
+  Attacker attacker_;
+  HostileWriter<ForceState> forces_;
+  ForceState real_;
+};
+
+/// Lines that a driver has said, once it has said so many.
+inline std::vector<std::string> lines_of(ChildProcess& driver, std::size_t many) {
+  std::vector<std::string> said;
+  for (int wait = 0; wait < 200 && said.size() < many; ++wait) {
+    for (std::string& line : driver.take_lines()) said.push_back(std::move(line));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return said;
+}
+
+/// Presses, is killed, comes back, hears falsehoods, and outlives the haptic node, which is killed too.
 inline void expect_a_whole_driver(DriverRig& rig, const std::vector<std::string>& command) {
   using namespace std::chrono_literals;
-  const auto pressed = [](const ForceState& f) { return newtons(f) > 0.3 && !(f.flags & silent_device); };
+  const auto pressed = [](const ForceState& f) {
+    return newtons(f) > 0.3 && newtons(f) < 10 && !(f.flags & silent_device) && now_ns() - f.sense_ns < 20'000'000;
+  };
   {
     ChildProcess driver("driver", command);
     ASSERT_TRUE(rig.hear(20s, pressed)) << "it presses the block";
@@ -72,24 +120,34 @@ inline void expect_a_whole_driver(DriverRig& rig, const std::vector<std::string>
     }));
   }
   ChildProcess driver("driver", command);
-  ASSERT_TRUE(rig.hear(20s, pressed)) << "the next one takes the tool up again";
-  rig.stop();
-  std::vector<std::string> said;
-  const auto take = [&] {
-    for (std::string& line : driver.take_lines()) said.push_back(std::move(line));
-    return !said.empty();
-  };
-  for (int wait = 0; wait < 200 && !take(); ++wait) std::this_thread::sleep_for(10ms);
+  ForceState real;
+  ASSERT_TRUE(rig.hear(20s, [&](const ForceState& f) { return real = f, pressed(f); })) << "the next one takes it up";
+  Forger(real).forge();
+  ASSERT_TRUE(rig.hear(20s, [&](const ForceState& f) { return f.run == real.run && pressed(f); }));
+  ASSERT_TRUE(rig.end(SIGKILL));
+  std::vector<std::string> said = lines_of(driver, 1);
   ASSERT_FALSE(said.empty()) << "it goes limp without forces";
-  EXPECT_EQ(said[0], "limp: no force for 100 ms");
+  EXPECT_EQ(said[0], "limp: no force for 40 ms");
   driver.interrupt();
   ASSERT_TRUE(driver.wait(5s));
   EXPECT_EQ(driver.status(), 0);
-  take();
-  ASSERT_EQ(said.size(), 2u);
-  double largest = 0;
-  ASSERT_EQ(std::sscanf(said[1].c_str(), "%*u samples, the largest force %lf N", &largest), 1) << said[1];
+  said = lines_of(driver, 2);
+  ASSERT_FALSE(said.empty());
+  fmt::print("{}\n", said[0]);
+  double largest = 0, change = 0;
+  ASSERT_EQ(
+      std::sscanf(said[0].c_str(), "%*u samples, the largest force %lf N, the largest change %lf N", &largest, &change),
+      2)
+      << said[0];
   EXPECT_GE(largest, 0.3);
+  EXPECT_LT(largest, 2) << "as the tissue gives it";
+  EXPECT_LT(change, 0.15) << "[N] in a tick: no falsehood is felt, and a force that is lost fades";
+  ASSERT_EQ(said.size(), 2u) << "it says what it refused";
+  unsigned strange = 0, refused = 0;
+  ASSERT_EQ(std::sscanf(said[1].c_str(), "not felt: %u forces of another run, %u out of range", &strange, &refused), 2)
+      << said[1];
+  EXPECT_GT(strange, 100u);
+  EXPECT_GT(refused, 10u);
 }
 
 }  // namespace palpate::testing

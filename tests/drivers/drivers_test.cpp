@@ -1,6 +1,8 @@
 // The examples of drivers, built outside the tree against an installed palpate, on a real haptic node.
+#include <atomic>
 #include <csignal>
 
+#include "common/realtime/clock.hpp"
 #include "tests/drivers/driver_rig.hpp"
 #include "tests/sanitized.hpp"
 
@@ -68,6 +70,47 @@ TEST(Drivers, InPythonWithItsModule) {
                                    PALPATE_SOURCE "/drivers/python/press.py"},
                                   {std::to_string(own_domain())}));
 }
+
+/// What a subscriber hears of a press from a signal to the haptic node on.
+class EndedPress : public ::testing::TestWithParam<int> {};
+
+TEST_P(EndedPress, TakesTheForceToZeroBeforeTheHapticNodeIsGone) {
+  using namespace std::chrono_literals;
+  DriverRig rig;
+  std::atomic<bool> over = false;
+  std::thread hand([&] {
+    const auto bus = make_dds_bus({.domain = own_domain()});
+    const auto device = bus->writer(topics::device_state);
+    for (DeviceState state{.seq = 1, .depth = 0.18}; !over; ++state.seq) {
+      state.sense_ns = now_ns();
+      state.depth = std::min(state.depth + 2e-5, 0.2);
+      device->write(state);
+      std::this_thread::sleep_for(1ms);
+    }
+  });
+  ForceState last;
+  const bool pressed = rig.hear(20s, [&](const ForceState& f) { return last = f, newtons(f) > 0.45; });
+  const double before = newtons(last);
+  EXPECT_TRUE(pressed && rig.end(GetParam()));
+  double change = 0;
+  int steps = 0;
+  const auto follow = [&](const ForceState& f) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += (f.force[k] - last.force[k]) * (f.force[k] - last.force[k]);
+    if (f.step == last.step + 1) change = std::max(change, std::sqrt(square));
+    last = f;
+    ++steps;
+    return false;
+  };
+  rig.hear(300ms, follow);
+  over = true;
+  hand.join();
+  EXPECT_EQ(newtons(last), 0) << "the last force that anybody hears";
+  EXPECT_LT(change, 0.15);
+  fmt::print("{:.3f} N went in {} steps, by {:.4f} N in one at most\n", before, steps, change);
+}
+
+INSTANTIATE_TEST_SUITE_P(By, EndedPress, ::testing::Values(SIGINT, SIGTERM));
 
 TEST(Drivers, TheNetworkThatIsPrintedIsTheScenes) {
   const LoopbackScene scene("network", kLinear);

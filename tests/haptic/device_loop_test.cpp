@@ -121,6 +121,17 @@ TEST(HapticLoop, ASampleThatCannotBeDoesNotTakeTheForceAwayForGood) {
   }
 }
 
+TEST(HapticLoop, TakesTheForceAwayBeforeItLeavesAndDoesNotCallThatASilentDriver) {
+  std::vector<double> force;
+  const LoopReport report = run_with([](std::size_t) { return 0.0; }, force);
+  ASSERT_GE(force.size(), 400u);
+  EXPECT_GT(force[395], 0.05) << "pressed at the end";
+  EXPECT_EQ(force.back(), 0);
+  EXPECT_NEAR(static_cast<double>(force.size()), 420, 2) << "within 20 ms";
+  for (std::size_t k = 400; k < force.size(); ++k) EXPECT_LT(force[k - 1] - force[k], force[395] / 15) << k;
+  EXPECT_EQ(report.silent, 0u);
+}
+
 TEST(HapticLoop, ADeviceThatJumpsToAndFroIsNotFollowed) {
   std::vector<double> force, undisturbed;
   run_with([](std::size_t) { return 0.0; }, undisturbed);

@@ -263,10 +263,39 @@ TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
   const auto second = run_program(joined(command));
   EXPECT_EQ(second.status, 1);
   EXPECT_NE(second.err.find("a second owner would fight with it"), std::string::npos) << second.err;
+  const LoopbackScene other("others", kLinear, 6000);
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + other.scene()).status, 0);
+  const auto third = run_program(
+      fmt::format("{} {} --seconds 0.5 --domain {}", program("haptic_node"), other.scene(), testing::own_domain()));
+  EXPECT_EQ(third.status, 1);
+  EXPECT_NE(third.err.find("a second owner would fight with it"), std::string::npos)
+      << "drivers know of no scenes: " << third.err;
   EXPECT_TRUE(owner.running());
   owner.interrupt();
   ASSERT_TRUE(owner.wait(30s));
   EXPECT_EQ(owner.status(), 0);
+}
+
+TEST(SessionTest, ARunThatEndsUnderAForceLetsItGoAndIsComputedAgain) {
+  const LoopbackScene scene("pressed", kLinear);
+  const fs::path log = scene.folder() / "run.lcmlog";
+  const auto run = run_program(fmt::format("{} run {} --strict --seconds 1.2 --domain {} --record {}",
+                                           program("palpate"), scene.scene(), testing::own_domain(), log.string()));
+  EXPECT_EQ(run.status, 0) << run.err;
+  LogReader reader(log);
+  ForceState force;
+  ToolState tool;
+  double largest = 0;
+  for (LogEvent event; reader.next(event);) {
+    event.read(topics::tool_state, tool);
+    if (event.read(topics::force_state, force)) largest = std::max(largest, -force.depth_force);
+  }
+  EXPECT_GT(largest, 0.2);
+  EXPECT_EQ(force.depth_force, 0);
+  EXPECT_EQ(force.force, (std::array<double, 3>{}));
+  EXPECT_TRUE(tool.silent);
+  const auto verified = run_program(program("palpate") + " replay --verify " + log.string());
+  EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
 }
 
 /// Whether a log holds a status of a node of this role with these words in it.
