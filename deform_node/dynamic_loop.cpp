@@ -16,6 +16,12 @@ constexpr std::uint64_t kReminderTicks = 64;
 constexpr double kSettlingShare = 0.8;  // of a tick's time
 constexpr int kLoopPriority = 50;       // below the haptic loop and what it publishes, above the picture
 
+std::size_t tetrahedra_of(const DynamicWorld& world) {
+  std::size_t sum = 0;
+  for (int i = 0; i < world.organs(); ++i) sum += world.organ(i).mesh().tetrahedra.size();
+  return sum;
+}
+
 }  // namespace
 
 DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deformer& deformer, Bus& bus,
@@ -39,7 +45,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       keyframes_(bus.writer(topics::deform_keyframe)),
       change_seq_(scene.bodies.size(), 0),
       model_(scene.tools.size()),
-      earlier_(bus, {world.bodies().begin(), world.bodies().end()}) {
+      earlier_(bus, {world.bodies().begin(), world.bodies().end()}, tetrahedra_of(world)) {
   presence_.set_clock(&clock_);
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies)
@@ -51,9 +57,10 @@ void DynamicLoop::take_tools() {
     const bool good = presence_.accepts(state->run) && world_.take(*state);
     late_ |= good && !heard_ && state->step > world_.keyframe_interval();
     heard_ |= good;
+    if (good) tools_from_ = tools_->taken_from();
     report_.refused += !good;
   }
-  if (tools_->known_writers() == 0)
+  if (!tools_->lasts(tools_from_))
     for (int t = 0; t < world_.tools(); ++t) world_.leave(t);
 }
 

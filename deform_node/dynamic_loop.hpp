@@ -98,8 +98,9 @@ class DynamicLoop {
   bool whole_ = false;  ///< they do not count
   enum class Phase { waiting, settling, moving };
   Phase phase_ = Phase::waiting;
-  bool heard_ = false;  ///< a tool has been heard of
-  bool late_ = false;   ///< the tools had been moving without this node
+  bool heard_ = false;            ///< a tool has been heard of
+  std::uint64_t tools_from_ = 0;  ///< writer of the newest state
+  bool late_ = false;             ///< the tools had been moving without this node
   std::int64_t shown_sense_ns_ = 0, last_status_ns_ = 0;
   std::uint64_t last_ticks_ = 0;
   DynamicReport report_;

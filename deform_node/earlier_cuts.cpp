@@ -20,6 +20,7 @@ bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
   if (!asked_ns_) asked_ns_ = now_ns;
   while (auto held = reader_ ? reader_->take() : std::nullopt) {
     const int body = static_cast<int>(held->body);
+    if (std::ranges::find(bodies_, body) == bodies_.end()) continue;
     told_.insert({held->node, body});
     another_ |= held->run != 0;
     HeldTopology& most = most_[body];

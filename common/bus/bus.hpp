@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -37,9 +38,12 @@ class Reader {
   /// there is none. Of streams in the memory of this process: never.
   virtual std::optional<Message> take_ended() { return std::nullopt; }
   virtual int writers() const = 0;  ///< live writers at this moment; death shows within about 0.2 s
-  /// Writers that have not ended; one that was killed or is cut off counts for two minutes.
-  virtual int known_writers() const = 0;
-  /// Samples dropped: invalid, under more names than a writer may use, or more than the reader has room for.
+  /// Which writer the sample came from that take() returned last; 0: none.
+  virtual std::uint64_t taken_from() const = 0;
+  /// That writer has not ended; one that was killed or is cut off counts for two minutes.
+  virtual bool lasts(std::uint64_t writer) const = 0;
+  /// Samples dropped: invalid, under more names than a writer may use or under another one's, or more than the reader
+  /// has room for.
   virtual std::uint64_t invalid() const = 0;
 };
 
@@ -49,15 +53,19 @@ enum class Keep {
   all      ///< every sample: recorders
 };
 
+/// [bytes] of the sequences in the samples that wait in a reader that keeps all: beyond, samples are dropped.
+inline constexpr std::size_t kRecordersRoom = std::size_t{1} << 30;
+
 /// One interface over the network and the memory of this process. A log is played to any bus
 /// (tools/log_player.hpp). Each writer and reader is used by one thread at a time, and none outlives its bus.
 class Bus {
  public:
   virtual ~Bus() = default;
 
-#define PALPATE_BUS_PORTS(M)                                            \
-  virtual std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) = 0; \
-  virtual std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep = Keep::latest) = 0;
+#define PALPATE_BUS_PORTS(M)                                                                 \
+  virtual std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) = 0;                      \
+  virtual std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep = Keep::latest, \
+                                            std::size_t room = kRecordersRoom) = 0;
   PALPATE_MESSAGES(PALPATE_BUS_PORTS)
 #undef PALPATE_BUS_PORTS
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 
+#include "common/bus/dds_cache.hpp"
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/dds_domain.hpp"
 #include "common/bus/dds_entity.hpp"
@@ -122,20 +123,22 @@ class DdsWriter final : public Writer<M> {
 };
 
 /// A reader of the middleware, with its topic and what wakes the bus for it. `gate`: sees each sample before it is
-/// kept.
+/// kept. `refused`: is called for each that does not come so far.
 class DdsInlet {
  public:
   DdsInlet(dds_entity_t participant, DdsWake& wake, const dds_topic_descriptor_t& type, const std::string& name,
-           const Qos& qos, Keep keep, const dds_topic_filter& gate)
+           const Qos& qos, Keep keep, const dds_topic_filter& gate, std::function<void()> refused)
       : topic_(gated_topic(participant, type, name, gate), fmt::format("creating topic {}", name)),
-        reader_(dds_create_reader(participant, topic_, reader_qos(qos, keep).get(), wake.listener()),
+        reader_(create_reader_of_messages(participant, topic_, reader_qos(qos, keep).get(), wake.listener(),
+                                          std::move(refused)),
                 fmt::format("creating the reader of {}", name)),
         condition_(dds_create_readcondition(reader_, DDS_ANY_STATE), "creating a read condition") {
     wake.attach(condition_);
   }
 
   /// As take_message() has it.
-  bool take(const std::function<void(const void*)>& receive, const std::function<void(const void*)>& end) {
+  bool take(const std::function<void(const void*, dds_instance_handle_t)>& receive,
+            const std::function<void(const void*)>& end) {
     return take_message(reader_, receive, end);
   }
 
@@ -143,12 +146,6 @@ class DdsInlet {
     dds_liveliness_changed_status_t status{};
     dds_get_liveliness_changed_status(reader_, &status);
     return static_cast<int>(status.alive_count);
-  }
-
-  int known_writers() const {
-    dds_subscription_matched_status_t status{};
-    dds_get_subscription_matched_status(reader_, &status);
-    return static_cast<int>(status.current_count);
   }
 
  private:
@@ -172,14 +169,16 @@ std::string stream_name(const Topic<M>& topic, Keep keep) {
 template <class M>
 class DdsReader final : public Reader<M> {
  public:
-  DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, const Peers& peers,
-            std::atomic<std::uint64_t>& refused)
+  DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, std::size_t room,
+            const Peers& peers, std::atomic<std::uint64_t>& refused)
       : at_once_(keep == Keep::all ? dds::Gate<M>::kSamples : kKeysAtOnce),
-        gate_(peers, refused, keep == Keep::all),
+        peers_(peers),
+        gate_(peers, refused, keep == Keep::all, room),
         inlet_(participant, wake, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
                {.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG,
                 .f = {.sample_sampleinfo_arg = &dds::Gate<M>::filter},
-                .arg = &gate_}) {}
+                .arg = &gate_},
+               [this] { gate_.refuse(); }) {}
 
   std::optional<M> take() override {
     std::optional<M> message;
@@ -188,12 +187,14 @@ class DdsReader final : public Reader<M> {
       return message;
     }
     inlet_.take(
-        [&](const void* sample) {
+        [&](const void* sample, dds_instance_handle_t writer) {
           message = copy(sample);
+          taken_from_ = writer;
           gate_.taken(*message);
         },
         [&](const void* sample) {
-          if constexpr (std::same_as<M, NodeStatus>) ended_.push_back(copy(sample));
+          if constexpr (std::same_as<M, NodeStatus>)
+            if (ended_.size() < kKeysAtOnce) ended_.push_back(copy(sample));
         });
     in_a_row_ = message ? in_a_row_ + 1 : 0;
     return message;
@@ -206,7 +207,8 @@ class DdsReader final : public Reader<M> {
   }
 
   int writers() const override { return inlet_.writers(); }
-  int known_writers() const override { return inlet_.known_writers(); }
+  std::uint64_t taken_from() const override { return taken_from_; }
+  bool lasts(std::uint64_t writer) const override { return peers_.of(writer) != 0; }
   std::uint64_t invalid() const override { return gate_.refused(); }
 
  private:
@@ -221,9 +223,11 @@ class DdsReader final : public Reader<M> {
   /// Who takes until there is no more comes to its other work after so many, though they come faster than it takes.
   const std::size_t at_once_;
   std::size_t in_a_row_ = 0;
+  std::uint64_t taken_from_ = 0;
+  const Peers& peers_;
   dds::Gate<M> gate_;  // before the inlet, whose samples pass it
   DdsInlet inlet_;
-  std::vector<M> ended_;  ///< of nodes alone, for which somebody asks
+  std::vector<M> ended_;  ///< of nodes alone; somebody may ask for them
 };
 
 class DdsBus final : public Bus {
@@ -237,12 +241,12 @@ class DdsBus final : public Bus {
         versions_(participant_),
         peers_(participant_) {}
 
-#define PALPATE_DDS_PORTS(M)                                                                   \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                          \
-    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                     \
-  }                                                                                            \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override {               \
-    return std::make_unique<DdsReader<M>>(participant_, wake_, topic, keep, peers_, refused_); \
+#define PALPATE_DDS_PORTS(M)                                                                         \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                                \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                           \
+  }                                                                                                  \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep, std::size_t room) override {   \
+    return std::make_unique<DdsReader<M>>(participant_, wake_, topic, keep, room, peers_, refused_); \
   }
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS

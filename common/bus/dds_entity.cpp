@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+constexpr int kKeysAlone = 64;  // at once, without a message
+
 /// The middleware's last words.
 class LastWords {
  public:
@@ -62,18 +64,19 @@ Entity::Entity(dds_entity_t id, const std::string& what) : id_(id) {
       fmt::format("network: {} failed: {}{}{}", what, dds_strretcode(-id_), words.empty() ? "" : ", ", words));
 }
 
-bool take_message(dds_entity_t reader, const std::function<void(const void*)>& receive,
+bool take_message(dds_entity_t reader, const std::function<void(const void*, dds_instance_handle_t)>& receive,
                   const std::function<void(const void*)>& end) {
-  for (;;) {
+  for (int keys = 0; keys < kKeysAlone; ++keys) {
     void* sample = nullptr;
     dds_sample_info_t info;
     if (dds_take(reader, &sample, &info, 1, 1) <= 0) return false;
     const bool is_message = info.valid_data;
-    if (is_message) receive(sample);
+    if (is_message) receive(sample, info.publication_handle);
     if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) end(sample);
     dds_return_loan(reader, &sample, 1);
     if (is_message) return true;
   }
+  return false;
 }
 
 dds_entity_t make_participant(const BusSettings& settings) {

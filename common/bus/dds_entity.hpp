@@ -26,9 +26,10 @@ class Entity {
 /// first entity is made.
 void listen_to_middleware();
 
-/// Hands the next sample that waits in a reader to `receive`, and to `end` the keys of streams without writers that it
-/// comes upon. False if there is none.
-bool take_message(dds_entity_t reader, const std::function<void(const void*)>& receive,
+/// Hands the next sample that waits in a reader to `receive`, with the handle of its writer, and to `end` the keys of
+/// streams without writers that it comes upon. False if there is none, or so many keys without a sample came first that
+/// the caller is to come to its other work.
+bool take_message(dds_entity_t reader, const std::function<void(const void*, dds_instance_handle_t)>& receive,
                   const std::function<void(const void*)>& end);
 
 /// A participant of a domain that this process has joined, with the settings' keys if they name any. Throws

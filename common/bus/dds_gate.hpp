@@ -2,12 +2,14 @@
 #include <dds/dds.h>
 
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/key.hpp"
 #include "common/bus/key_budget.hpp"
+#include "common/bus/name_owners.hpp"
 #include "common/bus/peers.hpp"
 #include "common/bus/rate_budget.hpp"
 #include "common/realtime/clock.hpp"
@@ -26,22 +28,32 @@ struct CountBytes {
 
 /// What stands between the middleware and a reader's memory. Every sample from outside passes here, on the
 /// middleware's threads, before anything of it is kept: only a valid one, under a name and at a rate within its
-/// peer's budget, and within the reader's own. One that is refused costs no other sample its place.
+/// peer's budget, a node's under its own name, and within the reader's room. One that is refused costs no other sample
+/// its place.
 template <class M>
 class Gate {
  public:
-  static constexpr std::size_t kSamples = 16000;               ///< that wait in a reader that keeps all
-  static constexpr std::size_t kBytes = std::size_t{1} << 30;  ///< in these
+  static constexpr std::size_t kSamples = 16000;  ///< that wait in a reader that keeps all
+  static constexpr std::size_t kNodes = 64;       ///< names of nodes that a peer may use where the newest is kept
 
   /// `peers`: of the bus. `total`: counts what is refused by all its gates. `keeps_all`: what is admitted waits until
-  /// it is taken.
-  Gate(const Peers& peers, std::atomic<std::uint64_t>& total, bool keeps_all)
-      : peers_(peers), total_(total), keeps_all_(keeps_all) {}
+  /// it is taken, `room` [bytes] of it at most.
+  Gate(const Peers& peers, std::atomic<std::uint64_t>& total, bool keeps_all, std::size_t room)
+      : peers_(peers),
+        total_(total),
+        keeps_all_(keeps_all),
+        room_(room),
+        budget_(kOfNodes && !keeps_all ? kNodes : KeyBudget::kKeys) {}
 
   /// For dds_set_topic_filter_extended(). The middleware calls it for one sample of a reader at a time.
   static bool filter(const void* sample, const dds_sample_info_t* info, void* self) {
     return static_cast<Gate*>(self)->admits(*static_cast<const typename Generated<M>::Type*>(sample),
                                             info->publication_handle);
+  }
+  /// One more has been refused, here or before it came here.
+  void refuse() {
+    refused_.fetch_add(1, std::memory_order_relaxed);
+    total_.fetch_add(1, std::memory_order_relaxed);
   }
   /// An admitted sample has been taken.
   void taken(const M& message) {
@@ -52,12 +64,13 @@ class Gate {
   std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
  private:
+  static constexpr bool kOfNodes = std::same_as<M, NodeStatus>;
+
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
     const std::uint64_t peer = peer_of(writer);
-    if (in_time(peer) && valid(message_) && in_budget(peer) && has_room()) return true;
-    refused_.fetch_add(1, std::memory_order_relaxed);
-    total_.fetch_add(1, std::memory_order_relaxed);
+    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && has_room()) return true;
+    refuse();
     return false;
   }
   /// All writers of a participant have one budget. A writer that is not known yet has its own.
@@ -71,10 +84,15 @@ class Gate {
     if constexpr (requires { message_.node; }) return budget_.admits(peer, key_of(message_));
     return true;  // numbers have their limits in the IDL
   }
+  /// One that keeps all keeps what each says.
+  bool in_own_name(dds_instance_handle_t writer) {
+    if constexpr (kOfNodes) return keeps_all_ || owners_.admits(message_.node, writer, now_ns(), peers_);
+    return true;
+  }
   bool has_room() {
     if (!keeps_all_) return true;
     const std::size_t size = this->size(message_);
-    if (samples_.load(std::memory_order_relaxed) >= kSamples || bytes_.load(std::memory_order_relaxed) + size > kBytes)
+    if (samples_.load(std::memory_order_relaxed) >= kSamples || bytes_.load(std::memory_order_relaxed) + size > room_)
       return false;
     samples_.fetch_add(1, std::memory_order_relaxed);
     bytes_.fetch_add(size, std::memory_order_relaxed);
@@ -89,10 +107,12 @@ class Gate {
   const Peers& peers_;
   std::atomic<std::uint64_t>& total_;
   const bool keeps_all_;
+  const std::size_t room_;
   M message_;                         ///< kept between samples for its memory
   dds_instance_handle_t writer_ = 0;  ///< of the sample before
   std::uint64_t peer_ = 0;
   KeyBudget budget_;
+  NameOwners owners_;
   RateBudget rate_;
   std::atomic<std::size_t> samples_ = 0, bytes_ = 0;
   std::atomic<std::uint64_t> refused_ = 0;

@@ -9,7 +9,7 @@ bool KeyBudget::admits(std::uint64_t peer, const std::string& key) {
   std::set<std::size_t>& keys = used_[peer];
   const std::size_t hash = std::hash<std::string>{}(key);
   if (keys.contains(hash)) return true;
-  if (keys.size() >= kKeys) return false;
+  if (keys.size() >= keys_) return false;
   keys.insert(hash);
   return true;
 }

@@ -40,7 +40,8 @@ class NoReader final : public Reader<M> {
  public:
   std::optional<M> take() override { return std::nullopt; }
   int writers() const override { return 0; }
-  int known_writers() const override { return 0; }
+  std::uint64_t taken_from() const override { return 0; }
+  bool lasts(std::uint64_t) const override { return false; }
   std::uint64_t invalid() const override { return 0; }
 };
 
@@ -48,12 +49,12 @@ class LogBus final : public Bus {
  public:
   LogBus(LogWriter& log, const LogClock& clock) : log_(log), clock_(clock) {}
 
-#define PALPATE_LOG_PORTS(M)                                          \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override { \
-    return std::make_unique<LogTopicWriter<M>>(log_, clock_, topic);  \
-  }                                                                   \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>&, Keep) override { \
-    return std::make_unique<NoReader<M>>();                           \
+#define PALPATE_LOG_PORTS(M)                                                       \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {              \
+    return std::make_unique<LogTopicWriter<M>>(log_, clock_, topic);               \
+  }                                                                                \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>&, Keep, std::size_t) override { \
+    return std::make_unique<NoReader<M>>();                                        \
   }
   PALPATE_MESSAGES(PALPATE_LOG_PORTS)
 #undef PALPATE_LOG_PORTS

@@ -5,6 +5,8 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <set>
+#include <utility>
 
 #include "common/bus/key.hpp"
 #include "common/bus/stamp.hpp"
@@ -23,6 +25,7 @@ struct Bell {
 struct Sample {
   std::shared_ptr<const void> message;
   std::string key;
+  std::uint64_t writer;
 };
 
 struct Queue {
@@ -34,8 +37,8 @@ struct Queue {
 /// One topic: who reads it, how many write it, and what late joiners get.
 struct Channel {
   std::vector<Queue*> queues;
-  int writers = 0;
-  std::map<std::pair<const void*, std::string>, std::deque<Sample>> kept;  ///< by writer and key
+  std::set<std::uint64_t> writers;
+  std::map<std::pair<std::uint64_t, std::string>, std::deque<Sample>> kept;  ///< by writer and key
 };
 
 void deliver(Queue& queue, const Sample& sample) {
@@ -56,6 +59,7 @@ void deliver(Queue& queue, const Sample& sample) {
 class MemoryNetwork {
  public:
   std::mutex mutex;
+  std::uint64_t newest_writer = 0;  ///< its number
 
   template <class M>
   Channel& channel(const Topic<M>& topic) {
@@ -75,20 +79,21 @@ class MemoryOutlet {
   MemoryOutlet(MemoryNetwork& network, Channel& channel, const Qos& qos)
       : network_(network), channel_(channel), qos_(qos) {
     const std::lock_guard lock(network_.mutex);
-    ++channel_.writers;
+    channel_.writers.insert(number_ = ++network_.newest_writer);
   }
   MemoryOutlet(const MemoryOutlet&) = delete;
   ~MemoryOutlet() {
     const std::lock_guard lock(network_.mutex);
-    --channel_.writers;
-    std::erase_if(channel_.kept, [&](const auto& entry) { return entry.first.first == this; });
+    channel_.writers.erase(number_);
+    std::erase_if(channel_.kept, [&](const auto& entry) { return entry.first.first == number_; });
   }
 
-  void write(const Sample& sample) {
+  void write(std::shared_ptr<const void> message, std::string key) {
     const std::lock_guard lock(network_.mutex);
+    const Sample sample{std::move(message), std::move(key), number_};
     for (Queue* queue : channel_.queues) deliver(*queue, sample);
     if (!qos_.transient_local) return;
-    auto& kept = channel_.kept[{this, sample.key}];
+    auto& kept = channel_.kept[{number_, sample.key}];
     kept.push_back(sample);
     if (qos_.depth != kKeepAll && kept.size() > 1) kept.pop_front();
   }
@@ -102,6 +107,7 @@ class MemoryOutlet {
   MemoryNetwork& network_;
   Channel& channel_;
   Qos qos_;
+  std::uint64_t number_ = 0;
 };
 
 /// What reads, apart from the type of the message.
@@ -126,6 +132,7 @@ class MemoryInlet {
     const std::lock_guard lock(network_.mutex);
     if (queue_.samples.empty()) return nullptr;
     std::shared_ptr<const void> message = std::move(queue_.samples.front().message);
+    taken_from_ = queue_.samples.front().writer;
     queue_.samples.pop_front();
     --queue_.bell->waiting;
     return message;
@@ -133,13 +140,19 @@ class MemoryInlet {
 
   int writers() const {
     const std::lock_guard lock(network_.mutex);
-    return channel_.writers;
+    return static_cast<int>(channel_.writers.size());
+  }
+  std::uint64_t taken_from() const { return taken_from_; }
+  bool lasts(std::uint64_t writer) const {
+    const std::lock_guard lock(network_.mutex);
+    return channel_.writers.contains(writer);
   }
 
  private:
   MemoryNetwork& network_;
   Channel& channel_;
   Queue queue_;
+  std::uint64_t taken_from_ = 0;
 };
 
 template <class M>
@@ -155,7 +168,7 @@ class MemoryWriter final : public Writer<M> {
     }
     const auto sent = std::make_shared<M>(message);
     stamp(*sent);
-    outlet_.write({sent, key_of(message)});
+    outlet_.write(sent, key_of(message));
     return true;
   }
 
@@ -182,7 +195,8 @@ class MemoryReader final : public Reader<M> {
   }
 
   int writers() const override { return inlet_.writers(); }
-  int known_writers() const override { return writers(); }
+  std::uint64_t taken_from() const override { return inlet_.taken_from(); }
+  bool lasts(std::uint64_t writer) const override { return inlet_.lasts(writer); }
   std::uint64_t invalid() const override { return 0; }  // writers refuse invalid samples
 
  private:
@@ -195,12 +209,12 @@ class MemoryBus final : public Bus {
   explicit MemoryBus(std::shared_ptr<MemoryNetwork> network)
       : network_(std::move(network)), bell_(std::make_shared<Bell>()) {}
 
-#define PALPATE_MEMORY_PORTS(M)                                                  \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {            \
-    return std::make_unique<MemoryWriter<M>>(network_, topic);                   \
-  }                                                                              \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep) override { \
-    return std::make_unique<MemoryReader<M>>(network_, bell_, topic, keep);      \
+#define PALPATE_MEMORY_PORTS(M)                                                               \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                         \
+    return std::make_unique<MemoryWriter<M>>(network_, topic);                                \
+  }                                                                                           \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep, std::size_t) override { \
+    return std::make_unique<MemoryReader<M>>(network_, bell_, topic, keep);                   \
   }
   PALPATE_MESSAGES(PALPATE_MEMORY_PORTS)
 #undef PALPATE_MEMORY_PORTS

@@ -97,7 +97,8 @@ PlainReader::PlainReader(PlainParticipant& participant, const std::string& topic
 }
 
 bool PlainReader::take(const std::function<void(const void*)>& receive) {
-  return take_message(reader_, receive, [](const void*) {});
+  return take_message(
+      reader_, [&](const void* sample, dds_instance_handle_t) { receive(sample); }, [](const void*) {});
 }
 
 Guid PlainReader::guid() const {

@@ -20,8 +20,10 @@ constexpr std::int64_t kStoodNs = 2 * kNsPerS;         // one that only stood fo
 constexpr std::int64_t kNoticedNs = 3 * kNsPerS / 10;  // an end shows so long after it at most
 constexpr std::int64_t kBeginningNs = 3 * kNsPerS;     // in which two that began at once have heard of each other
 constexpr std::size_t kMaxPeers = 256;
-constexpr const char* kRefused = "messages are refused: what they say cannot be, or there are too many of them";
-constexpr int kMaxTold = 8;  // sentences about one of them
+constexpr const char* kRefused =
+    "messages are refused: what they say cannot be, there are too many of them, or they are in another node's name";
+constexpr int kMaxTold = 8;     // sentences about one of them
+constexpr int kMaxSaid = 1024;  // about all of them, until the first ones are forgotten
 
 std::string also(const std::string& first, const std::string& second) {
   return first.empty() ? second : first + "; " + second;
@@ -108,8 +110,29 @@ std::vector<std::string> Presence::watch() {
   return said;
 }
 
+// Who is heard and has this scene gives way to nobody.
+bool Presence::make_room(const NodeStatus& newcomer, std::int64_t now) {
+  const bool of_this_scene = same_scene(newcomer);
+  const auto may_go = [&](const Peer& peer) {
+    return !peer.accepted || (of_this_scene && now - peer.heard_ns >= kAliveNs);
+  };
+  auto least = peers_.end();
+  for (auto it = peers_.begin(); it != peers_.end(); ++it) {
+    const auto worth = [](const Peer& peer) { return std::pair(peer.accepted, peer.heard_ns); };
+    if (may_go(it->second) && (least == peers_.end() || worth(it->second) < worth(least->second))) least = it;
+  }
+  if (least == peers_.end()) return false;
+  peers_.erase(least);
+  return true;
+}
+
+bool Presence::may_say(std::int64_t now) {
+  if (now - saying_ns_ > kForgottenAfterNs) said_ = 0, saying_ns_ = now;
+  return ++said_ <= kMaxSaid;
+}
+
 void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said) {
-  if (peers_.size() >= kMaxPeers && !peers_.contains(status.node)) return;
+  if (peers_.size() >= kMaxPeers && !peers_.contains(status.node) && !make_room(status, now)) return;
   Peer& peer = peers_[status.node];
   const NodeStatus& before = peer.status;
   const bool news = before.node.empty() || before.run != status.run || before.scene_hash != status.scene_hash ||
@@ -120,7 +143,7 @@ void Presence::hear(const NodeStatus& status, std::int64_t now, std::vector<std:
   if (!news) return;
   peer.met_ns = now;
   peer.accepted = same_scene(status);
-  if (++peer.told <= kMaxTold) said.push_back(meet(status));
+  if (++peer.told <= kMaxTold && may_say(now)) said.push_back(meet(status));
 }
 
 bool Presence::accepts(std::uint64_t run) const {

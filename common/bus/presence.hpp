@@ -58,7 +58,8 @@ class Presence {
   /// For three seconds after the claim: a sentence where another node claimed the same before the two heard of each
   /// other, and this is the one of them that gives way; else empty.
   std::string lost_claim() const;
-  /// Those heard of within the last ten minutes, by name.
+  /// Those heard of within the last ten minutes, by name. Where there are more than 256, nodes of other scenes give way
+  /// first, then, for one of this scene, those that are heard no more.
   const std::map<std::string, Peer>& peers() const { return peers_; }
 
  private:
@@ -66,6 +67,8 @@ class Presence {
   std::string fight_with(const NodeStatus& other, const std::string& what) const;
   bool same_scene(const NodeStatus& peer) const;
   std::string meet(const NodeStatus& status) const;
+  bool make_room(const NodeStatus& newcomer, std::int64_t now);
+  bool may_say(std::int64_t now);
   void hear(const NodeStatus& status, std::int64_t now, std::vector<std::string>& said);
 
   Bus* bus_;
@@ -74,8 +77,10 @@ class Presence {
   NodeStatus status_;
   const ClockFollower* clock_ = nullptr;
   std::map<std::string, Peer> peers_;
-  std::string claimed_;        ///< what this node owns
-  std::int64_t claim_ns_ = 0;  ///< since when
+  int said_ = 0;                ///< sentences about others
+  std::int64_t saying_ns_ = 0;  ///< since when
+  std::string claimed_;         ///< what this node owns
+  std::int64_t claim_ns_ = 0;   ///< since when
   Of claimed_of_ = Of::scene;
   std::uint64_t told_refused_ = 0;  ///< messages that were when it was announced last
   bool said_refused_ = false;

@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/bus/link_watch.hpp"
 #include "common/bus/topic_of.hpp"
 #include "common/log/log.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr std::int64_t kSilentNs = 200'000'000;  // one that holds contacts tells of them in every step
+
+}  // namespace
 
 ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
     : presence_(presence),
@@ -21,7 +28,11 @@ ContactFeed::ContactFeed(Bus& bus, const Presence& presence, Deformer& deformer)
 
 template <class M>
 void ContactFeed::take_all(Reader<M>& reader) {
-  while (const auto message = reader.take()) refused_ += !(presence_.accepts(message->run) && deformer_.take(*message));
+  while (const auto message = reader.take()) {
+    const bool good = presence_.accepts(message->run) && deformer_.take(*message);
+    heard_ |= good;
+    refused_ += !good;
+  }
 }
 
 bool ContactFeed::take() {
@@ -37,7 +48,8 @@ void ContactFeed::hand_on_contacts() {
 }
 
 void ContactFeed::watch_haptic(std::int64_t now_ns) {
-  const bool alive = contacts_->writers() > 0;
+  if (std::exchange(heard_, false)) heard_ns_ = now_ns;
+  const bool alive = contacts_->writers() > 0 && heard_ns_ && now_ns - *heard_ns_ < kSilentNs;
   if (haptic_alive_ && !alive) hand_on_contacts();
   haptic_alive_ = alive;
   const Presence::Peer* haptic = presence_.holder("haptic");

@@ -11,13 +11,17 @@ constexpr std::int64_t kIntervalNs = 50'000'000;
 constexpr std::int64_t kPatienceNs = 1'000'000'000;
 constexpr std::int64_t kAtOnceNs = 2'000'000;  // for what has come, since the caller has more to do
 
+/// [bytes] A body loses each tetrahedron once in a run; those of a run that has ended may still wait.
+std::size_t room_for_changes(const std::vector<Archive>& archives) {
+  std::size_t tetrahedra = 0;
+  for (const Archive& archive : archives) tetrahedra += archive.tetrahedra.size();
+  return 2 * sizeof(std::uint32_t) * tetrahedra;
+}
+
 }  // namespace
 
 TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::vector<Archive>& archives)
-    : bus_(bus),
-      presence_(presence),
-      reader_(bus.reader(topics::topology_change, Keep::all)),
-      writer_(bus.writer(topics::held_topology)) {
+    : bus_(bus), presence_(presence), room_(room_for_changes(archives)), writer_(bus.writer(topics::held_topology)) {
   for (std::size_t b = 0; b < archives.size(); ++b) {
     if (archives[b].tetrahedra.empty()) continue;
     Followed& body = bodies_[static_cast<int>(b)];
@@ -25,7 +29,12 @@ TopologyMemory::TopologyMemory(Bus& bus, const Presence& presence, const std::ve
     body.told.node = presence.node();
     body.told.body = static_cast<std::uint32_t>(b);
   }
+  listen();
   tell(now_ns());
+}
+
+void TopologyMemory::listen() {
+  reader_ = bus_.reader(topics::topology_change, Keep::all, room_);
 }
 
 // The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it
@@ -71,7 +80,7 @@ void TopologyMemory::ask_anew(std::int64_t now) {
   if (!lacks_ || now - asked_ns_ < kPatienceNs) return;
   lacks_ = false;
   asked_ns_ = now;
-  reader_ = bus_.reader(topics::topology_change, Keep::all);
+  listen();
 }
 
 void TopologyMemory::tell(std::int64_t now) {
@@ -91,7 +100,7 @@ std::vector<int> TopologyMemory::take() {
   const Presence::Peer* owner = presence_.holder("deform");
   if (owner && owner->status.run != 0 && owner->status.run != run_) {
     run_ = owner->status.run;
-    reader_ = bus_.reader(topics::topology_change, Keep::all);  // what came before it was known comes again
+    listen();  // what came before it was known comes again
   }
   take_changes(changed);
   ask_anew(now_ns());

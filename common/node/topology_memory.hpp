@@ -35,6 +35,7 @@ class TopologyMemory {
     std::int64_t told_ns = 0;
     bool news = true;  ///< not told yet
   };
+  void listen();
   void take_changes(std::vector<int>& changed);
   bool apply(const TopologyChange& change, Followed& body);
   void ask_anew(std::int64_t now);
@@ -42,6 +43,7 @@ class TopologyMemory {
 
   Bus& bus_;
   const Presence& presence_;
+  std::size_t room_;  ///< [bytes] for changes that wait
   std::unique_ptr<Reader<TopologyChange>> reader_;
   std::unique_ptr<Writer<HeldTopology>> writer_;
   std::map<int, Followed> bodies_;

@@ -18,6 +18,12 @@ using testing::Attacker;
 using testing::HostileWriter;
 using testing::own_domain;
 
+/// A participant that says it is a node, or many.
+struct TellerOfItself {
+  Attacker attacker{{.domain = own_domain()}};
+  HostileWriter<NodeStatus> writer = attacker.writer(topics::node_status);
+};
+
 class GateTest : public ::testing::Test {
  protected:
   template <class Done>
@@ -77,6 +83,135 @@ TEST_F(GateTest, APeerMayUseSoManyNamesHoweverManyWritersItMakes) {
     return newest == 7;
   });
   EXPECT_EQ(taken, KeyBudget::kKeys + 1) << "another peer has names of its own";
+}
+
+TEST_F(GateTest, AKeyThatIsDisposedWithoutAMessageIsRefused) {
+  const auto reader = bus_->reader(topics::clock_probe);
+  const HostileWriter<ClockProbe> hostile = attacker_.writer(topics::clock_probe);
+  until([&] { return reader->writers() == 1; });
+  for (int k = 0; k < 300; ++k) hostile.dispose({.node = std::to_string(k)});
+  until([&] { return reader->invalid() == 300; });
+  EXPECT_EQ(bus_->refused(), 300u);
+  EXPECT_FALSE(reader->take());
+  hostile.write({.node = "7", .seq = 1});
+  until([&] { return reader->take().has_value(); });
+}
+
+TEST_F(GateTest, OfNodesAPeerMayUseFewerNames) {
+  const auto reader = bus_->reader(topics::node_status);
+  const HostileWriter<NodeStatus> hostile = attacker_.writer(topics::node_status);
+  until([&] { return reader->writers() == 1; });
+  for (int k = 0; k < 100; ++k) hostile.write({.node = std::to_string(k)});
+  until([&] { return reader->invalid() == 100 - 64; });
+}
+
+// Streams end for whoever takes as many at once as there are keys, without a message among them.
+TEST_F(GateTest, WhoTakesComesToAnEndAmongStreamsThatHaveEnded) {
+  const auto reader = bus_->reader(topics::node_status);
+  constexpr int names = 60;
+  auto one = std::make_unique<TellerOfItself>(), other = std::make_unique<TellerOfItself>();
+  until([&] { return reader->writers() == 2; });
+  for (int k = 0; k < names; ++k) {
+    one->writer.write({.node = std::to_string(k)});
+    other->writer.write({.node = std::to_string(1000 + k)});
+  }
+  int taken = 0, ended = 0;
+  until([&] {
+    while (reader->take()) ++taken;
+    return taken == 2 * names;
+  });
+  one.reset(), other.reset();
+  until([&] { return reader->writers() == 0; });
+  std::this_thread::sleep_for(1s);  // all of them wait
+  const auto visit = [&] {
+    EXPECT_FALSE(reader->take());
+    while (reader->take_ended()) ++ended;
+    return ended;
+  };
+  EXPECT_LE(visit(), names + 4);
+  until([&] { return visit() == 2 * names; });
+}
+
+TEST_F(GateTest, WhatWaitsInAReaderThatKeepsAllIsNoMoreThanItsRoom) {
+  const auto reader = bus_->reader(topics::topology_change, Keep::all, 1000);
+  const HostileWriter<TopologyChange> hostile = attacker_.writer(topics::topology_change);
+  until([&] { return reader->writers() == 1; });
+  TopologyChange change{.run = 1, .removed = std::vector<std::uint32_t>(100)};
+  const auto send = [&](std::uint64_t from, std::uint64_t to) {
+    for (change.seq = from; change.seq <= to; ++change.seq) {
+      hostile.write(change);
+      bus_->wait(1ms);
+    }
+  };
+  send(1, 5);
+  until([&] { return reader->invalid() == 3; });
+  EXPECT_EQ(reader->take()->seq, 1u);
+  EXPECT_EQ(reader->take()->seq, 2u);
+  EXPECT_FALSE(reader->take());
+  send(6, 6);
+  until([&] { return reader->take().has_value(); });
+}
+
+TEST_F(GateTest, AWriterLastsUntilItEnds) {
+  const auto reader = bus_->reader(topics::node_status);
+  auto one = std::make_unique<TellerOfItself>(), other = std::make_unique<TellerOfItself>();
+  const auto writer_of = [&](const TellerOfItself& node, const std::string& name) {
+    until([&] { return node.writer.write({.node = name}), reader->take().has_value(); });
+    return reader->taken_from();
+  };
+  const std::uint64_t first = writer_of(*one, "one"), second = writer_of(*other, "other");
+  EXPECT_NE(first, second);
+  EXPECT_TRUE(reader->lasts(first) && reader->lasts(second));
+  one.reset();
+  until([&] { return !reader->lasts(first); });
+  EXPECT_TRUE(reader->lasts(second));
+  EXPECT_FALSE(reader->lasts(0));
+}
+
+class NameTest : public GateTest {
+ protected:
+  NameTest() {
+    until([&] { return reader_->writers() == 2; });
+  }
+  std::vector<std::uint64_t> runs_heard() {
+    std::vector<std::uint64_t> runs;
+    while (const auto status = reader_->take()) runs.push_back(status->run);
+    return runs;
+  }
+
+  std::unique_ptr<Reader<NodeStatus>> reader_ = bus_->reader(topics::node_status);
+  std::unique_ptr<TellerOfItself> first_ = std::make_unique<TellerOfItself>();
+  const TellerOfItself second_;
+  const NodeStatus real_{.node = "haptic 1@here", .run = 1}, false_{.node = "haptic 1@here", .run = 2};
+};
+
+TEST_F(NameTest, OfANodeThatIsHeardIsItsWritersAlone) {
+  first_->writer.write(real_);
+  until([&] { return runs_heard() == std::vector<std::uint64_t>{1}; });
+  for (std::uint64_t k = 1; k <= 5; ++k) {
+    second_.writer.write(false_);
+    until([&] { return reader_->invalid() == k; });
+  }
+  EXPECT_TRUE(runs_heard().empty());
+  first_->writer.write(real_);
+  until([&] { return runs_heard() == std::vector<std::uint64_t>{1}; });
+}
+
+TEST_F(NameTest, IsFreeOnceItsWriterHasEnded) {
+  first_->writer.write(real_);
+  until([&] { return runs_heard() == std::vector<std::uint64_t>{1}; });
+  first_.reset();
+  const auto begin = std::chrono::steady_clock::now();
+  until([&] { return second_.writer.write(false_), runs_heard() == std::vector<std::uint64_t>{2}; });
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+}
+
+TEST_F(NameTest, IsFreeOnceItsWriterIsHeardNoMore) {
+  first_->writer.write(real_);
+  until([&] { return runs_heard() == std::vector<std::uint64_t>{1}; });
+  std::this_thread::sleep_for(2600ms);
+  second_.writer.write(false_);
+  until([&] { return runs_heard() == std::vector<std::uint64_t>{2}; });
 }
 
 TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
 
@@ -94,6 +96,32 @@ TEST_F(PresenceTest, NamesWithoutEndAreNotRemembered) {
   }
   EXPECT_LE(render.peers().size(), 256u);
   EXPECT_LE(said, 256u);
+}
+
+TEST_F(PresenceTest, ANodeOfThisSceneIsHeardHoweverManyOthersAre) {
+  Presence render(*here_, "render", 0, "scene", "archive");
+  say("haptic", 1, 7);
+  for (std::uint64_t run = 1; run < 300; ++run) say("web", run, 0, "another scene");
+  render.watch();
+  say("deform", 2, 7);
+  render.watch();
+  EXPECT_TRUE(render.accepts(1));
+  EXPECT_TRUE(render.matched("deform"));
+  EXPECT_LE(render.peers().size(), 256u);
+}
+
+TEST_F(PresenceTest, ANodeIsHeardHoweverOftenItHasBegunAnew) {
+  Presence render(*here_, "render", 0, "scene", "archive");
+  for (std::uint64_t run = 1; run <= 256; ++run) say("deform", run, 7);
+  render.watch();
+  ASSERT_EQ(render.peers().size(), 256u);
+  say("deform", 257, 7);
+  render.watch();
+  EXPECT_FALSE(render.peers().contains("deform257")) << "all of the others are heard";
+  std::this_thread::sleep_for(std::chrono::milliseconds(2600));
+  say("deform", 257, 7);
+  EXPECT_EQ(render.watch(), std::vector<std::string>{"met deform257"});
+  EXPECT_EQ(render.holder("deform")->status.run, 257u);
 }
 
 TEST_F(PresenceTest, WhatANodeSaysOfItselfIsPrintable) {

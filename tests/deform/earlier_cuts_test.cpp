@@ -27,7 +27,7 @@ class EarlierCutsTest : public ::testing::Test {
   Presence haptic_{*there_, "haptic", 1, "same", ""}, render_{*there_, "render", 0, "same", ""},
       recorder_{*there_, "recorder", 0, "", ""};
   Presence presence_{*here_, "deform", 9, "same", ""};
-  EarlierCuts cuts_{*here_, {0, 2}};
+  EarlierCuts cuts_{*here_, {0, 2}, 100};
 };
 
 TEST_F(EarlierCutsTest, AreCompleteOnceEveryNodeOfTheSceneHasToldOfAllBodies) {

@@ -25,6 +25,12 @@ class HostileWriter {
     fields(dds::Lend{}, message, sample);
     return dds_write(writer_, &sample) == DDS_RETCODE_OK;
   }
+  /// Says of the message's key, and of nothing else, that it is no more.
+  bool dispose(const M& message) const {
+    typename dds::Generated<M>::Type sample{};
+    fields(dds::Lend{}, message, sample);
+    return dds_dispose(writer_, &sample) == DDS_RETCODE_OK;
+  }
 
  private:
   struct Delete {

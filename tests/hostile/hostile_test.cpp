@@ -201,6 +201,20 @@ TEST_P(Hostile, ToolsWithoutNumberCostNoMemory) {
   EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
+TEST_P(Hostile, KeysThatAreDisposedWithoutNumberCostNoMemory) {
+  const auto tools = writer(topics::tool_state);
+  const auto contacts = writer(topics::contact_state);
+  const auto status = writer(topics::node_status);
+  EXPECT_LT(grown_in_flood(long_form() ? 2'000'000 : 20'000,
+                           [&](std::uint32_t k) {
+                             tools->dispose({.tool = k});
+                             contacts->dispose({.tool = k});
+                             status->dispose({.node = fmt::format("render {}@there", k)});
+                           }),
+            kFlood);
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
+}
+
 TEST_P(Hostile, QuestionsForTheTimeUnderEverNewNamesKeepTheHapticNodeFromNothing) {
   const auto probes = writer(topics::clock_probe);
   EXPECT_LT(
@@ -264,6 +278,32 @@ TEST_P(Hostile, ASecondHapticAndASecondDeformNodeAreNotFollowedNorWhenTheOwnerSt
   EXPECT_TRUE(system().pictures_go_on(3s));
 }
 
+TEST_P(Hostile, WhoTakesTheNamesOfTheRealNodesIsNotFollowed) {
+  const auto status = writer(topics::node_status);
+  const auto contacts = writer(topics::contact_state);
+  const auto models = writer(topics::local_contact_model);
+  NodeStatus haptic = system().statuses()["haptic"], deform = system().statuses()["deform"];
+  haptic.run = 3, deform.run = 5;
+  const std::uint64_t run = haptic_run();
+  std::atomic<bool> over = false;
+  std::atomic<std::uint64_t> step = hand().newest().step;
+  std::thread pretender([&] {
+    for (std::uint64_t k = 1; !over; ++k) {
+      haptic.seq = deform.seq = k, status->write(haptic), status->write(deform);
+      contacts->write({.tool = 1, .run = 3, .seq = k, .step = k, .sense_ns = now_ns()});
+      models->write(press(run, 5, step - 2, k));
+      std::this_thread::sleep_for(2ms);
+    }
+  });
+  system().watch(2s, [&] { return step = hand().newest().step, false; });
+  const bool pictures = system().pictures_go_on(500ms);
+  over = true;
+  pretender.join();
+  EXPECT_TRUE(pictures);
+  EXPECT_LT(hand().max_force(), 0.1);
+  EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "messages are refused"); })) << "it says so";
+}
+
 TEST_P(Hostile, ANodeWithoutASceneIsNoneOfThisScene) {
   const auto status = writer(topics::node_status);
   const auto models = writer(topics::local_contact_model);
@@ -301,6 +341,21 @@ TEST_P(Hostile, CutsWithoutEndCostNoMemory) {
   }
   for (change.seq = 1'000'000'000; change.seq < 1'000'000'300; ++change.seq) changes->write(change);
   EXPECT_TRUE(system().pictures_go_on(3s));
+}
+
+TEST_P(Hostile, CutsLargerThanTheTissueCostNoMemory) {
+  const auto changes = writer(topics::topology_change);
+  TopologyChange change{.body = 0, .run = deform_run(), .cause = fell_away};
+  change.removed.assign(250'000, 1);
+  const Memory before = system().memory_mb();
+  double grown = 0, sent_mb = 0;
+  for (change.seq = 2; change.seq < 600; ++change.seq) {
+    sent_mb += changes->write(change);
+    if (change.seq % 10 == 0) grown = std::max(grown, grown_since(before));
+  }
+  fmt::print("{:.0f} MB sent, {:.0f} MB more\n", sent_mb, grown);
+  EXPECT_TRUE(grown < kFlatMb || testing::kSanitized) << grown << " MB";
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, WhatWasRecordedAndIsPlayedAgainIsNotFelt) {

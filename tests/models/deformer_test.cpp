@@ -274,6 +274,35 @@ TEST(ContactFeed, AsksForNothingThatTheSceneDoesNotNeed) {
   EXPECT_EQ(f.catheters->readers(), 1);
 }
 
+TEST(ContactFeed, HandsOnTheContactsOfAHapticNodeThatFellSilentThoughAStrangerWrites) {
+  Feeding f;
+  Deformer deformer(f.s.scene, f.s.archives);
+  ContactFeed feed(*f.bus, f.presence, deformer);
+  auto contacts = f.haptic_bus->writer(topics::contact_state);
+  const auto stranger_bus = make_memory_bus(f.network);
+  const auto stranger = stranger_bus->writer(topics::contact_state);
+  const auto held = stranger_bus->reader(topics::held_contacts);
+  ContactState state{.tool = 0, .run = 5, .seq = 1, .step = 6, .sense_ns = 900};
+  state.contacts.emplace_back();
+  ASSERT_TRUE(contacts->write(state));
+  ContactState foreign = state;
+  foreign.run = 77, foreign.tool = 1;  // of the same tool it would hide the true one
+  std::int64_t now = 1'000'000'000;
+  const auto look = [&] {
+    ASSERT_TRUE(stranger->write(foreign));
+    feed.take();
+    feed.watch_haptic(now += 50'000'000);
+  };
+  for (int k = 0; k < 3; ++k) look();
+  EXPECT_FALSE(held->take()) << "it may only be slow";
+  contacts.reset();
+  for (int k = 0; k < 5; ++k) look();
+  const auto handed_on = held->take();
+  ASSERT_TRUE(handed_on);
+  EXPECT_EQ(handed_on->run, 5u);
+  EXPECT_FALSE(held->take()) << "once";
+}
+
 TEST(ContactFeed, ANodeThatComesBackShowsTheShapeAgainWithTheNextMessage) {
   Feeding f;
   for (int life = 0; life < 2; ++life) {
