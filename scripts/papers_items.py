@@ -255,7 +255,7 @@ RR3510 = [
          values=same_rest, judged={"sag": (7.6, 7.8), "worst": (0, 1e-3)}),
     Item("RR3510", "sec. 6.3, figs. 7, 8", "A liver of 1,537 vertices and 7,039 tetrahedra, 18 % of them tensor-mass (280 and 1,260); a forceps pinches the segment, which is cut off.",
          "{nodes:,.0f} nodes and {tetrahedra:,.0f} tetrahedra, {share:.1f} % of them tensor-mass ({moving_nodes:.0f} and {moving:,.0f}); {cut:.0f} are cut, the forceps holds a piece of {off:.0f}, with {held:.3f} N at the end.",
-         "Another liver: theirs is not public. Fig. 7's wireframe in the colours of the parts is drawn with `[render] colour = \"parts\"` ([rendering.md](rendering.md)).",
+         "Another liver: theirs is not public; and the end of its left lobe, not segment 6, which is at the lower right. Fig. 7's wireframe in the colours of the parts is drawn with `[render] colour = \"parts\"` ([rendering.md](rendering.md)).",
          ("palpate check scenes/hepatectomy.toml", "palpate drive scenes/hepatectomy.toml --json"),
          values=lambda run: {"nodes": run.number(r"'liver': ([\d,]+) nodes"), "tetrahedra": run.number(r"nodes, ([\d,]+) tetrahedra"),
                       "share": run.number(r"([\d.]+) % of the tetrahedra"), "moving_nodes": run.number(r"moving: ([\d,]+) nodes"),

@@ -22,7 +22,7 @@ for name in "$@"; do
     hepatectomy) draw hepatectomy hepatectomy 13 13.2 && jpeg hepatectomy ;;
     hepatectomy_parts) draw hepatectomy_parts hepatectomy 13 13.2 --set render.colour=parts && jpeg hepatectomy_parts ;;
     catheter_insertion) draw catheter_insertion catheter_insertion 10.5 10.8 && jpeg catheter_insertion ;;
-    live) /usr/bin/python3 scripts/live_view.py --rounds 1 --picture "$work/live.png" && jpeg live ;;
+    live) /usr/bin/python3 scripts/live_view.py --picture "$work/live.png" && jpeg live ;;
     -h|--help) sed -n '2,3p' "$0" ;;
     *) echo "pictures.sh: unknown picture $name" >&2; exit 2 ;;
   esac

@@ -22,6 +22,7 @@ class Request : public std::enable_shared_from_this<Request> {
  public:
   Request(tcp::socket&& socket, RequestHost& host) : stream_(std::move(socket)), host_(host) {}
   void read();
+  void close() { stream_.close(); }
 
  private:
   using Response = beast::http::response<beast::http::string_body>;

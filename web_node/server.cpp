@@ -4,10 +4,13 @@
 
 #include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <deque>
 #include <map>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
+#include "common/log/log.hpp"
 #include "web_node/door.hpp"
 #include "web_node/request.hpp"
 #include "web_node/session.hpp"
@@ -15,6 +18,13 @@
 namespace palpate::web {
 
 namespace asio = boost::asio;
+
+namespace {
+
+constexpr std::size_t kMaxRequests = 128;  ///< connections that have not become a page's
+constexpr std::chrono::milliseconds kRetry{100};
+
+}  // namespace
 
 struct Server::Impl : SessionHost, RequestHost {
   Impl(const ServerSettings& settings, Listeners heard)
@@ -27,27 +37,44 @@ struct Server::Impl : SessionHost, RequestHost {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error) {
-        beast::error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<Request>(std::move(socket), *this)->read();
-      }
+      if (error) return accept_later(error);
+      admit(std::move(socket));
       accept();
     });
   }
 
+  /// Without a descriptor or memory the next one would fail at once too.
+  void accept_later(beast::error_code error) {
+    if (!std::exchange(said_why, true))
+      log_warning(fmt::format("no new connection until that has passed: {}", error.message()));
+    retry.expires_after(kRetry);
+    retry.async_wait([this](beast::error_code stopped) {
+      if (!stopped) accept();
+    });
+  }
+
+  /// The oldest request makes room where there are too many: most likely it does not want anything.
+  void admit(tcp::socket&& socket) {
+    std::erase_if(requests, [](const auto& request) { return request.expired(); });
+    if (requests.size() == kMaxRequests) {
+      if (const auto oldest = requests.front().lock()) oldest->close();
+      requests.pop_front();
+    }
+    beast::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    const auto request = std::make_shared<Request>(std::move(socket), *this);
+    requests.push_back(request);
+    request->read();
+  }
+
   const Door& door() const override { return guard; }
   Counts& counts() override { return counted; }
-  bool room() const override { return static_cast<int>(sessions.size()) < most; }
+  bool room() const override { return seat.use_count() <= most; }
   void upgrade(tcp::socket&& socket, const beast::http::request<beast::http::empty_body>& request) override {
-    std::make_shared<Session>(std::move(socket), *this, ++last_number)->run(request);
+    std::make_shared<Session>(std::move(socket), *this, ++last_number, seat)->run(request);
   }
 
   void opened(const std::shared_ptr<Session>& session) override {
-    if (!room()) {
-      ++counted.refused;
-      return session->close();
-    }
     sessions[session->number()] = session;
     counted.viewers = static_cast<int>(sessions.size());
     session->offer(hello, std::make_shared<Message>(Message{true, fmt::format(R"({{"you":{}}})", session->number())}));
@@ -67,6 +94,10 @@ struct Server::Impl : SessionHost, RequestHost {
   Counts counted;
   asio::io_context context{1};
   tcp::acceptor acceptor;
+  asio::steady_timer retry{context};
+  bool said_why = false;
+  std::deque<std::weak_ptr<Request>> requests;  ///< in the order of their connections
+  Seat seat = std::make_shared<int>();          ///< one copy here, one with each session
   std::uint32_t last_number = 0;
   std::map<std::uint32_t, std::shared_ptr<Session>> sessions;
   std::array<std::shared_ptr<const Message>, kSlots> newest;

@@ -6,8 +6,10 @@ namespace palpate::web {
 
 namespace websocket = beast::websocket;
 
-Session::Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number)
-    : socket_(std::move(socket)), host_(host), number_(number), again_(socket_.get_executor()) {}
+Session::Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number, Seat seat)
+    : socket_(std::move(socket)), host_(host), number_(number), seat_(std::move(seat)), again_(socket_.get_executor()) {
+  beast::get_lowest_layer(socket_).rate_policy().read_limit(kMaxBytesPerSecond);
+}
 
 void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) {
   beast::get_lowest_layer(socket_).expires_never();
@@ -17,7 +19,7 @@ void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) 
   timeout.keep_alive_pings = true;
   socket_.set_option(timeout);
   socket_.read_message_max(kMaxBytesSaid);
-  socket_.control_callback([this](websocket::frame_type, beast::string_view) { hand_.answered(now_ns()); });
+  socket_.control_callback([this](websocket::frame_type kind, beast::string_view) { heard_control(kind); });
   socket_.async_accept(upgrade, [self = shared_from_this()](beast::error_code error) {
     if (error) return self->end();
     self->host_.opened(self);
@@ -29,7 +31,7 @@ void Session::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
     if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow)
       ++self->host_.counts().malformed;
-    if (error) return self->end();
+    if (error || self->over_) return self->end();
     self->heard(bytes);
   });
 }
@@ -48,6 +50,13 @@ void Session::heard(std::size_t bytes) {
     if (said->kind == Said::sample) stand();
   }
   read();
+}
+
+// A ping of the page's own is no answer.
+void Session::heard_control(websocket::frame_type kind) {
+  if (over_) return;
+  if (kind == websocket::frame_type::pong) hand_.answered(now_ns());
+  if (flooded()) throw_out();
 }
 
 // Says the last sample again and again. What the page says itself begins the wait anew.
@@ -80,7 +89,6 @@ bool Session::flooded() {
 
 void Session::throw_out() {
   ++host_.counts().malformed;
-  socket_.async_close(websocket::close_code::policy_error, [self = shared_from_this()](beast::error_code) {});
   end();
 }
 
@@ -112,16 +120,11 @@ void Session::write_next() {
                       });
 }
 
-void Session::close() {
-  if (over_) return;
-  beast::error_code ignored;
-  beast::get_lowest_layer(socket_).socket().close(ignored);
-}
-
 void Session::end() {
   if (over_) return;
   over_ = true;
   again_.cancel();
+  beast::get_lowest_layer(socket_).close();
   host_.closed(*this);
 }
 

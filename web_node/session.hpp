@@ -27,6 +27,9 @@ struct Counts {
 
 class Session;
 
+/// Held by a page as long as it has a socket, whether it is shown anything or not.
+using Seat = std::shared_ptr<const void>;
+
 /// What a session tells its server; all on the server's thread.
 class SessionHost {
  public:
@@ -38,22 +41,26 @@ class SessionHost {
 };
 
 /// One page's WebSocket. It is sent the newest message of each slot and never has more than kInFlight frames that it
-/// has not taken: what it is too slow for is not queued but left out.
+/// has not taken: what it is too slow for is not queued but left out. What it sends is bounded, in messages and control
+/// frames together, and in bytes: frames without an end are neither.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   static constexpr std::uint32_t kInFlight = 3;
   static constexpr int kMaxSaidPerSecond = 500;
+  static constexpr std::size_t kMaxBytesPerSecond = 32'000;  ///< what comes sooner waits in the network
 
-  Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number);
+  Session(tcp::socket&& socket, SessionHost& host, std::uint32_t number, Seat seat);
 
   std::uint32_t number() const { return number_; }
   void run(const beast::http::request<beast::http::empty_body>& upgrade);
   void offer(Slot slot, const std::shared_ptr<const Message>& message);
-  void close();
 
  private:
+  using Stream = beast::basic_stream<tcp, boost::asio::any_io_executor, beast::simple_rate_policy>;
+
   void read();
   void heard(std::size_t bytes);
+  void heard_control(beast::websocket::frame_type kind);
   bool flooded();
   void stand();
   void ping();
@@ -62,9 +69,10 @@ class Session : public std::enable_shared_from_this<Session> {
   void throw_out();
   void end();
 
-  beast::websocket::stream<beast::tcp_stream> socket_;
+  beast::websocket::stream<Stream> socket_;
   SessionHost& host_;
   std::uint32_t number_;
+  Seat seat_;
   beast::flat_buffer buffer_;
   std::array<std::shared_ptr<const Message>, kSlots> waiting_;
   std::shared_ptr<const Message> going_;

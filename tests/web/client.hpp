@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <boost/asio/connect.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -61,6 +63,13 @@ class Client {
     socket_.write(boost::asio::buffer(bytes), error);
     return !error;
   }
+  bool ping() {
+    beast::error_code error;
+    socket_.ping({}, error);
+    return !error;
+  }
+  /// What goes over the line itself.
+  tcp::socket& line() { return socket_.next_layer(); }
   /// Tells that so many frames have been taken.
   bool taken(std::uint32_t count) {
     std::string bytes(8, '\0');

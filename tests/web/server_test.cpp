@@ -1,9 +1,13 @@
 #include "web_node/server.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <list>
 #include <thread>
 
@@ -24,6 +28,32 @@ bool within(std::chrono::milliseconds limit, F&& holds) {
   return holds();
 }
 
+/// [s] of processor time that the threads beside this one have had.
+double others_cpu() {
+  const auto seconds = [](clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  return seconds(CLOCK_PROCESS_CPUTIME_ID) - seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+/// This process can open nothing more.
+class NoDescriptorLeft {
+ public:
+  NoDescriptorLeft() {
+    const int next = dup(STDIN_FILENO);
+    close(next);
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{static_cast<rlim_t>(next), before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoDescriptorLeft() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
 std::string numbered(std::uint32_t number, std::size_t bytes = 4096) {
   std::string text(bytes, '\0');
   std::memcpy(text.data(), &number, 4);
@@ -38,7 +68,9 @@ std::uint32_t number_of(const std::string& text) {
 class WebServer : public ::testing::Test {
  protected:
   void show(std::uint32_t number) { server_.publish(frame, {false, numbered(number)}); }
-  std::string origin() const { return fmt::format("http://127.0.0.1:{}", server_.port()); }
+  tcp::endpoint address() const {
+    return {boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server_.port())};
+  }
 
   std::atomic<int> said_{0}, gone_{0};
   Server server_{{},
@@ -152,6 +184,48 @@ TEST_F(WebServer, AFloodThrowsThePageOutAndOthersGoOn) {
   EXPECT_EQ(number_of(*good.read()), 7u);
 }
 
+TEST_F(WebServer, AFloodOfPingsThrowsThePageOut) {
+  Client page(server_.port());
+  ASSERT_TRUE(page.enter());
+  page.read();
+  for (int i = 0; i < 2000 && page.ping(); ++i) {
+  }
+  EXPECT_TRUE(within(2s, [&] { return server_.seen().malformed == 1 && server_.seen().viewers == 0; }));
+}
+
+TEST_F(WebServer, AMessageOfManyFramesWithoutAnEndCostsLittle) {
+  Client page(server_.port());
+  ASSERT_TRUE(page.enter());
+  page.read();
+  std::string frames;
+  for (int i = 0; i < 1000; ++i) frames += std::string("\0\x80\0\0\0\0", 6);
+  boost::asio::write(page.line(), boost::asio::buffer(std::string("\x02\x80\0\0\0\0", 6)));
+  page.line().non_blocking(true);
+  const double before = others_cpu();
+  std::size_t at = 0;
+  for (const auto end = Clock::now() + 1s; Clock::now() < end;) {
+    beast::error_code error;
+    at += page.line().write_some(boost::asio::buffer(frames) + at, error);
+    at %= frames.size();
+    if (error) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_LT(others_cpu() - before, 0.2);
+}
+
+TEST_F(WebServer, APingOfThePageItselfIsNoAnswerOfItsBrowser) {
+  Client page(server_.port());
+  ASSERT_TRUE(page.enter());
+  page.read();
+  page.sample(64);
+  const auto ping_for = [&](std::chrono::milliseconds time) {
+    for (const auto end = Clock::now() + time; Clock::now() < end; std::this_thread::sleep_for(20ms)) page.ping();
+  };
+  ping_for(300ms);
+  const int before = said_;
+  ping_for(300ms);
+  EXPECT_EQ(said_, before);
+}
+
 TEST_F(WebServer, SaysTheSampleOfASilentPageAgainWhileItsBrowserAnswers) {
   Client page(server_.port());
   ASSERT_TRUE(page.enter());
@@ -172,12 +246,60 @@ TEST_F(WebServer, BytesThatAreNoRequestAreDropped) {
   for (int i = 0; i < 20; ++i) {
     boost::asio::io_context context;
     tcp::socket socket(context);
-    socket.connect(
-        tcp::endpoint(boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server_.port())));
+    socket.connect(address());
     boost::system::error_code ignored;
     boost::asio::write(socket, boost::asio::buffer(std::string(20'000, static_cast<char>(17 * i))), ignored);
   }
   EXPECT_EQ(Client(server_.port()).get("/", Client(server_.port()).host()), 200u);
+}
+
+TEST_F(WebServer, ConnectionsThatAskForNothingGiveWayToNewOnes) {
+  boost::asio::io_context context;
+  std::list<tcp::socket> idle;
+  for (int i = 0; i < 300; ++i) idle.emplace_back(context).connect(address());
+  Client client(server_.port());
+  EXPECT_EQ(client.get("/", client.host()), 200u);
+  const auto is_open = [](tcp::socket& socket) {
+    char byte;
+    beast::error_code error;
+    socket.non_blocking(true);
+    socket.read_some(boost::asio::buffer(&byte, 1), error);
+    return error == boost::asio::error::would_block;
+  };
+  EXPECT_TRUE(within(1s, [&] { return std::ranges::count_if(idle, is_open) <= 127; }));
+  EXPECT_TRUE(is_open(idle.back()));
+}
+
+TEST_F(WebServer, ARequestThatComesByteByByteIsClosedAfterTenSeconds) {
+  boost::asio::io_context context;
+  tcp::socket slow(context);
+  slow.connect(address());
+  const auto begin = Clock::now();
+  const auto drip = [&] {
+    beast::error_code error;
+    boost::asio::write(slow, boost::asio::buffer("G", 1), error);
+    return static_cast<bool>(error);
+  };
+  while (!drip() && Clock::now() < begin + 15s) std::this_thread::sleep_for(200ms);
+  EXPECT_GT(Clock::now() - begin, 9s);
+  EXPECT_LT(Clock::now() - begin, 12s);
+}
+
+TEST_F(WebServer, WithoutDescriptorsItWaitsForSome) {
+  boost::asio::io_context context;
+  tcp::socket socket(context, tcp::v4());
+  {
+    const NoDescriptorLeft none;
+    socket.connect(address());
+    const double before = others_cpu();
+    std::this_thread::sleep_for(500ms);
+    EXPECT_LT(others_cpu() - before, 0.1);
+  }
+  boost::asio::write(socket,
+                     boost::asio::buffer(fmt::format("GET / HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", server_.port())));
+  std::string answer(12, '\0');
+  boost::asio::read(socket, boost::asio::buffer(answer));
+  EXPECT_EQ(answer, "HTTP/1.1 200");
 }
 
 TEST(WebServerPort, ThatIsTakenIsSaid) {
