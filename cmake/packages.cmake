@@ -46,7 +46,12 @@ palpate_package(dev "For drivers of devices: messages, headers, library, CMake p
   DEPENDS cyclonedds-dev libeigen3-dev libfmt-dev libxxhash-dev zlib1g-dev)
 palpate_package(spacemouse "Driver that moves a tool by a SpaceMouse" RECOMMENDS spacenavd)
 palpate_package(organ "Meshes of surfaces and of labelled images" DEPENDS "palpate-mesh (= ${PROJECT_VERSION})")
+if(PALPATE_PYTHON)  # its modules are for the one Python that they are built with
+  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(this_python "python3 (>= 3.${Python3_VERSION_MINOR})" "python3 (<< 3.${next})")
+endif()
 palpate_package(python "Python module: lock step with one's own controller, static states, logs as arrays"
-  DEPENDS python3 python3-numpy "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS python3-matplotlib)
+  DEPENDS ${this_python} python3-numpy "palpate-mesh (= ${PROJECT_VERSION})" RECOMMENDS python3-matplotlib)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-palpate)
 include(CPack)

@@ -32,3 +32,4 @@ echo "first force: after $((SECONDS - begin)) s"
 chroot "$root" su user -c 'cd; grep -q "force_max_n" run.json && palpate cache list'
 chroot "$root" sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends /packages/python3-palpate_*.deb >/dev/null'
 chroot "$root" su user -c 'cd; python3 -c "import palpate; s = palpate.Simulator(palpate.Scene(\"/usr/share/palpate/scenes/liver.toml\")); s.follow(2500); print(\"Python: a force of\", s.force[0])"'
+chroot "$root" su user -c 'cd; python3 /usr/share/doc/python3-palpate/examples/read_log.py /usr/share/palpate/scenes'

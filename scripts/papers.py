@@ -2,7 +2,8 @@
 
 BIN_DIR is the folder of the built programs. The items stand in scripts/papers_items.py, each with its commands, which are run,
 and with the ranges in which its values must be: where a command fails or a value has left its range, so does this program.
---short leaves out what takes long and writes no page; --only NAME takes the items whose name has NAME in it, likewise."""
+--short leaves out what takes long and writes no page; --only NAME takes the items whose name has NAME in it, likewise.
+--listed runs nothing, and fails where the page has another item, wording or command than these."""
 import argparse
 import csv
 import json
@@ -119,18 +120,38 @@ def typeset(text):
     return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<!\w)-(?=\d)", "−", text))
 
 
-def section(title, items, values):
-    lines = [f"## {title}", "", "| | the paper | here | where we differ, and why |", "| --- | --- | --- | --- |"]
-    for item in items:
-        ours, differs = (typeset(text.format(**values[item])) for text in (item.ours, item.differs))
-        mark = " †" if item.too_long else ""
-        lines.append(f"| **{item.name}**{mark} | {item.claim} | {ours} | {differs} |")
-    lines += [""] + [f"![{words}](pictures/{file})\n" for item in items for file, words in item.pictures]
-    lines += [f"### Commands of {title}", ""]
+def row(item, ours, differs):
+    mark = " †" if item.too_long else ""
+    return f"| **{item.name}**{mark} | {item.claim} | {typeset(ours)} | {typeset(differs)} |"
+
+
+def commands_of(title, items):
+    lines = [f"### Commands of {title}", ""]
     for item in items:
         if item.commands:
             lines += [f"{item.name}:", "", *(f"    {command}" for command in item.commands), ""]
     return "\n".join(lines)
+
+
+def section(title, items, values):
+    lines = [f"## {title}", "", "| | the paper | here | where we differ, and why |", "| --- | --- | --- | --- |"]
+    lines += [row(item, item.ours.format(**values[item]), item.differs.format(**values[item])) for item in items]
+    lines += [""] + [f"![{words}](pictures/{file})\n" for item in items for file, words in item.pictures]
+    return "\n".join(lines) + "\n" + commands_of(title, items)
+
+
+def any_values(item):
+    """A pattern of the item's row, whatever its values are."""
+    text = row(item, *(re.sub(r"\{\w+(:[^}]*)?\}", "\0", text) for text in (item.ours, item.differs)))
+    return re.escape(text).replace("\0", r"[−\d.,e+-]+(?: %)?")
+
+
+def unlisted(page):
+    """Sentences on what the page says otherwise than the items."""
+    for title, items in PAPERS.items():
+        yield from (f"papers.md: {title}, {item.name}: its row is another" for item in items if not re.search(f"^{any_values(item)}$", page, re.M))
+        if commands_of(title, items).strip() not in page:
+            yield f"papers.md: {title}: its commands are others"
 
 
 def write_page(docs, values, machine):
@@ -147,7 +168,10 @@ def main():
     parser.add_argument("docs", metavar="DOCS_DIR", type=pathlib.Path, nargs="?", default=ROOT / "docs")
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--only", metavar="NAME", default="")
+    parser.add_argument("--listed", action="store_true")
     arguments = parser.parse_args()
+    if arguments.listed:
+        sys.exit("\n".join(unlisted((arguments.docs / "papers.md").read_text())) or 0)
     bad, values, measured_on = [], {}, machine()
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(arguments.programs.resolve(), pathlib.Path(folder), arguments.short)

@@ -97,8 +97,8 @@ BRAIN_CURVES = "python3 scripts/brain_curves.py out/papers"
 
 TVCG99 = [
     Item("TVCG99", "sec. 2, figs. 1-4", "180 slices; a simplex mesh of 14,000 triangles where marching cubes give 94,000.",
-         "`palpate segment` takes grey values to labels slice by slice. Of a liver from 165 slices `palpate organ` makes a surface of 9,554 triangles, on average 0.145 mm off, where marching cubes take some 40,000 for the same distance; with its gall bladder, by default, 4,178 triangles and 9,653 tetrahedra, the volume that of the voxels ([organ.md](organ.md)).",
-         "The surface is a level of a smoothed distance, which has no steps, not a simplex mesh. They do not say at which distance they compare: at ours it is a fourth, theirs a seventh. Their image is not public."),
+         "`palpate segment` takes grey values to labels slice by slice, and `palpate organ` labels to a surface and tetrahedra; [organ.md](organ.md) compares its triangles with those of marching cubes at the same distance, on another liver.",
+         "The surface is a level of a smoothed distance, which has no steps, not a simplex mesh. They do not say at which distance they compare. Their image is not public."),
     Item("TVCG99", "sec. 3-3", "Linear elasticity is right up to displacements of about 10 % of the mesh's size.",
          "Under a ball pressed in by half its radius (3 mm) the linear force on a cylinder of 30 x 13 mm differs by {cylinder:+.0%} from that of neo-Hookean tissue, on a plate by {plate:+.1%}.",
          "No share of a size says it: strain and rotation do, and a monitor watches them ([nonlinear.md](nonlinear.md)).",
@@ -310,7 +310,10 @@ BHS01 = [
          "A haptic step of duct, catheter and two forceps takes *{p50:.0f} µs* (median): 1 kHz with 60 pictures a second beside it ([duct.md](duct.md)).", "",
          **bench("duct_step", p50="insertion p50"), too_long=True),
     Item("BHS01", "sec. III, figs. 6, 8", "A catheter of 2 to 3 mm in a duct of 8 to 10 mm; forceps of three segments.",
-         "2.5 mm and 9 mm; a shaft and two jaws that meet at the joint.", "Segments have a radius; the picture's forceps is the one that collides."),
+         "{catheter:.1f} mm, in a duct of {duct:.1f} mm at its narrowest; a shaft and two jaws that meet at the joint.", "Segments have a radius; the picture's forceps is the one that collides.",
+         ("palpate check scenes/catheter_insertion.toml",),
+         values=lambda run: {"catheter": 1e3 * run.number(r"([\d.]+) m thick; model catheter"), "duct": 1e3 * run.number(r"([\d.]+) m wide inside")},
+         judged={"catheter": (2, 3), "duct": (8, 10)}),
     Item("BHS01", "sec. VII", "Forces and torques of line segments, the reaction at the port, grip forces on the handle.",
          "A forceps that pokes, pushes, grasps and pulls the duct feels up to {force:.2f} N, {torque:.1f} mN m about its joint and {grip:.1f} mN m on its handle.",
          "", ("palpate drive scenes/duct_poke.toml --json",),

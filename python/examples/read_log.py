@@ -1,5 +1,6 @@
 """Forces of a log as arrays, and the same run again in lock step: read_log.py SCENES"""
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -8,7 +9,7 @@ import palpate
 
 import numpy as np
 
-program = pathlib.Path(palpate.__file__).parents[2] / "bin" / "palpate"
+program = shutil.which("palpate") or pathlib.Path(palpate.__file__).parents[2] / "bin" / "palpate"  # or beside a build
 with tempfile.TemporaryDirectory() as folder:
     log = folder + "/run.lcmlog"
     scene = sys.argv[1] + "/liver.toml"
