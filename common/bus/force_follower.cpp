@@ -45,6 +45,8 @@ bool ForceFollower::hear(const ForceState& told, std::int64_t now_ns) {
   const double newtons = size(force);
   if (!(newtons <= kAbsurd * limits_.max_force)) return ++refused_, false;
   told_ = sum(newtons > limits_.max_force ? limits_.max_force / newtons : 1, force, 0, {});
+  catches_up_ |= told.step > step_ + kMissed;
+  step_ = told.step;
   follows_ = true;
   run_ = told.run;
   heard_ns_ = now_ns;
@@ -58,9 +60,11 @@ const MotorForce& ForceFollower::give(std::int64_t now_ns) {
   share_ = std::clamp(share_ + dt / (silent ? -kFade : kReturn), 0.0, 1.0);
   if (silent && limp()) follows_ = false;
   const MotorForce wanted = sum(share_, told_, 0, {});
-  const double before = size(given_), falls = std::min(1.0, before > 0 ? size(wanted) / before : 1);
+  const double before = size(given_), after = size(wanted);
+  const double falls = after < before && !catches_up_ ? after / before : 1;
   const MotorForce change = sum(1, wanted, -falls, given_);
   const double ticks = size(change) / (limits_.max_force_rate * dt);  // until all of it is there
+  catches_up_ &= ticks > 1;
   const double share = ticks > 1 ? 1 / ticks : 1;
   return given_ = sum(falls, given_, share, change);
 }

@@ -25,7 +25,8 @@ struct MotorForce {
 /// The hand's end of the bus: what one tool's motors give of the forces that are told. One haptic loop is followed, the
 /// first that is heard, and another one only once that has been silent and the motors are limp. Force and torque shrink
 /// together to the limits; they rise and turn no faster than these say, come in within kReturn, and fade where nothing
-/// comes. They fall as fast as they are told: the haptic node bounds that, and knows how the hand moves.
+/// comes. They fall as fast as they are told from step to step: the haptic node bounds that, and knows how the hand
+/// moves. Where steps are missing, they fall no faster than they rise.
 class ForceFollower {
  public:
   static constexpr double kSilence = 0.02;               ///< [s] without a force, after which it fades
@@ -44,14 +45,17 @@ class ForceFollower {
   std::uint64_t refused() const { return refused_; }  ///< forces that are no numbers, or absurd
 
  private:
-  static constexpr double kLongestTick = 0.005;  ///< [s] a driver that was late catches up by no more
+  static constexpr std::uint64_t kMissed = 5;    ///< steps that may be missing
+  static constexpr double kLongestTick = 0.002;  ///< [s] a driver that was late catches up by no more
 
   double size(const MotorForce& f) const;
 
   std::uint32_t tool_;
   MotorLimits limits_;
   bool follows_ = false;
-  std::uint64_t run_ = 0;  ///< of the haptic loop
+  std::uint64_t run_ = 0;    ///< of the haptic loop
+  std::uint64_t step_ = 0;   ///< told last
+  bool catches_up_ = false;  ///< with a force of which steps were missing
   std::int64_t heard_ns_ = 0, given_ns_ = 0;
   double share_ = 0;         ///< that the motors give of what was told last
   MotorForce told_, given_;  ///< within the limits of size

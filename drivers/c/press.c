@@ -67,6 +67,8 @@ static const double FADE = 0.02, BACK = 0.05; /* [s] from all to nothing, and ba
 struct motors {
   int follows;      /* a haptic loop, until it has been silent and its force is gone */
   uint64_t run;     /* of that loop */
+  uint64_t step;    /* of it, told last */
+  int catches_up;   /* with a force of which steps were missing */
   int64_t heard_ns; /* when it was heard last */
   double told[3];   /* [N] then */
   double share;     /* of it that the motors give */
@@ -82,22 +84,25 @@ static void hear(struct motors *m, const palpate_ForceState *said) {
     m->refused++;
   } else {
     for (int k = 0; k < 3; ++k) m->told[k] = said->force[k] * (newtons > MAX_FORCE ? MAX_FORCE / newtons : 1);
+    m->catches_up |= said->step > m->step + 5;
+    m->step = said->step;
     m->follows = 1;
     m->run = said->run;
     m->heard_ns = now_ns();
   }
 }
 
-/* Once a tick. The force falls as fast as it is told, since the haptic node bounds that. */
+/* Once a tick. From step to step the force falls as fast as it is told, since the haptic node bounds that. */
 static void give(struct motors *m) {
   const int silent = !m->follows || now_ns() - m->heard_ns > SILENCE_NS;
   m->share = silent ? fmax(0, m->share - TICK / FADE) : fmin(1, m->share + TICK / BACK);
   if (silent && m->share == 0) m->follows = 0;
   const double wanted = m->share * size(m->told), before = size(m->given);
-  const double falls = wanted < before ? wanted / before : 1;
+  const double falls = wanted < before && !m->catches_up ? wanted / before : 1;
   double by[3];
   for (int k = 0; k < 3; ++k) by[k] = m->share * m->told[k] - (m->given[k] *= falls);
   const double ticks = fmax(1, size(by) / (MAX_RATE * TICK)); /* until all of it is there */
+  m->catches_up = m->catches_up && ticks > 1;
   for (int k = 0; k < 3; ++k) m->given[k] += by[k] / ticks;
   drive_motors(m->given);
 }

@@ -51,7 +51,7 @@ class Hardware {
   double largest_ = 0, change_ = 0;
 };
 
-/// Says once that the motors have gone limp, and that they have a force again.
+/// Says it whenever the motors go limp.
 void say_limp(bool limp, bool& said) {
   if (limp && !said) std::puts("limp: no force for 40 ms"), std::fflush(stdout);
   said = limp;

@@ -113,13 +113,28 @@ TEST_F(ForceFollowerTest, AForceTurnsRoundAtItsRateAndALateDriverCatchesUpByLitt
   press(-2, 20);
   EXPECT_EQ(force(), -2);
   now_ += 1000 * kTick;
-  follower_.hear(told(-4), now_);
+  follower_.hear(told(4), now_);
   given_ = follower_.give(now_);
-  EXPECT_EQ(force(), -4) << "2 N are less than 500 N/s times 5 ms";
-  now_ += 1000 * kTick;
-  follower_.hear(told(5), now_);
-  given_ = follower_.give(now_);
-  EXPECT_EQ(force(), -1.5);
+  EXPECT_EQ(force(), -1) << "1 N is 500 N/s times 2 ms";
+}
+
+TEST_F(ForceFollowerTest, AForceOfWhichStepsAreMissingFallsNoFasterThanItRises) {
+  press(3, 100);
+  ForceState later = told(0.25);
+  later.step = 15;
+  double before = force();
+  for (int k = 0; k < 5; ++k, ++later.step, before = force()) {
+    follower_.hear(later, now_);
+    tick();
+    EXPECT_NEAR(before - force(), kChange, 1e-9);
+  }
+  follower_.hear(later, now_);
+  tick();
+  EXPECT_EQ(force(), 0.25);
+  later.force = {}, later.depth_force = 0;
+  follower_.hear(later, now_);
+  tick();
+  EXPECT_EQ(force(), 0) << "it has caught up";
 }
 
 TEST_F(ForceFollowerTest, AnotherToolsForceIsNone) {

@@ -46,7 +46,7 @@ void HandWatch::look() {
 }
 
 void HandWatch::add(const ForceState& force) {
-  finite_ = finite_ && std::isfinite(size(force)) && std::isfinite(force.torque[0] + force.torque[1] + force.torque[2]);
+  for (const auto& v : {force.force, force.torque}) finite_ = finite_ && std::isfinite(v[0] + v[1] + v[2]);
   max_force_ = std::max(max_force_, size(force));
   if (first_ && force.step > newest_.step)
     max_rise_ = std::max(max_rise_, (size(force) - size(newest_)) / static_cast<double>(force.step - newest_.step));
