@@ -18,11 +18,9 @@ class EarlierCuts {
  public:
   static constexpr std::int64_t kPatienceNs = 2'000'000'000;
 
-  static constexpr std::size_t kNodes = 64;  ///< for whose words there is room
-
   /// `bodies`: those that can be cut. `tetrahedra`: of all of them.
   EarlierCuts(Bus& bus, std::vector<int> bodies, std::size_t tetrahedra)
-      : reader_(bus.reader(topics::held_topology, Keep::all, kNodes * sizeof(std::uint32_t) * tetrahedra)),
+      : reader_(bus.reader(topics::held_topology, Keep::all, 2 * sizeof(std::uint32_t) * tetrahedra)),
         bodies_(std::move(bodies)) {}
 
   /// True once every known haptic and render node of the same scene has told of all bodies, or the patience is over.

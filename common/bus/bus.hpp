@@ -53,7 +53,8 @@ enum class Keep {
   all      ///< every sample: recorders
 };
 
-/// [bytes] of the sequences in the samples that wait in a reader that keeps all: beyond, samples are dropped.
+/// [bytes] of the sequences in the samples of a peer that wait in a reader that keeps all: beyond, its samples are
+/// dropped.
 inline constexpr std::size_t kRecordersRoom = std::size_t{1} << 30;
 
 /// One interface over the network and the memory of this process. A log is played to any bus

@@ -171,7 +171,7 @@ class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, std::size_t room,
             const Peers& peers, std::atomic<std::uint64_t>& refused)
-      : at_once_(keep == Keep::all ? dds::Gate<M>::kSamples : kKeysAtOnce),
+      : at_once_(keep == Keep::all ? WaitingRoom::kSamples : kKeysAtOnce),
         peers_(peers),
         gate_(peers, refused, keep == Keep::all, room),
         inlet_(participant, wake, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
@@ -190,7 +190,7 @@ class DdsReader final : public Reader<M> {
         [&](const void* sample, dds_instance_handle_t writer) {
           message = copy(sample);
           taken_from_ = writer;
-          gate_.taken(*message);
+          gate_.taken(*message, writer);
         },
         [&](const void* sample) {
           if constexpr (std::same_as<M, NodeStatus>)

@@ -12,6 +12,7 @@
 #include "common/bus/name_owners.hpp"
 #include "common/bus/peers.hpp"
 #include "common/bus/rate_budget.hpp"
+#include "common/bus/waiting_room.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/limits.hpp"
 
@@ -33,17 +34,16 @@ struct CountBytes {
 template <class M>
 class Gate {
  public:
-  static constexpr std::size_t kSamples = 16000;  ///< that wait in a reader that keeps all
-  static constexpr std::size_t kNodes = 64;       ///< names of nodes that a peer may use where the newest is kept
+  static constexpr std::size_t kNodes = 64;  ///< names of nodes that a peer may use where the newest is kept
 
   /// `peers`: of the bus. `total`: counts what is refused by all its gates. `keeps_all`: what is admitted waits until
-  /// it is taken, `room` [bytes] of it at most.
+  /// it is taken, `room` [bytes] of each peer at most.
   Gate(const Peers& peers, std::atomic<std::uint64_t>& total, bool keeps_all, std::size_t room)
       : peers_(peers),
         total_(total),
         keeps_all_(keeps_all),
-        room_(room),
-        budget_(kOfNodes && !keeps_all ? kNodes : KeyBudget::kKeys) {}
+        budget_(kOfNodes && !keeps_all ? kNodes : KeyBudget::kKeys),
+        room_(room) {}
 
   /// For dds_set_topic_filter_extended(). The middleware calls it for one sample of a reader at a time.
   static bool filter(const void* sample, const dds_sample_info_t* info, void* self) {
@@ -56,10 +56,8 @@ class Gate {
     total_.fetch_add(1, std::memory_order_relaxed);
   }
   /// An admitted sample has been taken.
-  void taken(const M& message) {
-    if (!keeps_all_) return;
-    samples_.fetch_sub(1, std::memory_order_relaxed);
-    bytes_.fetch_sub(size(message), std::memory_order_relaxed);
+  void taken(const M& message, dds_instance_handle_t writer) {
+    if (keeps_all_) room_.leave(writer, size(message));
   }
   std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
@@ -69,7 +67,8 @@ class Gate {
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
     const std::uint64_t peer = peer_of(writer);
-    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && has_room()) return true;
+    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && has_room(writer, peer))
+      return true;
     refuse();
     return false;
   }
@@ -89,14 +88,8 @@ class Gate {
     if constexpr (kOfNodes) return keeps_all_ || owners_.admits(message_.node, writer, now_ns(), peers_);
     return true;
   }
-  bool has_room() {
-    if (!keeps_all_) return true;
-    const std::size_t size = this->size(message_);
-    if (samples_.load(std::memory_order_relaxed) >= kSamples || bytes_.load(std::memory_order_relaxed) + size > room_)
-      return false;
-    samples_.fetch_add(1, std::memory_order_relaxed);
-    bytes_.fetch_add(size, std::memory_order_relaxed);
-    return true;
+  bool has_room(dds_instance_handle_t writer, std::uint64_t peer) {
+    return !keeps_all_ || room_.enter(writer, peer, size(message_));
   }
   static std::size_t size(const M& message) {
     CountBytes count;
@@ -107,14 +100,13 @@ class Gate {
   const Peers& peers_;
   std::atomic<std::uint64_t>& total_;
   const bool keeps_all_;
-  const std::size_t room_;
   M message_;                         ///< kept between samples for its memory
   dds_instance_handle_t writer_ = 0;  ///< of the sample before
   std::uint64_t peer_ = 0;
   KeyBudget budget_;
   NameOwners owners_;
   RateBudget rate_;
-  std::atomic<std::size_t> samples_ = 0, bytes_ = 0;
+  WaitingRoom room_;
   std::atomic<std::uint64_t> refused_ = 0;
 };
 
