@@ -3,7 +3,6 @@
 #include <exception>
 
 #include "bench/report.hpp"
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tools/rig/press_rig.hpp"
 #include "tools/rig/scripted_tools.hpp"
@@ -15,7 +14,6 @@ void report_scene(const char* name, double seconds) {
   const Scene scene = load_scene(fmt::format("{}/{}.toml", PALPATE_SCENES, name));
   PressRig rig(scene, load_or_precompute(scene, ArchivePart::surface));
   ScriptedTools tools(scene);
-  set_linear_algebra_threads(1);  // as the node has it
   bench::Samples touched;
   const double end = std::min(seconds, tools.duration());
   for (int i = 0; i * rig.dt() < end; ++i) {

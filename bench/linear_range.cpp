@@ -1,7 +1,6 @@
 // How wrong linear elasticity is by how far a press goes, against neo-Hookean tissue on the same mesh with the same
 // contact; beside it what the range monitor sees of the linear answer. From these rows come its thresholds.
 #include "bench/report.hpp"
-#include "common/fem/dense.hpp"
 #include "common/fem/newton_solid.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
@@ -74,7 +73,6 @@ void press_scene(const std::string& name, bool quick) {
 
 int main(int argc, char** argv) {
   const bool quick = palpate::bench::quick(argc, argv);
-  palpate::set_linear_algebra_threads(1);
   palpate::press("kidney", palpate::kidney_body(), palpate::kidney_mesh(), quick);
   for (const char* scene : {"liver", "plate", "brain_cylinder"}) palpate::press_scene(scene, quick);
 }

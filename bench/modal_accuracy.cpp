@@ -10,7 +10,6 @@
 
 #include "bench/report.hpp"
 #include "bench/shell_bodies.hpp"
-#include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
 #include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/condensation.hpp"
@@ -227,7 +226,6 @@ int main(int argc, char** argv) {
   using namespace palpate;
   using namespace palpate::bench;
   const bool few = quick(argc, argv);
-  set_linear_algebra_threads(1);
   accuracy(16, few ? 16 : 24, few ? 200 : 500);
   const auto system = duct(16, few ? 16 : 24);
   cost_of_modes(lowest_modes(system.stiffness, system.mass, system.translations()), few ? 100 : 400);

@@ -5,7 +5,6 @@
 
 #include "bench/report.hpp"
 #include "bench/shaft_block.hpp"
-#include "common/fem/dense.hpp"
 #include "tools/rig/slide.hpp"
 
 namespace palpate {
@@ -107,7 +106,6 @@ std::vector<double> reference(double per_edge) {
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  set_linear_algebra_threads(1);
   const auto coarse = reference(2);
   auto fine = coarse;
   if (!bench::quick(argc, argv)) fine = reference(4);

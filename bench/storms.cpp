@@ -13,7 +13,6 @@
 
 #include "bench/report.hpp"
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "common/tool/motion_guard.hpp"
@@ -225,7 +224,6 @@ void print_course(const std::string& name, Victim victim, int from, int to) {
 }
 
 void run(int trials, const std::string& only) {
-  set_linear_algebra_threads(1);
   for (const std::string name : {"plate_cut", "hepatectomy", "cylinder_tear", "cylinder_hybrid"}) {
     if (!only.starts_with(only.empty() ? "" : name)) continue;
     const Scene scene = load_scene(scene_file(name));
@@ -243,7 +241,6 @@ void run(int trials, const std::string& only) {
 int main(int argc, char** argv) {
   try {
     if (argc == 6 && std::strcmp(argv[1], "course") == 0) {
-      set_linear_algebra_threads(1);
       print_course(argv[2], std::strcmp(argv[3], "haptic") == 0 ? Victim::haptic : Victim::deform, std::atoi(argv[4]),
                    std::atoi(argv[5]));
       return 0;

@@ -6,7 +6,6 @@
 
 #include "bench/report.hpp"
 #include "bench/touch_block.hpp"
-#include "common/fem/dense.hpp"
 #include "common/fem/refine_graded.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tools/rig/slide.hpp"
@@ -270,7 +269,6 @@ void hertz_over_edges(bool quick) {
 int main(int argc, char** argv) {
   using namespace palpate;
   const bool quick = bench::quick(argc, argv);
-  set_linear_algebra_threads(1);
   Liver liver(quick);
   slide_liver(liver);
   onset_liver(liver);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/fem/dense.hpp"
 #include "common/fem/processor_blas.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/log/log.hpp"
@@ -47,7 +46,6 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
 }
 
 nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
-  set_linear_algebra_threads(1);  // the stiffness near the tools is worked out beside the loops
   DynamicWorld world(loaded.scene, loaded.archives);
   LocalModels local_models(world, loaded.archives);
   const std::uint64_t run = new_run();

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "python/bindings.hpp"
 #include "tools/drive/figures.hpp"
@@ -19,9 +18,7 @@ class Simulator {
       : scene_(scene),
         archives_(load_or_precompute(scene, ArchivePart::surface)),
         lock_step_(scene, archives_),
-        watch_(lock_step_.simulator(), archives_) {
-    set_linear_algebra_threads(1);
-  }
+        watch_(lock_step_.simulator(), archives_) {}
 
   double dt() const { return simulator().dt(); }
   double time() const { return lock_step_.time(); }

@@ -101,5 +101,6 @@ int main(int argc, char** argv) {
   palpate::add_node_options(app, node);
   app.add_option("--ros-domain", o.domain, "Domain of ROS (ROS_DOMAIN_ID); default: the scene's").between(0, 230);
   app.add_option("--rate", o.rate_hz, "Poses, joints and wrenches a second [Hz]").between(1.0, 1000.0).show_default();
+  app.examples({"ros_bridge scenes/liver.toml", "ros_bridge scenes/hepatectomy.toml --ros-domain 42 --rate 100"});
   return palpate::node_main("ros_bridge", argc, argv, app, palpate::run, node);
 }

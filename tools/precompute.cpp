@@ -6,8 +6,9 @@
 
 #include "common/cli/progress.hpp"
 #include "common/scene/ensure_archive.hpp"
-#include "common/scene/scene.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "tools/commands.hpp"
+#include "tools/set_option.hpp"
 
 namespace palpate {
 namespace {
@@ -65,15 +66,18 @@ void add_precompute_command(cli::Command& app) {
   cli::Command command = app.add_command("precompute", "Compute the tensors of every body of a scene, once");
   struct Options {
     std::string scene;
+    std::vector<std::string> set;
     bool json = false;
   };
   auto o = std::make_shared<Options>();
   command.add_option("SCENE", o->scene, "Scene file").required();
+  add_set_option(command, o->set);
   command.add_flag("--json", o->json, "Print one line of JSON a body");
   command.tells_progress();
-  command.examples({"palpate precompute scenes/liver.toml"});
+  command.examples(
+      {"palpate precompute scenes/liver.toml", "palpate precompute scenes/liver.toml --set body.poisson=0.48"});
   command.does([o] {
-    const Scene scene = load_scene(o->scene);
+    const Scene scene = load_scene(o->scene, parse_changes(o->set));
     for (const auto& body : scene.bodies) {
       const ArchiveState state = ensure_archive(scene, body, show_stage);
       o->json ? print_json(body, state) : print_text(body, state);

@@ -41,19 +41,28 @@ nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& repo
           {"damage", report.damage}};
 }
 
+/// What else than the haptic step may have made a difference; empty where no archive was `computed` here.
+std::string doubt(const std::vector<std::string>& computed) {
+  if (computed.empty()) return {};
+  return fmt::format(
+      "; the tensors of '{}' were computed on this host, and have the recorded run's bits only where OpenBLAS takes "
+      "the same kernels",
+      fmt::join(computed, "', '"));
+}
+
 /// Throws std::runtime_error where the recorded forces are not all come to again.
-void require_forces(const std::string& file, const VerifyReport& report) {
+void require_forces(const std::string& file, const VerifyReport& report, const std::vector<std::string>& computed) {
   if (!report.mismatch.empty())
-    throw std::runtime_error(fmt::format("{}: the forces differ: {}", file, report.mismatch));
+    throw std::runtime_error(fmt::format("{}: the forces differ: {}{}", file, report.mismatch, doubt(computed)));
   if (!report.verified())
     throw std::runtime_error(fmt::format(
         "{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified", file,
         report.forces, report.steps, report.gaps.size()));
 }
 
-void require_tissue(const std::string& file, const TissueReport& tissue) {
+void require_tissue(const std::string& file, const TissueReport& tissue, const std::vector<std::string>& computed) {
   if (!tissue.mismatch.empty())
-    throw std::runtime_error(fmt::format("{}: the tissue differs: {}", file, tissue.mismatch));
+    throw std::runtime_error(fmt::format("{}: the tissue differs: {}{}", file, tissue.mismatch, doubt(computed)));
   if (!tissue.gaps.empty())
     throw std::runtime_error(
         fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
@@ -61,7 +70,7 @@ void require_tissue(const std::string& file, const TissueReport& tissue) {
 
 void verify(const ReplayOptions& o) {
   const LoggedScene logged(o.file, o.data);
-  logged.ensure_archives();
+  const std::vector<std::string> computed = logged.ensure_archives();
   const VerifyReport report = verify_log(o.file, logged.scene());
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
@@ -69,14 +78,16 @@ void verify(const ReplayOptions& o) {
   if (report.verified()) tissue = verify_tissue(o.file, logged.scene());  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
   if (o.json) fmt::print("{}\n", json_of(o.file, report, tissue).dump());
-  require_forces(o.file, report);
+  require_forces(o.file, report, computed);
   if (!o.json) {
+    if (!computed.empty())
+      fmt::print("{}: with tensors of '{}' that were computed on this host\n", o.file, fmt::join(computed, "', '"));
     fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", o.file, report.forces,
                report.steps, report.code_path);
     if (report.tasks > 0)
       fmt::print("{}: verified: {} records of the task are equal bit for bit\n", o.file, report.tasks);
   }
-  require_tissue(o.file, tissue);
+  require_tissue(o.file, tissue, computed);
   if (tissue.ticks > 0 && !o.json)
     fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", o.file, tissue.ticks);
 }

@@ -14,7 +14,7 @@
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
-#include "common/scene/scene.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "common/tool/trajectory.hpp"
 #include "tools/child_process.hpp"
 #include "tools/commands.hpp"
@@ -22,6 +22,7 @@
 #include "tools/guard_summary.hpp"
 #include "tools/node_plan.hpp"
 #include "tools/say_stages.hpp"
+#include "tools/set_option.hpp"
 
 namespace palpate {
 namespace {
@@ -35,6 +36,7 @@ const std::string kScenesPort = "the scene's";  // for --web without a port
 
 struct RunOptions {
   std::string scene, record, keep, film, still, summary, keys, domain, web;
+  std::vector<std::string> set;
   double seconds = 0;
   int processes = 0;  ///< 0: those that somebody looks at
   bool strict = false;
@@ -211,21 +213,25 @@ bool start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
     if (!o.keys.empty()) arguments.insert(arguments.end(), {"--keys", o.keys});
     return arguments;
   };
+  const auto node = [&](std::vector<std::string> arguments) {
+    for (const std::string& change : o.set) arguments.insert(arguments.end(), {"--set", change});
+    return with(std::move(arguments));
+  };
   const NodePlan plan = plan_of(scene, o);
   if (plan.recorder) nodes.start(kRecorder, with(recorder_command(scene, log_of(scene, o), o)));
-  if (plan.deform) nodes.start("deform_node", with({sibling_program("deform_node"), o.scene}));
+  if (plan.deform) nodes.start("deform_node", node({sibling_program("deform_node"), o.scene}));
   if (plan.render) {
-    std::vector<std::string> render = with({sibling_program("render_node"), o.scene});
+    std::vector<std::string> render = node({sibling_program("render_node"), o.scene});
     if (plan.superposes()) render.push_back("--deform");
     if (!o.film.empty()) render.push_back("--film=" + o.film);
     if (!o.still.empty()) render.push_back("--still=" + o.still);
     if (o.force) render.push_back("--force");
     nodes.start("render_node", render);
   }
-  if (plan.web) nodes.start("web_node", with(web_command(o)));
+  if (plan.web) nodes.start("web_node", node(web_command(o)));
   nodes.wait_ready();
   if (shutdown_requested()) return false;
-  std::vector<std::string> haptic = with({sibling_program("haptic_node"), o.scene});
+  std::vector<std::string> haptic = node({sibling_program("haptic_node"), o.scene});
   if (o.seconds > 0) haptic.insert(haptic.end(), {"--seconds", fmt::format("{}", o.seconds)});
   if (plan.web) haptic.push_back("--hands");
   nodes.start("haptic_node", haptic);
@@ -301,7 +307,7 @@ void check_port(const std::string& port) {
 
 void run(const RunOptions& o) {
   check_port(o.web);
-  const Scene scene = load_scene(o.scene);
+  const Scene scene = load_scene(o.scene, parse_changes(o.set));
   if (!o.keep.empty() && log_of(scene, o).empty())
     throw std::runtime_error("--keep: there is no log; --record names one, or `file` in the scene's [record]");
   keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
@@ -350,6 +356,7 @@ void add_run_command(cli::Command& app) {
   auto o = std::make_shared<RunOptions>();
   cli::Command run_command = app.add_command("run", "Start the nodes that a scene needs on this machine");
   run_command.add_option("SCENE", o->scene, "Scene file").required();
+  add_set_option(run_command, o->set);
   run_command
       .add_option("--seconds", o->seconds,
                   "Stop after so many seconds (default: when a scripted motion ends, with --web never, or Ctrl-C)")
@@ -385,6 +392,7 @@ void add_run_command(cli::Command& app) {
   run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
   run_command.tells_progress();
   run_command.examples({"palpate run scenes/liver.toml --web",
+                        "palpate run scenes/liver.toml --set body.young=8000 --film out/stiff.mp4",
                         "palpate run scenes/hepatectomy.toml --record out/cut.lcmlog --film out/cut.mp4"});
   run_command.does([o, run_command] {
     o->force = run_command.given("--force");

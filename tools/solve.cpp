@@ -17,11 +17,12 @@
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/moved_files.hpp"
-#include "common/scene/scene.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "common/shell/boundary_conditions.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
+#include "tools/set_option.hpp"
 #include "tools/solution_file.hpp"
 #include "tools/solve_dynamic.hpp"
 
@@ -30,7 +31,7 @@ namespace {
 
 struct SolveArguments {
   std::string scene, body, method = "tensors", csv, vtu;
-  std::vector<std::string> holds, touches, forces, pressures;
+  std::vector<std::string> set, holds, touches, forces, pressures;
   std::array<double, 3> gravity{};  // [m/s^2]
   bool plain = false, json = false, dynamic = false;
   double seconds = 0, every = 0;
@@ -229,8 +230,8 @@ bool loaded(const SolveArguments& arguments) {
 
 void solve_motion(const SolveArguments& arguments) {
   if (arguments.seconds == 0) throw std::runtime_error("--dynamic: for how long? Give --seconds");
-  solve_dynamic({arguments.scene, arguments.body, arguments.seconds, arguments.every, arguments.precision,
-                 arguments.csv, arguments.states, arguments.json});
+  solve_dynamic({arguments.scene, arguments.body, arguments.set, arguments.seconds, arguments.every,
+                 arguments.precision, arguments.csv, arguments.states, arguments.json});
 }
 
 void solve(const SolveArguments& arguments) {
@@ -241,7 +242,7 @@ void solve(const SolveArguments& arguments) {
     throw std::runtime_error("--gravity: an archive knows no loads inside: take --method direct");
   if (arguments.plain && arguments.method == "direct")
     throw std::runtime_error("--plain: it is tensors that are summed: take --method tensors");
-  const Scene scene = load_scene(arguments.scene);
+  const Scene scene = load_scene(arguments.scene, parse_changes(arguments.set));
   keep_files_of(scene, {arguments.csv, arguments.vtu});
   const Body& body = choose_body(scene, arguments.body);
   check_model(body);
@@ -264,6 +265,7 @@ void add_solve_command(cli::Command& app) {
   cli::Command command = app.add_command("solve", "Compute a static state of a body, or its motion, offline");
   auto arguments = std::make_shared<SolveArguments>();
   command.add_option("SCENE", arguments->scene, "Scene file").required();
+  add_set_option(command, arguments->set);
   command.add_option("--body", arguments->body, "Name of the body; needed where the scene has several");
   command
       .add_option("--hold", arguments->holds,
@@ -323,6 +325,7 @@ void add_solve_command(cli::Command& app) {
   command.examples(
       {"palpate solve scenes/plate.toml --touch \"0,0,0.01:0,0,-0.004\" --vtu out/plate.vtu",
        "palpate solve scenes/plate.toml --force \"12:0,0,-0.5\" --method direct --csv out/plate.csv",
+       "palpate solve scenes/plate.toml --set body.poisson=0.3 --hold 900:0,0,-0.001 --json",
        "palpate solve scenes/plate_cut.toml --dynamic --seconds 2 --every 0.02 --states out/plate_states"});
   command.does([arguments] { solve(*arguments); });
 }

@@ -9,7 +9,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/fem/dense.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene_changes.hpp"
@@ -67,11 +66,12 @@ class Frames {
 };
 
 Scene scene_of(const DynamicArguments& arguments) {
-  const Scene scene = load_scene(arguments.scene);
+  std::vector<SceneChange> changes = parse_changes(arguments.set);
+  const Scene scene = load_scene(arguments.scene, changes);
   if (arguments.precision.empty()) return scene;
   const std::string name = name_of(choose_body(scene, arguments.body));
-  const SceneChange change{fmt::format("body.{}.dynamic.precision", name), arguments.precision};
-  return load_scene(arguments.scene, std::span(&change, 1));
+  changes.push_back({fmt::format("body.{}.dynamic.precision", name), arguments.precision});
+  return load_scene(arguments.scene, changes);
 }
 
 /// The place of the scene's body among those that move.
@@ -117,7 +117,6 @@ void solve_dynamic(const DynamicArguments& arguments) {
   const Scene scene = scene_of(arguments);
   const Body& body = choose_body(scene, arguments.body);
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
-  set_linear_algebra_threads(1);  // as the nodes have it
   drive::LockStep run(scene, archives);
   const int place = organ_of(run.simulator().tissue(), scene, body);
   const DynamicOrgan& organ = run.simulator().tissue().organ(place);

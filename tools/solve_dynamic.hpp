@@ -1,12 +1,14 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace palpate {
 
 /// What is asked of the motion of a body.
 struct DynamicArguments {
   std::string scene, body;
+  std::vector<std::string> set;       ///< for parse_changes()
   double seconds = 0, every = 0;      ///< [s] how long, and from state to state that is written; 0: the last one alone
   std::string precision;              ///< single | double; empty: the scene's
   std::filesystem::path csv, states;  ///< a file, a new folder of files for ParaView; empty: none

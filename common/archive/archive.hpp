@@ -84,7 +84,7 @@ struct Archive {
 };
 
 /// Changes with every change of the layout or of the meaning of a stored number.
-constexpr int kArchiveFormat = 10;
+constexpr int kArchiveFormat = 11;
 
 /// Writes to a temporary name beside `file`, syncs and renames, so that `file` is at every moment either
 /// whole or as it was. Removes temporary files that killed writers of the same body left. Throws

@@ -130,14 +130,23 @@ bool read_scalar(hid_t object, const std::string& name, T& value) {
   return H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, native_type<T>(), &value) >= 0;
 }
 
+/// Without the time at which it is made: one that HDF5 makes on the way to a dataset would keep it.
+void ensure_group(hid_t file, const std::string& name) {
+  if (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0) return;
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, 0);
+  const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+}
+
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& file) : file_(file) {
   quieten();
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, 0);  // the same content makes the same bytes, whenever it is written
   // From version 1.8 on HDF5 checksums its metadata.
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  id_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  id_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, access);
   if (id_ < 0) fail();
 }
 
@@ -176,12 +185,13 @@ void Hdf5Writer::dataset(const DatasetLabel& label, const std::vector<std::int32
 template <class T>
 void Hdf5Writer::write(const DatasetLabel& label, const std::vector<T>& values, std::size_t columns) {
   if (values.empty()) return;
+  if (const auto end = label.name.find('/'); end != label.name.npos) ensure_group(id_, label.name.substr(0, end));
   const hsize_t extent[2] = {values.size() / columns, columns};
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, extent, nullptr), H5Sclose);
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-  const Handle data(H5Dcreate2(id_, label.name.c_str(), native_type<T>(), space, links, creation, H5P_DEFAULT),
+  H5Pset_obj_track_times(creation, 0);
+  const Handle data(H5Dcreate2(id_, label.name.c_str(), native_type<T>(), space, H5P_DEFAULT, creation, H5P_DEFAULT),
                     H5Dclose);
   const bool done = data >= 0 && write_text(data, "units", label.units) &&
                     write_text(data, "description", label.description) &&

@@ -5,8 +5,6 @@
 #include <thread>
 #include <vector>
 
-#include "common/fem/dense.hpp"
-
 namespace palpate {
 
 /// Threads for `count` pieces of work: one for each core, no more than pieces.
@@ -14,11 +12,9 @@ inline std::size_t core_count(std::size_t count) {
   return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, std::max<std::size_t>(count, 1));
 }
 
-/// Calls what `make()` gives, once in each thread, with each number below `count`; each piece's linear algebra runs in
-/// its thread alone, so that its answer does not hang on how many cores there are. Throws what a piece throws.
+/// Calls what `make()` gives, once in each thread, with each number below `count`. Throws what a piece throws.
 template <class Make>
 void on_all_cores(std::size_t count, const Make& make) {
-  const OneLinearAlgebraThread one_each;
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     auto piece = make();

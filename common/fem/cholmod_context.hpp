@@ -6,13 +6,16 @@
 #include <stdexcept>
 
 #include "common/fem/assembly.hpp"
+#include "common/fem/dense.hpp"
 
 namespace palpate {
 
-/// A started CHOLMOD workspace with 64-bit indices, used by the thread that makes it. Private to common/fem.
+/// A started CHOLMOD workspace with 64-bit indices, used by the thread that makes it, in which its linear algebra runs.
+/// Private to common/fem.
 class CholmodContext {
  public:
   CholmodContext() {
+    keep_to_calling_thread();
     cholmod_l_start(&common_);
     common_.print = 0;
     // CHOLMOD copies small blocks in four threads, however many cores there are: they wait longer than they copy.

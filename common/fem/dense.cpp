@@ -23,6 +23,7 @@ int stride(const ConstDenseRef& m) {
 }  // namespace
 
 void invert_from_cholesky(DenseRef factor) {
+  keep_to_calling_thread();
   const int n = rows(factor), leading = stride(factor);
   int info = 0;
   dpotri_("L", &n, factor.data(), &leading, &info);
@@ -30,16 +31,19 @@ void invert_from_cholesky(DenseRef factor) {
 }
 
 void multiply_symmetric(double factor, const ConstDenseRef& symmetric_lower, const ConstDenseRef& b, DenseRef out) {
+  keep_to_calling_thread();
   cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, rows(out), columns(out), factor, symmetric_lower.data(),
               stride(symmetric_lower), b.data(), stride(b), 0.0, out.data(), stride(out));
 }
 
 void divide_by_lower(DenseRef b, const ConstDenseRef& lower) {
+  keep_to_calling_thread();
   cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, rows(b), columns(b), 1.0, lower.data(),
               stride(lower), b.data(), stride(b));
 }
 
 Eigen::MatrixXd dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  keep_to_calling_thread();
   Eigen::MatrixXd product(a.rows(), b.cols());
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows(a), columns(b), columns(a), 1.0, a.data(), stride(a),
               b.data(), stride(b), 0.0, product.data(), stride(product));
@@ -56,16 +60,8 @@ void pack_lower_by_rows(const ConstDenseRef& lower, double* packed) {
           packed[i * (i + 1) / 2 + j] = lower(i, j);
 }
 
-void set_linear_algebra_threads(int threads) {
-  openblas_set_num_threads(threads);
-}
-
-OneLinearAlgebraThread::OneLinearAlgebraThread() : before_(openblas_get_num_threads()) {
-  set_linear_algebra_threads(1);
-}
-
-OneLinearAlgebraThread::~OneLinearAlgebraThread() {
-  set_linear_algebra_threads(before_);
+void keep_to_calling_thread() {
+  openblas_set_num_threads(1);
 }
 
 }  // namespace palpate

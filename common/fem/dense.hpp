@@ -24,19 +24,8 @@ Eigen::MatrixXd dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b
 /// Packs a lower triangle by rows: entry (i,j), j <= i, to i(i+1)/2 + j.
 void pack_lower_by_rows(const ConstDenseRef& lower, double* packed);
 
-/// Largest number of threads that the functions here and the factorisation use.
-void set_linear_algebra_threads(int threads);
-
-/// While it lives, linear algebra takes one thread: for work that is shared among threads in larger pieces.
-class OneLinearAlgebraThread {
- public:
-  OneLinearAlgebraThread();
-  ~OneLinearAlgebraThread();
-  OneLinearAlgebraThread(const OneLinearAlgebraThread&) = delete;
-  OneLinearAlgebraThread& operator=(const OneLinearAlgebraThread&) = delete;
-
- private:
-  int before_;
-};
+/// From now on OpenBLAS computes in the thread that calls it: how it shares work among threads changes the last bits,
+/// and an archive must not depend on how many cores its host has. The functions here and CholmodContext call it.
+void keep_to_calling_thread();
 
 }  // namespace palpate

@@ -7,12 +7,16 @@
 #include "common/log/log.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/scene/find_archive.hpp"
+#include "common/scene/scene_changes.hpp"
 
 namespace palpate {
 
 void add_node_options(cli::CommandLine& app, NodeOptions& o) {
   app.show_version(PALPATE_VERSION);
   app.add_option("SCENE", o.scene, "Scene file").required();
+  app.add_option("--set", o.set,
+                 "KEY=VALUE in place of what the scene file says, alike for all its nodes; may be repeated")
+      .one_value_each_time();
   app.add_option("--seconds", o.seconds, "Stop after so many seconds, or where no driver has spoken for so long")
       .positive();
   app.add_option("--domain", o.domain, "DDS domain in place of the scene's").between(0, 230);
@@ -45,7 +49,7 @@ LoadedScene with_archives(Scene scene, ArchivePart part, ArchivePart of_dynamic)
 }
 
 LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchivePart of_dynamic) {
-  return with_archives(load_scene(options.scene), part, of_dynamic);
+  return with_archives(load_scene(options.scene, parse_changes(options.set)), part, of_dynamic);
 }
 
 std::uint64_t new_run() {

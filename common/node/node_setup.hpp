@@ -12,10 +12,10 @@ namespace palpate {
 
 struct NodeOptions {
   std::string scene, interface, keys;
-  std::vector<std::string> peers;
-  double seconds = 0;       ///< 0: no limit
-  int domain = -1;          ///< -1: the scene's
-  bool supervised = false;  ///< started by `palpate run`: says "ready" and prints one JSON line at the end
+  std::vector<std::string> peers, set;  ///< set: for parse_changes()
+  double seconds = 0;                   ///< 0: no limit
+  int domain = -1;                      ///< -1: the scene's
+  bool supervised = false;              ///< started by `palpate run`: says "ready" and prints one JSON line at the end
 };
 
 void add_node_options(cli::CommandLine& app, NodeOptions& options);

@@ -9,6 +9,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "drivers/spacemouse/cap_motion.hpp"
 
 namespace palpate {
@@ -51,7 +52,7 @@ std::uint32_t tool_number(const Scene& scene, const std::string& name) {
 }
 
 void run(const NodeOptions&) {
-  const Scene scene = load_scene(options.scene);
+  const Scene scene = load_scene(options.scene, parse_changes(options.set));
   DeviceState state{.tool = tool_number(scene, options.tool)};
   Mouse mouse;
   const auto bus = make_dds_bus(bus_settings(scene, options, "driver"));
@@ -90,5 +91,6 @@ int main(int argc, char** argv) {
   app.add_option("--speed", options.speeds.tip, "Of the tip while the cap is pushed all the way [m/s]")
       .between(0.001, 0.5)
       .show_default();
+  app.examples({"palpate_spacemouse scene.toml --depth 0.1", "palpate_spacemouse scene.toml --tool probe --peer HOST"});
   return node_main("palpate_spacemouse", argc, argv, app, run, options);
 }

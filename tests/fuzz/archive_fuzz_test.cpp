@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "common/archive/static_solve.hpp"
-#include "common/fem/dense.hpp"
 #include "tests/fuzz/hdf5_contents.hpp"
 #include "tests/fuzz/rounds.hpp"
 #include "tests/sim/played_scenes.hpp"
@@ -132,8 +131,6 @@ void solve(const Archive& archive) {
 
 class ArchiveFuzz : public ::testing::Test {
  protected:
-  ArchiveFuzz() { set_linear_algebra_threads(1); }
-
   void spoil(PlayedScene played, int rounds, unsigned seed) {
     const testing::TemporaryFolder folder;
     played.archives[0].content_hash = kHash;

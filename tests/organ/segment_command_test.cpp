@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "render_node/image.hpp"
@@ -81,6 +83,16 @@ TEST_F(SegmentCommand, ThroughAThinNeckTheRegionLeaksAndIsCutOffThere) {
   EXPECT_LT(found.border_voxels, region.border_voxels);
   labels("thin.inr --neck 8" + kSeed, "again.inr");
   EXPECT_EQ(text_of(*folder_ / "found.inr"), text_of(*folder_ / "again.inr"));
+}
+
+TEST_F(SegmentCommand, ItsFiguresInJsonAreThoseOfItsLabels) {
+  const ProgramResult result = segment("thin.inr --neck 8 --json -o figures.inr" + kSeed);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto figures = nlohmann::json::parse(result.out);
+  const LabelVolume labels = read_label_volume(*folder_ / "figures.inr");
+  EXPECT_EQ(figures["voxels"], std::ranges::count(labels.value, 1));
+  EXPECT_LT(figures["slices"][0].get<int>(), figures["slices"][1].get<int>());
+  EXPECT_GT(figures["on_edge"].get<double>(), 0.5);
 }
 
 TEST_F(SegmentCommand, ThroughAThickNeckPointsSetByHandMendIt) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/rig/example_bodies.hpp"
@@ -45,7 +44,6 @@ Momentum floating(const DynamicOrgan& organ) {
 }
 
 TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
-  set_linear_algebra_threads(1);
   const Scene scene = load_scene(PALPATE_SOURCE_DIR "/scenes/hepatectomy.toml");
   TwoNodes nodes(scene, load_or_precompute(scene, ArchivePart::surface));
   std::vector<std::unique_ptr<Device>> devices;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/simulator.hpp"
@@ -66,7 +65,6 @@ class Played {
 
 /// For so many ticks, in which `cut` tetrahedra or more go.
 void is_the_same_half_a_metre_away(const std::string& name, int ticks, std::size_t cut) {
-  set_linear_algebra_threads(1);
   Played here(name, Vector3d::Zero()), there(name, {0.5, 0.25, -0.125});
   double apart = 0, largest = 0;
   for (int k = 1; k <= ticks && !::testing::Test::HasFailure(); ++k) {

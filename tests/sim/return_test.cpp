@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tests/sim/played_scenes.hpp"
 #include "tools/rig/two_nodes.hpp"
@@ -18,8 +17,6 @@ class InterruptedPress : public ::testing::Test {
     double largest = 0, rise = 0;  ///< [N]; of the size in a tick
     double end = 0;                ///< [N]
   };
-
-  InterruptedPress() { set_linear_algebra_threads(1); }
 
   /// From 0 to 1 without a jerk at either end.
   static double eased(double t) {
@@ -136,8 +133,6 @@ TEST_F(InterruptedPress, IsFeltAllTheWayOfATissueTooSlowForItsTicks) {
 /// An example scene's script goes on while one of the nodes is away.
 class InterruptedScript : public ::testing::Test {
  protected:
-  InterruptedScript() { set_linear_algebra_threads(1); }
-
   enum class Victim { nobody, tissue, haptic };
   /// One node is gone between two ticks.
   struct Death {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tests/deform/work_of_cycles.hpp"
 #include "tools/rig/example_bodies.hpp"
@@ -97,7 +96,6 @@ TEST(TipOverARim, ContactNeverPutsOutWork) {
 
 /// What a tool of a scene feels in its own motion, from one tick to another.
 Felt felt_in(const std::string& name, int tool, int from, int to) {
-  set_linear_algebra_threads(1);
   const Scene scene = load_scene(PALPATE_SOURCE_DIR "/scenes/" + name);
   sim::Simulator simulator(scene, load_or_precompute(scene, ArchivePart::surface));
   std::vector<std::unique_ptr<Device>> devices;

@@ -11,7 +11,6 @@
 
 #include "common/describe/hash64.hpp"
 #include "common/devices/device.hpp"
-#include "common/fem/dense.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/sim/simulator.hpp"
@@ -83,7 +82,6 @@ void print_second(int second, const Hashes& h, const Course& course) {
 }
 
 void run(const std::string& file, double seconds) {
-  set_linear_algebra_threads(1);
   const Scene scene = load_scene(file);
   Simulator simulator(scene, load_or_precompute(scene, ArchivePart::surface));
   std::vector<std::unique_ptr<Device>> devices;

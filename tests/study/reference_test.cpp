@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "common/fem/dense.hpp"
 #include "common/fem/linear_contact.hpp"
 #include "common/fem/newton_solid.hpp"
 #include "common/fem/refine_graded.hpp"
@@ -36,12 +35,6 @@ Eigen::Matrix<double, 4, 3> random_corners(unsigned seed, double size) {
 const TetGradients kTet =
     tet_gradients({Vector3d(0, 0, 0), Vector3d(1, 0.1, 0), Vector3d(0.2, 1.1, 0), Vector3d(0.1, 0.2, 0.9)});
 const Lame kLame = lame({5000, 0.4, 1000});
-
-/// One thread, as in a study: several that wait for one another on a busy machine take many times as long.
-class OneThread : public ::testing::Environment {
-  void SetUp() override { set_linear_algebra_threads(1); }
-};
-const auto* const kOneThread = ::testing::AddGlobalTestEnvironment(new OneThread);
 
 TEST(NeoHookean, ForcesAreTheDerivativeOfTheEnergyAndTheTangentThatOfTheForces) {
   for (unsigned seed = 1; seed <= 5; ++seed) {

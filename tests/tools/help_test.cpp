@@ -50,8 +50,9 @@ TEST(ToolsHelp, EveryCommandHasExamplesOfOptionsThatItHas) {
   }
 }
 
-TEST(ToolsHelp, EveryNodeHasExamplesOfOptionsThatItHas) {
-  for (const char* node : {"haptic_node", "deform_node", "render_node", "web_node"}) {
+TEST(ToolsHelp, EveryNodeAndDriverHasExamplesOfOptionsThatItHas) {
+  for (const char* node :
+       {"haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "palpate_spacemouse"}) {
     if (!std::filesystem::exists(program(node))) continue;
     const std::string text = run_program(program(node) + " --help").out;
     const std::size_t at = text.find(std::string("\nExamples:\n  ") + node);

@@ -101,6 +101,21 @@ TEST_F(ToolsMotion, ForcesAndDepthsAreWhatTheStepsSay) {
   EXPECT_NEAR(slid.end, 0.1, 0.03);
 }
 
+TEST_F(ToolsMotion, InJsonItsStepsAreThoseOfItsTable) {
+  const std::string steps = "\"to 0,0,1\" \"press 3mm\" \"hold 0.2s\" withdraw";
+  const auto as_table = run_program(motion(steps)), as_json = run_program(motion(steps) + " --json");
+  ASSERT_EQ(as_json.status, 0) << as_json.err;
+  const auto figures = nlohmann::json::parse(as_json.out);
+  ASSERT_EQ(figures["steps"].size(), 4u);
+  const StepFelt told = felt_in(as_table.out, "hold 0.2s");
+  const auto& hold = figures["steps"][2];
+  EXPECT_EQ(hold["step"], "hold 0.2s");
+  EXPECT_NEAR(hold["to_s"].get<double>(), told.to, 0.006);
+  EXPECT_GT(told.largest, 0);
+  EXPECT_NEAR(hold["max_force_n"].get<double>(), told.largest, 0.0006);
+  EXPECT_NEAR(hold["end_force_n"].get<double>(), told.end, 0.0006);
+}
+
 TEST_F(ToolsMotion, WhatCannotBeDoneIsToldWithItsStep) {
   expect_refusal(motion("\"press 3mm\""), {"press 3mm", "begins with a place"});
   expect_refusal(motion("\"to 0,0,1\" \"press 1e6N\""), {"press 1e6N", "the force is at most"});

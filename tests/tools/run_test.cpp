@@ -49,6 +49,20 @@ TEST(ToolsRun, CheckNamesTheNodesThatRunStartsAndCountsTheirMemoryAlone) {
   }
 }
 
+TEST(ToolsRun, AKeyInPlaceOfTheFilesIsThatOfEveryNode) {
+  const LoopbackScene scene("set", kLinear);
+  const fs::path log = scene.folder() / "set.lcmlog";
+  const auto run =
+      run_program(fmt::format("{} run {} --set body.young=12345 --domain {} --seconds 0.3 --record {} "
+                              "--processes 3 --summary {}",
+                              program("palpate"), scene.scene(), testing::own_domain(), log.string(),
+                              (scene.folder() / "summary.json").string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(text_of(log).find("young = 12345"), std::string::npos);
+  const json summary = json::parse(text_of(scene.folder() / "summary.json"));
+  EXPECT_GT(summary["deform_node"]["frames"], 0) << "it is of the same scene";
+}
+
 TEST(ToolsRun, WhatCannotBeKeptIsSaidBeforeTheRun) {
   const LoopbackScene scene("unkept", kLinear);
   const std::string text = text_of(scene.scene());

@@ -112,6 +112,25 @@ TEST_F(ToolsSolve, TensorsEqualDirectOnThePlateForOneNodeAndForSeveral) {
                              hold(0.01, -0.03, "0,0,0.0005")});
 }
 
+TEST_F(ToolsSolve, AKeyInPlaceOfTheFilesIsTaken) {
+  const std::string command = fmt::format("{} solve {} --force {}:0,0,-0.001 --json", program("palpate"),
+                                          plate().string(), nearest_node(plate_mesh(), {0, 0, 0.008}));
+  const auto moved = [&](const std::string& more) {
+    const auto result = run_program(command + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out)["max_displacement_m"].get<double>();
+  };
+  EXPECT_NEAR(moved(" --set body.young=1000"), 2 * moved(" --set body.young=2000"), 1e-9);
+  EXPECT_NEAR(moved(" --set body.young=1000 --method direct"), moved(" --set body.young=1000"), 1e-9);
+}
+
+TEST_F(ToolsSolve, SpringsAreNotSolvedForAsElements) {
+  testing::expect_refusal(fmt::format("{} solve {}/scenes/plate_cut.toml --set body.model=spring_mass --force "
+                                      "40:0,0,-0.001 --method direct",
+                                      program("palpate"), PALPATE_SOURCE),
+                          {"spring_mass", "linear elasticity", "--dynamic"});
+}
+
 TEST_F(ToolsSolve, ItsFiguresInJsonAreThoseOfItsTable) {
   const int node = nearest_node(plate_mesh(), {0, 0, 0.008});
   const std::string hold = fmt::format("{}:0,0,-0.001", node);

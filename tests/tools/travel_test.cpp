@@ -77,6 +77,22 @@ TEST_F(ToolsTravel, ALogVerifiesWithoutItsSceneAndLeavesNothing) {
   EXPECT_EQ(info.out.find("unknown topics"), std::string::npos) << info.out;
 }
 
+TEST_F(ToolsTravel, ALogVerifiesWhereLinearAlgebraHasMoreThreads) {
+  const auto verified = run_program("OPENBLAS_NUM_THREADS=2 " + verify(log()));
+  EXPECT_EQ(verified.status, 0) << verified.err;
+}
+
+TEST_F(ToolsTravel, TensorsThatWereComputedOnThisHostAreToldOf) {
+  const auto verified = run_program(verify(log()));
+  EXPECT_NE(verified.out.find("tensors of \'block\' that were computed on this host"), std::string::npos)
+      << verified.out;
+  // Kernels for a processor of 2004 sum in another order.
+  const auto elsewhere = run_program("OPENBLAS_CORETYPE=Prescott " + verify(log()));
+  EXPECT_EQ(elsewhere.status, 1);
+  EXPECT_NE(elsewhere.err.find("the forces differ"), std::string::npos) << elsewhere.err;
+  EXPECT_NE(elsewhere.err.find("of \'block\' were computed on this host"), std::string::npos) << elsewhere.err;
+}
+
 TEST_F(ToolsTravel, AMissingPieceIsToldWithItsHashAndFoundByItsContents) {
   rewrite_files(log(), changed(), [](LogFile& file) {
     if (file.path.ends_with("block.msh")) file.content.clear();

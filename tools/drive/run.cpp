@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/fem/dense.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -92,7 +91,6 @@ class Run {
 
 PointResult run_scene(const Scene& scene, const RunSettings& settings) {
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
-  set_linear_algebra_threads(1);  // as the nodes have it
   return Run(scene, settings, archives).to_its_end();
 }
 

@@ -38,8 +38,9 @@ class LoggedScene {
   LoggedScene& operator=(const LoggedScene&) = delete;
 
   const Scene& scene() const { return scene_; }
-  /// Computes the archives that are not here, and says so on standard error. Throws as ensure_archive() does.
-  void ensure_archives() const;
+  /// Computes the archives that are not here, and says so on standard error. Returns the bodies that it did so for.
+  /// Throws as ensure_archive() does.
+  std::vector<std::string> ensure_archives() const;
 
  private:
   void find_files(MovedFiles& moved);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "common/scene/ensure_archive.hpp"
@@ -18,6 +19,7 @@ struct MotionOptions {
   std::string scene, out, tool, body;
   std::vector<std::string> steps;
   MotionManner manner;
+  bool json = false;
 };
 
 int choose_tool(const Scene& scene, const std::string& name) {
@@ -29,20 +31,41 @@ int choose_tool(const Scene& scene, const std::string& name) {
   throw std::runtime_error(fmt::format("{}: which tool? It has {}", scene.file.string(), names));
 }
 
-/// What the tool felt in each part; whether it felt anything.
-bool print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
+/// What the tool felt in a part of its motion.
+struct PartFelt {
+  const MotionMaker::Part& part;
+  double largest = 0, end = 0;  ///< [N]
+};
+
+std::vector<PartFelt> felt_in_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
   const std::vector<double> felt = rehearsal.forces(maker.rows().trajectory());
   const auto at = [&](double time) {
     return std::min(static_cast<std::size_t>(time / rehearsal.dt()), felt.size() - 1);
   };
-  fmt::print("   from [s]    to [s]   largest force [N]   at the end [N]   step\n");
+  std::vector<PartFelt> all;
   for (const MotionMaker::Part& part : maker.parts()) {
     const auto first = felt.begin() + static_cast<std::ptrdiff_t>(at(part.begin));
     const auto last = felt.begin() + static_cast<std::ptrdiff_t>(at(part.end));
-    fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", part.begin, part.end, *std::max_element(first, last + 1),
-               *last, part.text);
+    all.push_back({part, *std::max_element(first, last + 1), *last});
   }
-  return std::ranges::any_of(felt, [](double force) { return force > 0; });
+  return all;
+}
+
+void print_parts(const std::vector<PartFelt>& parts) {
+  fmt::print("   from [s]    to [s]   largest force [N]   at the end [N]   step\n");
+  for (const PartFelt& p : parts)
+    fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", p.part.begin, p.part.end, p.largest, p.end, p.part.text);
+}
+
+void print_json(const std::vector<PartFelt>& parts, const std::string& file, double seconds) {
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  for (const PartFelt& p : parts)
+    steps.push_back({{"step", p.part.text},
+                     {"from_s", p.part.begin},
+                     {"to_s", p.part.end},
+                     {"max_force_n", p.largest},
+                     {"end_force_n", p.end}});
+  fmt::print("{}\n", nlohmann::ordered_json{{"file", file}, {"seconds", seconds}, {"steps", steps}}.dump());
 }
 
 void make_motion(const MotionOptions& o) {
@@ -61,8 +84,11 @@ void make_motion(const MotionOptions& o) {
   std::string comment = fmt::format("{} on {}:", scene.tools[tool].name, body);
   for (const MotionStep& step : steps) comment += fmt::format(" {};", step.text);
   maker.rows().write(o.out, comment);
-  if (!print_parts(maker, rehearsal))
+  const std::vector<PartFelt> parts = felt_in_parts(maker, rehearsal);
+  if (std::ranges::none_of(parts, [](const PartFelt& p) { return p.largest > 0; }))
     fmt::print(stderr, "palpate: {}: the tool touches nothing on all of its way\n", o.out);
+  if (o.json) return print_json(parts, o.out, maker.rows().time());
+  print_parts(parts);
   fmt::print(
       "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
       o.out, maker.rows().time(), o.scene, scene.tools[tool].name, std::filesystem::absolute(o.out).string());
@@ -86,6 +112,7 @@ void add_motion_command(cli::Command& app) {
   command.add_option("--clear", o->manner.clear, "Between tip and tissue where it does not press [m]")
       .between(1e-4, 1.0)
       .show_default();
+  command.add_flag("--json", o->json, "Print what the tool feels as one line of JSON");
   command.examples(
       {"palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" \"press 0.3N\" \"hold "
        "1s\" withdraw -o press.csv"});

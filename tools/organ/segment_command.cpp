@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tools/organ/commands.hpp"
@@ -20,6 +21,7 @@ struct SegmentOptions {
   std::string image, series, output, range, points, preview;
   std::vector<std::string> seeds, seed_voxels;
   double smoothing = 1, neck = 0;
+  bool json = false;
   ContourForces forces;
 };
 
@@ -85,21 +87,33 @@ std::string doubtful_slices(const Segmentation& s) {
   return text;
 }
 
+/// What became of the contours.
+struct ContourFigures {
+  int first = -1, last = 0;  ///< slices that have one
+  int by_hand = 0, drawn = 0;
+  double on_edge = 0;  ///< mean share of a slice's points
+};
+
+ContourFigures figures_of(const Segmentation& s) {
+  ContourFigures f;
+  for (int k = 0; k < static_cast<int>(s.slices.size()); ++k) {
+    const SegmentedSlice& slice = s.slices[k];
+    if (slice.moved.empty()) continue;
+    if (f.first < 0) f.first = k;
+    f.last = k, f.by_hand += slice.by_hand, f.on_edge += slice.on_edge(), ++f.drawn;
+  }
+  f.on_edge /= f.drawn;
+  return f;
+}
+
 void print_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
+  fmt::print("{}: {}\n", o.image, say_size(shape));
   fmt::print("  range: {:.4g} to {:.4g}{}\n", s.range.low, s.range.high,
              o.range.empty() ? ", from what lies around the seeds" : "");
   tell_findings(s.findings, "");
-  int first = -1, last = 0, by_hand = 0;
-  double on_edge = 0;
-  int with_contour = 0;
-  for (int k = 0; k < shape.count[2]; ++k) {
-    const SegmentedSlice& slice = s.slices[k];
-    if (slice.moved.empty()) continue;
-    if (first < 0) first = k;
-    last = k, by_hand += slice.by_hand, on_edge += slice.on_edge(), ++with_contour;
-  }
-  fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", first, last,
-             by_hand, 100 * on_edge / with_contour);
+  const ContourFigures f = figures_of(s);
+  fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", f.first,
+             f.last, f.by_hand, 100 * f.on_edge);
   if (const std::string doubtful = doubtful_slices(s); !doubtful.empty() && o.forces.reach > 0)
     fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
                100 * kSureEnough, doubtful);
@@ -108,11 +122,26 @@ void print_segmentation(const SegmentOptions& o, const GridShape& shape, const S
              1e6 * static_cast<double>(voxels) * shape.spacing.prod());
 }
 
+void print_json(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
+  const ContourFigures f = figures_of(s);
+  const auto voxels = std::ranges::count(s.inside, 1);
+  nlohmann::ordered_json json{{"file", o.output},
+                              {"range", {s.range.low, s.range.high}},
+                              {"slices", {f.first, f.last}},
+                              {"by_hand", f.by_hand},
+                              {"on_edge", f.on_edge},
+                              {"doubtful_slices", doubtful_slices(s)},
+                              {"voxels", voxels},
+                              {"volume_m3", static_cast<double>(voxels) * shape.spacing.prod()},
+                              {"found", nlohmann::ordered_json::array()}};
+  for (const Finding& finding : s.findings) json["found"].push_back(say(finding));
+  fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 void segment_image(const SegmentOptions& o) {
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;
-  fmt::print("{}: {}\n", o.image, say_size(shape));
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
@@ -134,7 +163,7 @@ void segment_image(const SegmentOptions& o) {
   write_label_volume(volume, segmentation.inside, o.output);
   for (Finding& finding : segmentation.findings)
     for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
-  print_segmentation(o, shape, segmentation);
+  o.json ? print_json(o, shape, segmentation) : print_segmentation(o, shape, segmentation);
 }
 
 }  // namespace
@@ -167,6 +196,7 @@ void add_segment_command(cli::Command& app) {
                      "Text file of lines SLICE X Y, in voxels: the contours of these slices are drawn through their "
                      "points, those of up to 15 slices between two of them start from both");
   command.add_option("--preview", o->preview, "Folder for a picture of each slice with its contours");
+  command.add_flag("--json", o->json, "Print what came of it as one line of JSON");
   command.tells_progress();
   command.examples({"palpate segment ct.nii.gz --seed 60,-20,110 --preview slices -o liver.mha",
                     "palpate segment ct.nii.gz --seed 60,-20,110 --neck 6 --points mended.txt -o liver.mha"});

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
@@ -20,8 +21,16 @@ struct StabilityOptions {
   std::string scene, folder;
   std::vector<std::string> set;
   stability::TableRun run;
-  bool quick = false;
+  bool quick = false, json = false;
 };
+
+void print_json(const stability::Row& row) {
+  const nlohmann::ordered_json line{
+      {"case", row.name},       {"parameter", row.parameter}, {"value", row.value},
+      {"outcome", row.outcome}, {"max_force", row.max_force}, {"energy_growth", row.energy_growth},
+      {"note", row.note}};
+  fmt::print("{}\n", line.dump());
+}
 
 void run(const StabilityOptions& o) {
   std::optional<Scene> scene;
@@ -31,6 +40,9 @@ void run(const StabilityOptions& o) {
   const int failed =
       stability::run_table(points, o.folder, stability::subject_of(scene ? &*scene : nullptr, o.quick), o.run);
   const std::string missing = run_script("stability_page.py", o.folder);
+  if (o.json)
+    for (const stability::Row& row : stability::read_rows(std::filesystem::path(o.folder) / "stability.csv"))
+      if (row.name.find(o.run.only) != std::string::npos) print_json(row);
   if (!missing.empty()) fmt::print(stderr, "stability: {}\n", missing);
   if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
 }
@@ -46,6 +58,7 @@ void add_stability_command(cli::Command& app) {
   command.add_option("-o,--output", options->folder, "Folder for stability.csv, plots and page").required();
   command.add_flag("--quick", options->quick, "The subset that takes a minute");
   command.add_option("--only", options->run.only, "Cases whose name contains this");
+  command.add_flag("--json", options->json, "Print one line of JSON a case");
   command.add_option("--jobs", options->run.jobs, "Cases at the same time").between(1, 1024).show_default();
   command.tells_progress();
   command.examples({"palpate stability --quick -o out/stability",

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "common/cli/progress.hpp"
-#include "common/fem/dense.hpp"
 #include "common/files/atomic_file.hpp"
 #include "tools/stability/guarded_run.hpp"
 #include "tools/study/output_folder.hpp"
@@ -91,7 +90,6 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
   std::vector<Row> before;
   if (text_of(mark) == subject) before = read_rows(csv);
   std::ofstream(mark) << subject << "\n";
-  set_linear_algebra_threads(1);  // as the nodes have it; threads that spin would only slow the others down
   std::vector<std::optional<Row>> rows;
   std::vector<Point> to_run;
   std::vector<std::size_t> places;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "common/cli/progress.hpp"
@@ -17,7 +19,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> scenes, set;
   std::string out, budget;
-  bool quick = false, growth = false;
+  bool quick = false, growth = false, json = false;
 };
 
 /// "1ms", "250us", "0.5 ms" or "0.001s".
@@ -41,9 +43,26 @@ void tell(const std::string& line) {
   cli::say(line);
 }
 
-void make_page(const std::filesystem::path& folder) {
+/// `to`: where its place is told.
+void make_page(const std::filesystem::path& folder, std::FILE* to) {
   const std::string missing = run_script("study_page.py", folder);
-  fmt::print("{}\n", missing.empty() ? (folder / "index.html").string() : missing);
+  fmt::print(to, "{}\n", missing.empty() ? (folder / "index.html").string() : missing);
+}
+
+/// By the names of study.csv; what is not known is null.
+void print_json(const study::Row& row) {
+  const nlohmann::ordered_json line{{"scene", row.scene},
+                                    {"method", row.method},
+                                    {"knob", row.knob},
+                                    {"value", row.value},
+                                    {"step_us_median", row.step_us_median},
+                                    {"step_us_p99", row.step_us_p99},
+                                    {"offline_s", row.offline_s},
+                                    {"memory_bytes", row.memory_bytes},
+                                    {"err_u_rel", row.err_u_rel},
+                                    {"err_f_rel", row.err_f_rel},
+                                    {"reference", row.reference}};
+  fmt::print("{}\n", line.dump());
 }
 
 /// All of them before the first is studied. Throws std::runtime_error where two would share a folder.
@@ -65,14 +84,17 @@ void run(const Arguments& arguments) {
   const bool several = arguments.scenes.size() > 1 || arguments.growth;  // a folder each, and an index
   if (arguments.scenes.empty() && !arguments.growth)
     throw std::runtime_error("study: name a scene, or ask for --growth");
+  std::FILE* const to = arguments.json ? stderr : stdout;
   if (several) options.references = out / "references";
   for (const Scene& scene : load_scenes(arguments.scenes, parse_changes(arguments.set))) {
     const auto folder = several ? out / scene.file.stem() : out;
-    study::run_study(scene, folder, options);
-    make_page(folder);
+    const study::Result result = study::run_study(scene, folder, options);
+    if (arguments.json)
+      for (const study::Row& row : result.rows) print_json(row);
+    make_page(folder, to);
   }
   if (arguments.growth) study::measure_growth(out, arguments.quick, tell);
-  if (several) make_page(out);
+  if (several) make_page(out, to);
 }
 
 }  // namespace
@@ -91,6 +113,7 @@ void add_study_command(cli::Command& app) {
                      "writes it as a scene");
   command.add_flag("--growth", arguments->growth,
                    "How a step's time grows over surface nodes, contacts, edges, modes and particles");
+  command.add_flag("--json", arguments->json, "Print one line of JSON a setting");
   command.add_flag("--quick", arguments->quick, "Fewer patches, samples and knobs");
   command.tells_progress();
   command.examples({"palpate study scenes/plate.toml --quick -o out/study",

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "common/fem/dense.hpp"
 #include "tools/study/budget.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/machine.hpp"
@@ -71,7 +70,6 @@ Methods make_methods(const Scene& scene, const StudyOptions& options) {
 
 Result run_study(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options) {
   prepare_folder(folder, "study.csv", kStudyHead);
-  set_linear_algebra_threads(1);  // offline times then do not depend on who else computes, and nothing spins
   const Store store(folder, study_key(scene, options.quick));
   if (store.is_new()) std::filesystem::remove(folder / "machine.txt");
   StudyOptions here = options;

@@ -7,7 +7,6 @@
 #include <future>
 
 #include "common/archive/node_clusters.hpp"
-#include "common/fem/dense.hpp"
 #include "common/fem/stopwatch.hpp"
 
 namespace palpate {
@@ -126,8 +125,7 @@ std::shared_ptr<const CompressedCompliance> compress(const SurfaceMap& surface, 
   BlockPlan plan = plan_blocks(surface);
   const int touchable = plan.touchable;
   Compressor compressor(surface, std::move(plan));
-  const OneLinearAlgebraThread one_each;  // blocks are small, and there are two threads already
-  std::future<void> before;               // the leaf before is compressed while the next one is solved for
+  std::future<void> before;  // the leaf before is compressed while the next one is solved for
   for (int told = 0; !compressor.leaf().empty();) {
     MatrixXd columns = columns_of(compressor.leaf());
     if (before.valid()) before.get();

@@ -22,6 +22,9 @@ std::unique_ptr<DynamicModel> make_model(const SpringMassSpec& body, const Elast
 
 FreeVibration vibration(const SpringMassSpec& body);
 
+/// Throws: the full system is one of elements, of which springs know nothing.
+DirectProblem direct_problem(const SpringMassSpec& body);
+
 /// Springs have a Poisson's ratio of their own.
 inline std::vector<std::string> locking_warnings(const SpringMassSpec&) {
   return {};
