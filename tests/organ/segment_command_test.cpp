@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "render_node/image.hpp"
@@ -157,6 +160,18 @@ TEST_F(SegmentCommand, APictureOfEachSliceIsDrawn) {
     EXPECT_EQ(picture.width, 2 * thin_.x * picture.height / thin_.y) << name;
     EXPECT_EQ(contour > 1000, std::string(name) == "slice_0028.png") << name << " " << contour;
   }
+}
+
+TEST_F(SegmentCommand, FiguresArePrintedAsOneLineOfJson) {
+  const LabelVolume found = labels("thin.inr --neck 8 --json" + kSeed, "json.inr");
+  EXPECT_EQ(std::ranges::count(said_, '\n'), 1) << said_;
+  const auto json = nlohmann::json::parse(said_);
+  const auto voxels = std::ranges::count(found.value, 1);
+  EXPECT_EQ(json["voxels"], found.shape.count);
+  EXPECT_EQ(json["label_voxels"], voxels);
+  EXPECT_NEAR(json["volume_m3"], static_cast<double>(voxels) * found.shape.spacing.prod(), 1e-12);
+  EXPECT_LT(json["range"][0], json["range"][1]);
+  EXPECT_GT(json["points_on_edge"], 0.6);
 }
 
 TEST_F(SegmentCommand, MistakesAndDamageAreToldInASentence) {

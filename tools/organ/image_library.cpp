@@ -14,6 +14,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "common/files/ending.hpp"
 #include "common/mesh/child.hpp"
 #include "tools/organ/label_volume.hpp"
 
@@ -44,7 +45,7 @@ typename Image<T>::Pointer read_image(const std::string& file) {
     if (count < 1 || count > 65536 || (voxels *= count) > kMaxVoxels)
       throw std::runtime_error("it announces more voxels than the billion that is read");
   }
-  if (file.ends_with(".mha") && is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
+  if (has_ending(file, ".mha") && is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
     throw std::runtime_error("it ends before its last voxel");
   const auto reader = itk::ImageFileReader<Image<T>>::New();
   reader->SetImageIO(format);
@@ -83,8 +84,8 @@ template <class T>
 typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std::string& series) {
   const std::string name = file.string();
   if (std::filesystem::is_directory(file)) return read_series<T>(name, series);
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
-  if (name.ends_with(".mhd") || name.ends_with(".mha")) return read_image<T, itk::MetaImageIO>(name);
+  if (has_ending(file, ".nii") || has_ending(file, ".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
+  if (has_ending(file, ".mhd") || has_ending(file, ".mha")) return read_image<T, itk::MetaImageIO>(name);
   return read_image<T, itk::NrrdImageIO>(name);
 }
 

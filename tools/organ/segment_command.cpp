@@ -20,6 +20,7 @@ struct SegmentOptions {
   std::string image, series, output, range, points, preview;
   std::vector<std::string> seeds, seed_voxels;
   double smoothing = 1, neck = 0;
+  bool json = false;
   ContourForces forces;
 };
 
@@ -70,49 +71,66 @@ SegmentationRules rules_of(const SegmentOptions& o, const GridShape& shape) {
   return rules;
 }
 
-/// Runs of slices whose contours found few edges, as "12, 30-34".
-std::string doubtful_slices(const Segmentation& s) {
+std::vector<int> doubtful_slices(const Segmentation& s) {
+  std::vector<int> doubtful;
+  for (std::size_t k = 0; k < s.slices.size(); ++k)
+    if (!s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough) doubtful.push_back(static_cast<int>(k));
+  return doubtful;
+}
+
+/// "12, 30-34"
+std::string runs_of(const std::vector<int>& slices) {
   std::string text;
-  const auto doubtful = [&](int k) { return !s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough; };
-  const int count = static_cast<int>(s.slices.size());
-  for (int k = 0; k < count; ++k) {
-    if (!doubtful(k)) continue;
-    const int first = k;
-    while (k + 1 < count && doubtful(k + 1)) ++k;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const int first = slices[i];
+    while (i + 1 < slices.size() && slices[i + 1] == slices[i] + 1) ++i;
     text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
-    if (k > first) text += fmt::format("-{}", k);
+    if (slices[i] > first) text += fmt::format("-{}", slices[i]);
   }
   return text;
 }
 
-void print_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
-  fmt::print("  range: {:.4g} to {:.4g}{}\n", s.range.low, s.range.high,
-             o.range.empty() ? ", from what lies around the seeds" : "");
-  tell_findings(s.findings, "");
-  int first = -1, last = 0, by_hand = 0;
+void tell_contours(const SegmentOptions& o, const Segmentation& s, Output& out) {
+  std::vector<int> slices;
+  int by_hand = 0;
   double on_edge = 0;
-  int with_contour = 0;
-  for (int k = 0; k < shape.count[2]; ++k) {
-    const SegmentedSlice& slice = s.slices[k];
-    if (slice.moved.empty()) continue;
-    if (first < 0) first = k;
-    last = k, by_hand += slice.by_hand, on_edge += slice.on_edge(), ++with_contour;
+  for (std::size_t k = 0; k < s.slices.size(); ++k) {
+    if (s.slices[k].moved.empty()) continue;
+    slices.push_back(static_cast<int>(k)), by_hand += s.slices[k].by_hand, on_edge += s.slices[k].on_edge();
   }
-  fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", first, last,
-             by_hand, 100 * on_edge / with_contour);
-  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty() && o.forces.reach > 0)
-    fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
-               100 * kSureEnough, doubtful);
+  if (slices.empty()) return;  // of a few voxels
+  on_edge /= static_cast<double>(slices.size());
+  const std::vector<int> doubtful = o.forces.reach > 0 ? doubtful_slices(s) : std::vector<int>{};
+  out.say(fmt::format("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge",
+                      slices.front(), slices.back(), by_hand, 100 * on_edge));
+  if (!doubtful.empty())
+    out.say(fmt::format("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)",
+                        100 * kSureEnough, runs_of(doubtful)));
+  out.figures().update({{"first_slice", slices.front()},
+                        {"last_slice", slices.back()},
+                        {"slices_by_hand", by_hand},
+                        {"points_on_edge", on_edge},
+                        {"doubtful_slices", doubtful}});
+}
+
+void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s, Output& out) {
+  out.say(fmt::format("  range: {:.4g} to {:.4g}{}", s.range.low, s.range.high,
+                      o.range.empty() ? ", from what lies around the seeds" : ""));
+  out.figures()["range"] = {s.range.low, s.range.high};
+  tell_findings(s.findings, "", out);
+  tell_contours(o, s, out);
   const auto voxels = std::ranges::count(s.inside, 1);
-  fmt::print("{}: label 1, {} voxels, {:.4g} ml\n", o.output, voxels,
-             1e6 * static_cast<double>(voxels) * shape.spacing.prod());
+  const double volume = static_cast<double>(voxels) * shape.spacing.prod();
+  out.say(fmt::format("{}: label 1, {} voxels, {:.4g} ml", o.output, voxels, 1e6 * volume));
+  out.figures().update({{"file", o.output}, {"label", 1}, {"label_voxels", voxels}, {"volume_m3", volume}});
 }
 
 void segment_image(const SegmentOptions& o) {
+  Output out(o.json);
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;
-  fmt::print("{}: {}\n", o.image, say_size(shape));
+  tell_image(o.image, shape, out);
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
@@ -120,13 +138,7 @@ void segment_image(const SegmentOptions& o) {
   say_progress("smoothing");
   if (o.smoothing > 0) smooth(smoothed, Eigen::Vector3d::Constant(o.smoothing * shape.spacing.head<2>().minCoeff()));
   say_progress("growing the region and moving contours");
-  Segmentation segmentation = [&] {
-    try {
-      return segment(smoothed, seeds, rules);
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("{}: {}", o.image, error.what()));
-    }
-  }();
+  Segmentation segmentation = of_file(o.image, [&] { return segment(smoothed, seeds, rules); });
   if (!o.preview.empty()) {
     say_progress("drawing the slices");
     write_slice_pictures(image, smoothed, segmentation, o.preview);
@@ -134,7 +146,8 @@ void segment_image(const SegmentOptions& o) {
   write_label_volume(volume, segmentation.inside, o.output);
   for (Finding& finding : segmentation.findings)
     for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
-  print_segmentation(o, shape, segmentation);
+  tell_segmentation(o, shape, segmentation, out);
+  out.finish();
 }
 
 }  // namespace
@@ -167,6 +180,7 @@ void add_segment_command(cli::Command& app) {
                      "Text file of lines SLICE X Y, in voxels: the contours of these slices are drawn through their "
                      "points, those of up to 15 slices between two of them start from both");
   command.add_option("--preview", o->preview, "Folder for a picture of each slice with its contours");
+  command.add_flag("--json", o->json, "Print one line of JSON");
   command.tells_progress();
   command.examples({"palpate segment ct.nii.gz --seed 60,-20,110 --preview slices -o liver.mha",
                     "palpate segment ct.nii.gz --seed 60,-20,110 --neck 6 --points mended.txt -o liver.mha"});
