@@ -17,7 +17,7 @@ TEST(ImageFuzz, AnImageIsReadOrRefusedInWords) {
                                     {"b.mha", meta_header() + voxels},
                                     {"c.nrrd", nrrd_header() + voxels},
                                     {"d.nii", nifti_header() + voxels}};
-  spoil_all(samples, 60, 5, [](const std::filesystem::path& file) {
+  spoil_all(samples, 400, 5, [](const std::filesystem::path& file) {
     const bool labels = reads(file, [&] {
       const LabelVolume volume = read_label_volume(file);
       EXPECT_EQ(volume.value.size(), volume.shape.size());

@@ -101,6 +101,20 @@ TEST_F(LabelImages, DamageIsRefused) {
   EXPECT_THROW(read_label_volume(folder_.path()), std::runtime_error);
 }
 
+// Room is made for all that a header announces: a few hundred bytes must not ask for gigabytes.
+TEST_F(LabelImages, AHeaderThatAnnouncesMoreThanItsFileCanHoldIsRefusedFirst) {
+  std::string nifti = nifti_header();
+  for (const std::size_t at : {42, 44, 46}) nifti.replace(at, 2, "\xe8\x03");  // 1000
+  for (const auto& [name, bytes] :
+       {std::pair{"huge.nii", nifti}, {"huge.nrrd", replaced(nrrd_header(), "sizes: 3 2 2", "sizes: 1000 1000 1000")}})
+    try {
+      read_label_volume(write_file(folder_ / name, bytes + voxels_));
+      FAIL() << name;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("it ends before its last voxel"), std::string::npos) << error.what();
+    }
+}
+
 TEST_F(LabelImages, WhatIsSaidOfAFileHasNoAddressesInIt) {
   std::string said;
   try {
