@@ -115,7 +115,7 @@ TriangleMesh organ_surface(const LabelSolid& labels, double deviation) {
 
 void compare(const LabelVolume& volume, int label, bool quick) {
   std::vector<Finding> findings;
-  const LabelSolid labels = solid_of(voxels_of(volume, {{label, "organ"}}, findings), {0}, {});
+  const LabelSolid labels = solid_of(voxels_of(volume, {{label, "organ"}}, findings), {0}, {}, findings);
   const Eigen::Vector3d voxel = volume.shape.spacing;
   const TriangleMesh finest = marching_cubes(labels.solid, voxel);
   const std::size_t stride = finest.nodes.size() / 50000 + 1;

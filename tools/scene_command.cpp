@@ -8,6 +8,7 @@
 #include "common/mesh/mesh_file.hpp"
 #include "tools/commands.hpp"
 #include "tools/scene_for_mesh.hpp"
+#include "tools/visual_about.hpp"
 
 namespace palpate {
 namespace {
@@ -28,7 +29,7 @@ const Tissue& tissue_of(const SceneOptions& o) {
 
 /// As a scene in the folder names them.
 VisualSpec seen_from(const fs::path& folder, VisualSpec visual) {
-  for (fs::path* const file : {&visual.surface, &visual.materials})
+  for (fs::path* const file : {&visual.surface, &visual.materials, &visual.texture})
     if (!file->empty()) *file = fs::proximate(fs::absolute(*file), folder);
   return visual;
 }
@@ -78,12 +79,12 @@ void add_scene_command(cli::Command& app) {
                      fmt::format("What it is of (default: the mesh's name): {}", tissue_names()));
   command.add_option("--visual", o->visual,
                      "Surface that is drawn in place of the mesh's own, in metres or millimetres (.obj, with its .mtl "
-                     "beside it; .stl)");
+                     "and .png beside it; .stl)");
   command.add_option("--fixed", o->wishes.fixed, "Group of the mesh by which it is held").show_default();
   command.add_option("--radius", o->wishes.radius, "Radius of the probe's tip [m]").positive().show_default();
   command
       .add_option("--press", o->wishes.press,
-                  "How deep it presses [m] (default: a fortieth of the diagonal, 0.01 at most)")
+                  "How deep it presses [m] (default: a fortieth of the diagonal, half the radius at most)")
       .positive();
   command.examples({"palpate scene organ.msh --tissue liver -o organ.toml",
                     "palpate scene organ.msh --tissue liver --visual organ_look.obj -o organ.toml"});

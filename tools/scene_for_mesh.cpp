@@ -10,7 +10,6 @@
 #include "common/devices/device_spec.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/mesh/surface.hpp"
-#include "common/mesh/visual_mesh.hpp"
 
 namespace palpate {
 namespace {
@@ -76,6 +75,7 @@ std::string visual_text(const VisualSpec& visual) {
   if (visual.surface.empty()) return "";
   std::string text = fmt::format("\n[body.visual]\nsurface = \"{}\"\n", visual.surface.string());
   if (!visual.materials.empty()) text += fmt::format("materials = \"{}\"\n", visual.materials.string());
+  if (!visual.texture.empty()) text += fmt::format("texture = \"{}\"\n", visual.texture.string());
   return text + fmt::format("scale = {}   # m\n", visual.scale);
 }
 
@@ -110,26 +110,6 @@ std::string trajectory_text(double depth, double press) {
 
 }  // namespace
 
-VisualSpec visual_about(const TetMesh& mesh, const std::filesystem::path& surface) {
-  VisualSpec visual{.surface = surface};
-  const VisualMesh seen = load_visual_mesh(visual);
-  Eigen::AlignedBox3d tissue, picture;
-  for (const Eigen::Vector3d& x : mesh.nodes) tissue.extend(x);
-  for (const Eigen::Vector3f& x : seen.position) picture.extend(x.cast<double>());
-  constexpr double kNear = 0.25;  // of the mesh's diagonal, by which corners of the boxes may lie apart
-  const auto lies_about = [&](double scale) {
-    const double apart =
-        std::max((scale * picture.min() - tissue.min()).norm(), (scale * picture.max() - tissue.max()).norm());
-    return apart < kNear * tissue.diagonal().norm();
-  };
-  if (!lies_about(visual.scale) && !lies_about(visual.scale = 1e-3))
-    throw std::runtime_error(
-        fmt::format("{}: it does not lie about the mesh, neither in metres nor in millimetres", surface.string()));
-  const std::filesystem::path materials = std::filesystem::path(surface).replace_extension(".mtl");
-  if (std::filesystem::exists(materials)) visual.materials = materials;
-  return visual;
-}
-
 SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const std::string& trajectory_name,
                      const Tissue& tissue, const SceneWishes& wishes) {
   const auto held = mesh.groups.find(wishes.fixed);
@@ -142,7 +122,7 @@ SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const st
   const Surface surface = extract_surface(mesh);
   const Spot spot = farthest_spot(mesh, surface, held->second.nodes);
   const double extent = extent_of(mesh, surface);
-  const double press = wishes.press > 0 ? wishes.press : std::min(extent / 40, 0.01);
+  const double press = wishes.press > 0 ? wishes.press : std::min(extent / 40, 0.5 * wishes.radius);
   const double reach = std::clamp(0.5 * extent, kShortest, kLongest);
   const Eigen::Vector3d pivot = spot.place + reach * spot.normal;
   SceneTexts texts;  // body and device are of the tables' first kinds: solved beforehand, moved by a file

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <string>
 
 #include "common/mesh/tet_mesh.hpp"
@@ -11,18 +10,14 @@ namespace palpate {
 struct SceneWishes {
   std::string fixed = "attachment";  ///< group by which the body is held
   double radius = 0.006;             ///< [m] of the probe's tip
-  double press = 0;                  ///< [m] that it goes in; 0: a fortieth of the body's diagonal, 10 mm at most
-  VisualSpec visual;                 ///< as the scene names it; no surface: the body's own is drawn
+  double press = 0;   ///< [m] that it goes in; 0: a fortieth of the body's diagonal, half the radius at most
+  VisualSpec visual;  ///< as the scene names it; no surface: the body's own is drawn
 };
 
 /// A scene file and the trajectory that it names.
 struct SceneTexts {
   std::string scene, trajectory;
 };
-
-/// A surface to be looked at, of millimetres or metres, whichever lies about a mesh; colours from an MTL of its name
-/// where there is one. Throws std::runtime_error("FILE: ...").
-VisualSpec visual_about(const TetMesh& mesh, const std::filesystem::path& surface);
 
 /// One body of the mesh, groups of tetrahedra that have a tissue's name being of it; a probe that stands off the side
 /// that lies farthest from where the body is held, along the normal there, goes in, slides and comes back; a camera

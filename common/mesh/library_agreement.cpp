@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <unordered_map>
+
+#include "common/files/ending.hpp"
 
 namespace palpate {
 namespace {
@@ -85,6 +88,12 @@ std::map<GroupKey, MeshGroup> collect_groups(const FileListing& listing, const L
   return groups;
 }
 
+/// Whether `palpate mesh` reads it as a surface.
+bool is_surface(const path& file) {
+  constexpr std::array<const char*, 5> kSurfaces{".stl", ".obj", ".ply", ".off", ".vtp"};
+  return std::ranges::any_of(kSurfaces, [&](const char* ending) { return has_ending(file, ending); });
+}
+
 }  // namespace
 
 void refuse_mesh(const path& file, const std::string& reason) {
@@ -103,9 +112,12 @@ void check_mesh_format(const path& file, bool surfaces_too) {
       refuse_mesh(file, "it does not begin as a legacy VTK file does, with # vtk DataFile");
   } else if (extension == ".stl" && surfaces_too) {
     check_stl(file);
+  } else if (surfaces_too) {
+    refuse_mesh(file, "a surface is read from .msh, .vtk and .stl files");
   } else {
-    refuse_mesh(file, surfaces_too ? "a surface is read from .msh, .vtk and .stl files"
-                                   : "a mesh is read from .msh and .vtk files");
+    refuse_mesh(file, is_surface(file)
+                          ? std::string("this is a surface, and a mesh of tetrahedra is asked for: ") + kMakesMesh
+                          : "a mesh is read from .msh and .vtk files");
   }
 }
 

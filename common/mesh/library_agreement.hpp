@@ -13,6 +13,9 @@ namespace palpate {
 /// Throws std::runtime_error("FILE: reason").
 [[noreturn]] void refuse_mesh(const std::filesystem::path& file, const std::string& reason);
 
+/// What is said where a surface stands in a mesh's place.
+inline constexpr const char* kMakesMesh = "`palpate mesh SURFACE -o organ.msh` makes one of it";
+
 /// The library goes by the extension and takes unknown text for a script, so both have to fit. Refuses a
 /// binary STL that ends before its last triangle. `surfaces_too`: .stl files pass.
 void check_mesh_format(const std::filesystem::path& file, bool surfaces_too);

@@ -5,6 +5,9 @@
 
 namespace palpate {
 
+/// [kg/m^3] Of the mass that is told where no density is.
+inline constexpr double kTissueDensity = 1060;
+
 /// What a person asks of a mesh first.
 struct MeshMeasures {
   Eigen::Vector3d extent;                              ///< [m] along x, y, z

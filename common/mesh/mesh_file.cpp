@@ -94,6 +94,8 @@ TetMesh load_tet_mesh(const path& file, double scale) {
   TetMesh mesh;
   for (const auto& x : listing.nodes) mesh.nodes.push_back(scale * x);
   take_elements(file, listing, mesh);
+  if (mesh.tetrahedra.empty())
+    refuse_mesh(file, std::string("the mesh has no tetrahedra; where it is a surface, ") + kMakesMesh);
   const LibraryMesh library = ask_library(file);
   check_agreement(file, listing, mesh.tetrahedra, library, library.tetrahedra);
   turn_if_all_negative(mesh);

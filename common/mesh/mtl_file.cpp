@@ -19,6 +19,12 @@ std::array<double, 3> colour_of(TextLines& lines) {
   return colour;
 }
 
+/// Behind options such as `-s 1 1 1`, of which a name that begins with none has no more than blanks.
+std::string image_of(std::string_view map) {
+  if (map.starts_with('-')) map.remove_prefix(map.find_last_of(" \t") + 1);
+  return std::string(map);
+}
+
 }  // namespace
 
 ObjMaterials load_mtl(const std::filesystem::path& file) {
@@ -38,7 +44,7 @@ ObjMaterials load_mtl(const std::filesystem::path& file) {
       if (key == "Kd")
         material->colour = colour_of(lines);
       else
-        material->textured = true;
+        material->textured = true, material->image = image_of(lines.rest());
     }
   }
   if (materials.empty()) throw std::runtime_error(file.string() + ": there is no material in it");

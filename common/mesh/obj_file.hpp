@@ -13,6 +13,7 @@ namespace palpate {
 struct ObjMaterial {
   std::optional<std::array<double, 3>> colour;  ///< Kd, linear RGB
   bool textured = false;                        ///< it has a map_Kd
+  std::string image;                            ///< the file that this names
 };
 using ObjMaterials = std::map<std::string, ObjMaterial, std::less<>>;
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/files/ending.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/obj_file.hpp"
 
@@ -36,7 +37,7 @@ void join_places(VisualMesh& mesh) {
 }
 
 VisualMesh load_visual_mesh(const VisualSpec& spec, const Eigen::Vector3d& origin) {
-  const bool is_obj = spec.surface.extension() == ".obj";
+  const bool is_obj = has_ending(spec.surface, ".obj");
   if (!is_obj && !(spec.materials.empty() && spec.texture.empty()))
     throw std::runtime_error(spec.surface.string() + ": only an OBJ has materials and texture coordinates");
   if (!is_obj) return of_one_material(load_triangle_mesh(spec.surface, spec.scale), origin, spec.surface.string());

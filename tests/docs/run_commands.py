@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """run_commands.py BIN [--all]: runs the `palpate` lines of README.md and docs/ word for word, in a folder with a copy of
-scenes/, then the CTest project of docs/drive.md and the reader of docs/logs.md, each as the page has it. Some lines are
-shortened by an option of theirs, some exempt: the tables below say which and why. Without --all only those of README.md,
-docs/drive.md and docs/logs.md that take no minutes."""
+scenes/ and what docs/organ.md begins with, then the CTest project of docs/drive.md and the reader of docs/logs.md, each
+as the page has it. Some lines are shortened by an option of theirs, some exempt: the tables below say which and why.
+Without --all only those of README.md, docs/drive.md and docs/logs.md that take no minutes."""
 import contextlib
 import fnmatch
 import os
@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+import organ_files
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES_IN_SHORT = ["README.md", "docs/drive.md", "docs/logs.md"]
 
@@ -22,7 +24,6 @@ EXEMPT = [
     ("docs/papers.md", "*", "the test `papers` runs them"),
     ("docs/deploy.md", "*", "names two hosts; the tests `deploy` and `network` make two"),
     ("docs/security.md", "*", "names two hosts, and a scene on one of them; the tests `security` make them"),
-    ("docs/organ.md", "*", "begins with the reader's own surface or image; the test `organ` has some"),
     ("*", "* HOST*", "names another host"),
     ("docs/drive.md", "palpate drive --merge results.jsonl *", "belongs to the lines of tasks, which run together below"),
 ]
@@ -46,6 +47,10 @@ SHORTENED = [
 # Only with --all: minutes of computing.
 LONG = ["palpate study *", "palpate stability *", "palpate modes *", "* --sweep *", "palpate drive *--set body.young*",
         "palpate film * --speed 0.1 *"]
+
+# Need a program that is built only where its libraries are: (line, program).
+NEEDS = [("palpate mesh *", "palpate_organ"), ("palpate organ *", "palpate_organ"), ("palpate segment *", "palpate_organ"),
+         ("palpate * organ.*", "palpate_organ")]
 
 # Need a running system: one runs meanwhile.
 BESIDE_A_RUN = ["palpate record *", "palpate top*"]
@@ -96,7 +101,7 @@ class Place:
     """A fresh folder with a copy of scenes/, and the programs first in PATH."""
 
     def __init__(self, programs, folder):
-        self.folder = folder
+        self.programs, self.folder = programs, folder
         self.failures = []
         self.environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}"}
         shutil.copytree(ROOT / "scenes", folder / "scenes")
@@ -128,10 +133,16 @@ class Place:
             scene.wait()
 
 
+def reason_to_leave_out(place, page, line):
+    exempt = [why for on, pattern, why in EXEMPT if fnmatch.fnmatchcase(page, on) and fnmatch.fnmatchcase(line, pattern)]
+    absent = [f"{program} is not built" for pattern, program in NEEDS
+              if fnmatch.fnmatchcase(line, pattern) and not (place.programs / program).exists()]
+    return next(iter(exempt + absent), None)
+
+
 def run_page(place, page, everything):
     for line in lines_of(page):
-        reason = next((why for on, pattern, why in EXEMPT
-                       if fnmatch.fnmatchcase(page, on) and fnmatch.fnmatchcase(bare(line), pattern)), None)
+        reason = reason_to_leave_out(place, page, bare(line))
         if reason or (matches(bare(line), LONG) and not everything):
             print(f"-                {page}: {bare(line)}: {reason or 'only with --all'}")
             continue
@@ -175,6 +186,7 @@ def main():
         place.run(f"palpate drive scenes/liver.toml --seconds {5 if everything else 3} --log {LOGS[0]}", "logs for what follows")
         for log in LOGS[1:]:
             shutil.copy(place.folder / LOGS[0], place.folder / log)
+        organ_files.write_all(place.folder)
         for page in pages if everything else PAGES_IN_SHORT:
             run_page(place, page, everything)
         run_project(place)

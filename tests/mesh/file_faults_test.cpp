@@ -86,7 +86,12 @@ TEST(FileFault, AFileWithoutTetrahedraIsRefused) {
   const std::string only_triangle =
       replaced(replaced(replaced(kGmsh2, "9 4 2 5 1 10 3 5 2\n", ""), "4 4 2 6 1 3 8 5 2\n", ""), "$Elements\n3",
                "$Elements\n1");
-  EXPECT_EQ(complaint("a.msh", only_triangle), "the mesh has no tetrahedra");
+  EXPECT_EQ(complaint("a.msh", only_triangle),
+            "the mesh has no tetrahedra; where it is a surface, `palpate mesh SURFACE -o organ.msh` makes one of it");
+  for (const char* surface : {"a.stl", "a.OBJ", "a.vtp"})
+    EXPECT_EQ(complaint(surface, "solid"),
+              "this is a surface, and a mesh of tetrahedra is asked for: `palpate mesh SURFACE -o organ.msh` makes one "
+              "of it");
 }
 
 TEST(FileFault, VersionsThatAreNotReadSayWhatToDo) {

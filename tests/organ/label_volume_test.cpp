@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "tests/organ/dicom_for_tests.hpp"
+#include "tests/organ/images_for_tests.hpp"
+#include "tests/organ/phantom_image.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
 
@@ -24,11 +24,7 @@ class LabelImages : public ::testing::Test {
       if (std::string(error.what()).find("without ITK") != std::string::npos) GTEST_SKIP() << error.what();
     }
   }
-  std::string mha(const std::string& first_axis) const {
-    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nTransformMatrix = " +
-           first_axis + " 0 0 0 1 0 0 0 1\nOffset = 10 20 30\nElementSpacing = 1 2 3\nDimSize = 3 2 2\n" +
-           "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + voxels_;
-  }
+  std::string mha(const std::string& first_axis) const { return meta_header(first_axis) + voxels_; }
   /// Where the voxel of this label lies in the world [m].
   static Eigen::Vector3d place(const LabelVolume& v, int label) {
     for (int k = 0; k < v.shape.count[2]; ++k)
@@ -44,11 +40,17 @@ class LabelImages : public ::testing::Test {
 TEST_F(LabelImages, MetaImageAndNrrdHaveTheirVoxelsWhereTheirHeadersSay) {
   const LabelVolume meta = read_label_volume(write_file(folder_ / "a.mha", mha("1")));
   EXPECT_TRUE(place(meta, 11).isApprox(Eigen::Vector3d(0.012, 0.022, 0.033))) << place(meta, 11).transpose();
-  const LabelVolume nrrd = read_label_volume(write_file(
-      folder_ / "a.nrrd",
-      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nspacings: 1 2 3\nencoding: raw\nendian: little\n\n" +
-          voxels_));
+  const LabelVolume nrrd = read_label_volume(write_file(folder_ / "a.nrrd", nrrd_header() + voxels_));
   EXPECT_TRUE(place(nrrd, 11).isApprox(Eigen::Vector3d(0.002, 0.002, 0.003))) << place(nrrd, 11).transpose();
+}
+
+TEST_F(LabelImages, AnEndingMayBeInCapitals) {
+  const std::string inr = inr_header({3, 2, 2}, {1, 2, 3});
+  for (const auto& [name, header] :
+       {std::pair{"A.INR", inr}, {"A.MHA", meta_header()}, {"A.Nrrd", nrrd_header()}, {"A.NII", nifti_header()}})
+    EXPECT_EQ(read_label_volume(write_file(folder_ / name, header + voxels_)).value.back(), 11) << name;
+  EXPECT_THROW(read_label_volume(write_file(folder_ / "CUT.MHA", mha("1").substr(0, mha("1").size() - 5))),
+               std::runtime_error);
 }
 
 TEST_F(LabelImages, AMirroredImageIsTurnedRightHandedAndStaysInPlace) {
@@ -80,22 +82,8 @@ TEST_F(LabelImages, OfAFolderWithSeveralDicomSeriesOneIsChosen) {
   EXPECT_THROW(read("9"), std::runtime_error);
 }
 
-// The 348 bytes of a NIfTI-1 header whose sform turns the image a quarter about z, and its voxels.
 TEST_F(LabelImages, ANiftiImageLiesWhereItsSformSays) {
-  std::string bytes(352, '\0');
-  const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
-  put(0, std::int32_t{348});
-  for (const auto& [at, value] : {std::pair{40, 3}, {42, 3}, {44, 2}, {46, 2}, {48, 1}, {50, 1}, {52, 1}, {54, 1}})
-    put(at, static_cast<std::int16_t>(value));
-  put(70, std::int16_t{2}), put(72, std::int16_t{8});
-  for (const auto& [at, value] : {std::pair{76, 1.f}, {80, 1.f}, {84, 2.f}, {88, 3.f}, {108, 352.f}, {112, 1.f}})
-    put(at, value);
-  put(123, char{2}), put(254, std::int16_t{1});
-  // x of the world is -2 j + 10, y is i + 20, z is 3 k + 30, all in millimetres and to the right and to the front.
-  for (const auto& [at, value] : {std::pair{284, -2.f}, {292, 10.f}, {296, 1.f}, {308, 20.f}, {320, 3.f}, {324, 30.f}})
-    put(at, value);
-  bytes.replace(344, 4, std::string("n+1\0", 4));
-  const LabelVolume turned = read_label_volume(write_file(folder_ / "t.nii", bytes + voxels_));
+  const LabelVolume turned = read_label_volume(write_file(folder_ / "t.nii", nifti_header() + voxels_));
   // Voxel (2, 1, 1) lies at (8, 22, 33) there, which to the left and to the back is (-8, -22, 33).
   EXPECT_TRUE(place(turned, 11).isApprox(Eigen::Vector3d(-0.008, -0.022, 0.033))) << place(turned, 11).transpose();
   EXPECT_GT(turned.turn.determinant(), 0);
@@ -111,6 +99,20 @@ TEST_F(LabelImages, DamageIsRefused) {
   refused("word.nii", "no image");
   refused("word.nrrd", "NRRD0004\ntype: uchar\n");
   EXPECT_THROW(read_label_volume(folder_.path()), std::runtime_error);
+}
+
+// Room is made for all that a header announces: a few hundred bytes must not ask for gigabytes.
+TEST_F(LabelImages, AHeaderThatAnnouncesMoreThanItsFileCanHoldIsRefusedFirst) {
+  std::string nifti = nifti_header();
+  for (const std::size_t at : {42, 44, 46}) nifti.replace(at, 2, "\xe8\x03");  // 1000
+  for (const auto& [name, bytes] :
+       {std::pair{"huge.nii", nifti}, {"huge.nrrd", replaced(nrrd_header(), "sizes: 3 2 2", "sizes: 1000 1000 1000")}})
+    try {
+      read_label_volume(write_file(folder_ / name, bytes + voxels_));
+      FAIL() << name;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("it ends before its last voxel"), std::string::npos) << error.what();
+    }
 }
 
 TEST_F(LabelImages, WhatIsSaidOfAFileHasNoAddressesInIt) {

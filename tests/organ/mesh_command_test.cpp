@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "common/mesh/measures.hpp"
@@ -7,6 +10,8 @@
 #include "common/mesh/surface.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tools/organ/mesh_pieces.hpp"
+#include "tools/organ/surface_shells.hpp"
 
 namespace palpate {
 namespace {
@@ -87,6 +92,60 @@ TEST_F(MeshCommand, ASceneMakesItFinerWhereItsToolsGo) {
   const auto absent = mesh(far + " --for none.toml -o " + (folder_ / "c.msh").string());
   EXPECT_EQ(absent.status, 1);
   EXPECT_NE(absent.err.find("none.toml"), std::string::npos) << absent.err;
+}
+
+TEST_F(MeshCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
+  TriangleMesh half = make_sphere({0, 0, 0}, 0.05, 12);
+  std::erase_if(half.triangles, [&](const auto& t) { return half.nodes[t[0]].z() > 0; });
+  half.triangles.push_back(half.triangles[40]);
+  const auto file = write_file(folder_ / "half.stl", text_stl(half)), report = folder_ / "found.csv";
+  const auto refused =
+      mesh(fmt::format("{} --report {} -o {}", file.string(), report.string(), (folder_ / "a.msh").string()));
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("half.stl: a hole of"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.out.find("found: 1 triangles that are there twice"), std::string::npos) << refused.out;
+  for (const char* row : {"1 triangles that are there twice", "a hole of"})
+    EXPECT_NE(text_of(report).find(row), std::string::npos) << text_of(report);
+}
+
+TEST_F(MeshCommand, FiguresArePrintedAsOneLineOfJson) {
+  TriangleMesh twice = make_sphere({0, 0, 0}, 0.05, 20);
+  twice.triangles.push_back(twice.triangles[40]);
+  const auto file = write_file(folder_ / "ball.stl", text_stl(twice)).string();
+  const auto made = mesh(fmt::format("{} --group held=below:z --edge 0.02 --deviation 0.002 --json -o {}", file,
+                                     (folder_ / "a.msh").string()));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(std::ranges::count(made.out, '\n'), 1) << made.out;
+  const auto json = nlohmann::json::parse(made.out);
+  const TetMesh body = load_tet_mesh(folder_ / "a.msh", 1);
+  EXPECT_EQ(json["triangles"], twice.triangles.size());
+  EXPECT_EQ(json["found"][0]["what"], "1 triangles that are there twice");
+  ASSERT_EQ(json["meshes"].size(), 1u);
+  const auto& figures = json["meshes"][0];
+  EXPECT_EQ(figures["nodes"], body.nodes.size());
+  EXPECT_EQ(figures["groups"]["held"]["nodes"], body.groups.at("held").nodes.size());
+  EXPECT_NEAR(figures["volume_m3"], measures_of(body).volume, 1e-9);
+  EXPECT_NEAR(figures["mass_kg"], 1060 * measures_of(body).volume, 1e-6);
+  EXPECT_TRUE(json["warnings"].empty());
+}
+
+// In the long tests as many as a scanner gives, in docs/organ.md with its time; a hundredth of that otherwise.
+TEST_F(MeshCommand, AMillionTrianglesOfALobedBodyBecomeAMesh) {
+  const bool for_long = std::getenv("PALPATE_LONG_TESTS") != nullptr;
+  TriangleMesh body = make_sphere({0, 0, 0}, 1, for_long ? 500 : 50);
+  for (Eigen::Vector3d& x : body.nodes)
+    x = (1 + 0.12 * std::sin(5 * x.x()) * std::cos(4 * x.y() + x.z()) + 0.03 * std::sin(23 * x.x() + 17 * x.z())) *
+        x.cwiseProduct(Eigen::Vector3d(0.09, 0.06, 0.04));
+  const auto file =
+      write_file(folder_ / "lobed.stl", binary_stl(body, "", static_cast<std::uint32_t>(body.triangles.size())));
+  const std::string output = folder_ / "a.msh", said = folder_ / "said";
+  ASSERT_EQ(run_command(fmt::format("timeout 600 {} mesh {} --nodes {} -o {} >{} 2>&1", program("palpate"),
+                                    file.string(), for_long ? 1500 : 400, output, said)),
+            0)
+      << text_of(said);
+  const TetMesh filled = load_tet_mesh(output, 1);
+  EXPECT_NEAR(measures_of(filled).volume, enclosed_volume(body), 0.002 * enclosed_volume(body));
+  EXPECT_EQ(topology_of(filled), (Topology{1, 0}));
 }
 
 TEST_F(MeshCommand, MistakesAreToldInASentence) {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/obj_file.hpp"
@@ -178,6 +181,34 @@ TEST_F(OrganCommand, TwoBallsBecomeASceneThatPassesItsCheck) {
   ASSERT_EQ(made.status, 0) << made.err;
   const auto checked = run_program(program("palpate") + " check " + scene);
   EXPECT_EQ(checked.status, 0) << checked.out << checked.err;
+}
+
+TEST_F(OrganCommand, FiguresArePrintedAsOneLineOfJson) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
+  const auto made =
+      organ(image, "--label 7=big --label 9=small --edge 0.006 --json -o " + (folder_ / "a.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(std::ranges::count(made.out, '\n'), 1) << made.out;
+  const auto json = nlohmann::json::parse(made.out);
+  EXPECT_EQ(json["voxels"], (std::array{kX, kY, kZ}));
+  EXPECT_EQ(json["found"][0]["first_m"][2], 0.006);
+  ASSERT_EQ(json["meshes"].size(), 1u);
+  const auto& labels = json["meshes"][0]["labels"];
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[1]["name"], "small");
+  EXPECT_NEAR(labels[0]["volume_m3"], labels[0]["volume_of_voxels_m3"], 1e-7);
+  EXPECT_EQ(labels[0]["topology"], labels[0]["topology_of_voxels"]);
+  EXPECT_EQ(json["meshes"][0]["nodes"], load_tet_mesh(folder_ / "a.msh", 1).nodes.size());
+}
+
+TEST_F(OrganCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
+  const auto image = write_file(folder_ / "balls.inr", header() + voxels()), report = folder_ / "found.csv";
+  const auto refused = organ(image, fmt::format("--label 7=big --label 9=small --gap 40 --report {} -o {}",
+                                                report.string(), (folder_ / "a.msh").string()));
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("a gap of 40 mm leaves"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.out.find("found: 'big': a stray piece"), std::string::npos) << refused.out;
+  EXPECT_NE(text_of(report).find("'big': a stray piece of 1 voxels (0.002 ml)"), std::string::npos);
 }
 
 TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {

@@ -41,12 +41,13 @@ TEST(RealLiver, BecomesASceneWithItsVolumesInOnePieceEach) {
     EXPECT_EQ(topology_of(part), (Topology{1, 0})) << name;
   }
   const std::string out = text_of(said);
-  const std::regex distances("in voxel diagonals ([0-9.]+), ([0-9.]+),");
+  const std::regex distances("in voxel diagonals ([0-9.]+), ([0-9.]+), ([0-9.]+)");
   int labels = 0;
   for (std::sregex_iterator match(out.begin(), out.end(), distances); match != std::sregex_iterator(); ++match) {
     ++labels;
     EXPECT_LE(std::stod((*match)[1]), 0.3) << "mean\n" << out;
     EXPECT_LE(std::stod((*match)[2]), 1) << "99 %\n" << out;
+    EXPECT_LE(std::stod((*match)[3]), 2.4) << "largest\n" << out;
   }
   EXPECT_EQ(labels, 2) << out;
   EXPECT_EQ(run_program(program("palpate") + " scene " + mesh + " --tissue liver -o " + scene).status, 0);

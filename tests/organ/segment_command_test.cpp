@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/mesh/measures.hpp"
@@ -85,16 +86,6 @@ TEST_F(SegmentCommand, ThroughAThinNeckTheRegionLeaksAndIsCutOffThere) {
   EXPECT_EQ(text_of(*folder_ / "found.inr"), text_of(*folder_ / "again.inr"));
 }
 
-TEST_F(SegmentCommand, ItsFiguresInJsonAreThoseOfItsLabels) {
-  const ProgramResult result = segment("thin.inr --neck 8 --json -o figures.inr" + kSeed);
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto figures = nlohmann::json::parse(result.out);
-  const LabelVolume labels = read_label_volume(*folder_ / "figures.inr");
-  EXPECT_EQ(figures["voxels"], std::ranges::count(labels.value, 1));
-  EXPECT_LT(figures["slices"][0].get<int>(), figures["slices"][1].get<int>());
-  EXPECT_GT(figures["on_edge"].get<double>(), 0.5);
-}
-
 TEST_F(SegmentCommand, ThroughAThickNeckPointsSetByHandMendIt) {
   const Agreement leaked = agreement(thick_, labels("thick.inr --neck 8" + kSeed, "leaked.inr"));
   EXPECT_LT(leaked.dice, 0.97);
@@ -169,6 +160,18 @@ TEST_F(SegmentCommand, APictureOfEachSliceIsDrawn) {
     EXPECT_EQ(picture.width, 2 * thin_.x * picture.height / thin_.y) << name;
     EXPECT_EQ(contour > 1000, std::string(name) == "slice_0028.png") << name << " " << contour;
   }
+}
+
+TEST_F(SegmentCommand, FiguresArePrintedAsOneLineOfJson) {
+  const LabelVolume found = labels("thin.inr --neck 8 --json" + kSeed, "json.inr");
+  EXPECT_EQ(std::ranges::count(said_, '\n'), 1) << said_;
+  const auto json = nlohmann::json::parse(said_);
+  const auto voxels = std::ranges::count(found.value, 1);
+  EXPECT_EQ(json["voxels"], found.shape.count);
+  EXPECT_EQ(json["label_voxels"], voxels);
+  EXPECT_NEAR(json["volume_m3"], static_cast<double>(voxels) * found.shape.spacing.prod(), 1e-12);
+  EXPECT_LT(json["range"][0], json["range"][1]);
+  EXPECT_GT(json["points_on_edge"], 0.6);
 }
 
 TEST_F(SegmentCommand, MistakesAndDamageAreToldInASentence) {

@@ -1,5 +1,6 @@
 #include "tools/organ/surface_file.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "common/mesh/mesh_file.hpp"
@@ -63,6 +64,56 @@ TEST_F(SurfaceFile, EveryFormatGivesTheSameSurface) {
   expect_ball(write_file(folder_ / "ball.vtp", vtp), 1);
   expect_ball(write_file(folder_ / "text.STL", text_stl(ball_)), 1e-3);
   expect_ball(write_file(folder_ / "binary.stl", binary_stl(ball_, "made by hand", count_)), 1);
+}
+
+TEST_F(SurfaceFile, AnEndingMayBeInCapitals) {
+  std::string obj, off = fmt::format("OFF\n{} {} 0\n", ball_.nodes.size(), count_), ply, vtk;
+  ply = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      ball_.nodes.size(), count_);
+  vtk =
+      fmt::format("# vtk DataFile Version 3.0\nball\nASCII\nDATASET POLYDATA\nPOINTS {} double\n", ball_.nodes.size());
+  for (const Eigen::Vector3d& x : ball_.nodes) {
+    const std::string place = fmt::format("{} {} {}\n", x.x(), x.y(), x.z());
+    obj += "v " + place, off += place, ply += place, vtk += place;
+  }
+  vtk += fmt::format("POLYGONS {} {}\n", count_, 4 * count_);
+  for (const auto& [a, b, c] : ball_.triangles) {
+    const std::string corners = fmt::format("3 {} {} {}\n", a, b, c);
+    obj += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1), off += corners, ply += corners, vtk += corners;
+  }
+  for (const auto& [name, bytes] : {std::pair{"A.OBJ", obj}, {"A.OFF", off}, {"A.Ply", ply}, {"A.VTK", vtk}})
+    expect_ball(write_file(folder_ / name, bytes), 1);
+}
+
+TEST_F(SurfaceFile, StripsOfALegacyVtkFileAreTriangles) {
+  const std::string head =
+      "# vtk DataFile Version 3.0\nbox\nASCII\nDATASET POLYDATA\nPOINTS 8 float\n"
+      "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n";
+  const std::string strip = "TRIANGLE_STRIPS 1 11\n10 0 4 1 5 2 6 3 7 0 4\n",
+                    lids = "POLYGONS 2 10\n4 0 1 2 3\n4 4 7 6 5\n";
+  for (const std::string& cells : {strip + lids, lids + strip}) {
+    const ReadSurface box = read_surface(write_file(folder_ / "box.vtk", head + cells), 1);
+    EXPECT_EQ(box.mesh.triangles.size(), 12u);
+    EXPECT_NEAR(std::abs(enclosed_volume(box.mesh)), 1, 1e-9) << "neighbours disagree";
+  }
+  EXPECT_EQ(read_surface(write_file(folder_ / "open.vtk", head + strip), 1).mesh.triangles.size(), 8u);
+  EXPECT_NE(
+      refusal(write_file(folder_ / "far.vtk", head + "TRIANGLE_STRIPS 1 4\n3 0 1 8\n")).find("names point 8, of 8"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal(write_file(folder_ / "new.vtk", replaced(head, "3.0", "5.1") + lids)).find("version 5 are not read"),
+      std::string::npos);
+}
+
+TEST_F(SurfaceFile, NamesOfGroupsThatAreNotKeptAreTold) {
+  const std::string file =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng lobe\nf 1 3 2\nf 1 2 4\ng\ng lobe\nf 1 4 3\ng vein\nf 2 3 4\n";
+  const ReadSurface read = read_surface(write_file(folder_ / "a.obj", file), 1);
+  ASSERT_EQ(read.findings.size(), 1u);
+  EXPECT_EQ(say(read.findings[0]),
+            "groups of triangles (2), the first 'lobe': not kept: --group names nodes by their place");
 }
 
 TEST_F(SurfaceFile, AnStlFileIsWhatItHoldsAndNotWhatItSays) {

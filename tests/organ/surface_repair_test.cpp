@@ -14,12 +14,22 @@ using namespace palpate::testing;
 
 constexpr double kHole = 0.5;
 
+struct Repaired : RepairedSurface {
+  std::vector<Finding> findings;
+};
+
+Repaired repaired_of(const TriangleMesh& broken) {
+  std::vector<Finding> findings;
+  const RepairedSurface surface = repair_surface(broken, kHole, findings);
+  return {surface, findings};
+}
+
 /// A ball broken in one way at a time.
 class SurfaceRepair : public ::testing::Test {
  protected:
   /// The one finding, after which the surface is closed and holds `volume` [m^3].
   static std::string finding(const TriangleMesh& broken, double volume) {
-    const RepairedSurface repaired = repair_surface(broken, kHole);
+    const Repaired repaired = repaired_of(broken);
     EXPECT_TRUE(rims_of(repaired.mesh).empty());
     EXPECT_NEAR(enclosed_volume(repaired.mesh), volume, 0.01 * volume);
     EXPECT_EQ(repaired.findings.size(), 1u) << (repaired.findings.empty() ? "" : say(repaired.findings.back()));
@@ -34,7 +44,7 @@ class SurfaceRepair : public ::testing::Test {
 };
 
 TEST_F(SurfaceRepair, AGoodSurfaceHasNoFindings) {
-  EXPECT_TRUE(repair_surface(ball_, kHole).findings.empty());
+  EXPECT_TRUE(repaired_of(ball_).findings.empty());
 }
 
 TEST_F(SurfaceRepair, CornersApartAreJoined) {
@@ -44,7 +54,7 @@ TEST_F(SurfaceRepair, CornersApartAreJoined) {
     const int last = static_cast<int>(apart.nodes.size());
     apart.triangles.push_back({last - 3, last - 2, last - 1});
   }
-  const RepairedSurface repaired = repair_surface(apart, kHole);
+  const Repaired repaired = repaired_of(apart);
   EXPECT_TRUE(repaired.findings.empty());
   EXPECT_EQ(repaired.mesh.nodes.size(), ball_.nodes.size());
 }
@@ -75,7 +85,7 @@ TEST_F(SurfaceRepair, TurnedTrianglesAreTurnedBack) {
   expect_has(finding(turned, volume_), "3 triangles turned against their neighbours");
   TriangleMesh inside_out = ball_;
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
-  EXPECT_NEAR(enclosed_volume(repair_surface(inside_out, kHole).mesh), volume_, 1e-9);
+  EXPECT_NEAR(enclosed_volume(repaired_of(inside_out).mesh), volume_, 1e-9);
 }
 
 TEST_F(SurfaceRepair, AHoleIsClosedUpToItsSize) {
@@ -85,7 +95,7 @@ TEST_F(SurfaceRepair, AHoleIsClosedUpToItsSize) {
   TriangleMesh half = ball_;
   std::erase_if(half.triangles, [&](const auto& t) { return ball_.nodes[t[0]].z() > 0.5; });
   try {
-    repair_surface(half, kHole);
+    repaired_of(half);
     FAIL() << "a hole of a third of the ball was closed";
   } catch (const std::runtime_error& error) {
     expect_has(error.what(), "larger than 500 mm");
@@ -110,7 +120,7 @@ TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {
 TEST_F(SurfaceRepair, ACrossingSurfaceIsToldWithItsPlace) {
   TriangleMesh two = ball_;
   append(two, make_sphere({2.2, 0.1, 0.05}, 0.9, 12));
-  const RepairedSurface repaired = repair_surface(two, kHole);
+  const Repaired repaired = repaired_of(two);
   EXPECT_TRUE(repaired.crosses_itself);
   ASSERT_EQ(repaired.findings.size(), 2u);
   expect_has(say(repaired.findings[0]), "joined to it");
@@ -121,7 +131,7 @@ TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {
   TriangleMesh fin = ball_;
   fin.nodes.emplace_back(3, 0, 0);
   fin.triangles.push_back({ball_.triangles[50][0], ball_.triangles[50][1], static_cast<int>(ball_.nodes.size())});
-  const RepairedSurface repaired = repair_surface(fin, kHole);
+  const Repaired repaired = repaired_of(fin);
   EXPECT_TRUE(rims_of(repaired.mesh).empty());
   EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 0.02 * volume_);
   ASSERT_FALSE(repaired.findings.empty());

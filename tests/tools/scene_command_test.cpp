@@ -2,6 +2,7 @@
 
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/tool/trajectory.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/tissue_table.hpp"
@@ -60,6 +61,21 @@ TEST_F(ToolsScene, TheSceneOfAMeshPassesTheCheckAndItsToolPresses) {
   EXPECT_GT(std::stod(run.out.substr(at + 14)), 0.03) << run.out;
 }
 
+// Deeper than half the tip's radius tissue is not linear any more.
+TEST_F(ToolsScene, TheFirstPressIsNoDeeperThanHalfTheTipsRadius) {
+  const auto deepest = [&](const std::string& options) {
+    const auto made = run_program(fmt::format("{} scene {} --tissue kidney{} -o {}", program("palpate"),
+                                              (folder_ / "block.msh").string(), options, scene()));
+    EXPECT_EQ(made.status, 0) << made.err;
+    const Trajectory motion = load_trajectory(folder_ / "block_motion.csv");
+    return motion.at(4).depth - motion.at(1).depth - 0.002;  // begins 2 mm off
+  };
+  EXPECT_NEAR(deepest(""), 0.003, 2e-6);
+  EXPECT_NEAR(deepest(" --radius 0.002"), 0.001, 2e-6);
+  EXPECT_NEAR(deepest(" --radius 0.02"), std::sqrt(0.02) / 40, 2e-6) << "a fortieth of the diagonal";
+  EXPECT_NEAR(deepest(" --press 0.008"), 0.008, 2e-6);
+}
+
 TEST_F(ToolsScene, ASurfaceToBeLookedAtComesInByItself) {
   // Two sides of the block.
   const auto written = [&](const char* name, double unit) {
@@ -89,6 +105,50 @@ TEST_F(ToolsScene, ASurfaceToBeLookedAtComesInByItself) {
   EXPECT_NE(inches.err.find("inches.obj: it does not lie about the mesh, neither in metres nor in millimetres"),
             std::string::npos)
       << inches.err;
+}
+
+TEST_F(ToolsScene, ATexturedSurfaceComesInWithItsImage) {
+  for (const char* name : {"liver_visual.obj", "liver_visual.mtl", "liver_visual.png"})
+    std::filesystem::copy(std::filesystem::path(PALPATE_SOURCE) / "scenes/meshes" / name, folder_ / name);
+  const std::string mesh = std::filesystem::path(PALPATE_SOURCE) / "scenes/meshes/liver.msh";
+  const auto made = [&] {
+    return run_program(fmt::format("{} scene {} --tissue liver --visual {} -o {}", program("palpate"), mesh,
+                                   (folder_ / "liver_visual.obj").string(), scene()));
+  };
+  ASSERT_EQ(made().status, 0) << made().err;
+  EXPECT_NE(text_of(scene()).find("texture = \"liver_visual.png\""), std::string::npos) << text_of(scene());
+  EXPECT_EQ(checked().status, 0) << checked().err;
+  // Named as another program had it.
+  change("liver_visual.mtl", "map_Kd liver_visual.png", "map_Kd -s 1 1 1 C:/textures/liver.jpg");
+  EXPECT_EQ(made().status, 0) << made().err;
+  EXPECT_EQ(checked().status, 0) << checked().err;
+  std::filesystem::remove(folder_ / "liver_visual.png");
+  const auto bare = made();
+  EXPECT_EQ(bare.status, 1);
+  EXPECT_NE(bare.err.find("liver_visual.mtl: its materials wear the image 'C:/textures/liver.jpg', and no PNG"),
+            std::string::npos)
+      << bare.err;
+}
+
+TEST_F(ToolsScene, ASurfaceInAMeshsPlaceIsToldHowAMeshIsMadeOfIt) {
+  const std::string surface = folder_ / "ball.stl", words = "`palpate mesh SURFACE -o organ.msh` makes one of it";
+  write_stl({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, surface);
+  expect_refusal(program("palpate") + " scene " + surface + " --tissue liver -o " + (folder_ / "b.toml").string(),
+                 {"ball.stl: this is a surface", words});
+  expect_refusal(program("palpate") + " check " + surface, {"ball.stl: this is a surface", words});
+  change("block.toml", "mesh = \"block.msh\"", "mesh = \"ball.stl\"");
+  expect_refusal(program("palpate") + " check " + scene(), {"ball.stl: this is a surface", words});
+}
+
+TEST_F(ToolsScene, AMeshThatIsTooLargeIsWarnedOfAndItsMassIsThatOfTissue) {
+  const std::string mesh = folder_ / "large.msh";
+  write_tet_mesh(make_block({0, 0, 0}, {2, 0.1, 0.1}, {8, 1, 1}), mesh);
+  const auto result = run_program(program("palpate") + " check " + mesh);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("warning: " + mesh + " is 2 m across: is it in metres?"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("21.2 kg at 1060 kg/m3"), std::string::npos) << result.out;
+  const auto small = run_program(program("palpate") + " check " + (folder_ / "block.msh").string());
+  EXPECT_EQ(small.out.find("warning:"), std::string::npos) << small.out;
 }
 
 TEST_F(ToolsScene, ATooLargeBodyIsWarnedOf) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "common/contact/tool_contacts.hpp"
@@ -9,6 +11,7 @@
 #include "common/fem/factorisation.hpp"
 #include "common/fem/fine_stiffness.hpp"
 #include "common/fem/ordering.hpp"
+#include "common/files/ending.hpp"
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/check/surface_check.hpp"
@@ -20,7 +23,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kDensity = 1000;       // [kg/m^3] of the mass that is told
 constexpr double kBlockPenalty = 4;     // blocks of right-hand sides run at a quarter of the speed of dense algebra
 constexpr Eigen::Index kSquare = 1000;  // the size of a product that tells this machine's speed
 
@@ -71,7 +73,8 @@ void say_groups(const TetMesh& mesh, CheckOutput& out) {
 }  // namespace
 
 bool names_mesh(const std::filesystem::path& file) {
-  return file.extension() == ".msh" || file.extension() == ".vtk";
+  constexpr std::array<const char*, 7> kEndings{".msh", ".vtk", ".stl", ".obj", ".ply", ".off", ".vtp"};
+  return std::ranges::any_of(kEndings, [&](const char* ending) { return has_ending(file, ending); });
 }
 
 void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
@@ -83,7 +86,8 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   out.say(fmt::format("  {} nodes, {} tetrahedra; surface: {} nodes, {} triangles, mean edge {:.4g} m",
                       mesh.nodes.size(), mesh.tetrahedra.size(), surface.size(), surface.triangles.size(),
                       mean_edge(surface)));
-  out.say(fmt::format("  size: {} at {:g} kg/m3", say_size(measures, kDensity * measures.volume), kDensity));
+  out.say(
+      fmt::format("  size: {} at {:g} kg/m3", say_size(measures, kTissueDensity * measures.volume), kTissueDensity));
   out.say("  " + say_angles(measures));
   say_groups(mesh, out);
   const Offline offline = offline_of(body, surface.size());
@@ -100,6 +104,8 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   const CheckSettings settings{
       .contact = contact, .tools = tools, .dt = 1e-3, .stored = {}, .find_wall = {}, .check_guests = {}};
   out.memory(compliance_memory(settings, surface, 0, kFields, compressed ? compressed_bytes(surface) : 0));
+  if (const double across = measures.extent.maxCoeff(); across > kMaxBody || across < kMinBody)
+    out.warn(fmt::format("{} is {:.3g} m across: is it in metres?", file.string(), across));
 }
 
 }  // namespace palpate

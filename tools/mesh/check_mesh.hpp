@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-/// Whether a file's name is that of a mesh, and not of a scene.
+/// Whether a file's name is that of a mesh or a surface, and not of a scene.
 bool names_mesh(const std::filesystem::path& file);
 
 /// Says what a mesh of tetrahedra in metres is, and what its tensors as a quasi-static body would take: all of its

@@ -41,14 +41,18 @@ std::string say(const Finding& f) {
   return f.done.empty() ? text : text + ": " + f.done;
 }
 
-void tell_findings(const std::vector<Finding>& findings, const std::string& report) {
+void tell_findings(const std::vector<Finding>& findings, const std::string& report, Output& out) {
+  Output::Json& found = out.figures()["found"] = Output::Json::array();
   std::map<std::string, int> count;
   for (const Finding& f : findings) ++count[f.kind];
   std::set<std::string> told;
   for (const Finding& f : findings) {
+    found.push_back({{"what", f.what}, {"done", f.done}, {"places", f.places.size()}});
+    if (!f.places.empty()) found.back()["first_m"] = f.places[0];
     if (!f.kind.empty() && !told.insert(f.kind).second) continue;
     const int more = f.kind.empty() ? 0 : count[f.kind] - 1;
-    fmt::print("  found: {}{}\n", say(f), more > 0 ? fmt::format(" (the first of {} {})", more + 1, f.kind) : "");
+    out.say(
+        fmt::format("  found: {}{}", say(f), more > 0 ? fmt::format(" (the first of {} {})", more + 1, f.kind) : ""));
   }
   if (!report.empty()) write_report(findings, report);
 }

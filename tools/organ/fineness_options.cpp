@@ -37,27 +37,50 @@ double mean_edge_of(const TetMesh& mesh, const Surface& surface) {
 }
 
 /// Of a quasi-static body whose every node can be touched: memory from its sizes, time as measured (docs/organ.md).
-void print_cost(std::size_t surface_nodes) {
+void tell_cost(std::size_t surface_nodes, Output& out) {
   const auto nodes = static_cast<double>(surface_nodes);
-  const double seconds = surface_nodes > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds;
-  fmt::print(
-      "  to come, as a quasi_static body: archive of {:.3g} MB, haptic node {:.3g} MB, precomputation about {:.2g} s\n",
-      36e-6 * nodes * nodes, 72e-6 * nodes * nodes, seconds * nodes * nodes);
+  const double archive = 36 * nodes * nodes, haptic = 2 * archive;
+  const double seconds = (surface_nodes > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds) * nodes * nodes;
+  out.say(fmt::format(
+      "  to come, as a quasi_static body: archive of {:.3g} MB, haptic node {:.3g} MB, precomputation about {:.2g} s",
+      1e-6 * archive, 1e-6 * haptic, seconds));
+  out.mesh().update({{"archive_bytes", archive}, {"haptic_node_bytes", haptic}, {"precomputation_s", seconds}});
 }
 
-void print_mesh(const TetMesh& mesh, const MeshOptions& o) {
+void tell_groups(const TetMesh& mesh, Output& out) {
+  Output::Json& groups = out.mesh()["groups"] = Output::Json::object();
+  for (const auto& [name, group] : mesh.groups) {
+    out.say(fmt::format("  group '{}': {} nodes{}", name, group.nodes.size(),
+                        group.tetrahedra.empty() ? "" : fmt::format(", {} tetrahedra", group.tetrahedra.size())));
+    groups[name] = {{"nodes", group.nodes.size()}, {"tetrahedra", group.tetrahedra.size()}};
+  }
+}
+
+void tell_mesh(const TetMesh& mesh, const MeshOptions& o, Output& out) {
   const Surface surface = extract_surface(mesh);
   const MeshMeasures m = measures_of(mesh);
-  fmt::print("{}: {} nodes, {} tetrahedra; surface of {} nodes, {} triangles, mean edge {:.3g} mm\n", o.output,
-             mesh.nodes.size(), mesh.tetrahedra.size(), surface.nodes.size(), surface.triangles.size(),
-             1e3 * mean_edge_of(mesh, surface));
-  fmt::print("  {} at {} kg/m3\n  {}\n", say_size(m, o.density * m.volume), o.density, say_angles(m));
-  for (const auto& [name, group] : mesh.groups)
-    fmt::print("  group '{}': {} nodes{}\n", name, group.nodes.size(),
-               group.tetrahedra.empty() ? "" : fmt::format(", {} tetrahedra", group.tetrahedra.size()));
+  const double edge = mean_edge_of(mesh, surface), mass = o.density * m.volume;
+  out.say(fmt::format("{}: {} nodes, {} tetrahedra; surface of {} nodes, {} triangles, mean edge {:.3g} mm", o.output,
+                      mesh.nodes.size(), mesh.tetrahedra.size(), surface.nodes.size(), surface.triangles.size(),
+                      1e3 * edge));
+  out.say(fmt::format("  {} at {} kg/m3", say_size(m, mass), o.density));
+  out.say("  " + say_angles(m));
+  out.mesh().update({{"file", o.output},
+                     {"nodes", mesh.nodes.size()},
+                     {"tetrahedra", mesh.tetrahedra.size()},
+                     {"surface_nodes", surface.nodes.size()},
+                     {"surface_triangles", surface.triangles.size()},
+                     {"mean_edge_m", edge},
+                     {"extent_m", m.extent},
+                     {"volume_m3", m.volume},
+                     {"mass_kg", mass},
+                     {"smallest_angle_deg", m.smallest_angle},
+                     {"median_angle_deg", m.median_angle},
+                     {"largest_angle_deg", m.largest_angle}});
+  tell_groups(mesh, out);
   if (m.extent.maxCoeff() > kMaxOrgan || m.extent.maxCoeff() < kMinOrgan)
-    fmt::print("warning: {:.3g} m across: is --unit right?\n", m.extent.maxCoeff());
-  print_cost(surface.nodes.size());
+    out.warn(fmt::format("{:.3g} m across: is --unit right?", m.extent.maxCoeff()));
+  tell_cost(surface.nodes.size(), out);
 }
 
 }  // namespace
@@ -90,6 +113,7 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
                   "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz [m]; may be given again")
       .one_value_each_time();
   command.add_option("--density", o.density, "For the mass that is printed [kg/m3]").positive().show_default();
+  command.add_flag("--json", o.json, "Print one line of JSON");
 }
 
 MeshFineness fineness_of(const MeshOptions& o) {
@@ -102,25 +126,26 @@ MeshFineness fineness_of(const MeshOptions& o) {
   return f;
 }
 
-void add_touched_places(MeshFineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface) {
+void add_touched_places(MeshFineness& fineness, const MeshOptions& o, const std::vector<Eigen::Vector3d>& surface,
+                        Output& out) {
   std::vector<FinePlace> places;
   if (o.tool_radius > 0) places.push_back(pressed_place(farthest_from_group(o.groups[0], surface), o.tool_radius));
   if (!o.scene.empty()) {
     places = pressed_places(o.scene, surface);
     if (places.empty())
-      fmt::print("warning: no tool of {} comes here on a way that is written down: nothing is finer for it\n", o.scene);
+      out.warn(fmt::format("no tool of {} comes here on a way that is written down: nothing is finer for it", o.scene));
   }
   if (!places.empty())
-    fmt::print("  edges of {:.3g} mm where the tool touches, around {}{}\n", 1e3 * places[0].edge,
-               place_in_mm(places[0].low),
-               places.size() == 1 ? "" : fmt::format(", and at {} more places of the way", places.size() - 1));
+    out.say(fmt::format(
+        "  edges of {:.3g} mm where the tool touches, around {}{}", 1e3 * places[0].edge, place_in_mm(places[0].low),
+        places.size() == 1 ? "" : fmt::format(", and at {} more places of the way", places.size() - 1)));
   fineness.fine.insert(fineness.fine.end(), places.begin(), places.end());
 }
 
-void finish_mesh(TetMesh mesh, const MeshOptions& o) {
+void finish_mesh(TetMesh mesh, const MeshOptions& o, Output& out) {
   for (const std::string& text : o.groups) add_group(mesh, text);
   write_whole(mesh, o.output);
-  print_mesh(mesh, o);
+  tell_mesh(mesh, o, out);
 }
 
 void say_progress(const std::string& line) {

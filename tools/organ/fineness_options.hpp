@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "common/cli/command_line.hpp"
+#include "common/mesh/measures.hpp"
 #include "tools/organ/organ_mesh.hpp"
+#include "tools/organ/output.hpp"
 
 namespace palpate {
 
@@ -11,8 +13,9 @@ namespace palpate {
 struct MeshOptions {
   std::string output, report, scene;
   int nodes = 1500;
-  double edge = 0, inside = 0, deviation = 0, density = 1060, tool_radius = 0;
+  double edge = 0, inside = 0, deviation = 0, density = kTissueDensity, tool_radius = 0;
   std::vector<std::string> fine, groups;
+  bool json = false;
 };
 
 void add_mesh_options(cli::Command& command, MeshOptions& options);
@@ -22,12 +25,12 @@ MeshFineness fineness_of(const MeshOptions& options);
 
 /// Where tools touch a surface that is told by points of it [m], if --tool-radius (opposite to the first group) or
 /// --for asks for it: edges there are half the tip's radius. Throws std::runtime_error.
-void add_touched_places(MeshFineness& fineness, const MeshOptions& options,
-                        const std::vector<Eigen::Vector3d>& surface);
+void add_touched_places(MeshFineness& fineness, const MeshOptions& options, const std::vector<Eigen::Vector3d>& surface,
+                        Output& out);
 
-/// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and prints its measures and what
+/// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and tells its measures and what
 /// it will take. Throws std::runtime_error.
-void finish_mesh(TetMesh mesh, const MeshOptions& options);
+void finish_mesh(TetMesh mesh, const MeshOptions& options, Output& out);
 
 /// Progress, on standard error.
 void say_progress(const std::string& line);

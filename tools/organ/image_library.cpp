@@ -14,6 +14,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "common/files/ending.hpp"
 #include "common/mesh/child.hpp"
 #include "tools/organ/label_volume.hpp"
 
@@ -23,14 +24,22 @@ namespace {
 template <class T>
 using Image = itk::Image<T, 3>;
 
-/// ITK fills what a MetaImage file with its data within lacks.
+constexpr std::int64_t kMostDeflated = 1032;  // times a file's size: no more bytes come of it
+
+/// Whether a file is too short for so many bytes of voxels; false where these are in another. ITK makes room for all
+/// that is announced, and fills what a MetaImage file with its data within lacks.
 bool is_cut_short(const std::string& file, std::int64_t bytes) {
   constexpr std::size_t kHeader = 4096;
   std::string head(kHeader, '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
-  const std::size_t data = head.find("LOCAL\n");
-  if (data == std::string::npos || head.find("CompressedData = True") < data) return false;
-  return static_cast<std::int64_t>(std::filesystem::file_size(file) - data - 6) < bytes;
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file));
+  const auto has = [&](const char* words) { return head.find(words) != std::string::npos; };
+  const bool is_meta = has_ending(file, ".mha") || has_ending(file, ".mhd");
+  const bool is_nrrd = has_ending(file, ".nrrd") || has_ending(file, ".nhdr");
+  if (is_meta ? !has("LOCAL\n") : is_nrrd && (has("data file:") || has("datafile:"))) return false;
+  if (is_meta && !has("CompressedData = True"))
+    return size - static_cast<std::int64_t>(head.find("LOCAL\n")) - 6 < bytes;
+  return kMostDeflated * size < bytes;
 }
 
 template <class T, class FileFormat>
@@ -44,7 +53,7 @@ typename Image<T>::Pointer read_image(const std::string& file) {
     if (count < 1 || count > 65536 || (voxels *= count) > kMaxVoxels)
       throw std::runtime_error("it announces more voxels than the billion that is read");
   }
-  if (file.ends_with(".mha") && is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
+  if (is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
     throw std::runtime_error("it ends before its last voxel");
   const auto reader = itk::ImageFileReader<Image<T>>::New();
   reader->SetImageIO(format);
@@ -83,8 +92,8 @@ template <class T>
 typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std::string& series) {
   const std::string name = file.string();
   if (std::filesystem::is_directory(file)) return read_series<T>(name, series);
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
-  if (name.ends_with(".mhd") || name.ends_with(".mha")) return read_image<T, itk::MetaImageIO>(name);
+  if (has_ending(file, ".nii") || has_ending(file, ".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
+  if (has_ending(file, ".mhd") || has_ending(file, ".mha")) return read_image<T, itk::MetaImageIO>(name);
   return read_image<T, itk::NrrdImageIO>(name);
 }
 

@@ -36,7 +36,8 @@ void over_triangle(const std::array<Eigen::Vector3d, 3>& corners, double step, c
 }
 
 /// How far a label's border and its part's surface, where it touches another part too, are apart.
-void print_distance(const GridShape& shape, const std::vector<char>& inside, const TetMesh& part) {
+void tell_distance(const GridShape& shape, const std::vector<char>& inside, const TetMesh& part, Output& out,
+                   Output::Json& figures) {
   const Surface surface = extract_surface(part);
   const SurfaceTree tree({part.nodes, surface.triangles});
   const DistanceGrid voxels = distance_to_border(shape, inside);
@@ -53,31 +54,56 @@ void print_distance(const GridShape& shape, const std::vector<char>& inside, con
   const double mean = std::reduce(distances.begin(), distances.end()) / static_cast<double>(distances.size());
   const auto nearly_all = distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size()));
   std::ranges::nth_element(distances, nearly_all);
-  fmt::print(
-      "    from its voxels: mean {:.3g} mm, 99 % within {:.3g}, largest {:.3g} at {}; in voxel diagonals {:.2f}, "
-      "{:.2f}, {:.2f}\n",
-      1e3 * mean, 1e3 * *nearly_all, 1e3 * largest.distance, place_in_mm(largest.place), mean / diagonal,
-      *nearly_all / diagonal, largest.distance / diagonal);
+  out.say(
+      fmt::format("    from its voxels: mean {:.3g} mm, 99 % within {:.3g}, largest {:.3g} at {}; in voxel diagonals "
+                  "{:.2f}, {:.2f}, {:.2f}",
+                  1e3 * mean, 1e3 * *nearly_all, 1e3 * largest.distance, place_in_mm(largest.place), mean / diagonal,
+                  *nearly_all / diagonal, largest.distance / diagonal));
+  figures.update({{"mean_distance_m", mean},
+                  {"distance_of_99_percent_m", *nearly_all},
+                  {"largest_distance_m", largest.distance},
+                  {"voxel_diagonal_m", diagonal}});
 }
 
 std::string say(const Topology& t) {
   return fmt::format("{} closed surface{}, genus {}", t.surfaces, t.surfaces == 1 ? "" : "s", t.handles);
 }
 
+Output::Json json_of(const Topology& t) {
+  return {{"closed_surfaces", t.surfaces}, {"genus", t.handles}};
+}
+
+void tell_part(const LabelVoxels& voxels, int label, const TetMesh& part, double wanted, Output& out) {
+  const std::string& name = voxels.labels[label].name;
+  const std::vector<char>& inside = voxels.inside[label];
+  const double volume = measures_of(part).volume;
+  const auto pieces = pieces_of(part).size();
+  const Topology of_mesh = topology_of(part);
+  const VoxelTopology of_voxels = topology_of(voxels.shape, inside);
+  out.say(fmt::format("  '{}': {:.4g} ml, of its voxels {:.4g} ml ({:+.2f} %); {} piece{}, {}; its voxels: {}", name,
+                      1e6 * volume, 1e6 * wanted, 100 * (volume / wanted - 1), pieces, pieces == 1 ? "" : "s",
+                      say(of_mesh), say(of_voxels.apart)));
+  Output::Json& figures =
+      out.mesh()["labels"].emplace_back(Output::Json{{"name", name},
+                                                     {"volume_m3", volume},
+                                                     {"volume_of_voxels_m3", wanted},
+                                                     {"pieces", pieces},
+                                                     {"topology", json_of(of_mesh)},
+                                                     {"topology_of_voxels", json_of(of_voxels.apart)}});
+  tell_distance(voxels.shape, inside, part, out, figures);
+  if (!of_voxels.allows(of_mesh))
+    out.warn(
+        fmt::format("'{}' has {}, and its voxels have {}: a wall or a gap is lost, or a hole made; ask for less "
+                    "--smoothing or for more nodes",
+                    name, say(of_mesh), say(of_voxels.apart)));
+}
+
 }  // namespace
 
-void print_label_measures(const LabelVoxels& voxels, const std::vector<int>& labels, const LabelSolid& solid,
-                          const FilledSolid& filled) {
-  for (std::size_t p = 0; p < labels.size(); ++p) {
-    const TetMesh part = part_of(filled, static_cast<int>(p) + 1);
-    const double volume = measures_of(part).volume;
-    const auto pieces = pieces_of(part).size();
-    fmt::print("  '{}': {:.4g} ml, of its voxels {:.4g} ml ({:+.2f} %); {} piece{}, {}; its voxels: {}\n",
-               voxels.labels[labels[p]].name, 1e6 * volume, 1e6 * solid.volumes[p],
-               100 * (volume / solid.volumes[p] - 1), pieces, pieces == 1 ? "" : "s", say(topology_of(part)),
-               say(topology_of(voxels.shape, voxels.inside[labels[p]])));
-    print_distance(voxels.shape, voxels.inside[labels[p]], part);
-  }
+void tell_label_measures(const LabelVoxels& voxels, const std::vector<int>& labels, const LabelSolid& solid,
+                         const FilledSolid& filled, Output& out) {
+  for (std::size_t p = 0; p < labels.size(); ++p)
+    tell_part(voxels, labels[p], part_of(filled, static_cast<int>(p) + 1), solid.volumes[p], out);
 }
 
 }  // namespace palpate

@@ -29,9 +29,10 @@ struct Field {
   }
 };
 
-Field field_of(const GridShape& shape, const std::vector<char>& inside, double smoothing) {
+/// `width`: [m] of the smoothing along each axis.
+Field field_of(const GridShape& shape, const std::vector<char>& inside, const Eigen::Vector3d& width) {
   Field field{distance_to_border(shape, inside)};
-  if (smoothing > 0) smooth(field.grid, smoothing * shape.spacing);
+  if (width.maxCoeff() > 0) smooth(field.grid, width);
   const double volume = volume_of_voxels(shape, inside);
   double low = -shape.spacing.norm(), high = shape.spacing.norm();
   for (int i = 0; i < 30; ++i) {
@@ -83,13 +84,13 @@ struct Fields {
 
 /// Takes from a label what is nearer to the others' border than half the gap, evenly on both sides; returns what is
 /// left of its volume [m^3].
-double keep_apart(const LabelVoxels& voxels, int label, const LabelShape& wish, Field& field) {
+double keep_apart(const LabelVoxels& voxels, int label, double gap, const Eigen::Vector3d& width, Field& field) {
   for (std::size_t o = 0; o < voxels.labels.size(); ++o) {
     if (static_cast<int>(o) == label) continue;
-    const Field other = field_of(voxels.shape, voxels.inside[o], wish.smoothing);
+    const Field other = field_of(voxels.shape, voxels.inside[o], width);
     for (std::size_t i = 0; i < field.grid.value.size(); ++i) {
       const double here = field.grid.value[i] - field.level, there = other.grid.value[i] - other.level;
-      field.grid.value[i] = static_cast<float>(field.level + std::max(here, 0.5 * (here - there + wish.gap)));
+      field.grid.value[i] = static_cast<float>(field.level + std::max(here, 0.5 * (here - there + gap)));
     }
   }
   return volume_below(field.grid, field.level);
@@ -123,41 +124,43 @@ std::vector<SurfacePoint> points_of(const Field& field, const std::vector<Eigen:
 ThinWall wall_of(const GridShape& grid, const std::vector<char>& inside, const std::vector<SurfacePoint>& points) {
   const DistanceGrid sharp = distance_to_border(grid, inside);
   return thin_wall(
-      points, [&](const Eigen::Vector3d& x) { return -sharp.at(x); }, 0.25 * grid.spacing.minCoeff());
+      points, [&](const Eigen::Vector3d& x, double most) { return std::min(-sharp.at(x), most); },
+      0.25 * grid.spacing.minCoeff());
 }
 
-/// Smoothing as wide as a wall makes holes in it: makes it a third of that, and says so.
-bool smooth_less(const ThinWall& wall, const GridShape& grid, double& smoothing, std::vector<Finding>& findings) {
+/// Smoothing as wide as a wall makes holes in it: makes it a third of that at most along each axis, and says so.
+bool smooth_less(const ThinWall& wall, Eigen::Vector3d& width, std::vector<Finding>& findings) {
   constexpr double kOfWall = 1.0 / 3;
-  const double most = kOfWall * wall.thickness / grid.spacing.minCoeff();
-  if (smoothing <= most) return false;
-  smoothing = most;
+  const double most = kOfWall * wall.thickness;
+  if (width.maxCoeff() <= most) return false;
+  width = width.cwiseMin(most);
   findings.push_back({fmt::format("walls {:.3g} mm thick", 1e3 * wall.thickness),
-                      fmt::format("smoothed over {:.2g} voxels", most),
+                      fmt::format("smoothed over {:.2g} mm at most", 1e3 * most),
                       {wall.place}});
   return true;
 }
 
 }  // namespace
 
-LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, LabelShape wish) {
+LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, const LabelShape& wish,
+                    std::vector<Finding>& findings) {
   LabelSolid result;
   const GridShape& grid = voxels.shape;
+  Eigen::Vector3d width = wish.smoothing * grid.spacing;
   auto fields = std::make_shared<Fields>();
   std::vector<char> all = union_of(voxels, labels);
-  if (labels.size() > 1) fill_cavities(grid, all, all, kSmallCavity, "all of them", result.findings);
+  if (labels.size() > 1) fill_cavities(grid, all, all, kSmallCavity, "all of them", findings);
   result.border = border_of(grid, all);
-  fields->all = field_of(grid, all, wish.smoothing);
+  fields->all = field_of(grid, all, width);
   result.solid.wall = wall_of(grid, all, points_of(fields->all, result.border));
-  if (smooth_less(result.solid.wall, grid, wish.smoothing, result.findings))
-    fields->all = field_of(grid, all, wish.smoothing);
+  if (smooth_less(result.solid.wall, width, findings)) fields->all = field_of(grid, all, width);
   for (const int l : labels) {
     result.volumes.push_back(volume_of_voxels(grid, voxels.inside[l]));
     fields->of_label.emplace_back();
-    if (labels.size() > 1) fields->of_label.back() = field_of(grid, voxels.inside[l], wish.smoothing);
+    if (labels.size() > 1) fields->of_label.back() = field_of(grid, voxels.inside[l], width);
   }
   if (wish.gap > 0) {
-    const double left = keep_apart(voxels, labels[0], wish, fields->all);
+    const double left = keep_apart(voxels, labels[0], wish.gap, width, fields->all);
     check_left(voxels.labels[labels[0]].name, left, result.volumes[0], wish.gap);
     result.volumes = {left};
   }

@@ -17,12 +17,13 @@ struct LabelSolid {
   SolidMeasures measures;
   std::vector<double> volumes;          ///< [m^3] of each label's voxels, less the gap
   std::vector<Eigen::Vector3d> border;  ///< [m] middles of the voxel faces around all of them
-  std::vector<Finding> findings;        ///< what is filled between them
 };
 
 /// Surfaces are where a smoothed distance to the voxels' border has the level that keeps each label's volume. Several
 /// labels share their border; with a gap, `labels` is one. Walls thinner than three widths of the smoothing are
-/// smoothed over less, which is noted. Throws std::runtime_error where the gap leaves next to nothing of a label.
-LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, LabelShape wish);
+/// smoothed over a third of their thickness, along each axis where that is less, which is noted, as is what is filled
+/// between them. Throws std::runtime_error where the gap leaves next to nothing of a label.
+LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, const LabelShape& wish,
+                    std::vector<Finding>& findings);
 
 }  // namespace palpate

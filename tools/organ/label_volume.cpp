@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/files/ending.hpp"
+
 namespace palpate {
 namespace {
 
@@ -115,12 +117,11 @@ void take_fractions(gzFile in, double bits, bool swapped, Volume<T>& volume) {
 template <class T>
 Volume<T> read_volume(const std::filesystem::path& file, const std::string& series) try {
   if (!std::filesystem::exists(file)) throw std::runtime_error("it does not exist");
-  const std::string name = file.filename();
   if (!series.empty() && !std::filesystem::is_directory(file))
     throw std::runtime_error("--series is of a folder of DICOM files");
-  if (name.ends_with(".inr") || name.ends_with(".inr.gz")) return read_inr<T>(file);
+  if (has_ending(file, ".inr") || has_ending(file, ".inr.gz")) return read_inr<T>(file);
   for (const char* ending : {".nii", ".nii.gz", ".mhd", ".mha", ".nrrd", ".nhdr"})
-    if (name.ends_with(ending)) return read_with_image_library<T>(file, series);
+    if (has_ending(file, ending)) return read_with_image_library<T>(file, series);
   if (std::filesystem::is_directory(file)) return read_with_image_library<T>(file, series);
   throw std::runtime_error(
       "an image is read from .inr, .inr.gz, .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr and a folder of DICOM files");

@@ -22,38 +22,34 @@ struct SurfaceOptions : MeshOptions {
   double hole = 0;
 };
 
-/// Says of which file an error is.
-template <class Work>
-auto of_file(const std::string& file, const Work& work) try {
-  return work();
-} catch (const std::runtime_error& error) {
-  throw std::runtime_error(fmt::format("{}: {}", file, error.what()));
-}
-
-RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o) {
+RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o, Output& out) {
   constexpr double kHole = 0.2;  // of the diagonal
-  return of_file(o.surface,
-                 [&] { return repair_surface(read.mesh, o.hole > 0 ? o.hole : kHole * diagonal(read.mesh)); });
+  const double hole = o.hole > 0 ? o.hole : kHole * diagonal(read.mesh);
+  std::vector<Finding> findings = read.findings;
+  RepairedSurface surface;
+  tell_refused_too([&] { tell_findings(findings, o.report, out); },
+                   [&] { surface = of_file(o.surface, [&] { return repair_surface(read.mesh, hole, findings); }); });
+  if (findings.empty()) out.say("  found: nothing to repair");
+  return surface;
 }
 
 void make_mesh(const SurfaceOptions& o) {
+  Output out(o.json);
   MeshFineness fineness = fineness_of(o);
   const ReadSurface read = read_surface(o.surface, kUnits.at(o.unit));
-  fmt::print("{}: {} triangles\n", o.surface, read.mesh.triangles.size());
+  out.say(fmt::format("{}: {} triangles", o.surface, read.mesh.triangles.size()));
+  out.figures().update({{"surface", o.surface}, {"triangles", read.mesh.triangles.size()}});
   say_progress("checking the surface");
-  const RepairedSurface surface = repaired(read, o);
-  std::vector<Finding> findings = read.findings;
-  findings.insert(findings.end(), surface.findings.begin(), surface.findings.end());
-  tell_findings(findings, o.report);
-  if (findings.empty()) fmt::print("  found: nothing to repair\n");
-  add_touched_places(fineness, o, surface.mesh.nodes);
-  std::fflush(stdout);
+  const RepairedSurface surface = repaired(read, o, out);
+  add_touched_places(fineness, o, surface.mesh.nodes, out);
   SurfaceSolid solid = of_file(o.surface, [&] {
     check_extent(surface.mesh);  // again: what made it large may be left out
     return solid_of(surface.mesh);
   });
   if (surface.crosses_itself) solid.measures.volumes.clear();
-  finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o);
+  out.next_mesh();
+  finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o, out);
+  out.finish();
 }
 
 }  // namespace

@@ -92,15 +92,23 @@ std::vector<std::vector<int>> meshes_of(const LabelVoxels& voxels, double gap) {
   return alone;
 }
 
+/// Labels that make a mesh together, and their solid.
+struct Together {
+  std::vector<int> labels;
+  LabelSolid solid;
+};
+
 /// Why labels do not make one mesh.
-void say_apart(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<std::vector<int>>& meshes) {
-  if (meshes.size() < 2) return;
-  fmt::print("  {} bodies that share no border, a mesh each:\n", meshes.size());
-  for (const std::vector<int>& labels : meshes)
-    for (const int l : labels) {
+void say_apart(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<Together>& bodies,
+               const Output& out) {
+  if (bodies.size() < 2) return;
+  out.say(fmt::format("  {} bodies that share no border, a mesh each:", bodies.size()));
+  for (const Together& body : bodies)
+    for (const int l : body.labels) {
       const auto& inside = voxels.inside[l];
       const auto first = static_cast<std::size_t>(std::ranges::find(inside, 1) - inside.begin());
-      fmt::print("    '{}' at {}\n", voxels.labels[l].name, place_in_mm(volume.in_world(voxels.shape.place_of(first))));
+      out.say(fmt::format("    '{}' at {}", voxels.labels[l].name,
+                          place_in_mm(volume.in_world(voxels.shape.place_of(first)))));
     }
 }
 
@@ -111,17 +119,18 @@ std::vector<NamedLabel> named_labels(const LabelVoxels& voxels, const std::vecto
 }
 
 void make_visual(const LabelVolume& volume, const std::vector<NamedLabel>& labels, const LabelSolid& solid,
-                 const OrganOptions& o) {
+                 const OrganOptions& o, Output& out) {
   say_progress("making the surface to be looked at");
   VisualMesh mesh = visual_of(solid, labels, o.visual_triangles);
   for (Eigen::Vector3f& p : mesh.position) p = volume.in_world(p.cast<double>()).cast<float>();
   write_visual(mesh, o.visual);
-  fmt::print("{}: {} triangles of {} materials in millimetres, for [body.visual]\n", o.visual, mesh.triangles(),
-             mesh.parts.size());
+  out.say(fmt::format("{}: {} triangles of {} materials in millimetres, for [body.visual]", o.visual, mesh.triangles(),
+                      mesh.parts.size()));
+  out.mesh()["visual"] = {{"file", o.visual}, {"triangles", mesh.triangles()}, {"materials", mesh.parts.size()}};
 }
 
 void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<int>& labels,
-               const LabelSolid& solid, const MeshFineness& fineness, const OrganOptions& o) {
+               const LabelSolid& solid, const MeshFineness& fineness, const OrganOptions& o, Output& out) {
   FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
   const std::vector<NamedLabel> named = named_labels(voxels, labels);
   name_parts(filled, named);
@@ -129,10 +138,10 @@ void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::
     say_progress("drawing slices and surface");
     write_organ_pictures(volume, named, solid.solid, filled, o.preview);
   }
-  print_label_measures(voxels, labels, solid, filled);
-  if (!o.visual.empty()) make_visual(volume, named, solid, o);
+  tell_label_measures(voxels, labels, solid, filled, out);
+  if (!o.visual.empty()) make_visual(volume, named, solid, o, out);
   for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.in_world(x);
-  finish_mesh(std::move(filled.mesh), o);
+  finish_mesh(std::move(filled.mesh), o, out);
 }
 
 /// A place in the world's frame, in the image's; of a box that is turned the box around it.
@@ -149,55 +158,63 @@ FinePlace in_image(const FinePlace& f, const LabelVolume& volume) {
 }
 
 /// What is asked of one of the meshes; places are told in the world's frame.
-MeshFineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share) {
+MeshFineness fineness_for(const LabelVolume& volume, const LabelSolid& solid, const OrganOptions& o, double share,
+                          Output& out) {
   MeshFineness fineness = fineness_of(o);
   if (fineness.deviation == 0) fineness.deviation = kDeviation * volume.diagonal();
   fineness.nodes = std::max(kFewestNodes, static_cast<int>(o.nodes * share));
   std::vector<Eigen::Vector3d> surface;
   for (const Eigen::Vector3d& x : solid.border) surface.push_back(volume.in_world(x));
-  add_touched_places(fineness, o, surface);
+  add_touched_places(fineness, o, surface, out);
   for (FinePlace& place : fineness.fine) place = in_image(place, volume);
   return fineness;
 }
 
-LabelVolume read(const OrganOptions& o) {
+LabelVolume read(const OrganOptions& o, Output& out) {
   say_progress("reading the image");
   LabelVolume volume = read_label_volume(o.volume, o.series);
-  fmt::print("{}: {}\n", o.volume, say_size(volume.shape));
+  tell_image(o.volume, volume.shape, out);
   return volume;
 }
 
-void make_organ(const OrganOptions& o) {
-  fineness_of(o);  // what cannot be read is told at once
-  const std::vector<NamedLabel> labels = labels_of(o);
-  const LabelVolume volume = read(o);
-  std::vector<Finding> findings;
-  say_progress("measuring distances to the labels' borders");
-  const LabelVoxels voxels = [&] {
-    try {
-      return voxels_of(volume, labels, findings);
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("{}: {}", o.volume, error.what()));
-    }
-  }();
-  const auto meshes = meshes_of(voxels, 1e-3 * o.gap_mm);
-  std::vector<LabelSolid> solids;
-  double area = 0;
-  for (const std::vector<int>& together : meshes) {
-    solids.push_back(solid_of(voxels, together, {o.smoothing, 1e-3 * o.gap_mm}));
-    area += solids.back().measures.area;
-    findings.insert(findings.end(), solids.back().findings.begin(), solids.back().findings.end());
-  }
+/// What is found is in the image's frame.
+std::vector<Together> bodies_of(const OrganOptions& o, const LabelVoxels& voxels, std::vector<Finding>& findings) {
+  std::vector<Together> bodies;
+  for (const std::vector<int>& labels : meshes_of(voxels, 1e-3 * o.gap_mm))
+    bodies.push_back({labels, solid_of(voxels, labels, {o.smoothing, 1e-3 * o.gap_mm}, findings)});
+  return bodies;
+}
+
+void tell_in_world(std::vector<Finding> findings, const LabelVolume& volume, const OrganOptions& o, Output& out) {
   for (Finding& finding : findings)
     for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
-  tell_findings(findings, o.report);
-  say_apart(volume, voxels, meshes);
-  std::fflush(stdout);
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const OrganOptions own = meshes.size() == 1 ? o : options_of_one(o, named_labels(voxels, meshes[m]));
-    const MeshFineness fineness = fineness_for(volume, solids[m], o, solids[m].measures.area / area);
-    make_body(volume, voxels, meshes[m], solids[m], fineness, own);
+  tell_findings(findings, o.report, out);
+}
+
+void make_organ(const OrganOptions& o) {
+  Output out(o.json);
+  fineness_of(o);  // what cannot be read is told at once
+  const std::vector<NamedLabel> labels = labels_of(o);
+  const LabelVolume volume = read(o, out);
+  LabelVoxels voxels;
+  std::vector<Together> bodies;
+  std::vector<Finding> findings;
+  say_progress("measuring distances to the labels' borders");
+  tell_refused_too([&] { tell_in_world(findings, volume, o, out); },
+                   [&] {
+                     voxels = of_file(o.volume, [&] { return voxels_of(volume, labels, findings); });
+                     bodies = bodies_of(o, voxels, findings);
+                   });
+  say_apart(volume, voxels, bodies, out);
+  double area = 0;
+  for (const Together& body : bodies) area += body.solid.measures.area;
+  for (const auto& [together, solid] : bodies) {
+    out.next_mesh();
+    const OrganOptions own = bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, together));
+    const MeshFineness fineness = fineness_for(volume, solid, o, solid.measures.area / area, out);
+    make_body(volume, voxels, together, solid, fineness, own, out);
   }
+  out.finish();
 }
 
 }  // namespace

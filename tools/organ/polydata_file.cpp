@@ -32,6 +32,15 @@ std::vector<int> take_polygon(FileCursor& cursor, std::size_t points) {
   return polygon;
 }
 
+/// Cells of a section that stands anywhere behind the cursor.
+std::vector<std::vector<int>> take_section(FileCursor cursor, std::string_view name, std::size_t points) {
+  const std::size_t count = find_section(cursor, name);
+  cursor.rest_of_line();
+  std::vector<std::vector<int>> cells;
+  for (std::size_t i = 0; i < count; ++i) cells.push_back(take_polygon(cursor, points));
+  return cells;
+}
+
 }  // namespace
 
 bool is_polydata(std::string_view bytes) {
@@ -55,9 +64,8 @@ Polygons read_polydata(std::string_view bytes) {
     take_points<float>(cursor, points, read);
   else
     take_points<double>(cursor, points, read);
-  const std::size_t polygons = find_section(cursor, "POLYGONS");
-  cursor.rest_of_line();
-  for (std::size_t i = 0; i < polygons; ++i) read.polygons.push_back(take_polygon(cursor, points));
+  for (const std::vector<int>& polygon : take_section(cursor, "POLYGONS", points)) read.polygons.push_back(polygon);
+  for (const std::vector<int>& strip : take_section(cursor, "TRIANGLE_STRIPS", points)) read.add_strip(strip);
   return read;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tools/organ/commands.hpp"
@@ -72,76 +71,66 @@ SegmentationRules rules_of(const SegmentOptions& o, const GridShape& shape) {
   return rules;
 }
 
-/// Runs of slices whose contours found few edges, as "12, 30-34".
-std::string doubtful_slices(const Segmentation& s) {
+std::vector<int> doubtful_slices(const Segmentation& s) {
+  std::vector<int> doubtful;
+  for (std::size_t k = 0; k < s.slices.size(); ++k)
+    if (!s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough) doubtful.push_back(static_cast<int>(k));
+  return doubtful;
+}
+
+/// "12, 30-34"
+std::string runs_of(const std::vector<int>& slices) {
   std::string text;
-  const auto doubtful = [&](int k) { return !s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough; };
-  const int count = static_cast<int>(s.slices.size());
-  for (int k = 0; k < count; ++k) {
-    if (!doubtful(k)) continue;
-    const int first = k;
-    while (k + 1 < count && doubtful(k + 1)) ++k;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const int first = slices[i];
+    while (i + 1 < slices.size() && slices[i + 1] == slices[i] + 1) ++i;
     text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
-    if (k > first) text += fmt::format("-{}", k);
+    if (slices[i] > first) text += fmt::format("-{}", slices[i]);
   }
   return text;
 }
 
-/// What became of the contours.
-struct ContourFigures {
-  int first = -1, last = 0;  ///< slices that have one
-  int by_hand = 0, drawn = 0;
-  double on_edge = 0;  ///< mean share of a slice's points
-};
-
-ContourFigures figures_of(const Segmentation& s) {
-  ContourFigures f;
-  for (int k = 0; k < static_cast<int>(s.slices.size()); ++k) {
-    const SegmentedSlice& slice = s.slices[k];
-    if (slice.moved.empty()) continue;
-    if (f.first < 0) f.first = k;
-    f.last = k, f.by_hand += slice.by_hand, f.on_edge += slice.on_edge(), ++f.drawn;
+void tell_contours(const SegmentOptions& o, const Segmentation& s, Output& out) {
+  std::vector<int> slices;
+  int by_hand = 0;
+  double on_edge = 0;
+  for (std::size_t k = 0; k < s.slices.size(); ++k) {
+    if (s.slices[k].moved.empty()) continue;
+    slices.push_back(static_cast<int>(k)), by_hand += s.slices[k].by_hand, on_edge += s.slices[k].on_edge();
   }
-  f.on_edge /= f.drawn;
-  return f;
+  if (slices.empty()) return;  // of a few voxels
+  on_edge /= static_cast<double>(slices.size());
+  const std::vector<int> doubtful = o.forces.reach > 0 ? doubtful_slices(s) : std::vector<int>{};
+  out.say(fmt::format("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge",
+                      slices.front(), slices.back(), by_hand, 100 * on_edge));
+  if (!doubtful.empty())
+    out.say(fmt::format("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)",
+                        100 * kSureEnough, runs_of(doubtful)));
+  out.figures().update({{"first_slice", slices.front()},
+                        {"last_slice", slices.back()},
+                        {"slices_by_hand", by_hand},
+                        {"points_on_edge", on_edge},
+                        {"doubtful_slices", doubtful}});
 }
 
-void print_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
-  fmt::print("{}: {}\n", o.image, say_size(shape));
-  fmt::print("  range: {:.4g} to {:.4g}{}\n", s.range.low, s.range.high,
-             o.range.empty() ? ", from what lies around the seeds" : "");
-  tell_findings(s.findings, "");
-  const ContourFigures f = figures_of(s);
-  fmt::print("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge\n", f.first,
-             f.last, f.by_hand, 100 * f.on_edge);
-  if (const std::string doubtful = doubtful_slices(s); !doubtful.empty() && o.forces.reach > 0)
-    fmt::print("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)\n",
-               100 * kSureEnough, doubtful);
+void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s, Output& out) {
+  out.say(fmt::format("  range: {:.4g} to {:.4g}{}", s.range.low, s.range.high,
+                      o.range.empty() ? ", from what lies around the seeds" : ""));
+  out.figures()["range"] = {s.range.low, s.range.high};
+  tell_findings(s.findings, "", out);
+  tell_contours(o, s, out);
   const auto voxels = std::ranges::count(s.inside, 1);
-  fmt::print("{}: label 1, {} voxels, {:.4g} ml\n", o.output, voxels,
-             1e6 * static_cast<double>(voxels) * shape.spacing.prod());
-}
-
-void print_json(const SegmentOptions& o, const GridShape& shape, const Segmentation& s) {
-  const ContourFigures f = figures_of(s);
-  const auto voxels = std::ranges::count(s.inside, 1);
-  nlohmann::ordered_json json{{"file", o.output},
-                              {"range", {s.range.low, s.range.high}},
-                              {"slices", {f.first, f.last}},
-                              {"by_hand", f.by_hand},
-                              {"on_edge", f.on_edge},
-                              {"doubtful_slices", doubtful_slices(s)},
-                              {"voxels", voxels},
-                              {"volume_m3", static_cast<double>(voxels) * shape.spacing.prod()},
-                              {"found", nlohmann::ordered_json::array()}};
-  for (const Finding& finding : s.findings) json["found"].push_back(say(finding));
-  fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  const double volume = static_cast<double>(voxels) * shape.spacing.prod();
+  out.say(fmt::format("{}: label 1, {} voxels, {:.4g} ml", o.output, voxels, 1e6 * volume));
+  out.figures().update({{"file", o.output}, {"label", 1}, {"label_voxels", voxels}, {"volume_m3", volume}});
 }
 
 void segment_image(const SegmentOptions& o) {
+  Output out(o.json);
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;
+  tell_image(o.image, shape, out);
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
@@ -149,13 +138,7 @@ void segment_image(const SegmentOptions& o) {
   say_progress("smoothing");
   if (o.smoothing > 0) smooth(smoothed, Eigen::Vector3d::Constant(o.smoothing * shape.spacing.head<2>().minCoeff()));
   say_progress("growing the region and moving contours");
-  Segmentation segmentation = [&] {
-    try {
-      return segment(smoothed, seeds, rules);
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("{}: {}", o.image, error.what()));
-    }
-  }();
+  Segmentation segmentation = of_file(o.image, [&] { return segment(smoothed, seeds, rules); });
   if (!o.preview.empty()) {
     say_progress("drawing the slices");
     write_slice_pictures(image, smoothed, segmentation, o.preview);
@@ -163,7 +146,8 @@ void segment_image(const SegmentOptions& o) {
   write_label_volume(volume, segmentation.inside, o.output);
   for (Finding& finding : segmentation.findings)
     for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
-  o.json ? print_json(o, shape, segmentation) : print_segmentation(o, shape, segmentation);
+  tell_segmentation(o, shape, segmentation, out);
+  out.finish();
 }
 
 }  // namespace
@@ -196,7 +180,7 @@ void add_segment_command(cli::Command& app) {
                      "Text file of lines SLICE X Y, in voxels: the contours of these slices are drawn through their "
                      "points, those of up to 15 slices between two of them start from both");
   command.add_option("--preview", o->preview, "Folder for a picture of each slice with its contours");
-  command.add_flag("--json", o->json, "Print what came of it as one line of JSON");
+  command.add_flag("--json", o->json, "Print one line of JSON");
   command.tells_progress();
   command.examples({"palpate segment ct.nii.gz --seed 60,-20,110 --preview slices -o liver.mha",
                     "palpate segment ct.nii.gz --seed 60,-20,110 --neck 6 --points mended.txt -o liver.mha"});

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/files/ending.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "tools/organ/polydata_file.hpp"
 #include "tools/organ/stl_file.hpp"
@@ -34,12 +34,6 @@ std::string text_of(const fs::path& file) {
   std::string text((std::istreambuf_iterator<char>(in)), {});
   if (!in) refuse(file, "the file cannot be read");
   return text;
-}
-
-std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
 }
 
 /// Fans of triangles.
@@ -71,19 +65,35 @@ std::vector<Finding> strange_lines(const std::string& obj) {
   return {{fmt::format("lines that say nothing of polygons ({}), the first line {}", count, first), "passed over", {}}};
 }
 
+/// Names of groups of an OBJ file's triangles, which the library passes over.
+std::vector<Finding> group_names(const std::string& obj) {
+  std::istringstream lines(obj);
+  std::set<std::string> names;
+  std::string line, word, name, first;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    if (!(words >> word) || word != "g" || !(words >> name) || !names.insert(name).second) continue;
+    if (names.size() == 1) first = name;
+  }
+  if (names.empty()) return {};
+  return {{fmt::format("groups of triangles ({}), the first '{:.40}'", names.size(), first),
+           "not kept: --group names nodes by their place",
+           {}}};
+}
+
 ReadSurface read(const fs::path& file) {
-  const std::string ending = ending_of(file);
-  if (ending == ".stl") return read_stl(text_of(file));
-  if (ending == ".vtp") return triangles_of(read_vtp(text_of(file)));
-  if (ending == ".vtk")
+  if (has_ending(file, ".stl")) return read_stl(text_of(file));
+  if (has_ending(file, ".vtp")) return triangles_of(read_vtp(text_of(file)));
+  if (has_ending(file, ".vtk"))
     if (const std::string text = text_of(file); is_polydata(text)) return triangles_of(read_polydata(text));
-  if (ending == ".vtk") return {load_triangle_mesh(file, 1), {}};
-  if (ending != ".obj" && ending != ".ply" && ending != ".off")
+  if (has_ending(file, ".vtk")) return {load_triangle_mesh(file, 1), {}};
+  if (!has_ending(file, ".obj") && !has_ending(file, ".ply") && !has_ending(file, ".off"))
     refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");
   const std::string text = text_of(file);
   ReadSurface surface = triangles_of(read_with_surface_library(file));
-  if (ending == ".obj")
-    for (const Finding& strange : strange_lines(text)) surface.findings.push_back(strange);
+  if (has_ending(file, ".obj"))
+    for (const auto& found : {strange_lines(text), group_names(text)})
+      surface.findings.insert(surface.findings.end(), found.begin(), found.end());
   return surface;
 }
 

@@ -12,11 +12,14 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
+#include "common/files/ending.hpp"
 #include "common/mesh/child.hpp"
 #include "tools/organ/plain_words.hpp"
 
@@ -44,11 +47,15 @@ std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& places) {
 std::string read(const std::filesystem::path& file) {
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
-  const std::string kind = file.extension();
-  const bool good = kind == ".obj"   ? CGAL::IO::read_OBJ(file, points, polygons)
-                    : kind == ".ply" ? CGAL::IO::read_PLY(file, points, polygons)
-                                     : CGAL::IO::read_OFF(file, points, polygons);
-  if (!good) throw std::runtime_error("it cannot be read as " + kind.substr(1) + ": it is damaged or cut short");
+  const bool is_obj = has_ending(file, ".obj"), is_ply = has_ending(file, ".ply");
+  std::ifstream in(file, std::ios::binary);
+  const bool good = is_obj   ? CGAL::IO::read_OBJ(in, points, polygons)
+                    : is_ply ? CGAL::IO::read_PLY(in, points, polygons)
+                             : CGAL::IO::read_OFF(in, points, polygons);
+  if (!good)
+    throw std::runtime_error(fmt::format("it cannot be read as {}: it is damaged or cut short", is_obj   ? "OBJ"
+                                                                                                : is_ply ? "PLY"
+                                                                                                         : "OFF"));
   std::string bytes;
   std::vector<Eigen::Vector3d> places;
   for (const Point& p : points) places.push_back(vector_of(p));
@@ -148,6 +155,10 @@ SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 
 double SurfaceTree::distance(const Eigen::Vector3d& x) const {
   return std::sqrt(tree_->boxes.squared_distance(point_of(x)));
+}
+
+double SurfaceTree::distance(const Eigen::Vector3d& x, double most) const {
+  return (nearest(x, x + most * Eigen::Vector3d::UnitX()) - x).norm();
 }
 
 Eigen::Vector3d SurfaceTree::nearest(const Eigen::Vector3d& x) const {

@@ -12,6 +12,12 @@ namespace palpate {
 struct Polygons {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::vector<int>> polygons;  ///< indices into points
+
+  /// Adds the triangles of a strip: each of its corners makes one with the two before it, every other one turned.
+  void add_strip(const std::vector<int>& strip) {
+    for (std::size_t c = 2; c < strip.size(); ++c)
+      polygons.push_back({strip[c - 2], strip[c - 1 + c % 2], strip[c - c % 2]});
+  }
 };
 
 /// Reads OBJ, PLY and OFF in a child process (common/mesh/child.hpp). Throws std::runtime_error(reason).
@@ -35,6 +41,8 @@ class SurfaceTree {
   SurfaceTree(SurfaceTree&&) noexcept;
 
   double distance(const Eigen::Vector3d& x) const;  ///< [m] to the surface; >= 0
+  /// [m] That distance, or `most`, whichever is less: nothing farther is looked at.
+  double distance(const Eigen::Vector3d& x, double most) const;
   Eigen::Vector3d nearest(const Eigen::Vector3d& x) const;
   /// The same in less time from a point of the surface that is not much farther from x.
   Eigen::Vector3d nearest(const Eigen::Vector3d& x, const Eigen::Vector3d& guess) const;

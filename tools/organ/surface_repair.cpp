@@ -182,7 +182,9 @@ void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
        {mesh.nodes.begin() + static_cast<std::ptrdiff_t>(known.size()), mesh.nodes.end()}, findings);
 }
 
+/// Every hole is noted before one is refused.
 void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
+  std::string refusal;
   for (const std::vector<int>& rim : rims_of(mesh)) {
     std::vector<Eigen::Vector3d> loop;
     Eigen::Vector3d low = mesh.nodes[rim[0]], high = low;
@@ -195,17 +197,20 @@ void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& 
                  "",
                  {0.5 * (low + high)},
                  "holes"};
+    std::string fault;
     if (across > largest_hole)
-      throw std::runtime_error(
-          fmt::format("{}, larger than {:.3g} mm: close it in the program that the surface comes "
-                      "from, or allow it by --hole",
-                      say(hole), 1e3 * largest_hole));
-    const auto patch = close_loop(loop);
-    if (patch.empty()) throw std::runtime_error(say(hole) + " cannot be closed");
+      fault = fmt::format(
+          "{}, larger than {:.3g} mm: close it in the program that the surface comes from, or allow it "
+          "by --hole",
+          say(hole), 1e3 * largest_hole);
+    const auto patch = fault.empty() ? close_loop(loop) : std::vector<Triangle>{};
+    if (fault.empty() && patch.empty()) fault = say(hole) + " cannot be closed";
     for (const Triangle& t : patch) mesh.triangles.push_back({rim[t[0]], rim[t[1]], rim[t[2]]});
-    hole.done = "closed";
+    hole.done = fault.empty() ? "closed" : "refused";
     findings.push_back(std::move(hole));
+    if (refusal.empty()) refusal = fault;
   }
+  if (!refusal.empty()) throw std::runtime_error(refusal);
 }
 
 /// Whether there are any.
@@ -218,9 +223,7 @@ bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
 
 }  // namespace
 
-RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole) {
-  RepairedSurface repaired;
-  std::vector<Finding>& findings = repaired.findings;
+RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole, std::vector<Finding>& findings) {
   leave_unused_nodes_out(mesh, findings);
   mesh = join_corners(mesh, joined_distance(mesh));
   take_repeated_away(mesh, findings);
@@ -231,9 +234,8 @@ RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole) {
   leave_open_shells_out(mesh, largest_hole, findings);
   close_holes(mesh, largest_hole, findings);
   keep_largest_shell(mesh, findings);
-  repaired.crosses_itself = note_crossings(mesh, findings);
-  repaired.mesh = std::move(mesh);
-  return repaired;
+  const bool crosses = note_crossings(mesh, findings);
+  return {std::move(mesh), crosses};
 }
 
 }  // namespace palpate

@@ -9,7 +9,6 @@ namespace palpate {
 /// A closed surface, its normals outward; of a body with cavities, those of a cavity point into it.
 struct RepairedSurface {
   TriangleMesh mesh;
-  std::vector<Finding> findings;  ///< all that was wrong, with its places
   bool crosses_itself = false;
 };
 
@@ -17,8 +16,8 @@ struct RepairedSurface {
 /// out that no triangle uses, takes away triangles that are there
 /// twice or have no area, turns those that are turned against their neighbours, parts what is not manifold, closes
 /// holes up to `largest_hole` [m] across, and leaves out shells apart from the largest. Surfaces that cross themselves
-/// stay as they are: the body is what they go round.
+/// stay as they are: the body is what they go round. All that is wrong is added to `findings`, with its places.
 /// Throws std::runtime_error(reason) where a hole is larger or cannot be closed.
-RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole);
+RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole, std::vector<Finding>& findings);
 
 }  // namespace palpate

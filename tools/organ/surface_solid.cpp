@@ -100,7 +100,7 @@ SurfaceSolid solid_of(const TriangleMesh& surface) {
   const GridShape shape = grid_around(surface);
   const double cell = shape.spacing.x();
   const ThinWall wall = thin_wall(
-      points_of(surface), [&](const Eigen::Vector3d& x) { return tree->distance(x); }, 0.01 * cell);
+      points_of(surface), [&](const Eigen::Vector3d& x, double most) { return tree->distance(x, most); }, 0.01 * cell);
   if (wall.thickness < kCellsOfWall * cell)
     throw std::runtime_error(fmt::format(
         "its walls are {:.3g} mm thick at {}, less than is told apart in a body of that size: {:.3g} mm; cut "

@@ -9,26 +9,25 @@ namespace {
 constexpr double kThinnest = 0.05;  // of the points
 constexpr double kParallel = 0.8;   // cosine between the sides of a wall
 constexpr double kFarthest = 1e6;   // times what is near: the way misses the surface
+constexpr double kRounding = 1e-9;  // of a depth
 
 /// Infinite where it meets no surface that lies nearly parallel to that at the point: there is an edge, or a corner.
-double thickness_at(const SurfacePoint& point, const std::function<double(const Eigen::Vector3d&)>& depth,
-                    double near) {
+double thickness_at(const SurfacePoint& point, const DepthUpTo& depth, double near) {
   constexpr int kSteps = 1000;
   double deep = 3 * near;
   for (int i = 0; i < kSteps && deep < kFarthest * near; ++i) {
-    const double free = depth(point.place + deep * point.inward);
+    const double free = depth(point.place + deep * point.inward, deep);  // the point itself is no farther
     if (free < near) break;
     deep += free;
   }
-  const double middle = 0.5 * deep;
-  const bool wall = depth(point.place + middle * point.inward) > kParallel * middle;
+  const double middle = 0.5 * deep, least = kParallel * middle;
+  const bool wall = depth(point.place + middle * point.inward, least) > (1 - kRounding) * least;
   return wall ? deep : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-ThinWall thin_wall(const std::vector<SurfacePoint>& points, const std::function<double(const Eigen::Vector3d&)>& depth,
-                   double near) {
+ThinWall thin_wall(const std::vector<SurfacePoint>& points, const DepthUpTo& depth, double near) {
   std::vector<ThinWall> walls;
   for (const SurfacePoint& point : points) walls.push_back({thickness_at(point, depth, near), point.place});
   const auto chosen = walls.begin() + static_cast<std::ptrdiff_t>(kThinnest * static_cast<double>(walls.size()));

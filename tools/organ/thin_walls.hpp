@@ -15,10 +15,13 @@ struct SurfacePoint {
 /// So many points tell how thick a body is.
 inline constexpr std::size_t kWallPoints = 2000;
 
-/// How thick the thinnest twentieth of a surface's points find the body, going inward until `depth` below the surface
-/// [m], which may be negative outside, is less than `near` [m]. Infinite where few points face a surface nearly
+/// [m] Depth of a place below the surface, or `most`, whichever is less; it may be negative outside. Of the middle of a
+/// ball all of the surface is at one distance: none of it is looked at where less is enough.
+using DepthUpTo = std::function<double(const Eigen::Vector3d& x, double most)>;
+
+/// How thick the thinnest twentieth of a surface's points find the body, going inward until they are less than `near`
+/// [m] below the surface. Infinite where few points face a surface nearly
 /// parallel to theirs: edges and tips are no walls. Needs a point.
-ThinWall thin_wall(const std::vector<SurfacePoint>& points, const std::function<double(const Eigen::Vector3d&)>& depth,
-                   double near);
+ThinWall thin_wall(const std::vector<SurfacePoint>& points, const DepthUpTo& depth, double near);
 
 }  // namespace palpate

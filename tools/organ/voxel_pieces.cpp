@@ -12,13 +12,25 @@ struct Piece {
   bool at_rim = false;  ///< of the grid
 };
 
+using Step = std::array<int, 3>;
+
+/// From a voxel to those that share a face with it, or an edge or a corner too.
+std::vector<Step> steps_to_neighbours(bool through_faces_alone) {
+  std::vector<Step> steps;
+  for (int k = -1; k <= 1; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i)
+        if (const int apart = i * i + j * j + k * k; apart == 1 || (apart > 1 && !through_faces_alone))
+          steps.push_back({i, j, k});
+  return steps;
+}
+
 /// Numbers the pieces of voxels that are `value`, from 1; 0: the others.
 std::vector<int> pieces_of(const GridShape& shape, const std::vector<char>& inside, bool value,
-                           std::vector<Piece>& pieces) {
+                           std::vector<Piece>& pieces, bool through_faces_alone = true) {
+  const std::vector<Step> steps = steps_to_neighbours(through_faces_alone);
   std::vector<int> number(shape.size(), 0);
   std::vector<std::size_t> queue;
-  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(shape.count[0]),
-                                          static_cast<std::size_t>(shape.count[0]) * shape.count[1]};
   for (std::size_t start = 0; start < number.size(); ++start) {
     if ((inside[start] != 0) != value || number[start] != 0) continue;
     pieces.push_back({start});
@@ -26,25 +38,54 @@ std::vector<int> pieces_of(const GridShape& shape, const std::vector<char>& insi
     number[start] = piece;
     queue.assign(1, start);
     while (!queue.empty()) {
-      const std::size_t at = queue.back();
+      const Step at = shape.voxel_of(queue.back());
       queue.pop_back();
       ++pieces.back().voxels;
-      for (int a = 0; a < 3; ++a) {
-        const auto place = static_cast<int>(at / stride[a] % shape.count[a]);
-        for (const int way : {-1, 1}) {
-          if (place + way < 0 || place + way >= shape.count[a]) {
-            pieces.back().at_rim = true;
-            continue;
-          }
-          const std::size_t next = way > 0 ? at + stride[a] : at - stride[a];
-          if ((inside[next] != 0) != value || number[next] != 0) continue;
-          number[next] = piece;
-          queue.push_back(next);
-        }
+      for (const Step& step : steps) {
+        const Step to{at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+        bool in_grid = true;
+        for (int a = 0; a < 3; ++a) in_grid = in_grid && to[a] >= 0 && to[a] < shape.count[a];
+        pieces.back().at_rim = pieces.back().at_rim || !in_grid;
+        if (!in_grid) continue;
+        const std::size_t next = shape.index(to[0], to[1], to[2]);
+        if ((inside[next] != 0) != value || number[next] != 0) continue;
+        number[next] = piece;
+        queue.push_back(next);
       }
     }
   }
   return number;
+}
+
+struct Count {
+  int apart, joined;  ///< pieces of voxels that hang together through faces alone, or through edges and corners too
+};
+
+Count count_pieces(const GridShape& shape, const std::vector<char>& inside, bool value) {
+  std::vector<Piece> apart, joined;
+  pieces_of(shape, inside, value, apart);
+  if (apart.size() > 1) pieces_of(shape, inside, value, joined, false);
+  return {static_cast<int>(apart.size()), static_cast<int>((joined.empty() ? apart : joined).size())};
+}
+
+/// Euler's number of voxels that are `value` and hang together through faces: voxels less pairs, plus squares of four,
+/// less cubes of eight.
+int euler_number(const GridShape& shape, const std::vector<char>& inside, bool value) {
+  const auto is = [&](int i, int j, int k) {
+    return i >= 0 && j >= 0 && k >= 0 && (inside[shape.index(i, j, k)] != 0) == value;
+  };
+  int euler = 0;
+  for (int k = 0; k < shape.count[2]; ++k)
+    for (int j = 0; j < shape.count[1]; ++j)
+      for (int i = 0; i < shape.count[0]; ++i) {
+        if (!is(i, j, k)) continue;
+        const bool x = is(i - 1, j, k), y = is(i, j - 1, k), z = is(i, j, k - 1);
+        const bool xy = x && y && is(i - 1, j - 1, k), yz = y && z && is(i, j - 1, k - 1),
+                   zx = z && x && is(i - 1, j, k - 1);
+        const bool cube = xy && yz && zx && is(i - 1, j - 1, k - 1);
+        euler += 1 - x - y - z + xy + yz + zx - cube;
+      }
+  return euler;
 }
 
 Finding found_piece(const GridShape& shape, const Piece& piece, const std::string& name, const char* what,
@@ -94,22 +135,18 @@ void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std:
   for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] || fill[number[i]];
 }
 
-Topology topology_of(const GridShape& shape, const std::vector<char>& inside) {
-  std::vector<Piece> pieces, gaps;
-  pieces_of(shape, inside, true, pieces);
-  pieces_of(shape, inside, false, gaps);
-  const auto surfaces = static_cast<int>(pieces.size() + std::ranges::count(gaps, false, &Piece::at_rim));
-  const std::size_t row = shape.count[0], layer = row * shape.count[1];
-  long euler = 0;  // voxels less pairs, plus squares of four, less cubes of eight
-  for (std::size_t i = layer + row + 1; i < inside.size(); ++i) {
-    if (!inside[i]) continue;
-    const bool x = inside[i - 1], y = inside[i - row], z = inside[i - layer];
-    const bool xy = x && y && inside[i - row - 1], yz = y && z && inside[i - layer - row],
-               zx = z && x && inside[i - layer - 1];
-    const bool cube = xy && yz && zx && inside[i - layer - row - 1];
-    euler += 1 - x - y - z + xy + yz + zx - cube;
-  }
-  return {surfaces, static_cast<int>(surfaces - euler)};
+bool VoxelTopology::allows(const Topology& body) const {
+  const auto between = [](int value, int a, int b) { return value >= std::min(a, b) && value <= std::max(a, b); };
+  return between(body.surfaces, apart.surfaces, joined.surfaces) &&
+         between(body.handles, apart.handles, joined.handles);
+}
+
+VoxelTopology topology_of(const GridShape& shape, const std::vector<char>& inside) {
+  const Count pieces = count_pieces(shape, inside, true), gaps = count_pieces(shape, inside, false);
+  const int around = 1;  // of the gaps, and Euler's number of the whole grid
+  const int apart = pieces.apart + gaps.joined - around, joined = pieces.joined + gaps.apart - around;
+  return {{apart, apart - euler_number(shape, inside, true)},
+          {joined, joined - (euler_number(shape, inside, false) - around)}};
 }
 
 }  // namespace palpate

@@ -23,7 +23,17 @@ inline constexpr double kSmallCavity = 0.01;
 void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std::vector<char>& other, double largest,
                    const std::string& name, std::vector<Finding>& findings);
 
-/// Of voxels that hang together through faces: pieces and cavities, and tunnels through them.
-Topology topology_of(const GridShape& shape, const std::vector<char>& inside);
+/// Pieces and cavities, and tunnels through them. Voxels that meet in an edge or a corner alone, as steps of a slanting
+/// border do, may be taken for apart or for joined, and both are the shape of the same body.
+struct VoxelTopology {
+  Topology apart;   ///< voxels hang together through faces, what is between them through edges and corners too
+  Topology joined;  ///< the other way round
+
+  /// Whether a body may have it that is the voxels': as many as one of both, or between.
+  bool allows(const Topology& body) const;
+};
+
+/// Of voxels in a grid whose rim has none.
+VoxelTopology topology_of(const GridShape& shape, const std::vector<char>& inside);
 
 }  // namespace palpate

@@ -200,10 +200,7 @@ void add_cells(const std::vector<double>& corners, const std::vector<double>& en
       throw std::runtime_error("the polygons' offsets do not go up, or beyond the last corner");
     std::vector<int> polygon;
     for (; begin < static_cast<std::size_t>(end); ++begin) polygon.push_back(node(begin));
-    if (!strips) surface.polygons.push_back(polygon);
-    for (std::size_t c = 2; strips && c < polygon.size(); ++c)
-      surface.polygons.push_back(
-          {polygon[c - 2], polygon[c - (c % 2 == 0 ? 1 : 0)], polygon[c - (c % 2 == 0 ? 0 : 1)]});
+    strips ? surface.add_strip(polygon) : surface.polygons.push_back(polygon);
   }
 }
 
