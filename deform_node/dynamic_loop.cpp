@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/log/log.hpp"
+#include "common/models/marked_to_resect.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/core_share.hpp"
@@ -50,6 +51,9 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies)
     moves_.push_back(owner_of(body) == Owner::deform_node), names_.push_back(name_of(body));
+  for (int i = 0; i < world.organs(); ++i)
+    if (const Box* marked = marked_to_resect(scene.bodies[world.bodies()[i]]))
+      resections_.emplace(world.bodies()[i], Resection(*marked, world.organ(i).mesh()));
 }
 
 void DynamicLoop::take_tools() {
@@ -91,7 +95,7 @@ void DynamicLoop::settle(std::int64_t now) {
   bool over = false;
   do {
     over = world_.settle();
-    for (int i = 0; i < world_.organs(); ++i) count(world_.organ(i).changes());
+    for (int i = 0; i < world_.organs(); ++i) count(i);
   } while (!over && now_ns() < until);
   if (!over) return;
   phase_ = Phase::moving;
@@ -152,12 +156,14 @@ void DynamicLoop::publish_changes() {
   for (int i = 0; i < world_.organs(); ++i) {
     for (const DynamicOrgan::Change& change : world_.organ(i).changes())
       publish_change(i, change.cause, change.removed);
-    count(world_.organ(i).changes());
+    count(i);
   }
 }
 
-void DynamicLoop::count(std::span<const DynamicOrgan::Change> changes) {
-  for (const DynamicOrgan::Change& change : changes) {
+void DynamicLoop::count(int organ) {
+  const auto resection = resections_.find(world_.bodies()[organ]);
+  for (const DynamicOrgan::Change& change : world_.organ(organ).changes()) {
+    if (change.cause == RemovalCause::cut && resection != resections_.end()) resection->second.cut(change.removed);
     report_.cut += change.cause == RemovalCause::cut ? change.removed.size() : 0;
     report_.torn += change.cause == RemovalCause::torn ? change.removed.size() : 0;
     report_.fallen += change.cause == RemovalCause::fell_away ? change.removed.size() : 0;

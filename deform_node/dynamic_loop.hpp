@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
+#include "common/dynamics/resection.hpp"
 #include "common/node/contact_feed.hpp"
 #include "common/node/pace_watch.hpp"
 #include "common/realtime/histogram.hpp"
@@ -45,6 +47,8 @@ class DynamicLoop {
               const Scene& scene, std::uint64_t run, std::string code_path);
 
   const RangeMonitor& range() const { return range_; }
+  /// By body, where the scene marks what is to be cut off.
+  const std::map<int, Resection>& resections() const { return resections_; }
 
   /// Begins with whole bodies, whatever others know of them.
   void forget_earlier_cuts() { whole_ = true; }
@@ -61,7 +65,7 @@ class DynamicLoop {
   void tick(std::int64_t due_ns);
   void publish_change(int organ, RemovalCause cause, const std::vector<int>& removed);
   void publish_changes();
-  void count(std::span<const DynamicOrgan::Change> changes);
+  void count(int organ);
   void publish_models();
   void publish_frames();
   void keep_house(std::int64_t now);
@@ -88,7 +92,8 @@ class DynamicLoop {
   std::unique_ptr<Writer<DeformStep>> steps_;
   std::unique_ptr<Writer<DeformKeyframe>> keyframes_;
   std::vector<std::uint64_t> change_seq_;  ///< per body
-  std::vector<LocalContactModel> model_;   ///< per tool
+  std::map<int, Resection> resections_;
+  std::vector<LocalContactModel> model_;  ///< per tool
   DeformStep step_;
   DeformKeyframe keyframe_;
   TissueTime time_;

@@ -6,6 +6,7 @@
 #include "common/fem/processor_blas.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/log/log.hpp"
+#include "common/node/handling_summary.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/node/range_summary.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -65,6 +66,9 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
                   "{:.3f} s late; {} tetrahedra cut, {} torn, {} fallen away",
                   rate(r.ticks, r.seconds), r.seconds, us(r.tick, 0.5), us(r.tick, 0.99), r.period.skipped,
                   1e-9 * static_cast<double>(r.late_ns), r.cut, r.torn, r.fallen));
+  nlohmann::json resections = nlohmann::json::array();
+  for (const auto& [body, resection] : loop.resections())
+    resections.push_back(resection_summary(name_of(loaded.scene.bodies[body]), resection));
   return {{"node", "deform"},
           {"seconds", r.seconds},
           {"frames", r.frames},
@@ -82,6 +86,7 @@ nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer
           {"tetrahedra_cut", r.cut},
           {"tetrahedra_torn", r.torn},
           {"tetrahedra_fallen", r.fallen},
+          {"resections", resections},
           {"range", range_summary(loop.range())},
           {"state_hash", fmt::format("{:016x}", world.hash())},
           {"refused", r.refused}};

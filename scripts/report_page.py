@@ -134,6 +134,9 @@ def outcome(session):
     for lost in session.get("tissue", []):
         parts = [f"{lost[k]} {words}" for k, words in (("cut", "cut"), ("torn", "torn"), ("fallen", "fallen off")) if lost[k]]
         said.append(f"{lost['body']} lost tetrahedra: {', '.join(parts)}.")
+    for cut in session.get("resections", []):
+        said.append(f"Of what was to be cut off of {cut['body']}, {cut['cut_inside']} tetrahedra were cut ({1e6 * cut['cut_inside_m3']:.2f} ml); "
+                    f"outside of it {cut['cut_outside']} ({1e6 * cut['cut_outside_m3']:.2f} ml).")
     for task in session.get("tasks", []):
         said.append(f"{task['body']} is {1e3 * task['inserted_m']:.0f} mm in, was {1e3 * task['deepest_m']:.0f} mm in after {task['inserting_s']:.1f} s; "
                     f"{task['wall_contacts']} touches of the wall, taken {task['grasps']} times, lost {task['drops']} times, largest force "

@@ -27,6 +27,7 @@ struct Dynamic {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   TetElement element = TetElement::linear;
   bool corotational = false;  ///< elements turn with the tissue
+  std::optional<Box> resect;  ///< [m] what is to be cut off
 };
 
 inline void describe(Description& d, Dynamic& m) {
@@ -50,6 +51,11 @@ inline void describe(Description& d, Dynamic& m) {
           "elements turn with the tissue, so that large rotations make no false force; not for "
           "springs, which turn by themselves"},
          m.corotational);
+  d.box({"resect", "m",
+         "what is to be cut off, least and greatest corner: summaries tell what was cut of the tetrahedra with their "
+         "centroid inside, and of the others",
+         Need::optional, Use::local},
+        m.resect);
   d.require(!m.corotational || m.element == TetElement::linear, "corotational",
             "elements that turn with the tissue are linear: take either corotational or element = \"nodal_strain\"");
 }

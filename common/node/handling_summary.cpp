@@ -30,4 +30,12 @@ nlohmann::json task_summary(const std::string& body, const TaskRecord& task) {
           {"held_s", task.held_s}};
 }
 
+nlohmann::json resection_summary(const std::string& body, const Resection& resection) {
+  return {{"body", body},
+          {"cut_inside", resection.inside().tetrahedra},
+          {"cut_inside_m3", resection.inside().volume},
+          {"cut_outside", resection.outside().tetrahedra},
+          {"cut_outside_m3", resection.outside().volume}};
+}
+
 }  // namespace palpate

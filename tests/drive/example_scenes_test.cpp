@@ -50,8 +50,8 @@ const std::vector<Example> kExamples{
      {"body.block.displacement.end<0.0009"}},
     {"hepatectomy",
      10.5,
-     {"body.liver.cut>200", "body.liver.torn==0", "body.liver.fallen==0", "body.liver.pieces==2", "body.liver.off>200",
-      "tool.scalpel.force.change<0.03"},
+     {"body.liver.cut>200", "body.liver.cut.inside>200", "body.liver.cut.outside<30", "body.liver.torn==0",
+      "body.liver.fallen==0", "body.liver.pieces==2", "body.liver.off>200", "tool.scalpel.force.change<0.03"},
      // the 216 tetrahedra that the forceps carry weigh 0.0621 N
      {"tool.forceps.force.end>0.056", "tool.forceps.force.end<0.068"}},
     {"duct_poke",

@@ -124,6 +124,7 @@ precision = "double"
 step = 0.0005
 damping = 12
 gravity = [0, 0, -9.81]
+resect = [[-0.5, -0.5, 0.01], [0.5, 0.5, 0.5]]
 corotational = true
 
 [body.tearing]

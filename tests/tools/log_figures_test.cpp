@@ -12,6 +12,14 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
+/// Of two tetrahedra the upper one is to be cut off.
+std::map<std::uint32_t, Resection> upper_of_two() {
+  ElasticMesh mesh;
+  mesh.rest = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}, {0, 0, -0.03}};
+  mesh.tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  return {{0, Resection({{-1, -1, 0}, {1, 1, 1}}, mesh)}};
+}
+
 class Figures : public ::testing::Test {
  protected:
   template <class T, class M>
@@ -30,7 +38,7 @@ class Figures : public ::testing::Test {
   double last_time() const { return figures_.course().back().time; }
 
   Scene scene_ = load_scene(PALPATE_SOURCE "/scenes/plate_cut.toml");
-  LogFigures figures_{scene_};
+  LogFigures figures_{scene_, upper_of_two()};
 };
 
 TEST_F(Figures, ACourseHasTheLargestForceOfEachStretch) {
@@ -59,6 +67,16 @@ TEST_F(Figures, WhatTissueHasLostAddsUpByItsCause) {
   EXPECT_EQ(lost["cut"], 5);
   EXPECT_EQ(lost["torn"], 0);
   EXPECT_EQ(lost["fallen"], 1);
+}
+
+TEST_F(Figures, WhatIsCutOutsideOfWhatIsMarkedIsTold) {
+  tell(1 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 1, .cause = fell_away, .removed = {0}});
+  tell(2 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 2, .cause = cut, .removed = {1, 7}});
+  const auto told = figures_.json()["resections"][0];
+  EXPECT_EQ(told["body"], "plate");
+  EXPECT_EQ(told["cut_inside"], 0);
+  EXPECT_EQ(told["cut_outside"], 1);
+  EXPECT_NEAR(told["cut_outside_m3"], 3e-6 / 6, 1e-15);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/mesh/near_origin.hpp"
+#include "common/models/marked_to_resect.hpp"
 #include "tools/drive/pieces.hpp"
 
 namespace palpate::drive {
@@ -35,6 +36,13 @@ void add_task(const sim::Simulator& simulator, int body, const std::string& name
   }
 }
 
+void add_resection(const Resection& resection, const std::string& name, Figures& to) {
+  to.push_back({name + "cut.inside", static_cast<double>(resection.inside().tetrahedra), "1"});
+  to.push_back({name + "cut.inside.volume", resection.inside().volume, "m^3"});
+  to.push_back({name + "cut.outside", static_cast<double>(resection.outside().tetrahedra), "1"});
+  to.push_back({name + "cut.outside.volume", resection.outside().volume, "m^3"});
+}
+
 }  // namespace
 
 std::string without_owner(const std::string& name) {
@@ -60,6 +68,10 @@ Watch::Watch(const sim::Simulator& simulator, const std::vector<Archive>& archiv
   for (int b = 0; b < simulator.bodies(); ++b) {
     const std::vector<Eigen::Vector3d>& rest = archives[b].surface.position;
     bodies_[b].rest = places_from(near_origin(rest), rest);
+    const DynamicOrgan* organ = organ_of(simulator, b);
+    if (!organ) continue;
+    if (const Box* marked = marked_to_resect(simulator.scene().bodies[b]))
+      bodies_[b].resection.emplace(*marked, organ->mesh());
   }
 }
 
@@ -97,6 +109,7 @@ void Watch::look(sim::Simulator& simulator) {
   for (const sim::ChangeView& change : simulator.changes()) {
     OfBody& own = bodies_[change.body];
     (change.cause == cut ? own.cut : change.cause == torn ? own.torn : own.fallen) += change.removed.size();
+    if (change.cause == cut && own.resection) own.resection->cut(change.removed);
   }
   min_energy_ = std::min(min_energy_, simulator.energy());
   if (++steps_ % shape_interval_ != 0) return;
@@ -136,6 +149,7 @@ Figures Watch::figures(const sim::Simulator& simulator) const {
     if (!organ) continue;
     const Pieces pieces = pieces_of(*organ);
     all.push_back({name + "cut", count(own.cut), "1"});
+    if (own.resection) add_resection(*own.resection, name, all);
     all.push_back({name + "torn", count(own.torn), "1"});
     all.push_back({name + "fallen", count(own.fallen), "1"});
     all.push_back({name + "pieces", static_cast<double>(pieces.count), "1"});

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/archive/archive.hpp"
+#include "common/dynamics/resection.hpp"
 #include "common/sim/handling.hpp"
 #include "common/sim/simulator.hpp"
 
@@ -45,6 +46,7 @@ class Watch {
     std::vector<Eigen::Vector3f> rest;  ///< [m] per node of the surface map, from the origin of SurfaceView on
     double max_displacement = 0, last_displacement = 0;
     std::uint64_t cut = 0, torn = 0, fallen = 0;
+    std::optional<Resection> resection;  ///< where the scene marks what is to be cut off
   };
 
   void look_at_tool(const sim::Simulator& simulator, int tool);

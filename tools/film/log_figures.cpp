@@ -1,6 +1,7 @@
 #include "tools/film/log_figures.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/node/handling_summary.hpp"
 #include "common/sim/step_messages.hpp"
@@ -18,7 +19,8 @@ constexpr std::array<const char*, 9> kFlags{"force_limited", "slew_limited",    
 
 }  // namespace
 
-LogFigures::LogFigures(const Scene& scene) : scene_(scene) {
+LogFigures::LogFigures(const Scene& scene, std::map<std::uint32_t, Resection> resections)
+    : scene_(scene), resections_(std::move(resections)) {
   for (const Tool& tool : scene.tools) tools_.push_back({.trocar = make_trocar(tool.pivot, tool.axis, tool.up)});
 }
 
@@ -47,6 +49,13 @@ void LogFigures::look(const ToolState& state) {
   largest = std::max(largest, force.norm());
 }
 
+void LogFigures::look(const TopologyChange& change) {
+  if (change.cause >= lost_[change.body].size()) return;
+  lost_[change.body][change.cause] += change.removed.size();
+  const auto resection = resections_.find(change.body);
+  if (change.cause == cut && resection != resections_.end()) resection->second.cut(change.removed);
+}
+
 void LogFigures::look(const LogEvent& event) {
   now_ = 1e-9 * static_cast<double>(log_time_.since_start(event.receive_ns));
   ForceState force;
@@ -58,8 +67,7 @@ void LogFigures::look(const LogEvent& event) {
     tools_[force.tool].force = force;
     ++tools_[force.tool].forces;
   }
-  if (event.read(topics::topology_change, change) && change.cause < lost_[change.body].size())
-    lost_[change.body][change.cause] += change.removed.size();
+  if (event.read(topics::topology_change, change)) look(change);
   if (event.read(topics::task_record, task)) tasks_[task.body] = task;
 }
 
@@ -79,6 +87,8 @@ nlohmann::ordered_json LogFigures::json() const {
                                {"cut", lost[cut]},
                                {"torn", lost[torn]},
                                {"fallen", lost[fell_away]}});
+  for (const auto& [body, resection] : resections_)
+    all["resections"].emplace_back(resection_summary(name_of(scene_.bodies[body]), resection));
   for (const auto& [body, task] : tasks_)
     if (body < scene_.bodies.size()) all["tasks"].emplace_back(task_summary(name_of(scene_.bodies[body]), task));
   return all;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/bus/log_reader.hpp"
+#include "common/dynamics/resection.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/handling.hpp"
 #include "common/tool/kinematics.hpp"
@@ -19,7 +20,8 @@ namespace palpate {
 /// What a session comes to: how each tool was handled, what the tissue has lost, how the tasks ended.
 class LogFigures {
  public:
-  explicit LogFigures(const Scene& scene);
+  /// `resections`: by body, where the scene marks what is to be cut off.
+  explicit LogFigures(const Scene& scene, std::map<std::uint32_t, Resection> resections = {});
 
   void look(const LogEvent& event);  ///< in the log's order
   nlohmann::ordered_json json() const;
@@ -35,6 +37,7 @@ class LogFigures {
 
  private:
   void look(const ToolState& state);
+  void look(const TopologyChange& change);
   double time_of(const ToolState& state);
 
   struct OfTool {
@@ -49,7 +52,8 @@ class LogFigures {
   const Scene& scene_;
   std::vector<OfTool> tools_;
   std::map<std::uint32_t, std::array<std::uint64_t, 3>> lost_;  ///< tetrahedra of a body, by RemovalCause
-  std::map<std::uint32_t, TaskRecord> tasks_;                   ///< by catheter
+  std::map<std::uint32_t, Resection> resections_;
+  std::map<std::uint32_t, TaskRecord> tasks_;  ///< by catheter
   std::vector<Place> course_;
   std::uint64_t run_ = 0;
   LogTime log_time_;

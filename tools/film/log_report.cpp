@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/models/marked_to_resect.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/scene/find_archive.hpp"
 #include "render_node/renderer.hpp"
 #include "tools/film/log_figures.hpp"
 #include "tools/film/log_pictures.hpp"
@@ -62,10 +65,23 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
   return drawn;
 }
 
+std::map<std::uint32_t, Resection> resections_of(const LoggedScene& logged) {
+  std::map<std::uint32_t, Resection> all;
+  for (std::size_t b = 0; b < logged.scene().bodies.size(); ++b) {
+    const Body& body = logged.scene().bodies[b];
+    const Box* marked = marked_to_resect(body);
+    if (!marked) continue;
+    logged.ensure_archives();
+    const Archive archive = find_archive(logged.scene(), body, ArchivePart::header);
+    all.emplace(static_cast<std::uint32_t>(b), Resection(*marked, elastic_mesh(archive)));
+  }
+  return all;
+}
+
 ordered_json report_of(const LogReportSettings& s, std::size_t session) {
   const LoggedScene logged(s.logs[session], s.data);
   const Scene& scene = logged.scene();
-  LogFigures figures(scene);
+  LogFigures figures(scene, resections_of(logged));
   LogReader reader(s.logs[session]);
   for (LogEvent event; !shutdown_requested() && reader.next(event);) figures.look(event);
   const std::string course = fmt::format("course_{}.csv", session);
