@@ -202,7 +202,8 @@ void HapticLoop::report_status(std::int64_t now) {
   say_interventions();
   pace_.look(ticks, missed);
   if (!pace_.news().empty()) log_warning(pace_.news());
-  presence_.announce(rate, ticks, missed, 0, 0, pace_.status().empty() ? told_.status() : pace_.status());
+  const std::string between = told_.status().empty() || pace_.status().empty() ? "" : "; ";
+  presence_.announce(rate, ticks, missed, 0, 0, told_.status() + between + pace_.status());
   last_status_ns_ = now;
   last_status_ticks_ = ticks;
 }

@@ -37,47 +37,34 @@ void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus, d
   }
 }
 
-bool fit(const HapticStep& haptic, const ContactState& kept) {
-  return std::ranges::all_of(kept.contacts, [&](const HeldContact& held) { return haptic.fits(kept.tool, held); });
-}
-
-/// The last contacts of a haptic node that died, if a peer with the same scene keeps them. `refused` counts those that
-/// cannot be of this scene.
-std::vector<ContactState> contacts_kept_by_peers(const HapticStep& haptic, Bus& bus, Presence& presence,
-                                                 std::uint64_t& refused) {
-  const auto reader = bus.reader(topics::held_contacts);
-  std::vector<ContactState> kept;
+/// Takes up the last contacts of a haptic node that died, where peers with the same scene keep them, until no tool is
+/// within a body without them, for a second at most. Returns how many messages were refused.
+std::uint64_t resume(HapticStep& haptic, Bus& bus, Presence& presence) {
+  const auto reader = bus.reader(topics::held_contacts, Keep::all);  // false ones do not take the place of true ones
+  std::uint64_t refused = 0;
   const auto limit = std::chrono::steady_clock::now() + 1s;
-  while (kept.empty() && std::chrono::steady_clock::now() < limit) {
+  const auto over = [&] { return haptic.starts_inside().empty() || std::chrono::steady_clock::now() > limit; };
+  while (!over()) {
+    bus.wait(20ms);
     for (const std::string& said : presence.watch()) log_info(said);
     // What comes before its sender is known waits in the reader.
     const bool known = presence.matched("deform") || presence.matched("render");
-    while (auto contacts = known ? reader->take() : std::nullopt) {
-      if (fit(haptic, *contacts))
-        kept.push_back(std::move(*contacts));
-      else if (++refused == 1)
-        log_warning("a peer keeps contacts that cannot be of this scene; they are left");
-    }
-    bus.wait(20ms);
+    while (const auto kept = known && !over() ? reader->take() : std::nullopt)
+      if (!haptic.resume(*kept) && ++refused == 1)
+        log_warning("a peer keeps contacts that cannot be of this scene and these tools; they are left");
   }
-  return kept;
+  return refused;
 }
 
-/// Returns how many contacts that peers kept were refused.
+/// Returns how many messages with contacts that peers kept were refused.
 std::uint64_t start(HapticStep& haptic, std::vector<std::unique_ptr<Device>>& devices, Bus& bus, Presence& presence) {
-  std::uint64_t refused = 0;
   std::vector<ToolDofs> dofs;
   for (auto& device : devices) dofs.push_back(device->read(0).dofs);
-  try {
-    haptic.start(dofs);
-  } catch (const std::runtime_error&) {
-    const std::vector<ContactState> kept = contacts_kept_by_peers(haptic, bus, presence, refused);
-    if (kept.empty()) throw;
-    haptic.start(dofs, true);
-    for (const ContactState& c : kept)
-      for (const HeldContact& held : c.contacts) haptic.adopt(c.tool, held);
-    log_info("took up the contacts that a peer kept");
-  }
+  haptic.place(dofs);
+  if (haptic.starts_inside().empty()) return 0;
+  const std::uint64_t refused = resume(haptic, bus, presence);
+  if (const std::string inside = haptic.starts_inside(); !inside.empty()) throw std::runtime_error(inside);
+  log_info("took up the contacts that peers kept");
   return refused;
 }
 

@@ -22,7 +22,11 @@ constexpr Count kInterventions[] = {
     {"haptic_node", "stale_model_steps", "steps in which the force of moving tissue faded"},
     {"haptic_node", "force_limited_steps", "steps in which more force was asked for than the port gives"},
     {"haptic_node", "refused_contacts", "contacts that a peer kept refused"},
-    {"haptic_node", "refused_messages", "messages refused"}};
+    {"haptic_node", "refused_messages", "messages refused"},
+    {"deform_node", "refused", "messages that the deformation node refused"},
+    {"render_node", "refused", "messages that the picture refused"},
+    {"web_node", "refused_messages", "messages that the live view refused"},
+    {"web_node", "thrown_out", "pages that it threw out"}};
 
 constexpr Count kLimits[] = {
     {"haptic_node", "slew_limited_steps", "steps in which the force rose no faster than the port lets it"},

@@ -389,7 +389,8 @@ void add_run_command(cli::Command& app) {
                   "node of its own, which moving tissue always has (default: what --film, --still and --web need)")
       .one_of({2, 3});
   run_command.add_flag("--json", o->json, "Print rates, latencies and forces as one line of JSON");
-  run_command.add_flag("--strict", o->strict, "Fail if the guards before the hand had to step in");
+  run_command.add_flag("--strict", o->strict,
+                       "Fail if the guards before the hand had to step in, or a node refused a message");
   run_command.tells_progress();
   run_command.examples({"palpate run scenes/liver.toml --web",
                         "palpate run scenes/liver.toml --set body.young=8000 --film out/stiff.mp4",

@@ -78,8 +78,10 @@ class BodyPart {
 
   /// Depth [m] to which a part of a tool reaches into the rest shape; 0 if it does not touch it.
   virtual double penetration(const Segment&, double /*radius*/) const { return 0; }
-  /// Takes up a contact that a peer kept; false if the body has none such.
-  virtual bool adopt(const TouchContact&) { return false; }
+  /// Whether all contacts of one tool that a peer kept can be of this body at rest, beside those that it has.
+  virtual bool fits(const MovingTool&, std::span<const TouchContact> kept) const { return kept.empty(); }
+  /// Takes them up, if they fit.
+  virtual void adopt(std::span<const TouchContact>) {}
 
   // Jaws.
   /// Jaws that close hold what is between them as displacement constraints until let_go().

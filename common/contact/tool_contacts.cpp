@@ -178,7 +178,7 @@ void ToolContacts::settle(std::span<const MovingTool> tools) {
 
 void ToolContacts::adopt(TouchContact contact) {
   contact.tool_point().softness = softness(contact.tool_point().tool);
-  law_.add(contact, std::span<const double>(contact.force.data(), 3));
+  law_.add(contact);
 }
 
 bool ToolContacts::take_in_jaws(int tool, const Eigen::Isometry3d& pose, const Anchor& anchor, bool face) {

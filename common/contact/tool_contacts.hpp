@@ -49,7 +49,7 @@ class ToolContacts {
   void slide(std::span<const MovingTool> tools);
   /// After the last solve: sliding contacts move on along their parts, those that have opened and gone are dropped.
   void settle(std::span<const MovingTool> tools);
-  /// Takes up a contact that was kept elsewhere; its offset must be in its part's frame.
+  /// Takes up a contact that was kept elsewhere, with its targets; its offset must be in its part's frame.
   void adopt(TouchContact contact);
 
   /// Jaws that close take the nodes between them, or the surface point nearest to their middle where triangles are

@@ -7,6 +7,11 @@
 namespace palpate {
 namespace {
 
+// How far tissue under a contact that a peer kept may have moved from rest: what is pressed moves about as far as the
+// tool reaches into the rest shape, what it rubs along or lies deeper in its dent somewhat farther.
+constexpr double kMaxStretch = 2;  // of that depth
+constexpr double kSlack = 1e-3;    // [m]
+
 ContactLaw::Rule rule_of(const ContactSpec& contact) {
   return contact.rule == ContactRule::alpha ? ContactLaw::Rule::alpha : ContactLaw::Rule::barycentric;
 }
@@ -50,13 +55,46 @@ void TouchBody::for_each_force(const VisitForce& visit) const {
   });
 }
 
-bool TouchBody::adopt(const TouchContact& contact) {
-  const int nodes = static_cast<int>(surface().positions().size());
-  if (!by_mesh() || law_.full() ||
-      !std::ranges::all_of(contact.anchor.nodes, [&](int n) { return n >= 0 && n < nodes; }))
+// A triangle that tools can touch, or one of its corners thrice.
+bool TouchBody::has(const Anchor& anchor) const {
+  const auto& n = anchor.nodes;
+  const bool corner = n[0] == n[1] && n[0] == n[2];
+  for (int t = 0; t < surface().triangle_count(); ++t) {
+    const auto& of = surface().triangle(t);
+    if (corner ? std::ranges::find(of, n[0]) != of.end() : of == n)
+      return std::ranges::all_of(n, [this](int node) { return surface().touchable(node); });
+  }
+  return false;
+}
+
+// [m] of the tool in the rest shape: at the ends of its parts, and where they touch.
+double TouchBody::deepest(const MovingTool& tool, std::span<const TouchContact> contacts) const {
+  double deepest = 0;
+  const auto look = [&](const Eigen::Vector3d& at, int part) {
+    deepest = std::max(deepest, penetration({at, at}, tool.radius(part)));
+  };
+  for (int p = 0; p < tool.size(); ++p) look(tool.axis(p).start, p), look(tool.axis(p).end, p);
+  for (const TouchContact& c : contacts)
+    look(nearest_point(tool.axis(c.tool_point().part), c.target), c.tool_point().part);
+  return deepest;
+}
+
+bool TouchBody::fits(const MovingTool& tool, std::span<const TouchContact> contacts) const {
+  const auto room = static_cast<std::size_t>(law_.capacity()) - law_.contacts().size();
+  if (contacts.empty()) return true;
+  if (!by_mesh() || contacts.size() > room ||
+      !std::ranges::all_of(contacts, [this](const TouchContact& c) { return has(c.anchor); }))
     return false;
-  contacts_.adopt(contact);
-  return true;
+  const double depth = deepest(tool, contacts);
+  return depth > 0 && std::ranges::all_of(contacts, [&](const TouchContact& c) {
+           return (anchor_position(c.anchor, surface().rest()) - c.target).norm() <= kMaxStretch * depth + kSlack;
+         });
+}
+
+// Their forces follow from where they are; a peer's word on them is not taken.
+void TouchBody::adopt(std::span<const TouchContact> contacts) {
+  for (const TouchContact& contact : contacts) contacts_.adopt(contact);
+  law_.solve();
 }
 
 BetweenJaws TouchBody::between(const OpenJaws& jaws) {

@@ -33,7 +33,8 @@ class TouchBody : public BodyPart {
   void for_each_contact(const VisitContact& visit) const override;
   void for_each_force(const VisitForce& visit) const override;
   Capacity capacity() const override { return {kMaxContacts, 3 * kMaxContacts}; }
-  bool adopt(const TouchContact& contact) override;
+  bool fits(const MovingTool& tool, std::span<const TouchContact> contacts) const override;
+  void adopt(std::span<const TouchContact> contacts) override;
   void pinch(int tool, const Eigen::Isometry3d& pose, const ClosingJaws& jaws) override {
     contacts_.grasp(tool, pose, jaws.length, jaws.width, [](int) { return true; });
   }
@@ -78,6 +79,9 @@ class TouchBody : public BodyPart {
   virtual Eigen::Vector3d press_of(int tool) const;
 
  private:
+  bool has(const Anchor& anchor) const;
+  double deepest(const MovingTool& tool, std::span<const TouchContact> contacts) const;
+
   const SurfaceMap map_;
   const Compliance<double> compliance_;
   std::vector<Eigen::Vector3d> unloaded_;  ///< [m] per node

@@ -91,39 +91,52 @@ void HapticStep::tell(BodyMessage& message) const {
   std::ranges::find(entries_, static_cast<int>(body_of(message)), &Entry::body)->part->tell(message);
 }
 
-void HapticStep::start(std::span<const ToolDofs> dofs, bool resuming) {
-  for (int t = 0; t < tools(); ++t)
-    if (!rigs_[t]->start(dofs[t])) throw std::runtime_error("a tool's first pose is not a number");
-  if (resuming) return;
-  see_tools();
-  for (int t = 0; t < tools(); ++t)
-    for (int p = 0; p < seen_[t].size(); ++p)
-      for (const Entry& entry : entries_) {
-        const double depth = entry.part->penetration(seen_[t].axis(p), seen_[t].radius(p));
-        if (depth > 0)
-          throw std::runtime_error(fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it",
-                                               rigs_[t]->name(), names_[entry.body], rigs_[t]->end().part_name(p),
-                                               1e3 * depth));
-      }
+void HapticStep::start(std::span<const ToolDofs> dofs) {
+  place(dofs);
+  if (const std::string inside = starts_inside(); !inside.empty()) throw std::runtime_error(inside);
 }
 
-bool HapticStep::fits(std::uint32_t tool, const HeldContact& held) const {
-  if (tool >= rigs_.size() || held.body >= static_cast<std::uint32_t>(bodies_) || !part(static_cast<int>(held.body)))
+void HapticStep::place(std::span<const ToolDofs> dofs) {
+  for (int t = 0; t < tools(); ++t)
+    if (!rigs_[t]->start(dofs[t])) throw std::runtime_error("a tool's first pose is not a number");
+  resumed_.assign(rigs_.size(), false);
+  see_tools();
+}
+
+std::string HapticStep::starts_inside() const {
+  for (int t = 0; t < tools(); ++t)
+    if (!resumed_[t])
+      if (std::string said = inside(t); !said.empty()) return said;
+  return {};
+}
+
+std::string HapticStep::inside(int tool) const {
+  const MovingTool& seen = seen_[tool];
+  for (int p = 0; p < seen.size(); ++p)
+    for (const Entry& entry : entries_) {
+      const double depth = entry.part->penetration(seen.axis(p), seen.radius(p));
+      if (depth > 0)
+        return fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it", rigs_[tool]->name(),
+                           names_[entry.body], rigs_[tool]->end().part_name(p), 1e3 * depth);
+    }
+  return {};
+}
+
+bool HapticStep::is_sound(std::uint32_t tool, const HeldContact& held) const {
+  if (held.body >= static_cast<std::uint32_t>(bodies_) || !part(static_cast<int>(held.body)) ||
+      held.sample >= rigs_[tool]->end().parts().size())
     return false;
-  if (held.sample >= rigs_[tool]->end().parts().size()) return false;
   constexpr auto most = static_cast<std::uint32_t>(std::numeric_limits<int>::max());
   const bool numbers = std::ranges::all_of(held.nodes, [](std::uint32_t n) { return n <= most; });
   const Eigen::Map<const Eigen::Vector3d> weights(held.weights.data()), at(held.offset.data()),
-      force(held.force.data());
+      normal(held.normal.data()), force(held.force.data());
   const bool within = weights.minCoeff() >= -kWeightSlack && std::abs(weights.sum() - 1) <= kWeightSlack;
-  return numbers && within && rigs_[tool]->can_hold(static_cast<int>(held.sample), at) &&
-         force.norm() <= rigs_[tool]->max_force();
+  return numbers && within && std::abs(normal.norm() - 1) <= kWeightSlack &&
+         rigs_[tool]->can_hold(static_cast<int>(held.sample), at) && force.norm() <= rigs_[tool]->max_force();
 }
 
-void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
-  if (!fits(tool, held)) throw std::runtime_error("a peer keeps a contact that cannot be of this scene");
-  const auto entry = std::ranges::find(entries_, static_cast<int>(held.body), &Entry::body);
-  TouchContact c{.by = ToolPoint{.tool = static_cast<int>(tool), .part = static_cast<int>(held.sample)}};
+TouchContact HapticStep::contact_of(int tool, const HeldContact& held) const {
+  TouchContact c{.by = ToolPoint{.tool = tool, .part = static_cast<int>(held.sample)}};
   for (int v = 0; v < 3; ++v) {
     c.anchor.nodes[v] = static_cast<int>(held.nodes[v]);
     c.anchor.weights[v] = held.weights[v];
@@ -133,8 +146,26 @@ void HapticStep::adopt(std::uint32_t tool, const HeldContact& held) {
   }
   c.face = held.nodes[0] != held.nodes[1];
   c.touch = held.sticking ? Touch::sticking : Touch::sliding;
-  if (!entry->part->adopt(c))
-    throw std::runtime_error("a peer keeps a contact on a node that the body lacks, or more than it can hold");
+  c.at = c.target = seen_[tool].to_world(c.tool_point().part, c.tool_point().offset);
+  c.plane = c.normal.dot(c.target);
+  return c;
+}
+
+bool HapticStep::resume(const ContactState& kept) {
+  if (kept.tool >= rigs_.size()) return false;
+  const int tool = static_cast<int>(kept.tool);
+  if (resumed_[tool] || inside(tool).empty()) return true;
+  if (kept.contacts.empty() ||
+      !std::ranges::all_of(kept.contacts, [&](const HeldContact& held) { return is_sound(kept.tool, held); }))
+    return false;
+  std::vector<std::vector<TouchContact>> of_part(entries_.size());
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    for (const HeldContact& held : kept.contacts)
+      if (static_cast<int>(held.body) == entries_[e].body) of_part[e].push_back(contact_of(tool, held));
+    if (!entries_[e].part->fits(seen_[tool], of_part[e])) return false;
+  }
+  for (std::size_t e = 0; e < entries_.size(); ++e) entries_[e].part->adopt(of_part[e]);
+  return resumed_[tool] = true;
 }
 
 void HapticStep::see_tools() {

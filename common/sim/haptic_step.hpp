@@ -27,13 +27,17 @@ class HapticStep {
   int bodies() const { return bodies_; }
   double dt() const { return dt_; }  ///< [s] nominal period
 
-  /// Sets the tools' poses before the first step. Throws std::runtime_error naming tool and body if one starts in
-  /// contact, unless `resuming` (a peer keeps this run's contacts).
-  void start(std::span<const ToolDofs> dofs, bool resuming = false);
-  /// Whether a contact that a peer kept can be of this scene: tool, body, part and magnitudes.
-  bool fits(std::uint32_t tool, const HeldContact& contact) const;
-  /// Takes up a contact that a peer kept. Throws std::runtime_error if it does not fit this scene.
-  void adopt(std::uint32_t tool, const HeldContact& contact);
+  /// Sets the tools' poses before the first step. Throws std::runtime_error on one that is not a number, and naming
+  /// tool and body if one starts in contact.
+  void start(std::span<const ToolDofs> dofs);
+  /// The same, where tools may go on from contacts that peers kept: then resume() and starts_inside().
+  void place(std::span<const ToolDofs> dofs);
+  /// Takes up what a peer kept of a tool's contacts, all of them; or none, and false, where one cannot be of this scene
+  /// and of where the tool is, or the bodies cannot hold as many. Those of a tool that has resumed already, or is in no
+  /// body, are left.
+  bool resume(const ContactState& kept);
+  /// Names a tool that starts within a body without having resumed its contacts, and the body; empty: none.
+  std::string starts_inside() const;
 
   void step(std::span<const ToolDofs> dofs);
 
@@ -90,6 +94,9 @@ class HapticStep {
 
  private:
   void add(int body, std::unique_ptr<BodyPart> part);
+  std::string inside(int tool) const;
+  bool is_sound(std::uint32_t tool, const HeldContact& held) const;
+  TouchContact contact_of(int tool, const HeldContact& held) const;
   void see_tools();
   void count_energy();
   bool meet_bodies();
@@ -106,6 +113,7 @@ class HapticStep {
   LocalPart* local_ = nullptr;  ///< one of parts_; null without moving tissue
   PassivityGuard passivity_;
   std::uint64_t step_ = 0;
+  std::vector<bool> resumed_;  ///< per tool
   // What the bodies see of the tools in a step, and what they do to them.
   std::vector<MovingTool> seen_;
   std::vector<ToolLoad> loads_;

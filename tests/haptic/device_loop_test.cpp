@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <thread>
 
 #include "common/bus/memory_bus.hpp"
 #include "haptic_node/haptic_loop.hpp"
@@ -130,6 +131,38 @@ TEST(HapticLoop, TakesTheForceAwayBeforeItLeavesAndDoesNotCallThatASilentDriver)
   EXPECT_NEAR(static_cast<double>(force.size()), 420, 2) << "within 20 ms";
   for (std::size_t k = 400; k < force.size(); ++k) EXPECT_LT(force[k - 1] - force[k], force[395] / 15) << k;
   EXPECT_EQ(report.silent, 0u);
+}
+
+/// Takes longer than a tick, and tells of poses that cannot be.
+class SlowDevice : public Device {
+ public:
+  DeviceSample read(double) override {
+    std::this_thread::sleep_for(std::chrono::microseconds(1500));
+    return {{.depth = ++reads_ % 8 == 0 ? std::nan("") : 0.15}, reads_};
+  }
+  void render(const Wrench&, double) override {}
+  bool finished(double) const override { return false; }
+
+ private:
+  std::uint64_t reads_ = 0;
+};
+
+TEST(HapticLoop, TheStatusOfALoopThatFallsBehindNamesWhatStoodBeforeTheHandFirst) {
+  testing::BlockScene block;
+  HapticStep haptic(block.scene, block.archives);
+  const auto network = make_memory_network();
+  const std::unique_ptr<Bus> bus = make_memory_bus(network), observer = make_memory_bus(network);
+  const auto statuses = observer->reader(topics::node_status);
+  Presence presence(*bus, "haptic", 1, "scene", "archive");
+  std::vector<std::unique_ptr<Device>> devices;
+  devices.push_back(std::make_unique<SlowDevice>());
+  haptic.start(std::array{ToolDofs{.depth = 0.15}});
+  HapticLoop loop(haptic, devices, *bus, presence, 1, "a test");
+  loop.run(3.3);
+  std::string text;
+  while (const auto status = statuses->take())
+    if (status->text.find("falls behind") != std::string::npos) text = status->text;
+  EXPECT_TRUE(text.starts_with("samples of a device are refused")) << text;
 }
 
 TEST(HapticLoop, ADeviceThatJumpsToAndFroIsNotFollowed) {

@@ -234,7 +234,7 @@ TEST_F(PatchRule, AHapticNodeThatReturnsFeelsTheSameForce) {
   rig.haptic().part(0)->for_each_contact([&](const TouchContact& c) { contacts.push_back(c); });
   ASSERT_EQ(contacts.size(), 1u);
   PressRig anew = PatchRule::rig(0.3);
-  anew.start(at(2e-3, 0, -0.001));
+  anew.haptic().place(std::array{tip_at(anew.scene().tools[0], at(2e-3, 0, 3e-3))});
   HeldContact kept{.body = 0};
   for (int v = 0; v < 3; ++v) {
     kept.nodes[v] = contacts[0].anchor.nodes[v];
@@ -242,7 +242,7 @@ TEST_F(PatchRule, AHapticNodeThatReturnsFeelsTheSameForce) {
     kept.force[v] = contacts[0].force[v];
     kept.normal[v] = contacts[0].normal[v];
   }
-  anew.haptic().adopt(0, kept);
+  ASSERT_TRUE(anew.haptic().resume({.tool = 0, .contacts = {kept}}));
   anew.step(at(2e-3, 0, 3e-3));
   EXPECT_LT((anew.force() - held).norm(), 0.02 * held.norm());
 }

@@ -1,5 +1,6 @@
 #include "tests/hostile/attacked_system.hpp"
 
+#include <algorithm>
 #include <fstream>
 
 #include "common/bus/security.hpp"
@@ -12,8 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kHover = 0.186;  // [m] of depth: the tip's ball ends 6 mm above the tissue
-constexpr double kElsewhere = 0.1;
+constexpr double kHover = 0.186;               // [m] of depth: the tip's ball ends 6 mm above the tissue
+constexpr double kWaits = 15, kComesDown = 2;  // [s] over the tissue, and then until it presses
+constexpr double kYoung = 20e3;                // [Pa] of both blocks
+constexpr double kSettled = 0.01;              // [N] by which a force that is at rest may be off
 
 double resident_mb(pid_t pid) {
   std::ifstream in(fmt::format("/proc/{}/statm", pid));
@@ -43,21 +46,22 @@ void make_keys(const std::filesystem::path& folder) {
 }  // namespace
 
 HostileScene::HostileScene(bool with_keys)
-    : LoopbackScene("hostile", "[body.dynamic]\ndamping = 20\n"), with_keys_(with_keys) {
+    : LoopbackScene("hostile", "[body.dynamic]\ndamping = 20\n", kYoung), with_keys_(with_keys) {
   if (with_keys) {
     replace("[render]\n", "[network.security]\nkeys = \"keys\"\n\n[render]\n");
     make_keys(folder() / "keys");
   }
   replace("quasi_static", "tensor_mass");
   replace("width = 320\nheight = 240", "width = 64\nheight = 64");
-  replace("[[tool]]", R"([rates]
+  write_tet_mesh(make_block({0.15, -0.05, -0.05}, {0.25, 0.05, 0}, {8, 8, 4}), folder() / "still.msh");
+  replace("[[tool]]", fmt::format(R"([rates]
 visual_hz = 30
 
 [[body]]
 name = "still"
-mesh = "block.msh"
+mesh = "still.msh"
 model = "quasi_static"
-young = 5000
+young = {}
 poisson = 0.4
 [body.offline]
 element = "p1"
@@ -68,13 +72,26 @@ box = [[-1.0, -1.0, -0.0501], [1.0, 1.0, -0.0499]]
 port = 0
 
 [[tool]]
-name = "elsewhere"
-pivot = [0.5, 0.0, 0.4]
+name = "driven"
+pivot = [0.2, 0.0, 0.2]
 radius = 0.008
 device = "bus"
 
-[[tool]])");
-  write("motion.csv", fmt::format("time,yaw,pitch,depth,roll,grip\n0,0,0,{0},0,0\n3600,0,0,{0},0,0\n", kHover));
+[[tool]])",
+                                  kYoung));
+  replace("[render]\n", R"([[tool]]
+name = "hovering"
+pivot = [0.03, 0.03, 0.2]
+radius = 0.008
+device = "scripted"
+trajectory = "hover.csv"
+
+[render]
+)");
+  const std::string begin = fmt::format("time,yaw,pitch,depth,roll,grip\n0,0,0,{},0,0\n", kHover);
+  write("motion.csv", begin + fmt::format("{2},0,0,{0},0,0\n{3},0,0,{1},0,0\n9000,0,0,{1},0,0\n", kHover, kPressed,
+                                          kWaits, kWaits + kComesDown));
+  write("hover.csv", begin + fmt::format("9000,0,0,{},0,0\n", kHover));
 }
 
 BusSettings HostileScene::insider(int domain) const {
@@ -85,7 +102,7 @@ BusSettings HostileScene::insider(int domain) const {
 AttackedSystem::AttackedSystem(int domain, bool with_keys)
     : scene_(with_keys),
       attacker_(scene_.insider(domain)),
-      hand_(scene_.insider(domain), 1),
+      hand_(scene_.insider(domain), 3),
       status_(attacker_.bus().reader(topics::node_status)),
       picture_(attacker_.bus().reader(topics::picture_state)) {
   std::string said;
@@ -98,15 +115,24 @@ AttackedSystem::AttackedSystem(int domain, bool with_keys)
   if (!there) throw std::runtime_error("the attacked system does not come up");
 }
 
+void AttackedSystem::press() {
+  if (presses_.exchange(true)) return;
+  const auto down = static_cast<std::uint64_t>(1000 * (kWaits + kComesDown));
+  if (!watch(60s, [&] { return hand_.newest().step > down; })) throw std::runtime_error("the tool does not come down");
+  watch(2s);
+  for (int tool = 0; tool < hand_.tools(); ++tool) hand_.of(tool).keep_undisturbed();
+}
+
 AttackedSystem::~AttackedSystem() {
   over_ = true;
   driver_.join();
 }
 
-// A driver as it should be: a hand that rests.
+// A driver as it should be: a hand that comes down, and rests.
 void AttackedSystem::drive() {
   const auto device = attacker_.bus().writer(topics::device_state);
-  for (DeviceState state{.tool = 0, .seq = 1, .depth = kElsewhere}; !over_; ++state.seq) {
+  for (DeviceState state{.tool = kDriven, .seq = 1, .depth = kHover}; !over_; ++state.seq) {
+    if (presses_) state.depth = std::min(kPressed, state.depth + 0.005 / kComesDown * (kPressed - kHover));
     state.sense_ns = now_ns();
     device->write(state);
     std::this_thread::sleep_for(5ms);
@@ -132,6 +158,14 @@ std::map<std::string, double> AttackedSystem::memory_mb() const {
   std::map<std::string, double> memory;
   for (const auto& [name, process] : nodes_) memory[name] = resident_mb(process.pid());
   return memory;
+}
+
+bool AttackedSystem::is_undisturbed(std::chrono::milliseconds limit) {
+  return watch(limit, [&] {
+    for (int tool = 0; tool < hand_.tools(); ++tool)
+      if ((hand_.of(tool).newest() - hand_.of(tool).undisturbed()).norm() > kSettled) return false;
+    return true;
+  });
 }
 
 bool AttackedSystem::pictures_go_on(std::chrono::milliseconds limit) {

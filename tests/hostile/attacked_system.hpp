@@ -13,8 +13,13 @@
 
 namespace palpate::testing {
 
-/// Two blocks side by side, one of moving tissue and one quasi-static. A scripted tool hovers a few millimetres above
-/// the moving one, near enough for the deform node to tell of it; a driver elsewhere holds another far away.
+/// The tools of the scene, by their places there.
+inline constexpr double kPressed = 0.2;  ///< [m] depth of those that press
+inline constexpr int kDriven = 0, kPressing = 1, kHovering = 2;
+
+/// Two blocks side by side, one of moving tissue and one quasi-static. A scripted tool presses the moving one and
+/// another hovers a few millimetres above it, near enough for the deform node to tell of it; a driver elsewhere presses
+/// a third into the quasi-static one.
 class HostileScene : public LoopbackScene {
  public:
   /// With keys: among them those of an insider, who may write and read all, more than any role.
@@ -25,14 +30,18 @@ class HostileScene : public LoopbackScene {
   bool with_keys_;
 };
 
-/// All nodes of that scene as processes, with the driver of the second tool in this one.
+/// All nodes of that scene as processes, with the driver of the first tool in this one.
 class AttackedSystem {
  public:
   AttackedSystem(int domain, bool with_keys);
   ~AttackedSystem();
 
   Attacker& attacker() { return attacker_; }
-  HandWatch& hand() { return hand_; }  ///< of the hovering tool
+  HandWatch& hand() { return hand_; }
+  /// Returns once the tools that press have come down and rest. Until then all are in free air.
+  void press();
+  /// Waits until each force is what it was before the first attack.
+  bool is_undisturbed(std::chrono::milliseconds limit);
   const std::map<std::string, ChildProcess>& nodes() const { return nodes_; }
   bool all_run();
   std::map<std::string, double> memory_mb() const;  ///< resident, by node
@@ -81,7 +90,7 @@ class AttackedSystem {
   std::map<std::string, std::string> said_;
   PictureState newest_picture_;
   std::uint64_t pictures_ = 0;
-  std::atomic<bool> over_ = false;
+  std::atomic<bool> presses_ = false, over_ = false;  ///< for the driver
   std::thread driver_;
   std::map<std::string, ChildProcess> nodes_;
 };

@@ -20,19 +20,17 @@ class HostileWriter {
         writer_(dds_create_writer(participant, topic_, qos(topic.qos).get(), nullptr), topic.name) {}
 
   /// False where the middleware itself does not send such a sample.
-  bool write(const M& message) const {
-    typename dds::Generated<M>::Type sample{};
-    fields(dds::Lend{}, message, sample);
-    return dds_write(writer_, &sample) == DDS_RETCODE_OK;
-  }
-  /// Says of the message's key, and of nothing else, that it is no more.
-  bool dispose(const M& message) const {
-    typename dds::Generated<M>::Type sample{};
-    fields(dds::Lend{}, message, sample);
-    return dds_dispose(writer_, &sample) == DDS_RETCODE_OK;
-  }
+  bool write(const M& message) const { return send(message, dds_write); }
+  /// Says that the message's instance is over: for all, or for this writer.
+  bool dispose(const M& message) const { return send(message, dds_dispose); }
+  bool unregister(const M& message) const { return send(message, dds_unregister_instance); }
 
  private:
+  bool send(const M& message, dds_return_t (*how)(dds_entity_t, const void*)) const {
+    typename dds::Generated<M>::Type sample{};
+    fields(dds::Lend{}, message, sample);
+    return how(writer_, &sample) == DDS_RETCODE_OK;
+  }
   struct Delete {
     void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
   };

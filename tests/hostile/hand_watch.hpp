@@ -2,43 +2,35 @@
 #include <dds/dds.h>
 
 #include <cstdint>
-#include <optional>
+#include <vector>
 
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/dds_entity.hpp"
-#include "idl/messages.hpp"
+#include "tests/hostile/felt_force.hpp"
 #include "tests/realtime/host_watch.hpp"
 
 namespace palpate::testing {
 
-/// What the haptic node's own writer says of one tool's force: that of others on the same topic is not looked at.
+/// What the haptic node's own writer says of the tools' forces: that of others on the same topic is not looked at.
 class HandWatch {
  public:
   /// In a domain that this process has joined with these settings.
-  HandWatch(const BusSettings& settings, std::uint32_t tool);
+  HandWatch(const BusSettings& settings, int tools);
 
   /// Takes what has come.
   void look();
-  void begin_anew();  ///< what is told below is from now on
+  void begin_anew();  ///< what is told of the forces is from now on
 
-  double max_force() const { return max_force_; }  ///< [N]
-  double max_rise() const { return max_rise_; }    ///< [N] from one step to the next
-  bool finite() const { return finite_; }
+  FeltForce& of(int tool) { return felt_[tool]; }
+  int tools() const { return static_cast<int>(felt_.size()); }
+  /// Of the last tool, of which each step tells last.
+  const ForceState& newest() const { return felt_.back().state(); }
   double rate_hz(const HostWatch& host) const;  ///< of the steps, by their sense times, while the machine ran
-  std::uint64_t steps() const { return steps_; }
-  const ForceState& newest() const { return newest_; }
 
  private:
-  void add(const ForceState& force);
-
-  std::uint32_t tool_;
   Entity participant_, topic_, reader_;
   dds_instance_handle_t writer_ = 0;  ///< the first that was heard
-  ForceState newest_;
-  std::optional<ForceState> first_;
-  std::uint64_t steps_ = 0;
-  double max_force_ = 0, max_rise_ = 0;
-  bool finite_ = true;
+  std::vector<FeltForce> felt_;       ///< per tool
 };
 
 }  // namespace palpate::testing

@@ -13,6 +13,18 @@
 /// texts empty, too long and not printable, its sequences empty and full.
 namespace palpate::testing {
 
+/// What a number can be that a program may not expect.
+template <class T>
+std::vector<T> extremes() {
+  using Of = std::numeric_limits<T>;
+  if constexpr (std::is_floating_point_v<T>)
+    return {Of::quiet_NaN(), Of::infinity(), -Of::infinity(), Of::max(), Of::lowest(), T(0), T(1e11), T(-1e11)};
+  else if constexpr (std::same_as<T, std::int64_t>)
+    return {Of::min(), Of::max(), 0, -1, 2'000'000'000'000'000'000};
+  else
+    return {0, Of::max(), Of::max() / 2 + 1, Of::max() / 2, Of::max() - 1};
+}
+
 /// Calls play(name, message) for each; `message` is as it was after that.
 template <class M, class Play>
 class Mutations {
@@ -47,17 +59,6 @@ class Mutations {
   void try_value(const std::string& name, T& field, T value) {
     field = std::move(value);
     play_(name, message_);
-  }
-
-  template <class T>
-  static std::vector<T> extremes() {
-    using Of = std::numeric_limits<T>;
-    if constexpr (std::is_floating_point_v<T>)
-      return {Of::quiet_NaN(), Of::infinity(), -Of::infinity(), Of::max(), Of::lowest(), T(0), T(1e11), T(-1e11)};
-    else if constexpr (std::same_as<T, std::int64_t>)
-      return {Of::min(), Of::max(), 0, -1, 2'000'000'000'000'000'000};
-    else
-      return {0, Of::max(), Of::max() / 2 + 1, Of::max() / 2, Of::max() - 1};
   }
 
   template <class T>

@@ -26,5 +26,13 @@ TEST(GuardSummary, WhatASoundRunDoesNotNeedIsAnInterventionAndItsLimitsAreNot) {
     EXPECT_TRUE(interventions_in({{"haptic_node", {{key, 7}}}}).starts_with("the hand was guarded: 7 ")) << key;
 }
 
+TEST(GuardSummary, WhatAnyNodeRefusesIsAnIntervention) {
+  for (const auto& [node, key] : {std::pair{"deform_node", "refused"},
+                                  {"render_node", "refused"},
+                                  {"web_node", "refused_messages"},
+                                  {"web_node", "thrown_out"}})
+    EXPECT_TRUE(interventions_in({{node, {{key, 7}}}}).starts_with("the hand was guarded: 7 ")) << node << " " << key;
+}
+
 }  // namespace
 }  // namespace palpate

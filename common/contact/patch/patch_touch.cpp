@@ -121,11 +121,10 @@ void PatchTouch::for_each_contact(const BodyPart::VisitContact& visit) const {
   }
 }
 
-bool PatchTouch::adopt(const TouchContact& contact) {
-  const auto found = std::ranges::find_if(parts_, [&](const Part& p) { return contact.is_by(p.tool, p.part); });
-  if (found == parts_.end()) return false;
-  found->patch.resume(contact.force);
-  return true;
+void PatchTouch::adopt(const TouchContact& contact) {
+  std::ranges::find_if(parts_, [&](const Part& p) {
+    return contact.is_by(p.tool, p.part);
+  })->patch.resume(contact.force);
 }
 
 void PatchTouch::state(State& s) {

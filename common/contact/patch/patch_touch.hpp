@@ -45,8 +45,8 @@ class PatchTouch {
 
   /// Visits the patches that touch as one contact each.
   void for_each_contact(const BodyPart::VisitContact& visit) const;
-  /// Goes on from a contact that a peer kept; false if that is of no tip.
-  bool adopt(const TouchContact& contact);
+  /// Goes on from a contact that a peer kept, of a part that has a patch.
+  void adopt(const TouchContact& contact);
 
   void state(State& s);
 

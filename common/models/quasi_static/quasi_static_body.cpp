@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-bool by_patch(const StepSettings& settings) {
+bool has_patches(const StepSettings& settings) {
   return settings.contact.rule == ContactRule::patch;
 }
 
@@ -33,7 +33,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
                                  const std::optional<CreepStep>& creep)
     : TouchBody(archive.surface, softened(archive, creep), settings, beside_patches()) {
   const HalfSpace material{archive.young[0] / (creep ? creep->instant() : 1.0), archive.poisson[0]};
-  if (by_patch(settings))
+  if (has_patches(settings))
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
                                           edges_resolved(offline_of(body, map().size())), creep);
   by_mesh_ = !patch_ || patch_->parts() < parts_of(settings.tools);
@@ -173,8 +173,25 @@ BodyPart::Capacity QuasiStaticBody::capacity() const {
   return most;
 }
 
-bool QuasiStaticBody::adopt(const TouchContact& contact) {
-  return (patch_ && !contact.grasped && patch_->adopt(contact)) || TouchBody::adopt(contact);
+bool QuasiStaticBody::by_patch(const TouchContact& contact) const {
+  return patch_ && patch_->has(contact.tool_point().tool, contact.tool_point().part);
+}
+
+// A patch lies where its part is: of its contact only the shear goes on, and that within friction.
+bool QuasiStaticBody::fits(const MovingTool& tool, std::span<const TouchContact> contacts) const {
+  std::vector<TouchContact> by_mesh(contacts.begin(), contacts.end());
+  std::erase_if(by_mesh, [this](const TouchContact& c) { return by_patch(c); });
+  return TouchBody::fits(tool, by_mesh);
+}
+
+void QuasiStaticBody::adopt(std::span<const TouchContact> contacts) {
+  std::vector<TouchContact> by_mesh;
+  for (const TouchContact& c : contacts)
+    if (by_patch(c))
+      patch_->adopt(c);
+    else
+      by_mesh.push_back(c);
+  TouchBody::adopt(by_mesh);
 }
 
 Eigen::Vector3d QuasiStaticBody::press_of(int tool) const {

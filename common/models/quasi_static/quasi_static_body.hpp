@@ -22,7 +22,8 @@ class QuasiStaticBody : public TouchBody {
   void for_each_contact(const VisitContact& visit) const override;
   void for_each_force(const VisitForce& visit) const override;
   Capacity capacity() const override;
-  bool adopt(const TouchContact& contact) override;
+  bool fits(const MovingTool& tool, std::span<const TouchContact> contacts) const override;
+  void adopt(std::span<const TouchContact> contacts) override;
   void state(State& s, std::span<const MovingTool> tools) override;
   void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;
   bool superposed() const override { return true; }
@@ -39,6 +40,7 @@ class QuasiStaticBody : public TouchBody {
                   const std::optional<CreepStep>& creep);
 
   ToolContacts::Options beside_patches();
+  bool by_patch(const TouchContact& contact) const;
   bool is_held(int node) const;
   void superpose(int tool, std::vector<double>& displacement);
   void correct(std::span<const MovingTool> tools);

@@ -1,0 +1,131 @@
+// What the hands feel when the real deformation node of an example is killed in the midst of it, by the log.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "common/bus/dds_bus.hpp"
+#include "common/bus/log_reader.hpp"
+#include "tests/bus/domain.hpp"
+#include "tests/fuzz/rounds.hpp"
+#include "tests/loopback/loopback_scene.hpp"
+#include "tools/child_process.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;
+
+constexpr double kMaxStepChange = 0.25;  // [N] a step: the default
+constexpr int kTools = 2;
+// [steps] in which it comes back and its tissue is felt again, and some: then the script goes on as if what was not cut
+// meanwhile were, and is pushed back as hard as it presses.
+constexpr int kAfter = 2500;
+constexpr int kFirst = 1500, kLast = 13000;  // steps between which it dies
+const std::string kScene = PALPATE_SOURCE "/scenes/hepatectomy.toml";
+
+/// The largest force of each tool until a step, the largest of all, and the largest change of one in a step [N].
+struct FeltByTools {
+  std::array<double, kTools> force{};
+  double later = 0, change = 0;
+  std::uint64_t steps = 0;
+};
+
+FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t until) {
+  LogReader log(file);
+  FeltByTools felt;
+  std::array<ForceState, kTools> last;
+  ForceState now;
+  for (LogEvent event; log.next(event);) {
+    if (!event.read(topics::force_state, now)) continue;
+    ForceState& before = last.at(now.tool);
+    double& largest = now.step < until ? felt.force[now.tool] : felt.later;
+    largest = std::max(largest, std::hypot(now.force[0], now.force[1], now.force[2]));
+    if (now.step == before.step + 1)
+      felt.change = std::max(felt.change, std::hypot(now.force[0] - before.force[0], now.force[1] - before.force[1],
+                                                     now.force[2] - before.force[2]));
+    before = now;
+    felt.steps = std::max(felt.steps, now.step);
+  }
+  return felt;
+}
+
+class KilledInAnExample : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    std::string output;
+    ASSERT_EQ(run_command(program("palpate") + " precompute " + kScene, &output), 0) << output;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Runs the example in real time; `meanwhile` is called once the haptic node is there, with the deformation node.
+  template <class Meanwhile>
+  FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = std::numeric_limits<std::uint64_t>::max()) {
+    const std::string file = folder_ / "run.lcmlog";
+    ChildProcess recorder("palpate", {program("palpate"), "record", "--keep", "everything", "--force", "-o", file,
+                                      "--domain", std::to_string(own_domain())});
+    auto deform = std::make_unique<ChildProcess>(node("deform_node"));
+    ChildProcess haptic = node("haptic_node");
+    meanwhile(deform);
+    EXPECT_TRUE(haptic.wait(60s)) << "its script ends";
+    recorder.interrupt();
+    EXPECT_TRUE(recorder.wait(10s));
+    return felt_by_tools_in(file, until);
+  }
+  ChildProcess node(const std::string& name) const {
+    return {name, {program(name), kScene, "--domain", std::to_string(own_domain()), "--supervised"}};
+  }
+  bool reaches(std::uint64_t step) {
+    const auto limit = std::chrono::steady_clock::now() + 60s;
+    for (; std::chrono::steady_clock::now() < limit; bus_->wait(10ms))
+      while (const auto force = forces_->take()) {
+        if (force->run == run_ || force->step < step) continue;
+        run_ = force->run;
+        return true;
+      }
+    return false;
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / fmt::format("palpate-killed-in-example-{}", getpid());
+  std::unique_ptr<Bus> bus_ = make_dds_bus({.domain = own_domain()});
+  std::unique_ptr<Reader<ForceState>> forces_ = bus_->reader(topics::force_state);
+  std::uint64_t run_ = 0;  ///< of the last run
+};
+
+TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
+  const FeltByTools undisturbed = run([this](auto&) { EXPECT_TRUE(reaches(kFirst)); });
+  ASSERT_GT(undisturbed.steps, static_cast<std::uint64_t>(kLast));
+  repeat(1, 25min, [&](int round) {
+    std::mt19937 random(round);
+    const std::uint64_t step = std::uniform_int_distribution<>(kFirst, kLast)(random);
+    const auto away = std::chrono::milliseconds(std::uniform_int_distribution<>(10, 2000)(random));
+    const FeltByTools felt = run(
+        [&](std::unique_ptr<ChildProcess>& deform) {
+          ASSERT_TRUE(reaches(step));
+          kill(deform->pid(), SIGKILL);
+          EXPECT_TRUE(deform->wait(5s));
+          std::this_thread::sleep_for(away);
+          deform = std::make_unique<ChildProcess>(node("deform_node"));
+        },
+        step + away.count() + kAfter);
+    for (int tool = 0; tool < kTools; ++tool) {
+      fmt::print(
+          "round {}, at step {}, away {} ms, tool {}: {:.3f} N undisturbed, {:.3f} N, {:.3f} N later, by {:.3f} N a "
+          "step\n",
+          round, step, away.count(), tool, undisturbed.force[tool], felt.force[tool], felt.later, felt.change);
+      EXPECT_LE(felt.force[tool], 1.1 * undisturbed.force[tool]) << round;
+    }
+    EXPECT_GT(felt.steps, step) << round;
+    EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
+  });
+}
+
+}  // namespace
+}  // namespace palpate
