@@ -178,7 +178,6 @@ def main():
 td,th{{border-bottom:1px solid #ddd;padding:2px 8px;text-align:left;vertical-align:top}}td.n{{text-align:right;white-space:nowrap}}img{{max-width:100%}}h3{{margin:1.4em 0 .3em}}</style>
 <h1>Stability at the edge</h1><p>{html.escape(machine())}</p><p>{len(rows)} points: {counts}.</p>
 {''.join(pictures)}<h2>All points</h2>{table(rows)}</html>""")
-    print(os.path.join(folder, "index.html"))
 
 
 if __name__ == "__main__":

@@ -29,21 +29,26 @@ const std::vector<Precomputed> kBodies{
     {"hybrid_of_two_meshes", example("block_partial.toml")},
     {"modal_shell", example("duct_poke.toml")}};
 
-std::string archive_of(const std::string& arguments, int threads) {
-  const OwnFolder cache("bits");
+/// Computed into a folder that has none yet, which it leaves as it was but for the readings of meshes.
+std::string archive_of(const std::string& arguments, const OwnFolder& cache, int threads) {
   const auto done = run_program(fmt::format("OPENBLAS_NUM_THREADS={} PALPATE_CACHE={} {} precompute {}", threads,
                                             cache.path().string(), program("palpate"), arguments));
   EXPECT_EQ(done.status, 0) << done.err;
-  std::string bytes;
+  std::vector<std::filesystem::path> archives;
   for (const auto& entry : std::filesystem::directory_iterator(cache.path()))
-    if (entry.path().extension() == ".h5") bytes += testing::text_of(entry.path());
-  EXPECT_GT(bytes.size(), 10000u);
+    if (entry.path().extension() == ".h5") archives.push_back(entry.path());
+  EXPECT_EQ(archives.size(), 1u);
+  if (archives.empty()) return {};
+  std::string bytes = testing::text_of(archives[0]);
+  std::filesystem::remove(archives[0]);
   return bytes;
 }
 
 void expect_the_same_file(const std::string& arguments) {
-  const std::string one = archive_of(arguments, 1);
-  for (const int threads : {2, 3}) EXPECT_TRUE(archive_of(arguments, threads) == one) << threads << " threads";
+  const OwnFolder cache("bits");
+  const std::string one = archive_of(arguments, cache, 1);
+  EXPECT_GT(one.size(), 10000u);
+  for (const int threads : {2, 3}) EXPECT_TRUE(archive_of(arguments, cache, threads) == one) << threads << " threads";
 }
 
 class ArchiveBits : public ::testing::TestWithParam<Precomputed> {};

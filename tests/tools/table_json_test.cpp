@@ -1,4 +1,4 @@
-// What `palpate stability` and `palpate study` write as tables, they print with --json, a line a row.
+// What `palpate stability` writes as a table, it prints with --json, a line a row.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -39,19 +39,6 @@ TEST(ToolsTables, AStabilityCaseIsALine) {
     EXPECT_NE(line["outcome"], "failed");
     EXPECT_TRUE(line["max_force"].is_number());
   }
-}
-
-TEST(ToolsTables, ASettingThatIsStudiedIsALine) {
-  const testing::LoopbackScene scene("study-json", testing::kLinear);
-  write_tet_mesh(make_block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}, {4, 4, 2}), scene.folder() / "block.msh");
-  const std::filesystem::path out = scene.folder() / "study";
-  const auto run =
-      run_program(fmt::format("{} study {} --quick --json -o {}", program("palpate"), scene.scene(), out.string()));
-  ASSERT_EQ(run.status, 0) << run.err;
-  const std::vector<json> lines = lines_of(run.out);
-  EXPECT_GT(lines.size(), 0u);
-  EXPECT_EQ(static_cast<long>(lines.size()), rows_of(out / "study.csv"));
-  EXPECT_TRUE(std::ranges::any_of(lines, [](const json& line) { return line["step_us_median"].is_number(); }));
 }
 
 }  // namespace

@@ -43,7 +43,10 @@ void run(const StabilityOptions& o) {
   if (o.json)
     for (const stability::Row& row : stability::read_rows(std::filesystem::path(o.folder) / "stability.csv"))
       if (row.name.find(o.run.only) != std::string::npos) print_json(row);
-  if (!missing.empty()) fmt::print(stderr, "stability: {}\n", missing);
+  if (!missing.empty())
+    fmt::print(stderr, "stability: {}\n", missing);
+  else if (!o.json)
+    fmt::print("{}\n", (std::filesystem::path(o.folder) / "index.html").string());
   if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
 }
 
