@@ -7,27 +7,20 @@
 
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
+#include "tools/child_process.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
+#include "tools/motion/choose_tool.hpp"
 #include "tools/motion/motion_maker.hpp"
 
 namespace palpate {
 namespace {
 
 struct MotionOptions {
-  std::string scene, out, tool, body;
+  std::string scene, out, tool, body, picture;
   std::vector<std::string> steps;
   MotionManner manner;
 };
-
-int choose_tool(const Scene& scene, const std::string& name) {
-  const auto found = std::ranges::find(scene.tools, name, &Tool::name);
-  if (found != scene.tools.end()) return static_cast<int>(found - scene.tools.begin());
-  if (name.empty() && scene.tools.size() == 1) return 0;
-  std::string names;
-  for (const Tool& tool : scene.tools) names += (names.empty() ? "" : ", ") + tool.name;
-  throw std::runtime_error(fmt::format("{}: which tool? It has {}", scene.file.string(), names));
-}
 
 /// What the tool felt in each part; whether it felt anything.
 bool print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
@@ -43,6 +36,16 @@ bool print_parts(const MotionMaker& maker, const Rehearsal& rehearsal) {
                *last, part.text);
   }
   return std::ranges::any_of(felt, [](double force) { return force > 0; });
+}
+
+/// Pictures are drawn by a program of its own.
+void draw(const MotionOptions& o, const std::string& tool) {
+  ChildProcess path("palpate path",
+                    {sibling_program("palpate_film"), "path", o.scene, o.out, "--tool", tool, "-o", o.picture});
+  while (!path.wait(std::chrono::milliseconds(100)))
+    ;
+  if (path.status() != 0) throw std::runtime_error(fmt::format("{}: it could not be drawn", o.picture));
+  fmt::print("{}: the way of the tip over the organ at rest, with a ball where it stands\n", o.picture);
 }
 
 void make_motion(const MotionOptions& o) {
@@ -66,6 +69,7 @@ void make_motion(const MotionOptions& o) {
   fmt::print(
       "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
       o.out, maker.rows().time(), o.scene, scene.tools[tool].name, std::filesystem::absolute(o.out).string());
+  if (!o.picture.empty()) draw(o, scene.tools[tool].name);
 }
 
 }  // namespace
@@ -80,6 +84,7 @@ void add_motion_command(cli::Command& app) {
   command.add_option("SCENE", o->scene, "Scene file (TOML)").required();
   command.add_option("STEP", o->steps, "Steps, in their order; each is one word of the shell").required();
   command.add_option("-o,--output", o->out, "Trajectory (CSV)").required().output_file(".csv", {"motion"});
+  command.add_option("--picture", o->picture, "Picture of the way over the organ (PNG)").output_file(".png");
   command.add_option("--tool", o->tool, "Tool that moves (default: the only one)");
   command.add_option("--body", o->body, "Body that it touches (default: the only one)");
   command.add_option("--speed", o->manner.speed, "Of the tip [m/s], at most").between(1e-4, 1.0).show_default();
@@ -88,7 +93,7 @@ void add_motion_command(cli::Command& app) {
       .show_default();
   command.examples(
       {"palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" \"press 0.3N\" \"hold "
-       "1s\" withdraw -o press.csv"});
+       "1s\" withdraw -o press.csv --picture press.png"});
   command.does([o] { make_motion(*o); });
 }
 
