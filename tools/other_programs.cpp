@@ -28,6 +28,7 @@ struct OtherCommand {
 };
 constexpr std::array kCommands{
     OtherCommand{"film", "Draw a topic log, every picture that is due", kFilm},
+    OtherCommand{"path", "Draw the way of a tool's tip over the organ at rest", kFilm},
     OtherCommand{"report", "A page of recorded sessions: force, path, pictures and figures of skill", kFilm},
     OtherCommand{"mesh", "Make a mesh of tetrahedra of a surface (STL, OBJ, PLY, OFF, VTK, VTP)", kOrgan},
     OtherCommand{"organ", "Make a mesh of tetrahedra of labels in an image (INR, NIfTI, MetaImage, NRRD, DICOM)",

@@ -7,6 +7,7 @@
 #include "tests/tools/program_result.hpp"
 #include "tools/motion/motion_rows.hpp"
 #include "tools/motion/motion_step.hpp"
+#include "tools/motion/tip_path.hpp"
 
 namespace palpate {
 namespace {
@@ -53,6 +54,23 @@ TEST(MotionSteps, AWayIsGoneGently) {
   EXPECT_NEAR(fastest, 0.05, 1e-3);
   EXPECT_NEAR(length, 0.07, 1e-5);
   EXPECT_LT((before - Eigen::Vector3d(0.07, 0, 0)).norm(), 1e-5);
+}
+
+TEST(TipPath, StandsWhereAStepBeginsAndEnds) {
+  const Trocar trocar = make_trocar({0, 0, 0.2}, {0, 0, -1}, {0, 1, 0});
+  const std::array<Eigen::Vector3d, 4> places{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.03, 0, 0),
+                                              Eigen::Vector3d(0.03, 0.02, 0), Eigen::Vector3d(0.03, 0.02, 0.04)};
+  MotionRows rows(trocar, places[0]);
+  rows.go({places[1]}, 0.05);
+  rows.stand(0.2);
+  rows.go({places[2]}, 0.05);
+  rows.go({places[3]}, 0.05);
+  const TipPath path = tip_path(trocar, rows.trajectory());
+  ASSERT_EQ(path.stands.size(), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT((path.stands[i] - places[i]).norm(), 5e-4) << i;
+  double length = 0;
+  for (std::size_t i = 1; i < path.points.size(); ++i) length += (path.points[i] - path.points[i - 1]).norm();
+  EXPECT_NEAR(length, 0.09, 1e-3);
 }
 
 /// A row of the table that the command prints [s, N].
@@ -114,6 +132,14 @@ TEST_F(ToolsMotion, InJsonItsStepsAreThoseOfItsTable) {
   EXPECT_GT(told.largest, 0);
   EXPECT_NEAR(hold["max_force_n"].get<double>(), told.largest, 0.0006);
   EXPECT_NEAR(hold["end_force_n"].get<double>(), told.end, 0.0006);
+}
+
+TEST_F(ToolsMotion, IsDrawnWhereThatIsAskedFor) {
+  const std::string picture = (scene_.folder() / "made.png").string();
+  const auto made = run_program(motion("\"to 0,0,1\" --picture " + picture));
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("made.png: the way of the tip"), std::string::npos) << made.out;
+  EXPECT_TRUE(std::filesystem::exists(picture));
 }
 
 TEST_F(ToolsMotion, WhatCannotBeDoneIsToldWithItsStep) {

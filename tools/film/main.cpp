@@ -5,6 +5,7 @@
 #include "common/realtime/shutdown.hpp"
 #include "tools/film/log_film.hpp"
 #include "tools/film/log_report.hpp"
+#include "tools/film/path_picture.hpp"
 
 namespace palpate {
 namespace {
@@ -64,14 +65,31 @@ void add_report_command(cli::Command& app) {
   });
 }
 
+void add_path_command(cli::Command& app) {
+  cli::Command command = app.add_command(
+      "path", "Draw the way of a tool's tip over the organ at rest, with a ball at each place where it stands");
+  auto s = std::make_shared<PathPictureSettings>();
+  command.add_option("SCENE", s->scene, "Scene file (TOML)").required();
+  command.add_option("TRAJECTORY", s->trajectory, "Motion of the tool (CSV), such as `palpate motion` makes")
+      .required();
+  command.add_option("-o,--output", s->picture, "Picture (PNG)").required().output_file(".png");
+  command.add_option("--tool", s->tool, "Tool that moves (default: the only one)");
+  command.examples({"palpate path scenes/liver.toml press.csv -o press.png"});
+  command.does([s] {
+    draw_path(*s);
+    fmt::print("{}\n", s->picture);
+  });
+}
+
 }  // namespace
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  palpate::cli::CommandLine app{"Films and reports of topic logs; started by `palpate`"};
+  palpate::cli::CommandLine app{"Films and reports of topic logs, pictures of motions; started by `palpate`"};
   app.show_version(PALPATE_VERSION);
   app.require_command();
   palpate::add_film_command(app);
   palpate::add_report_command(app);
+  palpate::add_path_command(app);
   return app.run(argc, argv);
 }

@@ -8,28 +8,21 @@
 
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
+#include "tools/child_process.hpp"
 #include "tools/choose_body.hpp"
 #include "tools/commands.hpp"
+#include "tools/motion/choose_tool.hpp"
 #include "tools/motion/motion_maker.hpp"
 
 namespace palpate {
 namespace {
 
 struct MotionOptions {
-  std::string scene, out, tool, body;
+  std::string scene, out, tool, body, picture;
   std::vector<std::string> steps;
   MotionManner manner;
   bool json = false;
 };
-
-int choose_tool(const Scene& scene, const std::string& name) {
-  const auto found = std::ranges::find(scene.tools, name, &Tool::name);
-  if (found != scene.tools.end()) return static_cast<int>(found - scene.tools.begin());
-  if (name.empty() && scene.tools.size() == 1) return 0;
-  std::string names;
-  for (const Tool& tool : scene.tools) names += (names.empty() ? "" : ", ") + tool.name;
-  throw std::runtime_error(fmt::format("{}: which tool? It has {}", scene.file.string(), names));
-}
 
 /// What the tool felt in a part of its motion.
 struct PartFelt {
@@ -68,6 +61,15 @@ void print_json(const std::vector<PartFelt>& parts, const std::string& file, dou
   fmt::print("{}\n", nlohmann::ordered_json{{"file", file}, {"seconds", seconds}, {"steps", steps}}.dump());
 }
 
+/// Pictures are drawn by a program of its own.
+void draw(const MotionOptions& o, const std::string& tool) {
+  ChildProcess path("palpate path",
+                    {sibling_program("palpate_film"), "path", o.scene, o.out, "--tool", tool, "-o", o.picture});
+  while (!path.wait(std::chrono::milliseconds(100)))
+    ;
+  if (path.status() != 0) throw std::runtime_error(fmt::format("{}: it could not be drawn", o.picture));
+}
+
 void make_motion(const MotionOptions& o) {
   std::vector<MotionStep> steps;
   for (const std::string& text : o.steps) steps.push_back(parse_motion_step(text));
@@ -87,11 +89,14 @@ void make_motion(const MotionOptions& o) {
   const std::vector<PartFelt> parts = felt_in_parts(maker, rehearsal);
   if (std::ranges::none_of(parts, [](const PartFelt& p) { return p.largest > 0; }))
     fmt::print(stderr, "palpate: {}: the tool touches nothing on all of its way\n", o.out);
+  if (!o.picture.empty()) draw(o, scene.tools[tool].name);
   if (o.json) return print_json(parts, o.out, maker.rows().time());
   print_parts(parts);
   fmt::print(
       "{}: {:.2f} s; as `trajectory` of a scripted tool, or at once: palpate drive {} --set tool.{}.trajectory={}\n",
       o.out, maker.rows().time(), o.scene, scene.tools[tool].name, std::filesystem::absolute(o.out).string());
+  if (!o.picture.empty())
+    fmt::print("{}: the way of the tip over the organ at rest, with a ball where it stands\n", o.picture);
 }
 
 }  // namespace
@@ -106,6 +111,7 @@ void add_motion_command(cli::Command& app) {
   command.add_option("SCENE", o->scene, "Scene file (TOML)").required();
   command.add_option("STEP", o->steps, "Steps, in their order; each is one word of the shell").required();
   command.add_option("-o,--output", o->out, "Trajectory (CSV)").required().output_file(".csv", {"motion"});
+  command.add_option("--picture", o->picture, "Picture of the way over the organ (PNG)").output_file(".png");
   command.add_option("--tool", o->tool, "Tool that moves (default: the only one)");
   command.add_option("--body", o->body, "Body that it touches (default: the only one)");
   command.add_option("--speed", o->manner.speed, "Of the tip [m/s], at most").between(1e-4, 1.0).show_default();
@@ -115,7 +121,7 @@ void add_motion_command(cli::Command& app) {
   command.add_flag("--json", o->json, "Print what the tool feels as one line of JSON");
   command.examples(
       {"palpate motion scenes/liver.toml \"to 0,0,60mm\" \"press 5mm\" \"slide 20mm,0,60mm\" \"press 0.3N\" \"hold "
-       "1s\" withdraw -o press.csv"});
+       "1s\" withdraw -o press.csv --picture press.png"});
   command.does([o] { make_motion(*o); });
 }
 
