@@ -73,6 +73,17 @@ TEST_F(LocalBodyTest, AHeldPlaceAnswersMotionByItsStiffnessAndNeverPulls) {
   EXPECT_NEAR(feel_settled({0, 0, 0.004}, m).z(), 1.5 - 300 * 0.004, 1e-9) << "and it comes back";
 }
 
+TEST_F(LocalBodyTest, AContactThatIsNotAtItsToolIsNotFelt) {
+  for (const bool grasped : {false, true})
+    for (const double aside : {0.0, 0.2}) {
+      LocalContactModel m = model({0, 0, 0});
+      add_contact(m, {aside, 0, -kBallRadius}, {0, 0, -1.5}, 300);
+      m.contacts[0].grasped = grasped;
+      EXPECT_NEAR(feel_settled({0, 0, 0}, m).z(), aside > 0 ? 0 : 1.5, 1e-9) << grasped;
+      EXPECT_EQ((haptic_->flags(0) & implausible_force) != 0, aside > 0) << grasped;
+    }
+}
+
 TEST_F(LocalBodyTest, WhatJawsHoldPullsAsWell) {
   LocalContactModel m = model({0, 0, 0});
   add_contact(m, {0, 0, 0}, {0, 0, 0}, 200);

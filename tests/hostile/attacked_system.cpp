@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 constexpr double kHover = 0.186;               // [m] of depth: the tip's ball ends 6 mm above the tissue
 constexpr double kWaits = 15, kComesDown = 2;  // [s] over the tissue, and then until it presses
 constexpr double kYoung = 20e3;                // [Pa] of both blocks
+constexpr double kFelt = 1;                    // [N] where a tool presses
 constexpr double kSettled = 0.01;              // [N] by which a force that is at rest may be off
 
 double resident_mb(pid_t pid) {
@@ -118,7 +119,9 @@ AttackedSystem::AttackedSystem(int domain, bool with_keys)
 void AttackedSystem::press() {
   if (presses_.exchange(true)) return;
   const auto down = static_cast<std::uint64_t>(1000 * (kWaits + kComesDown));
-  if (!watch(60s, [&] { return hand_.newest().step > down; })) throw std::runtime_error("the tool does not come down");
+  const auto felt = [this](int tool) { return hand_.of(tool).newest().norm() > kFelt; };
+  if (!watch(60s, [&] { return hand_.newest().step > down && felt(kDriven) && felt(kPressing); }))
+    throw std::runtime_error("the tools do not come down");
   watch(2s);
   for (int tool = 0; tool < hand_.tools(); ++tool) hand_.of(tool).keep_undisturbed();
 }

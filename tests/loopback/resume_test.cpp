@@ -190,7 +190,8 @@ TEST(Resume, ForgedContactsBesideTrueOnesDoNotKeepTheNodeFromComingBackNorChange
       {"on a node that the body lacks", [](Contacts& c) { c.at(0).nodes[2] = 100'000; }},
       {"more than it can hold", [](Contacts& c) { c.resize(200, Contacts(c).at(0)); }},
       {"far from the tool", [](Contacts& c) {
-         c.at(0).nodes.fill(0), c.at(0).weights = {1, 0, 0};
+         c.resize(90, Contacts(c).at(0));
+         for (std::uint32_t k = 0; k < c.size(); ++k) c[k].nodes.fill(k), c[k].weights = {1, 0, 0};
        }}};
   for (const auto& [what, lie] : lies) {
     ContactState forged = told.contacts;

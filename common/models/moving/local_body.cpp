@@ -18,10 +18,17 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
+constexpr double kBeside = 0.01;    // [m] beyond two radii of a part: what a tool holds is nearer
 constexpr double kDent = 3;         // radii of a part: a place this near to a contact lies in that one's dent
 // [1] The middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2)): 4/pi asinh(1) (Love 1929),
 // rounded; HalfSpace::pressed() has it for any place.
 constexpr double kSquare = 1.12;
+
+bool beside(const MovingTool& tool, const Vector3d& at) {
+  for (int p = 0; p < tool.size(); ++p)
+    if ((at - nearest_point(tool.axis(p), at)).norm() <= 2 * tool.radius(p) + kBeside) return true;
+  return false;
+}
 
 // What a contact can bear: it never pulls, and friction is a share of its pressure.
 Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double friction) {
@@ -156,6 +163,10 @@ int LocalBody::hold(const MovingTool& tool, ToolLoad& load) {
     const auto normal = vector(c.normal), before = vector(c.position), force = vector(c.force);
     if (!c.grasped && force.dot(normal) <= 0) continue;  // near, but it did not press
     const Vector3d at = motion * before;
+    if (!beside(tool, at)) {
+      limited_ = true;
+      continue;
+    }
     Vector3d now = force + Stiffness(c.stiffness.data()) * (at - before);
     if (!c.grasped) now = within_cone(now, normal, friction_);
     held_[held++] = {at, c.grasped != 0};
