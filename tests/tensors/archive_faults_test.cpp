@@ -88,7 +88,7 @@ TEST(ArchiveFaults, OtherFormatVersionsAreRefused) {
   later.attribute("format", "palpate compliance archive");
   later.attribute("format_version", std::int64_t{kArchiveFormat + 1});
   later.close();
-  EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": format version 11, this program reads 10");
+  EXPECT_EQ(refusal(folder / "a.h5"), (folder / "a.h5").string() + ": format version 12, this program reads 11");
 }
 
 TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {

@@ -171,7 +171,7 @@ TEST(Archive, OpensInH5pyWithUnitsAndDescriptions) {
       "assert f['surface/position'].shape == (28, 3) and f['surface/node_number'][3] == 6\n"
       "assert f.attrs['content_hash'] in ('0123456789abcdef0123456789abcdef', "
       "b'0123456789abcdef0123456789abcdef')\n"
-      "assert f.attrs['format_version'] == 10 and f['material/young'][1] == 2e4\n\" ";
+      "assert f.attrs['format_version'] == 11 and f['material/young'][1] == 2e4\n\" ";
   EXPECT_EQ(std::system((script + (folder / "a.h5").string()).c_str()), 0);
 }
 
