@@ -425,7 +425,7 @@ TEST_P(Hostile, WhoTakesTheNamesOfTheRealNodesIsNotFollowed) {
   over = true;
   pretender.join();
   EXPECT_TRUE(pictures);
-  EXPECT_LT(hand().max_force(), 0.1);
+  EXPECT_LT(hand().of(kHovering).max_force(), 0.1);
   EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "messages are refused"); })) << "it says so";
 }
 

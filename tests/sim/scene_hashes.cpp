@@ -22,7 +22,7 @@ constexpr std::uint64_t kSurfaceInterval = 16;  // steps: the visual rate, about
 
 /// One column each.
 struct Hashes {
-  Digest force, torque, trocar, grip, opening, flags, energy, contacts, tissue, modes, particles, surfaces;
+  Hash64 force, torque, trocar, grip, opening, flags, energy, contacts, tissue, modes, particles, surfaces;
 
   auto named() const {
     return std::array{
