@@ -16,6 +16,7 @@ bench::Samples one_contact(const Scene& scene, const std::vector<Archive>& archi
   PressRig rig(scene, archives);
   ScriptedTools tools(scene);
   SpscRing<StepRecord> ring(64);
+  ring.for_each_slot([&](StepRecord& slot) { prepare_record(rig.haptic(), slot); });
   bench::Samples steps, pushes;
   rig.start(tools.at(0));
   for (int lap = 0; lap < (quick ? 2 : 6); ++lap) {

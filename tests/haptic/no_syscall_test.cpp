@@ -58,6 +58,7 @@ class Ticks {
  public:
   explicit Ticks(const BlockScene& scene = BlockScene(2))
       : scene_(scene), haptic_(scene_.scene, scene_.archives), ring_(64), state_(haptic_.state_size()) {
+    ring_.for_each_slot([this](StepRecord& slot) { prepare_record(haptic_, slot); });
     haptic_.start(input(0));
   }
   void run(int from, int to) {
@@ -104,6 +105,7 @@ class TicksOnMovingTissue {
         ring_(64),
         state_(haptic_.state_size()) {
     feed_.follow(77);  // as empty_model() names it
+    ring_.for_each_slot([this](StepRecord& slot) { prepare_record(haptic_, slot); });
     haptic_.start(input(0));
   }
   /// A model as the deform node would send it with the pose of step i: the other thread's part of the work.

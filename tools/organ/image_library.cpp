@@ -42,6 +42,16 @@ bool is_cut_short(const std::string& file, std::int64_t bytes) {
   return kMostDeflated * size < bytes;
 }
 
+/// MetaImage lists by the number of axes, whatever that is: it would read for minutes.
+void check_axes(const std::string& file) {
+  std::ifstream lines(file, std::ios::binary);
+  static const std::regex axes(R"(NDims\s*=\s*(\S*)\s*)");
+  std::smatch number;
+  for (std::string line; std::getline(lines, line) && !line.starts_with("ElementDataFile");)
+    if (std::regex_match(line, number, axes) && number[1] != "2" && number[1] != "3")
+      throw std::runtime_error(fmt::format("it has {} axes, where 2 or 3 are read", number[1].str()));
+}
+
 template <class T, class FileFormat>
 typename Image<T>::Pointer read_image(const std::string& file) {
   const auto format = FileFormat::New();
@@ -93,7 +103,10 @@ typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std
   const std::string name = file.string();
   if (std::filesystem::is_directory(file)) return read_series<T>(name, series);
   if (has_ending(file, ".nii") || has_ending(file, ".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
-  if (has_ending(file, ".mhd") || has_ending(file, ".mha")) return read_image<T, itk::MetaImageIO>(name);
+  if (has_ending(file, ".mhd") || has_ending(file, ".mha")) {
+    check_axes(name);
+    return read_image<T, itk::MetaImageIO>(name);
+  }
   return read_image<T, itk::NrrdImageIO>(name);
 }
 

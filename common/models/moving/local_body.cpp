@@ -18,15 +18,21 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
-constexpr double kBeside = 0.01;    // [m] beyond two radii of a part: what a tool holds is nearer
+constexpr double kBeside = 0.01;    // [m] beyond two radii of a part, or its jaws' reach: what a tool holds is nearer
 constexpr double kDent = 3;         // radii of a part: a place this near to a contact lies in that one's dent
 // [1] The middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2)): 4/pi asinh(1) (Love 1929),
 // rounded; HalfSpace::pressed() has it for any place.
 constexpr double kSquare = 1.12;
 
-bool beside(const MovingTool& tool, const Vector3d& at) {
+// [m] from a probe's tip to where its jaws end.
+double jaws_reach(const Tool& tool) {
+  const std::optional<ClosingJaws> closing = abilities_of(tool).closing;
+  return closing ? std::hypot(closing->length, closing->width / 2) : 0;
+}
+
+bool beside(const MovingTool& tool, double reach, const Vector3d& at) {
   for (int p = 0; p < tool.size(); ++p)
-    if ((at - nearest_point(tool.axis(p), at)).norm() <= 2 * tool.radius(p) + kBeside) return true;
+    if ((at - nearest_point(tool.axis(p), at)).norm() <= 2 * tool.radius(p) + reach + kBeside) return true;
   return false;
 }
 
@@ -44,6 +50,7 @@ Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double frict
 LocalBody::LocalBody(const Tool& tool, const ContactSpec& contact, double dt)
     : trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
       jaws_(abilities_of(tool).holding),
+      jaws_reach_(jaws_reach(tool)),
       patches_(contact.rule == ContactRule::patch),
       by_patch_(tool_parts(tool).size(), false),
       friction_(contact.friction),
@@ -163,7 +170,7 @@ int LocalBody::hold(const MovingTool& tool, ToolLoad& load) {
     const auto normal = vector(c.normal), before = vector(c.position), force = vector(c.force);
     if (!c.grasped && force.dot(normal) <= 0) continue;  // near, but it did not press
     const Vector3d at = motion * before;
-    if (!beside(tool, at)) {
+    if (!beside(tool, c.grasped ? jaws_reach_ : 0, at)) {
       limited_ = true;
       continue;
     }

@@ -92,6 +92,7 @@ class LocalBody {
 
   Trocar trocar_;
   JawParts jaws_;
+  double jaws_reach_;           ///< [m]
   bool patches_;                ///< tissue gives way under parts as a half-space
   std::vector<char> by_patch_;  ///< per part: a patch presses
   double friction_, dt_;
