@@ -11,6 +11,7 @@
 #include "common/bus/log_reader.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/fuzz/rounds.hpp"
+#include "tests/loopback/forces_of_runs.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 
@@ -80,23 +81,12 @@ class KilledInAnExample : public ::testing::Test {
   ChildProcess node(const std::string& name) const {
     return {name, {program(name), kScene, "--domain", std::to_string(own_domain()), "--supervised"}};
   }
-  bool reaches(std::uint64_t step) {
-    const auto limit = std::chrono::steady_clock::now() + 60s;
-    for (; std::chrono::steady_clock::now() < limit; bus_->wait(10ms))
-      while (const auto force = forces_->take()) {
-        if (force->run == run_ || force->step < step) continue;
-        run_ = force->run;
-        return true;
-      }
-    return false;
-  }
+  bool reaches(std::uint64_t step) { return forces_.reach(step); }
 
  private:
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / fmt::format("palpate-killed-in-example-{}", getpid());
-  std::unique_ptr<Bus> bus_ = make_dds_bus({.domain = own_domain()});
-  std::unique_ptr<Reader<ForceState>> forces_ = bus_->reader(topics::force_state);
-  std::uint64_t run_ = 0;  ///< of the last run
+  ForcesOfRuns forces_;
 };
 
 TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {

@@ -8,6 +8,7 @@
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/log_reader.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/loopback/forces_of_runs.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tools/child_process.hpp"
 
@@ -42,25 +43,14 @@ class KilledNodes : public ::testing::Test {
     return {name, {program(name), scene_.scene(), "--domain", std::to_string(own_domain()), "--supervised"}};
   }
   /// Waits for this step of the haptic node that is there, of another one than before.
-  bool reaches(std::uint64_t step) {
-    const auto limit = std::chrono::steady_clock::now() + 60s;
-    for (; std::chrono::steady_clock::now() < limit; bus_->wait(10ms))
-      while (const auto force = forces_->take()) {
-        if (force->run == run_ || force->step < step) continue;
-        run_ = force->run;
-        return true;
-      }
-    return false;
-  }
+  bool reaches(std::uint64_t step) { return forces_.reach(step); }
   static void kill_now(ChildProcess& process) {
     kill(process.pid(), SIGKILL);
     EXPECT_TRUE(process.wait(5s));
   }
 
   PressedScene scene_;
-  std::unique_ptr<Bus> bus_ = make_dds_bus({.domain = own_domain()});
-  std::unique_ptr<Reader<ForceState>> forces_ = bus_->reader(topics::force_state);
-  std::uint64_t run_ = 0;  ///< of the haptic node that was there
+  ForcesOfRuns forces_;
 };
 
 /// The forces of a log [N]: the largest until the first death and after it, the last before the haptic node lets it
