@@ -51,6 +51,7 @@ PassivityGuard::PassivityGuard(const Passivity& settings, std::vector<Port*> por
       reserve_(settings.reserve),
       max_per_shift_(kMaxDamping / (dt * dt)),
       fade_(std::exp(-dt / kMemory)),
+      fade_in_debt_(std::exp(-dt / kMemoryInDebt)),
       ports_(std::move(ports)) {
   const double shift = std::min(kMaxAcceleration * dt * dt, max_force > 0 ? settings.reserve / (2 * max_force) : 0.0);
   min_reach_ = {shift, shift / kLever, shift / kLever};
@@ -58,11 +59,12 @@ PassivityGuard::PassivityGuard(const Passivity& settings, std::vector<Port*> por
 }
 
 void PassivityGuard::observe() {
-  // What has cost energy is not forgotten until it is paid.
-  const double fade = energy_ < -reserve_ / 2 ? 1.0 : fade_;
+  const bool in_debt = energy_ < -reserve_ / 2;
   for (Port* port : ports_) {
     const PortForce& f = port->held;
     const PortMotion &m = port->motion, &before = port->last;
+    // What has cost energy is not forgotten in motion, and by a hand that rests not so soon.
+    const double fade = !in_debt ? fade_ : rests(m) ? fade_in_debt_ : 1.0;
     energy_ -= f.force.dot(m.shift) + f.torque.dot(m.turn) + f.grip * m.opening;
     Port::Reach& r = port->reach;
     r.shift = grown(r.shift, fade, min_reach_.shift, (m.shift - before.shift).norm());
@@ -72,6 +74,12 @@ void PassivityGuard::observe() {
     port->resisting = m.shift.dot(before.shift) > 0 ? max_per_shift_ * m.shift.norm() : 0.0;
     port->last = m;
   }
+}
+
+bool PassivityGuard::rests(const PortMotion& m) const {
+  constexpr double of_reach = 0.1;
+  return m.shift.norm() <= of_reach * min_reach_.shift && m.turn.norm() <= of_reach * min_reach_.turn &&
+         std::abs(m.opening) <= of_reach * min_reach_.opening;
 }
 
 double PassivityGuard::risk(const Port& port) const {
@@ -144,13 +152,36 @@ void PassivityGuard::damp_pushes(double missing) {
   }
 }
 
-// Makes the forces so small that even a motion that turns round leaves the energy above -reserve.
+// The most that each may risk so that all together risk no more than `in_all`: who risks less keeps his force.
+double PassivityGuard::fair_risk(double in_all) const {
+  double fair = 0;
+  for (bool grows = true; grows;) {
+    double left = std::max(0.0, in_all);
+    int others = 0;
+    for (const Port* port : ports_) {
+      const double r = finite(port->asked) ? risk(*port) : 0;
+      if (r > fair)
+        ++others;
+      else
+        left -= std::max(0.0, r);
+    }
+    const double grown = others > 0 ? left / others : fair;
+    grows = grown > fair;
+    fair = std::max(fair, grown);
+  }
+  return fair;
+}
+
+// Makes the forces so small that even a motion that turns round leaves the energy above -reserve: those first that risk
+// most, so that a tool thrown about does not take the force from a hand that rests.
 void PassivityGuard::shrink(double spare) {
   const Outlook left = outlook();
   if (left.risk <= spare + left.income) return;
-  const double share = std::max(0.0, (spare + left.income) / left.risk);
+  const double fair = fair_risk(spare + left.income);
   for (Port* port : ports_) {
-    if (!port->limited || !(risk(*port) > 0)) continue;
+    const double at_risk = finite(port->asked) ? risk(*port) : 0;
+    if (!port->limited || !(at_risk > fair)) continue;
+    const double share = fair / at_risk;
     port->asked.force *= share;
     port->asked.torque *= share;
     port->asked.grip *= share;

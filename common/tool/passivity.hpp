@@ -46,8 +46,9 @@ class PassivityGuard : public Stateful<PassivityGuard> {
       0.02;  ///< [kg] damping times tick: well below twice the mass of a hand on a device
   static constexpr double kMaxAcceleration = 100;  ///< [m/s^2] to be reckoned with before any has been seen
   static constexpr double kMemory =
-      0.1;  ///< [s] for which a larger change of motion is reckoned with, longer while half the reserve is gone
-  static constexpr double kLever = 0.3;  ///< [m] from reach to angular reach
+      0.1;  ///< [s] for which a larger change of motion is reckoned with, while more than half the reserve is left
+  static constexpr double kMemoryInDebt = 2;  ///< [s] the same while less is left: the time of a hand that rests
+  static constexpr double kLever = 0.3;       ///< [m] from reach to angular reach
   static constexpr double kForResisting =
       0.05;                                ///< share of the reserve that is kept for resisting while all else is gone
   static constexpr double kStill = 1e-12;  ///< [m, rad] less is no motion
@@ -73,15 +74,17 @@ class PassivityGuard : public Stateful<PassivityGuard> {
     double risk = 0, income = 0;
   };
 
+  bool rests(const PortMotion& motion) const;
   double risk(const Port& port) const;
   Outlook outlook() const;
   double affordable_resistance(double left) const;
   void damp_pushes(double missing);
+  double fair_risk(double in_all) const;
   void shrink(double spare);
   void resist();
 
   bool controller_;
-  double reserve_, max_per_shift_, fade_, energy_ = 0;  ///< max_per_shift_ [N/m] on the motion of a tick
+  double reserve_, max_per_shift_, fade_, fade_in_debt_, energy_ = 0;  ///< max_per_shift_ [N/m] on the motion of a tick
   Port::Reach min_reach_;
   std::vector<Port*> ports_;
 };

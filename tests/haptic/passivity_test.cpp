@@ -39,6 +39,7 @@ struct OnePort {
     return port.held;
   }
   Vector3d tick(const Vector3d& to, const Vector3d& force) { return tick(to, PortForce{.force = force}).force; }
+  const Vector3d& held() const { return port.held.force; }
 
   Port port;
   PassivityGuard guard;
@@ -149,6 +150,36 @@ TEST(Passivity, AForceThatWasTakenAwayEarnsItsReturn) {
     }
     std::printf("%.3f m/s: 5 N are back after %.2f mm\n", speed, 1e3 * travelled);
   }
+}
+
+// By tools that were thrown about three quarters of the reserve are gone, and the largest change of motion is far more
+// than a hand makes.
+TEST(Passivity, AHandThatRestsHasItsForceBackSoonAfterAThrow) {
+  OnePort port;
+  for (int i = 0; i < 1000 && port.guard.energy() > -0.006; ++i) port.tick({i % 2 ? 1e-3 : 0, 0, 0}, Vector3d(3, 0, 0));
+  ASSERT_LT(port.guard.energy(), -0.006);
+  ASSERT_LT(port.tick(port.at, Vector3d(0, 0, 2)).z(), 1.9) << "else the test shows nothing";
+  for (int i = 0; i < 10'000; ++i) port.tick(port.at, Vector3d(0, 0, 2));
+  EXPECT_EQ(port.held().z(), 2);
+}
+
+TEST(Passivity, OfTwoToolsTheOneThatRisksMoreIsTakenItsForceFirst) {
+  Port thrown, resting;
+  PassivityGuard guard({.controller = true, .reserve = 0.01}, {&thrown, &resting}, 20, kTick);
+  int limited = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double by = guard.energy() > -0.005 ? 2e-4 : 7e-4;  // half the reserve is spent, then the tool is thrown
+    thrown.motion = {.shift = {i % 2 ? by : -by, 0, 0}};
+    guard.observe();
+    thrown.asked = {.force = {i % 2 ? -2.0 : 2.0, 0, 0}};
+    resting.asked = {.force = {0, 0, 2}};
+    guard.control();
+    for (Port* port : {&thrown, &resting}) port->held = port->asked;
+    if (guard.energy() < -0.009) continue;
+    ASSERT_EQ(resting.held.force.z(), 2) << guard.energy() << " J";
+    limited += thrown.held.force.norm() < 1.99;
+  }
+  EXPECT_GT(limited, 0) << "else the test shows nothing";
 }
 
 // Whatever the motion within the acceleration, and whatever is asked.

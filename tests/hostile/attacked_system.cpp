@@ -126,6 +126,14 @@ void AttackedSystem::press() {
   for (int tool = 0; tool < hand_.tools(); ++tool) hand_.of(tool).keep_undisturbed();
 }
 
+void AttackedSystem::press_again() {
+  presses_ = false;
+  watch(10s, [this] { return driven_depth_ == kHover; });
+  watch(500ms);
+  presses_ = true;
+  watch(10s, [this] { return driven_depth_ == kPressed; });
+}
+
 AttackedSystem::~AttackedSystem() {
   over_ = true;
   driver_.join();
@@ -135,7 +143,9 @@ AttackedSystem::~AttackedSystem() {
 void AttackedSystem::drive() {
   const auto device = attacker_.bus().writer(topics::device_state);
   for (DeviceState state{.tool = kDriven, .seq = 1, .depth = kHover}; !over_; ++state.seq) {
-    if (presses_) state.depth = std::min(kPressed, state.depth + 0.005 / kComesDown * (kPressed - kHover));
+    constexpr double step = 0.005 / kComesDown * (kPressed - kHover);
+    state.depth = presses_ ? std::min(kPressed, state.depth + step) : std::max(kHover, state.depth - step);
+    driven_depth_ = state.depth;
     state.sense_ns = now_ns();
     device->write(state);
     std::this_thread::sleep_for(5ms);

@@ -40,6 +40,8 @@ class AttackedSystem {
   HandWatch& hand() { return hand_; }
   /// Returns once the tools that press have come down and rest. Until then all are in free air.
   void press();
+  /// The driver elsewhere lifts its tool and comes down again as it did at first: what it has cost is paid.
+  void press_again();
   /// Waits until each force is what it was before the first attack.
   bool is_undisturbed(std::chrono::milliseconds limit);
   const std::map<std::string, ChildProcess>& nodes() const { return nodes_; }
@@ -91,6 +93,7 @@ class AttackedSystem {
   PictureState newest_picture_;
   std::uint64_t pictures_ = 0;
   std::atomic<bool> presses_ = false, over_ = false;  ///< for the driver
+  std::atomic<double> driven_depth_ = 0;              ///< [m] where it is
   std::thread driver_;
   std::map<std::string, ChildProcess> nodes_;
 };

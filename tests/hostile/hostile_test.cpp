@@ -67,10 +67,7 @@ class Hostile : public ::testing::TestWithParam<bool> {
     const double in_all = grown_since(memory_);
     EXPECT_TRUE(in_all < kFlatMb || testing::kSanitized) << in_all << " MB";
     fmt::print("{:.0f} Hz; memory: {:.1f} MB more\n", rate_hz, in_all);
-    if (misled_) {
-      system_->watch(1s);
-      hand().of(kDriven).keep_undisturbed();
-    }
+    if (misled_) system_->press_again();
     EXPECT_TRUE(is_in_free_air() || system_->is_undisturbed(20s)) << "what was done lasts";
   }
   /// A hand that rests is given what it was, or, while tissue or driver is silent, less.
@@ -82,7 +79,8 @@ class Hostile : public ::testing::TestWithParam<bool> {
     EXPECT_TRUE(felt.finite()) << tool;
     EXPECT_LE(felt.max_force(), kMaxForce * (1 + 1e-9)) << tool;
     EXPECT_LE(felt.max_rise(), kMaxRise + 1e-9) << tool;
-    if (tool == kDriven && misled_) return;  // by friction its force depends on where it has been
+    // All tools have one account of energy: where one is thrown about and overdraws it, the others' forces fall too.
+    if (misled_ && tool != kHovering) return;
     EXPECT_LE(felt.max_change(), kMaxRise + 1e-9) << tool;
     if (lied_to_) return;
     if (tool == kHovering || is_in_free_air()) {
