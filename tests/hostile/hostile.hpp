@@ -1,0 +1,79 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "tests/hostile/attacked_system.hpp"
+#include "tests/realtime/host_watch.hpp"
+#include "tests/sanitized.hpp"
+
+namespace palpate::testing {
+
+inline constexpr std::chrono::seconds kAfterFlood{15};  ///< for pictures: on a busy machine they yield first
+
+/// A press of 10 N on the hovering tool, as the deform node would tell of it.
+LocalContactModel press(std::uint64_t tool_run, std::uint64_t deform_run, std::uint64_t step, std::uint64_t seq);
+
+/// One system for all attacks, since each starts from what the ones before have left; open to all, or with keys, which
+/// the attacker has too.
+class Hostile : public ::testing::TestWithParam<bool> {
+ protected:
+  static void SetUpTestSuite();
+  static void TearDownTestSuite();
+  void SetUp() override;
+  /// Whatever was done: hands within their bounds, the loop in time, memory flat, and soon all as before.
+  void TearDown() override;
+
+  using Memory = std::map<std::string, double>;
+  /// [MB] by which the node that grew most has grown.
+  static double grown_since(const Memory& before);
+  /// [MB] by which the node grows that grows most in a flood, send(k) for each k, behind a first one a third as long:
+  /// what the allocator takes once for all floods is not what a name costs.
+  template <class Send>
+  static double grown_in_flood(int many, Send&& send) {
+    const auto flood = [&](int from, int to) {
+      for (int k = from; k < to; ++k) {
+        send(k);
+        if (k % 300 == 0) system().watch(std::chrono::milliseconds(1));
+      }
+      system().watch(std::chrono::milliseconds(100));
+    };
+    flood(0, many / 3);
+    const Memory before = system().memory_mb();
+    flood(many / 3, many / 3 + many);
+    return kSanitized ? 0 : grown_since(before);
+  }
+
+  static AttackedSystem& system() { return *system_; }
+  static HandWatch& hand() { return system_->hand(); }
+  template <class M>
+  static std::unique_ptr<HostileWriter<M>> writer(const Topic<M>& topic) {
+    std::unique_ptr<HostileWriter<M>> made(new HostileWriter<M>(system_->attacker().writer(topic)));
+    system_->watch(std::chrono::milliseconds(150));  // the nodes find it
+    return made;
+  }
+  static std::uint64_t haptic_run() { return hand().newest().run; }
+  static std::uint64_t deform_run() { return system_->run_of("deform"); }
+  static bool says(const std::string& node, const std::string& words) {
+    return system_->said(node).find(words) != std::string::npos;
+  }
+  /// Of the loop since it began, [Hz], from what it says at its end.
+  static double rate_hz(const nlohmann::json& said);
+
+  bool ended_ = false;
+  bool lied_to_ = false;  ///< somebody tells of tissue in the deform node's name
+  bool misled_ = false;   ///< somebody moves the driven tool in its driver's name
+
+ private:
+  static bool is_in_free_air();
+  void expect_guarded(int tool) const;
+
+  static std::unique_ptr<HostWatch> host_;
+  static std::unique_ptr<AttackedSystem> system_;
+  static Memory memory_;
+};
+
+}  // namespace palpate::testing
