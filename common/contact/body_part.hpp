@@ -82,6 +82,8 @@ class BodyPart {
   virtual bool fits(const MovingTool&, std::span<const TouchContact> kept) const { return kept.empty(); }
   /// Takes them up, if they fit.
   virtual void adopt(std::span<const TouchContact>) {}
+  /// Comes to rest under what it has taken up, while the tools stand; before the first step, and not in its time.
+  virtual void settle(std::span<const MovingTool>) {}
 
   // Jaws.
   /// Jaws that close hold what is between them as displacement constraints until let_go().

@@ -92,6 +92,14 @@ bool TouchBody::fits(const MovingTool& tool, std::span<const TouchContact> conta
 }
 
 // Their forces follow from where they are; a peer's word on them is not taken.
+void TouchBody::stand(std::span<const MovingTool> tools, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    update_surface(tools);
+    collide(tools);
+    hold(tools);
+  }
+}
+
 void TouchBody::adopt(std::span<const TouchContact> contacts) {
   for (const TouchContact& contact : contacts) contacts_.adopt(contact);
   law_.solve();

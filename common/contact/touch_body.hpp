@@ -77,6 +77,8 @@ class TouchBody : public BodyPart {
     unloaded_[node] = map_.position[node] + displacement;
   }
   virtual Eigen::Vector3d press_of(int tool) const;
+  /// Takes so many steps under tools that stand.
+  void stand(std::span<const MovingTool> tools, int steps);
 
  private:
   bool has(const Anchor& anchor) const;

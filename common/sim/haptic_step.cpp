@@ -165,7 +165,10 @@ bool HapticStep::resume(const ContactState& kept) {
     if (!entries_[e].part->fits(seen_[tool], of_part[e])) return false;
   }
   for (std::size_t e = 0; e < entries_.size(); ++e) entries_[e].part->adopt(of_part[e]);
-  return resumed_[tool] = true;
+  resumed_[tool] = true;
+  if (starts_inside().empty())
+    for (auto& part : parts_) part->settle(seen_);
+  return true;
 }
 
 void HapticStep::see_tools() {

@@ -34,7 +34,7 @@ class HapticStep {
   void place(std::span<const ToolDofs> dofs);
   /// Takes up what a peer kept of a tool's contacts, all of them; or none, and false, where one cannot be of this scene
   /// and of where the tool is, or the bodies cannot hold as many. Those of a tool that has resumed already, or is in no
-  /// body, are left.
+  /// body, are left. With the last tool that starts within a body, the bodies come to rest under what was taken up.
   bool resume(const ContactState& kept);
   /// Names a tool that starts within a body without having resumed its contacts, and the body; empty: none.
   std::string starts_inside() const;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/models/quasi_static/quasi_static_body.hpp"
+#include "common/sim/step_messages.hpp"
 #include "tests/haptic/duct_scene.hpp"
 
 namespace palpate {
@@ -158,6 +159,24 @@ TEST(ModalBody, ItsShownFieldIsTheFullOne) {
     EXPECT_LT((archive.surface.position[node] + u.segment<3>(3 * node) - (c.position - 1e-4 * c.force)).norm(), 2e-6);
   }
   EXPECT_GT(touching, 0);
+}
+
+// A haptic node that comes back knows the contacts, but not how far the wall had given way.
+TEST(ModalBody, TakenUpByAnotherHapticNodeItPushesAsItDid) {
+  Pressed before(30), after(30);
+  before.move(0.002, -0.001, 300);
+  for (int i = 0; i < 1500; ++i) before.move(-0.001, -0.001, 1);
+  StepRecord record;
+  prepare_record(*before.haptic, record);
+  fill_record(*before.haptic, std::array{DeviceSample{before.at(-0.001), 0}}, 1, 0, record);
+  ContactState kept;
+  describe_contacts(record, 0, kept);
+  after.haptic->place(std::array{after.at(-0.001)});
+  ASSERT_TRUE(after.haptic->resume(kept));
+  for (int i = 0; i < 300; ++i) {
+    after.move(-0.001, -0.001, 1);
+    ASSERT_NEAR(after.force(), before.force(), 0.1 * before.force()) << i;
+  }
 }
 
 }  // namespace

@@ -71,6 +71,28 @@ TEST_F(ResumedContacts, OfAToolThatRubsAreTakenUpAtAnyMoment) {
   }
 }
 
+// What they were before is not known: they go on as if they had long been so.
+TEST_F(ResumedContacts, OfTissueThatRelaxesGoOnRelaxed) {
+  for (const ContactRule rule : {ContactRule::barycentric, ContactRule::alpha, ContactRule::patch}) {
+    block_.scene.contact.rule = rule;
+    as<QuasiStaticSpec>(block_.scene.bodies[0])->relaxation = Relaxation{{0.05, 0.4}, {0.3, 0.25}};
+    HapticStep before(block_.scene, block_.archives), again(block_.scene, block_.archives);
+    before.start(std::array{pressed(0)});
+    for (int i = 0; i <= 3000; ++i) before.step(std::array{pressed(std::min(i, kPressed))});
+    StepRecord record{};
+    prepare_record(before, record);
+    fill_record(before, std::array{DeviceSample{pressed(kPressed), 0}}, 1, 0, record);
+    ContactState kept;
+    describe_contacts(record, 0, kept);
+    again.place(std::array{pressed(kPressed)});
+    ASSERT_TRUE(again.resume(kept));
+    for (int i = 0; i < 50; ++i) {
+      again.step(std::array{pressed(kPressed)});
+      ASSERT_NEAR(again.force(0).z(), before.force(0).z(), 0.1 * before.force(0).z()) << i;
+    }
+  }
+}
+
 TEST_F(ResumedContacts, AreTakenUpOnce) {
   ASSERT_TRUE(again_.resume(kept_));
   const std::size_t taken = again_.law(0).contacts().size();

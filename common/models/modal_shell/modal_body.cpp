@@ -13,6 +13,7 @@ namespace palpate {
 namespace {
 
 constexpr double kMinEnergy = 1e-40;  // [J]
+constexpr double kSettling = 0.5;     // [s] in which a wall comes to rest under tools that stand
 
 ModalConstants constants_of(const ModalTensors& modal, const Shell& shell, double h) {
   return make_modal_constants(modal.omega, modal_damping(modal.omega, shell.damping_ratio, shell.damping), h);
@@ -47,6 +48,7 @@ ModalBody::ModalBody(const Archive& archive, const ShellSpec& body, const StepSe
     : TouchBody(archive.surface, step_compliance(archive, constants, body.shell.residual), settings,
                 {.offset = archive.modal->thickness / 2, .softness = softness_of(settings.tools)}),
       constants_(std::move(constants)),
+      dt_(settings.dt),
       residual_(body.shell.residual),
       half_thickness_(archive.modal->thickness / 2),
       shape_(archive.modal->shape),
@@ -130,6 +132,12 @@ LawOutcome ModalBody::hold(std::span<const MovingTool> tools) {
     if (x_[m] * x_[m] * constants_.omega2[m] + v_[m] * v_[m] < kMinEnergy) x_[m] = v_[m] = 0;
   }
   return outcome;
+}
+
+void ModalBody::settle(std::span<const MovingTool> tools) {
+  if (law().contacts().empty()) return;
+  stand(tools, static_cast<int>(kSettling / dt_));
+  std::ranges::fill(v_, 0.0);
 }
 
 void ModalBody::add_modal_force(int node, const Eigen::Vector3d& force, std::vector<double>& modal) const {

@@ -24,6 +24,7 @@ class ModalBody : public TouchBody, public CatheterWall {
   void update_surface(std::span<const MovingTool> tools) override;
   LawOutcome hold(std::span<const MovingTool> tools) override;
   double penetration(const Segment& axis, double radius) const override;
+  void settle(std::span<const MovingTool> tools) override;
 
   /// Forces of a catheter within this step; before hold().
   void push(std::span<const WallForce> forces) override;
@@ -76,6 +77,7 @@ class ModalBody : public TouchBody, public CatheterWall {
   };
 
   ModalConstants constants_;
+  double dt_;
   bool residual_;
   double half_thickness_;
   std::vector<double> shape_;        ///< column-major, as in the archive

@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kMostSettling = 10, kTimesSettling = 5;  // [s], of the longest relaxation time
+
 bool has_patches(const StepSettings& settings) {
   return settings.contact.rule == ContactRule::patch;
 }
@@ -37,6 +39,8 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
     patch_ = std::make_unique<PatchTouch>(map(), compliance(), material, settings,
                                           edges_resolved(offline_of(body, map().size())), creep);
   by_mesh_ = !patch_ || patch_->parts() < parts_of(settings.tools);
+  if (body.relaxation)
+    settling_ = static_cast<int>(std::min(kMostSettling, kTimesSettling * body.relaxation->times.back()) / settings.dt);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
@@ -192,6 +196,10 @@ void QuasiStaticBody::adopt(std::span<const TouchContact> contacts) {
     else
       by_mesh.push_back(c);
   TouchBody::adopt(by_mesh);
+}
+
+void QuasiStaticBody::settle(std::span<const MovingTool> tools) {
+  stand(tools, settling_);
 }
 
 Eigen::Vector3d QuasiStaticBody::press_of(int tool) const {

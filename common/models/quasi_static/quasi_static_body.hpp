@@ -24,6 +24,7 @@ class QuasiStaticBody : public TouchBody {
   Capacity capacity() const override;
   bool fits(const MovingTool& tool, std::span<const TouchContact> contacts) const override;
   void adopt(std::span<const TouchContact> contacts) override;
+  void settle(std::span<const MovingTool> tools) override;
   void state(State& s, std::span<const MovingTool> tools) override;
   void load(std::span<const MovingTool> tools, std::span<ToolLoad> loads) const override;
   bool superposed() const override { return true; }
@@ -50,6 +51,7 @@ class QuasiStaticBody : public TouchBody {
   void lay_ground();
   void remember();
 
+  int settling_ = 0;  ///< steps in which what it has taken up relaxes
   std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<ForceMemory> memory_;  ///< null: it does not relax
   std::unique_ptr<PatchTouch> patch_;    ///< null: all parts touch by the mesh
