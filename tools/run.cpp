@@ -1,10 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <charconv>
-#include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,6 +17,8 @@
 #include "tools/domain_claim.hpp"
 #include "tools/guard_summary.hpp"
 #include "tools/node_plan.hpp"
+#include "tools/run_nodes.hpp"
+#include "tools/run_summary.hpp"
 #include "tools/say_stages.hpp"
 #include "tools/set_option.hpp"
 
@@ -30,7 +28,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-const std::string kRecorder = "recorder";
 constexpr double kShortRun = 600;               // [s]: its log keeps everything
 const std::string kScenesPort = "the scene's";  // for --web without a port
 
@@ -42,113 +39,6 @@ struct RunOptions {
   bool strict = false;
   bool json = false;
   bool force = false;  ///< outputs may replace files of another kind
-};
-
-struct Node {
-  ChildProcess process;
-  Clock::time_point begun;
-  bool ready = false;
-  double startup = 0;                ///< [s] until it was ready
-  double resident = 0;               ///< [bytes] when it was ready
-  nlohmann::json summary = nullptr;  ///< its last line, once it has ended
-};
-
-/// The nodes of one scene on this machine, in the order in which they start; the haptic node comes last.
-class Nodes {
- public:
-  /// `results_alone`: what nodes say beside their results goes to standard error.
-  explicit Nodes(bool results_alone) : results_alone_(results_alone) {}
-
-  void start(const std::string& role, const std::vector<std::string>& arguments) {
-    nodes_.push_back({ChildProcess(role, arguments), Clock::now()});
-  }
-
-  /// Reads what the nodes print: "ready", and at the end one JSON line each.
-  void read() {
-    std::FILE* const to = results_alone_ ? stderr : stdout;
-    for (Node& n : nodes_) {
-      n.process.running();
-      for (const std::string& line : n.process.take_lines()) {
-        if (line == "ready")
-          note_ready(n);
-        else if (line.starts_with('{'))
-          n.summary = nlohmann::json::parse(line, nullptr, false);
-        else
-          fmt::print(to, "{}\n", line), std::fflush(to);
-      }
-    }
-  }
-
-  /// Throws if a node has failed.
-  void check() {
-    for (Node& n : nodes_)
-      if (!n.process.running() && n.process.status() != 0 && !stopped_early(n))
-        throw std::runtime_error(
-            fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
-  }
-
-  void wait_ready() {
-    const auto limit = Clock::now() + 60s;
-    for (bool all = false; !all && !shutdown_requested();) {
-      read();
-      check();
-      all = true;
-      for (const Node& n : nodes_) all &= n.ready;
-      if (Clock::now() > limit) throw std::runtime_error("a node did not become ready within a minute");
-      std::this_thread::sleep_for(10ms);
-    }
-  }
-
-  bool last_runs() { return nodes_.back().process.running(); }
-
-  /// Stops the nodes, the haptic node first, and gives each time to finish its files; the recorder hears all others
-  /// end. Those between are told at once: one that waited for another's film would miss the haptic node meanwhile.
-  void stop() {
-    const auto told_last = [](const Node& n) { return n.process.name() == kRecorder; };
-    if (!nodes_.empty()) end(nodes_.back());
-    for (Node& n : nodes_)
-      if (!told_last(n)) n.process.interrupt();
-    for (Node& n : nodes_)
-      if (!told_last(n)) await(n);
-    for (Node& n : nodes_)
-      if (told_last(n)) end(n);
-    read();
-  }
-
-  nlohmann::json summary() const {
-    nlohmann::json all;
-    for (const Node& n : nodes_) {
-      nlohmann::json& node = all[n.process.name()] = n.summary;
-      if (!node.is_object()) continue;
-      node["startup_s"] = n.startup;
-      node["resident_bytes"] = n.resident;
-    }
-    return all;
-  }
-
- private:
-  static void await(Node& node) {
-    if (!node.process.wait(30s))
-      throw std::runtime_error(fmt::format("{} did not stop within 30 s", node.process.name()));
-  }
-  static void end(Node& node) {
-    node.process.interrupt();
-    await(node);
-  }
-  /// Stopped by this process before it could take notice.
-  static bool stopped_early(const Node& node) {
-    return shutdown_requested() && !node.ready && node.process.status() == 128 + SIGINT;
-  }
-  static void note_ready(Node& node) {
-    node.ready = true;
-    node.startup = std::chrono::duration<double>(Clock::now() - node.begun).count();
-    std::ifstream statm(fmt::format("/proc/{}/statm", node.process.pid()));
-    double pages = 0, resident = 0;
-    if (statm >> pages >> resident) node.resident = resident * static_cast<double>(sysconf(_SC_PAGESIZE));
-  }
-
-  const bool results_alone_;
-  std::vector<Node> nodes_;
 };
 
 /// [s] after which the run ends by itself; 0: who knows.
@@ -206,7 +96,7 @@ NodePlan plan_of(const Scene& scene, const RunOptions& o) {
 }
 
 /// False where it is stopped before all of them run.
-bool start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
+bool start_nodes(RunNodes& nodes, const Scene& scene, int domain_id, const RunOptions& o) {
   const std::string domain = std::to_string(domain_id);
   const auto with = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", domain, "--supervised"});
@@ -238,58 +128,6 @@ bool start_nodes(Nodes& nodes, const Scene& scene, int domain_id, const RunOptio
   return true;
 }
 
-void print_summary(const nlohmann::json& s) {
-  const auto number = [](const nlohmann::json& j, const char* key) {
-    return j.is_object() && j.contains(key) ? j[key].get<double>() : 0.0;
-  };
-  // What a node says at its end; nothing of one that was stopped before it had begun.
-  const auto said_by = [&](const char* node) { return s.value(node, nlohmann::json()); };
-  const nlohmann::json haptic = said_by("haptic_node"), render = said_by("render_node"),
-                       deform = said_by("deform_node"), recorder = said_by("recorder");
-  if (haptic.is_object())
-    fmt::print(
-        "haptic   {:8.1f} Hz   step p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us   missed {} of {} ticks   largest "
-        "force {:.2f} N\n",
-        number(haptic, "rate_hz"), number(haptic, "step_us_p50"), number(haptic, "step_us_p99"),
-        number(haptic, "step_us_p999"), haptic.value("missed", 0), haptic.value("ticks", 0),
-        number(haptic, "force_max_n"));
-  if (haptic.is_object() && haptic.contains("tasks"))
-    for (const auto& task : haptic["tasks"])
-      fmt::print(
-          "task     {:8.1f} mm of '{}' inserted, {:.1f} mm at the deepest, {:.1f} s after it went in   largest force "
-          "{:.2f} N   {} wall contacts, "
-          "{} grasps, {} drops\n",
-          1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"),
-          number(task, "inserting_s"), number(task, "force_max_n"), task.value("wall_contacts", 0),
-          task.value("grasps", 0), task.value("drops", 0));
-  if (render.is_object())
-    fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n",
-               number(render, "rate_hz"), 1e-3 * number(render, "latency_us_p50"),
-               1e-3 * number(render, "latency_us_p99"), render.value("frames", 0));
-  if (render.is_object() && render.contains("film_frames"))
-    fmt::print("film     {} frames   {} repeat the picture before, {} pictures skipped   longest stand {:.2f} s\n",
-               render.value("film_frames", 0), render.value("film_repeated", 0), render.value("film_skipped", 0),
-               number(render, "film_longest_stand_s"));
-  if (deform.is_object() && deform.contains("tick_hz"))
-    fmt::print(
-        "tissue   {:8.1f} Hz   tick p50 {:.1f} us, p99 {:.1f} us   missed {} of {} ticks   {} tetrahedra cut, {} torn, "
-        "{} fallen away\n",
-        number(deform, "tick_hz"), number(deform, "tick_us_p50"), number(deform, "tick_us_p99"),
-        deform.value("missed", 0), deform.value("ticks", 0), deform.value("tetrahedra_cut", 0),
-        deform.value("tetrahedra_torn", 0), deform.value("tetrahedra_fallen", 0));
-  if (deform.is_object())
-    fmt::print("deform   {:8.1f} Hz   tool to surface p50 {:.1f} us, p99 {:.1f} us\n", number(deform, "rate_hz"),
-               number(deform, "latency_us_p50"), number(deform, "latency_us_p99"));
-  if (const nlohmann::json web = said_by("web_node"); web.is_object())
-    fmt::print(
-        "web      {:8.1f} Hz   tool to frame p50 {:.2f} ms, p99 {:.2f} ms   {} requests refused, {} pages thrown out\n",
-        number(web, "rate_hz"), 1e-3 * number(web, "latency_us_p50"), 1e-3 * number(web, "latency_us_p99"),
-        web.value("refused_requests", 0), web.value("thrown_out", 0));
-  if (recorder.is_object())
-    fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
-  if (const std::string limits = limits_met_in(s); !limits.empty()) fmt::print("limits   {}\n", limits);
-}
-
 /// Of a run that nobody has seen.
 void say_where_to_look(const Scene& scene, const RunOptions& o) {
   const std::string log = log_of(scene, o);
@@ -317,7 +155,7 @@ void run(const RunOptions& o) {
   if (!o.summary.empty()) summary_file.emplace(o.summary);
   const auto begin = Clock::now();
   const DomainClaim claim = claim_domain(scene, o);
-  Nodes nodes(o.json);
+  RunNodes nodes(o.json);
   const bool began = start_nodes(nodes, scene, claim.domain(), o);
   while (!shutdown_requested() && nodes.last_runs()) {
     nodes.read();
