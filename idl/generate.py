@@ -112,6 +112,14 @@ def limits_cpp(idl):
     return text + f"\n}}  // namespace {idl.module}\n"
 
 
+def run_of(struct, topic):
+    """Whose run the messages of a topic carry, where that is the only one that writes it."""
+    starts = {"haptic": "start of the haptic loop", "deform": "start of the deform node"}
+    writer = topic.cells["writers"]
+    own = writer in starts and any(f.name == "run" and f.meaning == starts[writer] for f in struct.fields)
+    return f"roles::{writer}" if own else "0"
+
+
 def topics(idl):
     bits = "".join(f"  {role} = {1 << i},\n" for i, role in enumerate(idl.roles))
     rows = ""
@@ -122,7 +130,7 @@ def topics(idl):
                                 for cell in ("writers", "readers"))
             rows += (f'/// {t.content}\ninline constexpr Topic<{s.name}> {t.name}{{\n    "palpate/{t.name}", '
                      f'"{s.name}", {{{str(reliable).lower()}, {depth}, {str(local).lower()}, {recorders}}}, '
-                     f"{writers}, {readers}}};\n")
+                     f"{writers}, {readers}, {run_of(s, t)}}};\n")
     return f"""#include <tuple>
 
 #include "idl/messages.hpp"

@@ -25,6 +25,7 @@ struct Topic {
   Qos qos{};
   std::uint32_t writers = 0;  ///< bits of the roles that write
   std::uint32_t readers = 0;  ///< of those that read, besides recorders and observers
+  std::uint32_t run_of = 0;   ///< of the only one that writes, where messages carry the run that it is in; or 0
 };
 
 /// The name on DDS of the stream that recorders have of their own.

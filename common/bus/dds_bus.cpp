@@ -170,10 +170,10 @@ template <class M>
 class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, std::size_t room,
-            const Peers& peers, std::atomic<std::uint64_t>& refused)
+            const Peers& peers, RunOwners& runs, std::atomic<std::uint64_t>& refused)
       : at_once_(keep == Keep::all ? WaitingRoom::kSamples : kKeysAtOnce),
         peers_(peers),
-        gate_(peers, refused, keep == Keep::all, room),
+        gate_(peers, runs, refused, topic.run_of, keep == Keep::all, room),
         inlet_(participant, wake, dds::Generated<M>::descriptor(), stream_name(topic, keep), topic.qos, keep,
                {.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG,
                 .f = {.sample_sampleinfo_arg = &dds::Gate<M>::filter},
@@ -239,14 +239,15 @@ class DdsBus final : public Bus {
         participant_(make_participant(settings), fmt::format("joining domain {}", settings.domain)),
         wake_(participant_),
         versions_(participant_),
-        peers_(participant_) {}
+        peers_(participant_),
+        runs_(peers_) {}
 
-#define PALPATE_DDS_PORTS(M)                                                                         \
-  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                                \
-    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                           \
-  }                                                                                                  \
-  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep, std::size_t room) override {   \
-    return std::make_unique<DdsReader<M>>(participant_, wake_, topic, keep, room, peers_, refused_); \
+#define PALPATE_DDS_PORTS(M)                                                                                \
+  std::unique_ptr<Writer<M>> writer(const Topic<M>& topic) override {                                       \
+    return std::make_unique<DdsWriter<M>>(participant_, topic, lease_ms_);                                  \
+  }                                                                                                         \
+  std::unique_ptr<Reader<M>> reader(const Topic<M>& topic, Keep keep, std::size_t room) override {          \
+    return std::make_unique<DdsReader<M>>(participant_, wake_, topic, keep, room, peers_, runs_, refused_); \
   }
   PALPATE_MESSAGES(PALPATE_DDS_PORTS)
 #undef PALPATE_DDS_PORTS
@@ -279,6 +280,7 @@ class DdsBus final : public Bus {
   DdsWake wake_;
   VersionWatch versions_;
   Peers peers_;
+  RunOwners runs_;
 };
 
 }  // namespace

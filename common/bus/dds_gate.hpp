@@ -12,6 +12,8 @@
 #include "common/bus/name_owners.hpp"
 #include "common/bus/peers.hpp"
 #include "common/bus/rate_budget.hpp"
+#include "common/bus/roles.hpp"
+#include "common/bus/run_owners.hpp"
 #include "common/bus/waiting_room.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/limits.hpp"
@@ -29,18 +31,21 @@ struct CountBytes {
 
 /// What stands between the middleware and a reader's memory. Every sample from outside passes here, on the
 /// middleware's threads, before anything of it is kept: only a valid one, under a name and at a rate within its
-/// peer's budget, a node's under its own name, and within the reader's room. One that is refused costs no other sample
-/// its place.
+/// peer's budget, a node's under its own name, in a run of its own, and within the reader's room. One that is refused
+/// costs no other sample its place.
 template <class M>
 class Gate {
  public:
   static constexpr std::size_t kNodes = 64;  ///< names of nodes that a peer may use where the newest is kept
 
-  /// `peers`: of the bus. `total`: counts what is refused by all its gates. `keeps_all`: what is admitted waits until
-  /// it is taken, `room` [bytes] of each peer at most.
-  Gate(const Peers& peers, std::atomic<std::uint64_t>& total, bool keeps_all, std::size_t room)
+  /// `peers`, `runs`: of the bus. `total`: counts what is refused by all its gates. `run_of`: whose run the messages
+  /// carry, of the topic. `keeps_all`: what is admitted waits until it is taken, `room` [bytes] of each peer at most.
+  Gate(const Peers& peers, RunOwners& runs, std::atomic<std::uint64_t>& total, std::uint32_t run_of, bool keeps_all,
+       std::size_t room)
       : peers_(peers),
+        runs_(runs),
         total_(total),
+        run_of_(run_of),
         keeps_all_(keeps_all),
         budget_(kOfNodes && !keeps_all ? kNodes : KeyBudget::kKeys),
         room_(room) {}
@@ -67,7 +72,8 @@ class Gate {
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
     const std::uint64_t peer = peer_of(writer);
-    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && has_room(writer, peer))
+    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && in_own_run(writer) &&
+        has_room(writer, peer))
       return true;
     refuse();
     return false;
@@ -88,6 +94,13 @@ class Gate {
     if constexpr (kOfNodes) return keeps_all_ || owners_.admits(message_.node, writer, now_ns(), peers_);
     return true;
   }
+  bool in_own_run(dds_instance_handle_t writer) {
+    if constexpr (kOfNodes)
+      return runs_.admits(role_bit(message_.role), message_.run, writer, now_ns());
+    else if constexpr (requires { message_.run; })
+      return runs_.admits(run_of_, message_.run, writer, now_ns());
+    return true;
+  }
   bool has_room(dds_instance_handle_t writer, std::uint64_t peer) {
     return !keeps_all_ || room_.enter(writer, peer, size(message_));
   }
@@ -98,7 +111,9 @@ class Gate {
   }
 
   const Peers& peers_;
+  RunOwners& runs_;
   std::atomic<std::uint64_t>& total_;
+  const std::uint32_t run_of_;
   const bool keeps_all_;
   M message_;                         ///< kept between samples for its memory
   dds_instance_handle_t writer_ = 0;  ///< of the sample before

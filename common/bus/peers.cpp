@@ -18,6 +18,11 @@ std::uint64_t Peers::of(dds_instance_handle_t writer) const {
   return found == of_.end() ? 0 : found->second;
 }
 
+bool Peers::has(std::uint64_t participant) const {
+  const std::lock_guard lock(mutex_);
+  return writers_.contains(participant);
+}
+
 void Peers::changed(dds_entity_t reader, void* self) {
   void* sample = nullptr;
   dds_sample_info_t info;
@@ -30,10 +35,15 @@ void Peers::changed(dds_entity_t reader, void* self) {
 
 void Peers::note(const dds_builtintopic_endpoint_t& writer, const dds_sample_info_t& info) {
   const std::lock_guard lock(mutex_);
-  if (info.instance_state != DDS_IST_ALIVE)
-    of_.erase(info.instance_handle);
-  else if (info.valid_data)
-    of_.insert_or_assign(info.instance_handle, writer.participant_instance_handle);
+  const auto known = of_.find(info.instance_handle);
+  if (info.instance_state == DDS_IST_ALIVE) {
+    if (known != of_.end() || !info.valid_data) return;
+    of_.emplace(info.instance_handle, writer.participant_instance_handle);
+    ++writers_[writer.participant_instance_handle];
+  } else if (known != of_.end()) {
+    if (--writers_[known->second] == 0) writers_.erase(known->second);
+    of_.erase(known);
+  }
 }
 
 }  // namespace palpate

@@ -20,6 +20,8 @@ class Peers {
   /// A handle of the participant of a writer, by the handle that samples carry; 0 of one that is not known (any more).
   /// From any thread.
   std::uint64_t of(dds_instance_handle_t writer) const;
+  /// Whether a participant has writers, by its handle. From any thread.
+  bool has(std::uint64_t participant) const;
 
  private:
   static void changed(dds_entity_t reader, void* self);
@@ -27,7 +29,8 @@ class Peers {
 
   mutable std::mutex mutex_;
   std::unordered_map<dds_instance_handle_t, std::uint64_t> of_;
-  Entity reader_;  // last: no more is told once it is gone
+  std::unordered_map<std::uint64_t, int> writers_;  ///< of each participant
+  Entity reader_;                                   // last: no more is told once it is gone
 };
 
 }  // namespace palpate

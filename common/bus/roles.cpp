@@ -9,15 +9,11 @@
 #include "idl/topics.hpp"
 
 namespace palpate {
-namespace {
 
-/// The bit of a role that takes part, 0 for the others.
-std::uint32_t bit_of(const std::string& role) {
+std::uint32_t role_bit(const std::string& role) {
   const auto* at = std::ranges::find(roles::names, role);
   return at == std::end(roles::names) ? 0 : 1u << (at - std::begin(roles::names));
 }
-
-}  // namespace
 
 const std::vector<std::string>& bus_roles() {
   static const std::vector<std::string> all = [] {
@@ -31,7 +27,7 @@ const std::vector<std::string>& bus_roles() {
 Rights rights_of(const std::string& role) {
   if (std::ranges::find(bus_roles(), role) == bus_roles().end())
     throw std::runtime_error(fmt::format("'{}' is no role on the bus: {}", role, fmt::join(bus_roles(), ", ")));
-  const std::uint32_t bit = bit_of(role);
+  const std::uint32_t bit = role_bit(role);
   const bool reads_all = role == "recorder" || role == "observer" || role == "latency";
   Rights rights;
   topics::for_each([&](const auto& topic) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct Rights {
 /// announce themselves; an observer reads all and writes nothing; a player writes what a log holds; latency measures
 /// round trips over topics of its own and reads all.
 const std::vector<std::string>& bus_roles();
+
+/// The bit of a role that takes part (roles::Bit), 0 for the others.
+std::uint32_t role_bit(const std::string& role);
 
 /// The rights of a role by the writers and readers in the table of topics. Throws std::runtime_error for
 /// a role that there is not.

@@ -148,8 +148,9 @@ TEST_F(GateTest, WhatWaitsInAReaderThatKeepsAllIsNoMoreThanItsRoom) {
   const Attacker somebody({.domain = own_domain()});
   const HostileWriter<TopologyChange> other = somebody.writer(topics::topology_change);
   until([&] { return reader->writers() == 2; });
-  change.seq = 100;
+  change.run = 2, change.seq = 100;
   other.write(change);
+  change.run = 1;
   std::vector<std::uint64_t> taken;
   until([&] {
     while (const auto one = reader->take()) taken.push_back(one->seq);
@@ -220,6 +221,50 @@ TEST_F(NameTest, IsFreeOnceItsWriterIsHeardNoMore) {
   std::this_thread::sleep_for(2600ms);
   second_.writer.write(false_);
   until([&] { return runs_heard() == std::vector<std::uint64_t>{2}; });
+}
+
+/// A haptic loop that has told of its run, and a stranger that speaks in it.
+class RunTest : public GateTest {
+ protected:
+  RunTest() {
+    until([&] { return statuses_->writers() == 1 && tools_->writers() == 2; });
+    own_.writer.write({.node = "haptic 1@here", .role = "haptic", .run = kRun});
+    until([&] { return statuses_->take().has_value(); });
+  }
+  std::vector<double> depths_heard() {
+    std::vector<double> depths;
+    while (const auto tool = tools_->take()) depths.push_back(tool->depth);
+    return depths;
+  }
+  static ToolState at(double depth, std::uint64_t run = kRun) { return {.run = run, .depth = depth}; }
+
+  static constexpr std::uint64_t kRun = 7;
+  std::unique_ptr<Reader<NodeStatus>> statuses_ = bus_->reader(topics::node_status);
+  std::unique_ptr<Reader<ToolState>> tools_ = bus_->reader(topics::tool_state);
+  TellerOfItself own_;
+  std::unique_ptr<HostileWriter<ToolState>> own_tools_{new HostileWriter(own_.attacker.writer(topics::tool_state))};
+  const HostileWriter<ToolState> other_ = attacker_.writer(topics::tool_state);
+};
+
+TEST_F(RunTest, IsItsParticipantsAloneOnAllTopicsThoughAnotherSpeaksFirst) {
+  for (std::uint64_t k = 1; k <= 5; ++k) {
+    other_.write(at(0.1));
+    until([&] { return tools_->invalid() == k; });
+  }
+  EXPECT_TRUE(depths_heard().empty());
+  own_tools_->write(at(0.2));
+  until([&] { return depths_heard() == std::vector{0.2}; });
+}
+
+TEST_F(RunTest, OfAnotherParticipantIsItsOwn) {
+  other_.write(at(0.1, 8));
+  until([&] { return depths_heard() == std::vector{0.1}; });
+}
+
+TEST_F(RunTest, IsFreeOnceItsParticipantIsHeardNoMore) {
+  std::this_thread::sleep_for(2600ms);
+  other_.write(at(0.1));
+  until([&] { return depths_heard() == std::vector{0.1}; });
 }
 
 TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {
