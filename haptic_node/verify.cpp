@@ -104,6 +104,9 @@ void take_code_path(const std::string& recorded) {
   }
 }
 
+/// [steps] at the end of a log that may lack something: a recorder that ends hears one topic out after another.
+constexpr std::uint64_t kLastSteps = 20;
+
 class RunVerifier {
  public:
   RunVerifier(const Scene& scene, const std::vector<Archive>& archives, bool thinned, VerifyReport& report)
@@ -139,6 +142,7 @@ class RunVerifier {
           recorded != run.steps.end() && static_cast<int>(recorded->second.dofs.size()) == haptic.tools();
       const std::string missing = whole ? feed_models(haptic, recorded->second) : "input";
       if (!missing.empty()) {
+        if (last - step < kLastSteps) return last + 1;
         const auto next = run.keyframes.upper_bound(step);
         report_.gaps.push_back(
             next == run.keyframes.end()
@@ -153,6 +157,7 @@ class RunVerifier {
       if (step % interval == 0) haptic.forget_factors();
       haptic.step(dofs);
       ++report_.steps;
+      if (!thinned_ && recorded->second.force.empty() && last - step < kLastSteps) return last + 1;
       compare(haptic, step, recorded->second);
       compare_tasks(haptic, step, recorded->second);
     }

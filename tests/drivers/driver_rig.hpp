@@ -70,16 +70,26 @@ class Forger {
   }
   /// For half a second, two of each kind for each of the real ones.
   void forge() {
-    constexpr double huge = 1e12, none = std::numeric_limits<double>::quiet_NaN();
     for (int k = 0; k < 500; ++k) {
-      for (const std::uint64_t run : {real_.run, real_.run + 1})
-        for (const double newtons : {huge, none}) say(run, newtons);
+      say_absurd(real_.run);
+      say_absurd(real_.run + 1);
       say(real_.run + 2, 5);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  /// In the run of a haptic node that has ended: only the driver itself is left to refuse it.
+  void forge_of_the_dead() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2700));  // the run is anybody's
+    for (int k = 0; k < 100; ++k) {
+      say_absurd(real_.run);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
 
  private:
+  void say_absurd(std::uint64_t run) {
+    for (const double newtons : {1e12, std::numeric_limits<double>::quiet_NaN()}) say(run, newtons);
+  }
   void say(std::uint64_t run, double newtons) {
     ForceState force = real_;
     force.run = run;
@@ -112,10 +122,11 @@ inline void expect_a_whole_driver(DriverRig& rig, const std::vector<std::string>
   ChildProcess driver("driver", command);
   ForceState real;
   ASSERT_TRUE(rig.hear(20s, [&](const ForceState& f) { return real = f, pressed(f); })) << "the next one takes it up";
-  Forger(real).forge();
+  Forger forger(real);
+  forger.forge();
   ASSERT_TRUE(rig.hear(20s, [&](const ForceState& f) { return f.run == real.run && pressed(f); }));
   ASSERT_TRUE(rig.end(SIGKILL));
-  std::this_thread::sleep_for(200ms);
+  forger.forge_of_the_dead();
   driver.interrupt();
   ASSERT_TRUE(driver.wait(5s));
   EXPECT_EQ(driver.status(), 0);

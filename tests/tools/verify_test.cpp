@@ -126,6 +126,25 @@ TEST_F(ToolsVerify, OneBitOfOneForceFailsAndTheStepIsNamed) {
   EXPECT_NE(in_json()["mismatch"], "");
 }
 
+TEST_F(ToolsVerify, WhatTheRecorderDidNotHearOfTheLastStepsIsNotMissed) {
+  std::uint64_t last = 0;
+  LogReader reader(log());
+  ToolState tool;
+  for (LogEvent event; reader.next(event);)
+    if (event.read(topics::tool_state, tool)) last = std::max(last, tool.step);
+  const auto without = [&](std::uint64_t step) {
+    rewrite(log(), changed(), [&](LogEvent& event) {
+      if (event.read(topics::tool_state, tool) && tool.step == step) event.channel = "nothing";
+    });
+    return verify(changed());
+  };
+  EXPECT_EQ(without(last - 2).status, 0);
+  const auto within = without(last - 100);
+  EXPECT_EQ(within.status, 1);
+  EXPECT_NE(within.err.find(fmt::format("from step {}: its input is not in the log", last - 100)), std::string::npos)
+      << within.err;
+}
+
 TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
   fs::copy_file(log(), changed());
   fs::resize_file(changed(), fs::file_size(log()) * 6 / 10 + 7);
