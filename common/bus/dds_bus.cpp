@@ -170,7 +170,7 @@ template <class M>
 class DdsReader final : public Reader<M> {
  public:
   DdsReader(dds_entity_t participant, DdsWake& wake, const Topic<M>& topic, Keep keep, std::size_t room,
-            const Peers& peers, RunOwners& runs, std::atomic<std::uint64_t>& refused)
+            const Peers& peers, Owners<RunKey>& runs, std::atomic<std::uint64_t>& refused)
       : at_once_(keep == Keep::all ? WaitingRoom::kSamples : kKeysAtOnce),
         peers_(peers),
         gate_(peers, runs, refused, topic.run_of, keep == Keep::all, room),
@@ -280,7 +280,7 @@ class DdsBus final : public Bus {
   DdsWake wake_;
   VersionWatch versions_;
   Peers peers_;
-  RunOwners runs_;
+  Owners<RunKey> runs_;
 };
 
 }  // namespace

@@ -5,15 +5,15 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "common/bus/dds_convert.hpp"
 #include "common/bus/key.hpp"
 #include "common/bus/key_budget.hpp"
-#include "common/bus/name_owners.hpp"
+#include "common/bus/owners.hpp"
 #include "common/bus/peers.hpp"
 #include "common/bus/rate_budget.hpp"
 #include "common/bus/roles.hpp"
-#include "common/bus/run_owners.hpp"
 #include "common/bus/waiting_room.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/limits.hpp"
@@ -40,10 +40,11 @@ class Gate {
 
   /// `peers`, `runs`: of the bus. `total`: counts what is refused by all its gates. `run_of`: whose run the messages
   /// carry, of the topic. `keeps_all`: what is admitted waits until it is taken, `room` [bytes] of each peer at most.
-  Gate(const Peers& peers, RunOwners& runs, std::atomic<std::uint64_t>& total, std::uint32_t run_of, bool keeps_all,
-       std::size_t room)
+  Gate(const Peers& peers, Owners<RunKey>& runs, std::atomic<std::uint64_t>& total, std::uint32_t run_of,
+       bool keeps_all, std::size_t room)
       : peers_(peers),
         runs_(runs),
+        names_(peers),
         total_(total),
         run_of_(run_of),
         keeps_all_(keeps_all),
@@ -72,16 +73,18 @@ class Gate {
   bool admits(const typename Generated<M>::Type& sample, dds_instance_handle_t writer) {
     fields(CopyOut{}, message_, sample);
     const std::uint64_t peer = peer_of(writer);
-    if (in_time(peer) && valid(message_) && in_budget(peer) && in_own_name(writer) && in_own_run(writer) &&
-        has_room(writer, peer))
+    if (in_time(peer) && valid(message_) && in_budget(peer) && !anothers_name() && !anothers_run() &&
+        has_room(writer, peer)) {
+      note_owner();
       return true;
+    }
     refuse();
     return false;
   }
   /// All writers of a participant have one budget. A writer that is not known yet has its own.
   std::uint64_t peer_of(dds_instance_handle_t writer) {
-    if (writer != writer_ || peer_ == 0) peer_ = peers_.of(writer_ = writer);
-    return peer_ != 0 ? peer_ : writer;
+    if (writer != writer_ || participant_ == 0) participant_ = peers_.of(writer_ = writer);
+    return participant_ != 0 ? participant_ : writer;
   }
   /// One that keeps all has its room alone: a recorder wants a log that is played faster than it was made.
   bool in_time(std::uint64_t peer) { return keeps_all_ || rate_.admits(peer, now_ns()); }
@@ -90,17 +93,28 @@ class Gate {
     return true;  // numbers have their limits in the IDL
   }
   /// One that keeps all keeps what each says.
-  bool in_own_name(dds_instance_handle_t writer) {
-    if constexpr (kOfNodes) return keeps_all_ || owners_.admits(message_.node, writer, now_ns(), peers_);
-    return true;
+  bool anothers_name() const {
+    if constexpr (kOfNodes) return !keeps_all_ && names_.another(message_.node, participant_, now_ns());
+    return false;
   }
-  bool in_own_run(dds_instance_handle_t writer) {
+  bool anothers_run() const {
+    if constexpr (requires { message_.run; }) return of_somebody() && runs_.another(run(), participant_, now_ns());
+    return false;
+  }
+  /// Only what is admitted makes an owner.
+  void note_owner() {
     if constexpr (kOfNodes)
-      return runs_.admits(role_bit(message_.role), message_.run, writer, now_ns());
-    else if constexpr (requires { message_.run; })
-      return runs_.admits(run_of_, message_.run, writer, now_ns());
-    return true;
+      if (!keeps_all_) names_.heard(message_.node, participant_, now_ns());
+    if constexpr (requires { message_.run; })
+      if (of_somebody()) runs_.heard(run(), participant_, now_ns());
   }
+  RunKey run() const {
+    if constexpr (kOfNodes)
+      return {role_bit(message_.role), message_.run};
+    else
+      return {run_of_, message_.run};
+  }
+  bool of_somebody() const { return run().first != 0 && run().second != 0; }
   bool has_room(dds_instance_handle_t writer, std::uint64_t peer) {
     return !keeps_all_ || room_.enter(writer, peer, size(message_));
   }
@@ -111,15 +125,15 @@ class Gate {
   }
 
   const Peers& peers_;
-  RunOwners& runs_;
+  Owners<RunKey>& runs_;
+  Owners<std::string> names_;
   std::atomic<std::uint64_t>& total_;
   const std::uint32_t run_of_;
   const bool keeps_all_;
   M message_;                         ///< kept between samples for its memory
   dds_instance_handle_t writer_ = 0;  ///< of the sample before
-  std::uint64_t peer_ = 0;
+  std::uint64_t participant_ = 0;     ///< of that; 0: not known
   KeyBudget budget_;
-  NameOwners owners_;
   RateBudget rate_;
   WaitingRoom room_;
   std::atomic<std::uint64_t> refused_ = 0;
