@@ -228,7 +228,7 @@ class RunTest : public GateTest {
  protected:
   RunTest() {
     until([&] { return statuses_->writers() == 1 && tools_->writers() == 2; });
-    own_.writer.write({.node = "haptic 1@here", .role = "haptic", .run = kRun});
+    own_.writer.write(own_status_);
     until([&] { return statuses_->take().has_value(); });
   }
   std::vector<double> depths_heard() {
@@ -239,6 +239,7 @@ class RunTest : public GateTest {
   static ToolState at(double depth, std::uint64_t run = kRun) { return {.run = run, .depth = depth}; }
 
   static constexpr std::uint64_t kRun = 7;
+  const NodeStatus own_status_{.node = "haptic 1@here", .role = "haptic", .run = kRun};
   std::unique_ptr<Reader<NodeStatus>> statuses_ = bus_->reader(topics::node_status);
   std::unique_ptr<Reader<ToolState>> tools_ = bus_->reader(topics::tool_state);
   TellerOfItself own_;
@@ -265,6 +266,22 @@ TEST_F(RunTest, IsFreeOnceItsParticipantIsHeardNoMore) {
   std::this_thread::sleep_for(2600ms);
   other_.write(at(0.1));
   until([&] { return depths_heard() == std::vector{0.1}; });
+}
+
+// The name of a node that was silent is not taken by a status that is refused for its run.
+TEST_F(RunTest, NoNameIsTakenByAStatusThatIsRefused) {
+  const HostileWriter<NodeStatus> strangers = attacker_.writer(topics::node_status);
+  until([&] { return statuses_->writers() == 2; });
+  const auto end = std::chrono::steady_clock::now() + 2600ms;
+  while (std::chrono::steady_clock::now() < end) {  // no status, but tools
+    own_tools_->write(at(0.2));
+    std::this_thread::sleep_for(100ms);
+  }
+  strangers.write(own_status_);
+  until([&] { return statuses_->invalid() == 1; });
+  own_.writer.write(own_status_);
+  until([&] { return statuses_->take().has_value(); });
+  EXPECT_EQ(statuses_->invalid(), 1u);
 }
 
 TEST_F(GateTest, WhoTakesUntilThereIsNoMoreComesToAnEnd) {
