@@ -19,7 +19,7 @@ bool long_form() {
 TEST_P(Hostile, ToolsWithoutNumberCostNoMemory) {
   const auto tools = writer(topics::tool_state);
   const auto contacts = writer(topics::contact_state);
-  EXPECT_LT(grown_in_flood(long_form() ? 2'000'000 : 30'000,
+  EXPECT_LT(grown_in_flood(long_form() ? 200'000 : 30'000,
                            [&](std::uint32_t k) {
                              tools->write({.tool = 100 + k, .run = haptic_run(), .seq = 1});
                              contacts->write({.tool = 100 + k, .run = haptic_run(), .seq = 1});
@@ -32,7 +32,7 @@ TEST_P(Hostile, KeysThatAreDisposedWithoutNumberCostNoMemory) {
   const auto tools = writer(topics::tool_state);
   const auto contacts = writer(topics::contact_state);
   const auto status = writer(topics::node_status);
-  EXPECT_LT(grown_in_flood(long_form() ? 2'000'000 : 20'000,
+  EXPECT_LT(grown_in_flood(long_form() ? 200'000 : 20'000,
                            [&](std::uint32_t k) {
                              tools->dispose({.tool = k});
                              contacts->dispose({.tool = k});
@@ -46,7 +46,7 @@ TEST_P(Hostile, QuestionsForTheTimeUnderEverNewNamesKeepTheHapticNodeFromNothing
   const auto probes = writer(topics::clock_probe);
   EXPECT_LT(
       grown_in_flood(
-          long_form() ? 2'000'000 : 40'000,
+          long_form() ? 200'000 : 40'000,
           [&](int k) { probes->write({.node = fmt::format("render {}@there", k), .seq = 1, .publish_ns = now_ns()}); }),
       kFlood);
 }

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds kForgotten{2700};  // after which a run that is not heard is anybody's
-constexpr std::chrono::minutes kLong{25};  // with PALPATE_LONG_TESTS; the other cases take some minutes then
+constexpr std::chrono::minutes kLong{20};  // with PALPATE_LONG_TESTS; the other cases take some minutes then
 
 using AllTopics = decltype(topics::all);
 
