@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "idl/messages.hpp"
 
@@ -10,6 +11,12 @@ namespace palpate::testing {
 /// What one tool's hand is given, step by step, as the haptic node says it.
 class FeltForce {
  public:
+  /// A step that came late after the one before it.
+  struct Late {
+    std::int64_t from_ns, to_ns;  ///< the sense times of the two
+    std::int64_t lost_ns;         ///< beyond the loop's period
+  };
+
   void add(const ForceState& force);
   void begin_anew();                                    ///< what is told below is from now on
   void keep_undisturbed() { undisturbed_ = newest(); }  ///< what it is now is what it should be
@@ -24,12 +31,14 @@ class FeltForce {
   Eigen::Vector3d newest() const { return vector(newest_); }  ///< [N]
   const ForceState& state() const { return newest_; }
   const std::optional<ForceState>& first() const { return first_; }
+  const std::vector<Late>& late() const { return late_; }
 
  private:
   static Eigen::Vector3d vector(const ForceState& f) { return {f.force[0], f.force[1], f.force[2]}; }
 
   ForceState newest_;
   std::optional<ForceState> first_;
+  std::vector<Late> late_;
   Eigen::Vector3d undisturbed_ = Eigen::Vector3d::Zero();
   double max_force_ = 0, max_rise_ = 0, max_change_ = 0, max_off_ = 0;
   bool finite_ = true;

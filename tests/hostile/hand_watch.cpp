@@ -1,5 +1,7 @@
 #include "tests/hostile/hand_watch.hpp"
 
+#include <algorithm>
+
 #include "common/bus/dds_convert.hpp"
 #include "idl/topics.hpp"
 
@@ -46,7 +48,10 @@ void HandWatch::begin_anew() {
 double HandWatch::rate_hz(const HostWatch& host) const {
   const std::optional<ForceState>& first = felt_.back().first();
   if (!first || newest().sense_ns <= first->sense_ns) return 0;
-  return host.rate_hz(static_cast<double>(newest().step - first->step), first->sense_ns, newest().sense_ns);
+  double seconds = 1e-9 * static_cast<double>(newest().sense_ns - first->sense_ns);
+  for (const FeltForce::Late& late : felt_.back().late())
+    seconds -= std::min(1e-9 * static_cast<double>(late.lost_ns), host.stood_still(late.from_ns, late.to_ns));
+  return static_cast<double>(newest().step - first->step) / seconds;
 }
 
 }  // namespace palpate::testing

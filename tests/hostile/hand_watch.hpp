@@ -25,7 +25,8 @@ class HandWatch {
   int tools() const { return static_cast<int>(felt_.size()); }
   /// Of the last tool, of which each step tells last.
   const ForceState& newest() const { return felt_.back().state(); }
-  double rate_hz(const HostWatch& host) const;  ///< of the steps, by their sense times, while the machine ran
+  /// [Hz] of the steps, by their sense times. What a step was late counts only as far as the machine did not stand.
+  double rate_hz(const HostWatch& host) const;
 
  private:
   Entity participant_, topic_, reader_;

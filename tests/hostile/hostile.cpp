@@ -11,7 +11,7 @@ constexpr double kMaxForce = 10, kMaxRise = 0.25;  // [N], [N] a step: the scene
 constexpr double kMaxShare = 0.1;                  // of the undisturbed force, by which it may be off
 constexpr double kMaxInFreeAir = 1;                // [N] more than this tissue's weight and 0.2 mm of its stiffness
 constexpr double kFlatMb = 64;                     // by which a node may grow in all, its warm-up included
-constexpr double kMinHz = 950;                     // while the machine runs: much may fall out in an attack of a second
+constexpr double kMinHz = 980;                     // in an attack, of which some take a second
 
 }  // namespace
 
