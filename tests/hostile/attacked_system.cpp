@@ -18,6 +18,7 @@ constexpr double kWaits = 15, kComesDown = 2;  // [s] over the tissue, and then 
 constexpr double kYoung = 20e3;                // [Pa] of both blocks
 constexpr double kFelt = 1;                    // [N] where a tool presses
 constexpr double kSettled = 0.01;              // [N] by which a force that is at rest may be off
+constexpr std::uint64_t kSoon = 60'000;  // [steps] that a picture told of in time may be ahead of what is known here
 
 double resident_mb(pid_t pid) {
   std::ifstream in(fmt::format("/proc/{}/statm", pid));
@@ -183,9 +184,9 @@ bool AttackedSystem::is_undisturbed(std::chrono::milliseconds limit) {
 
 bool AttackedSystem::pictures_go_on(std::chrono::milliseconds limit) {
   const std::uint64_t step = hand_.newest().step, run = hand_.newest().run;
-  return watch(limit, [&] {
-    return newest_picture_.run == run && newest_picture_.step > step && newest_picture_.step <= hand_.newest().step;
-  });
+  // Not by the newest step that is known here: where the machine is busy, pictures may be told of before steps.
+  const auto is_later = [&](std::uint64_t other) { return other > step && other - step < kSoon; };
+  return watch(limit, [&] { return newest_picture_.run == run && is_later(newest_picture_.step); });
 }
 
 std::map<std::string, nlohmann::json> AttackedSystem::end() {
