@@ -77,17 +77,18 @@ class EndedPress : public ::testing::TestWithParam<int> {};
 TEST_P(EndedPress, TakesTheForceToZeroBeforeTheHapticNodeIsGone) {
   using namespace std::chrono_literals;
   DriverRig rig;
-  std::atomic<bool> over = false;
+  std::atomic<bool> heard = false, over = false;
   std::thread hand([&] {
     const auto bus = make_dds_bus({.domain = own_domain()});
     const auto device = bus->writer(topics::device_state);
     for (DeviceState state{.seq = 1, .depth = 0.18}; !over; ++state.seq) {
       state.sense_ns = now_ns();
-      state.depth = std::min(state.depth + 2e-5, 0.2);
+      if (heard) state.depth = std::min(state.depth + 2e-5, 0.2);
       device->write(state);
       std::this_thread::sleep_for(1ms);
     }
   });
+  heard = rig.hear(20s, [](const ForceState&) { return true; });
   ForceState last;
   const bool pressed = rig.hear(20s, [&](const ForceState& f) { return last = f, newtons(f) > 0.45; });
   const double before = newtons(last);

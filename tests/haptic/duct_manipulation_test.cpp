@@ -10,10 +10,13 @@
 #include "common/models/modal_shell/modal_body.hpp"
 #include "common/models/modal_shell/modal_shape.hpp"
 #include "tests/haptic/duct_scene.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/tool/count_allocations.hpp"
 
 namespace palpate {
 namespace {
+
+using testing::kSanitized;
 
 using Eigen::Vector3d;
 using testing::duct_tip_at;
@@ -300,7 +303,7 @@ class RandomHands {
 
 TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   const bool whole = std::getenv("PALPATE_LONG_TESTS") != nullptr;
-  const int steps = whole ? 3'600'000 : 30'000;
+  const int steps = whole ? 3'600'000 : kSanitized ? 6'000 : 30'000;
   Theatre t(20);
   for (Tool& tool : t.duct.scene.tools)
     std::get<ForcepsSpec>(tool.end).jaws.grip_stiffness = 0.1;  // as in the example scenes; harder pulls slip
