@@ -14,9 +14,8 @@
 namespace palpate {
 namespace {
 
-using testing::kSanitized;
-
 using Eigen::Vector3d;
+using testing::kSanitized;
 
 struct Found {
   double time = std::numeric_limits<double>::infinity();

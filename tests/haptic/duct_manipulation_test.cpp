@@ -16,9 +16,8 @@
 namespace palpate {
 namespace {
 
-using testing::kSanitized;
-
 using Eigen::Vector3d;
+using testing::kSanitized;
 using testing::duct_tip_at;
 using testing::DuctScene;
 

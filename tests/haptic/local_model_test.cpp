@@ -10,9 +10,8 @@
 namespace palpate {
 namespace {
 
-using testing::kSanitized;
-
 using Eigen::Vector3d;
+using testing::kSanitized;
 using testing::Hand;
 using testing::LoopTrace;
 using testing::TouchedBlock;
