@@ -17,9 +17,9 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-using testing::kSanitized;
 using testing::duct_tip_at;
 using testing::DuctScene;
+using testing::kSanitized;
 
 constexpr double kWideOpen = 0.8;
 

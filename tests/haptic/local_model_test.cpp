@@ -11,8 +11,8 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-using testing::kSanitized;
 using testing::Hand;
+using testing::kSanitized;
 using testing::LoopTrace;
 using testing::TouchedBlock;
 
