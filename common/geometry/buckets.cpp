@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace palpate {
@@ -149,27 +150,38 @@ void Buckets::leave(int triangle) {
   first_of_triangle_[triangle] = -1;
 }
 
-int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, double radius, std::span<int> found) const {
-  assert(found.size() >= range_.size());
-  if (++clock_ == 0) {
-    std::fill(stamp_.begin(), stamp_.end(), 0u);
-    clock_ = 1;
-  }
-  int count = 0;
-  const auto collect = [&](int bucket) {
-    for (int entry = first_in_bucket_[bucket]; entry >= 0; entry = entries_[entry].after) {
-      const int triangle = entries_[entry].triangle;
-      if (stamp_[triangle] == clock_) continue;
-      stamp_[triangle] = clock_;
-      found[count++] = triangle;
-    }
-  };
-  const double reach = radius + kRounding * (radius + size_);
-  Range range = range_of(box_min.array() - reach, box_max.array() + reach);
+Buckets::Range Buckets::range_to_look_at(const Vector3d& box_min, const Vector3d& box_max) const {
+  Range range = range_of(box_min, box_max);
   for (int axis = 0; axis < 3; ++axis) {
     range.low[axis] = std::max(range.low[axis], filled_.low[axis]);
     range.high[axis] = std::min(range.high[axis], filled_.high[axis]);
   }
+  return range;
+}
+
+void Buckets::begin_query() const {
+  if (++clock_ != 0) return;
+  std::fill(stamp_.begin(), stamp_.end(), 0u);
+  clock_ = 1;
+}
+
+// Adds what the query has not found yet; returns how many there are then.
+int Buckets::collect(int bucket, std::span<int> found, int count) const {
+  for (int entry = first_in_bucket_[bucket]; entry >= 0; entry = entries_[entry].after) {
+    const int triangle = entries_[entry].triangle;
+    if (stamp_[triangle] == clock_) continue;
+    stamp_[triangle] = clock_;
+    found[count++] = triangle;
+  }
+  return count;
+}
+
+int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, double radius, std::span<int> found) const {
+  assert(found.size() >= range_.size());
+  begin_query();
+  int count = 0;
+  const double reach = radius + kRounding * (radius + size_);
+  const Range range = range_to_look_at(box_min.array() - reach, box_max.array() + reach);
   for (int k = range.low[2]; k <= range.high[2]; ++k)
     for (int j = range.low[1]; j <= range.high[1]; ++j) {
       const double z = apart(box_min.z(), box_max.z(), k, 2), y = apart(box_min.y(), box_max.y(), j, 1);
@@ -177,11 +189,46 @@ int Buckets::query(const Vector3d& box_min, const Vector3d& box_max, double radi
       if (left < 0) continue;
       for (int i = range.low[0]; i <= range.high[0]; ++i) {
         const double x = apart(box_min.x(), box_max.x(), i, 0);
-        if (!(x * x > left)) collect((k * cells_[1] + j) * cells_[0] + i);
+        if (!(x * x > left)) count = collect((k * cells_[1] + j) * cells_[0] + i, found, count);
       }
     }
-  collect(first_overflow_);
-  return count;
+  return collect(first_overflow_, found, count);
+}
+
+// The part of a piece of a segment that lies within `reach` [m] of a layer of buckets.
+Buckets::Piece Buckets::along_layer(const Segment& s, const Piece& piece, double reach, int index, int axis) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double begin = origin_[axis] + index * size_ - reach, way = s.end[axis] - s.start[axis];
+  const double low = index > 0 ? begin - s.start[axis] : -kInfinity;
+  const double high = index < cells_[axis] - 1 ? begin + size_ + 2 * reach - s.start[axis] : kInfinity;
+  if (way == 0) return low <= 0 && high >= 0 ? piece : Piece{1, 0};
+  const auto [from, to] = std::minmax({low / way, high / way});
+  return {std::max(piece.from, from), std::min(piece.to, to)};
+}
+
+int Buckets::query(const Segment& segment, double radius, std::span<int> found) const {
+  assert(found.size() >= range_.size());
+  begin_query();
+  int count = 0;
+  const double reach = radius + kRounding * (radius + size_);
+  const auto around = [&](const Piece& piece) {
+    const Vector3d a = segment.at(piece.from), b = segment.at(piece.to);
+    return range_to_look_at(a.cwiseMin(b).array() - reach, a.cwiseMax(b).array() + reach);
+  };
+  const Range layers = around({0, 1});
+  for (int k = layers.low[2]; k <= layers.high[2]; ++k) {
+    const Piece in_layer = along_layer(segment, {0, 1}, reach, k, 2);
+    if (in_layer.from > in_layer.to) continue;
+    const Range rows = around(in_layer);
+    for (int j = rows.low[1]; j <= rows.high[1]; ++j) {
+      const Piece in_row = along_layer(segment, in_layer, reach, j, 1);
+      if (in_row.from > in_row.to) continue;
+      const Range row = around(in_row);
+      for (int i = row.low[0]; i <= row.high[0]; ++i)
+        count = collect((k * cells_[1] + j) * cells_[0] + i, found, count);
+    }
+  }
+  return collect(first_overflow_, found, count);
 }
 
 }  // namespace palpate

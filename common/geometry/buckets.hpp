@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "common/geometry/segment.hpp"
+
 namespace palpate {
 
 /// Regular grid of buckets over a surface (TVCG99 sec. 5). Every triangle is entered in each bucket that its
@@ -34,6 +36,8 @@ class Buckets {
   /// Triangles whose buckets come within `radius` [m] of the box, each once, in no order, into `found`; returns how
   /// many. `found` needs room for every triangle of the surface.
   int query(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max, double radius, std::span<int> found) const;
+  /// The same of a segment: buckets that come within `radius` of it along each axis, at one and the same place.
+  int query(const Segment& segment, double radius, std::span<int> found) const;
 
   std::array<int, 3> cells() const { return cells_; }
   std::size_t bytes() const;  ///< memory taken
@@ -57,6 +61,14 @@ class Buckets {
   void for_each_bucket(const Range& range, Visit&& visit) const;
   Range range_of(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) const;
   double apart(double low, double high, int index, int axis) const;
+  Range range_to_look_at(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) const;
+  /// Shares of the way along a segment.
+  struct Piece {
+    double from, to;
+  };
+  Piece along_layer(const Segment& segment, const Piece& piece, double reach, int index, int axis) const;
+  void begin_query() const;
+  int collect(int bucket, std::span<int> found, int count) const;
   void enter(int triangle);
   void leave(int triangle);
   void link(int triangle, int bucket);

@@ -80,6 +80,49 @@ TEST(Buckets, GiveEveryTriangleWhoseBoxComesWithinTheRadius) {
   EXPECT_LT(round_ones, square_ones) << "the corners of the box are asked too";
 }
 
+Segment random_segment(MovingSurface& surface, int trial) {
+  const Vector3d start = surface.uniform(0, 0.3) * surface.direction();
+  Vector3d way = std::pow(10.0, surface.uniform(-3, 0)) * surface.direction();
+  if (trial % 4 == 1) way[trial % 3] = 0;
+  if (trial % 4 == 2) way = way.norm() * Vector3d::Unit(trial % 3);
+  if (trial % 16 == 3) way.setZero();
+  return {start, start + way};
+}
+
+// By places along it, close enough to one another that none is between two of them.
+bool comes_within(double radius, const Segment& segment, const Corners& box) {
+  constexpr int kPlaces = 400;
+  for (int i = 0; i <= kPlaces; ++i) {
+    const Vector3d p = segment.at(static_cast<double>(i) / kPlaces);
+    if ((box[0] - p).cwiseMax(p - box[1]).cwiseMax(0.0).squaredNorm() <= radius * radius) return true;
+  }
+  return false;
+}
+
+TEST(Buckets, GiveEveryTriangleWhoseBoxComesWithinTheRadiusOfASegment) {
+  MovingSurface surface(13);
+  Buckets buckets(surface.rest, surface.triangles, 0.008);
+  enter_all(buckets, surface);
+  std::size_t along = 0, in_box = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Segment segment = random_segment(surface, trial);
+    const double radius = std::pow(10.0, surface.uniform(-4, -2));
+    std::vector<int> found(surface.size());
+    found.resize(buckets.query(segment, radius, found));
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+    for (int t = 0; t < surface.size(); ++t) {
+      if (!comes_within(radius, segment, swept_box(surface.before(t), surface.after(t)))) continue;
+      ASSERT_TRUE(std::binary_search(found.begin(), found.end(), t)) << "lost triangle " << t << " in trial " << trial;
+    }
+    along += found.size();
+    in_box += ask(buckets, surface, {segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end)}, radius)
+                  .size();
+  }
+  EXPECT_GT(along, 0u);
+  EXPECT_LT(2 * along, in_box) << "the corners of a slanting segment's box are asked too";
+}
+
 TEST(Buckets, AnswerTheSameWhateverTheHistoryOfMoves) {
   MovingSurface surface(2);
   Buckets used(surface.rest, surface.triangles, 0.006), fresh(surface.rest, surface.triangles, 0.006);

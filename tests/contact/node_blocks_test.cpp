@@ -46,5 +46,19 @@ TEST_F(NodeBlocksTest, TheOtherWayRoundItIsTheTranspose) {
     }
 }
 
+TEST_F(NodeBlocksTest, AreTakenFromOthersAsTheyAre) {
+  const int order[] = {4, 6, 0, 3};
+  NodeBlocks some(kNodes);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j <= i; ++j) some.take(i, j, blocks_, order[i], order[j]);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      Matrix3d sum = Matrix3d::Zero(), whole = Matrix3d::Zero();
+      some.add(i, j, 1, sum);
+      blocks_.add(order[i], order[j], 1, whole);
+      EXPECT_EQ(sum, whole);
+    }
+}
+
 }  // namespace
 }  // namespace palpate

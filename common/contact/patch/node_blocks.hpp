@@ -19,6 +19,15 @@ class NodeBlocks {
     put(j, i, block.transpose());
   }
 
+  /// As set(), with the block that others have at (k, l).
+  void take(int i, int j, const NodeBlocks& from, int k, int l) {
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) {
+        entries_[place(j, row, column) + i] = from.entries(l, row, column)[k];
+        entries_[place(i, row, column) + j] = from.entries(k, row, column)[l];
+      }
+  }
+
   /// [m/N] Along `normal`, of nodes begin ... end - 1, per force along it on node j; out[0] is that of node `begin`.
   void along(const Eigen::Vector3d& normal, int j, int begin, int end, double* out) const {
     along(normal, normal, j, begin, end, [out, begin](int i, double moved) { out[i - begin] = moved; });

@@ -55,9 +55,10 @@ Vector3d overlap_normal(const SmoothSurface& surface, std::span<const int> trian
   for (const int t : triangles) {
     const Vector3d& normal = surface.facet_normal(t);
     const double faces = normal.dot(out) - facing;
+    if (faces <= 0 || !surface.may_meet(t, middle, normal, radius)) continue;
     const Triangle corner = surface.corners(t);
     const double high = normal.dot(middle - corner[0]);
-    if (faces <= 0 || high >= radius) continue;
+    if (high >= radius) continue;
     const double a2 = radius * radius - std::pow(std::max(high, 0.0), 2);
     const Vector3d foot = middle - high * normal;
     const Triangle c{corner[0] - foot, corner[1] - foot, corner[2] - foot};

@@ -17,7 +17,7 @@ constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which 
 }  // namespace
 
 Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
-    : grid_(grid), kernel_(grid), near_field_(kMaxNodes) {
+    : grid_(grid), kernel_(grid), near_field_(kMaxNodes), last_near_field_(kMaxNodes) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();

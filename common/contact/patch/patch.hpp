@@ -230,6 +230,7 @@ class Patch {
   std::vector<int> rows_;
   std::vector<int> known_;                  ///< nodes that near_field_ is of
   NodeBlocks near_field_;                   ///< K between nodes_
+  NodeBlocks last_near_field_;              ///< between the nodes of before
   std::vector<double> k_;                   ///< [m/N] K along the normal, kMaxNodes a row
   std::array<double, kMaxNodes> at_nodes_;  ///< [m/N] along the normal, of a force on one foot
   std::array<PatchForce, kMaxNodes> forces_;

@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contact/patch/patch.hpp"
 
@@ -20,13 +21,23 @@ void add_to_each(const double* from, double number, double* to) {
 
 }  // namespace
 
-// From one step to the next the nodes are mostly the same.
+// From one step to the next the nodes are mostly the same: what was known between two of them is taken along.
 void Patch::fill_near_field(const NearField& near_field) {
   if (nodes_ == known_) return;
-  known_ = nodes_;
   const int count = static_cast<int>(nodes_.size());
+  std::array<int, kMaxNodes> was;
+  for (int i = 0; i < count; ++i) {
+    const auto found = std::ranges::find(known_, nodes_[i]);
+    was[i] = found == known_.end() ? -1 : static_cast<int>(found - known_.begin());
+  }
+  std::swap(near_field_, last_near_field_);
   for (int i = 0; i < count; ++i)
-    for (int j = 0; j <= i; ++j) near_field_.set(i, j, near_field.between(nodes_[i], nodes_[j]));
+    for (int j = 0; j <= i; ++j)
+      if (was[i] >= 0 && was[j] >= 0)
+        near_field_.take(i, j, last_near_field_, was[i], was[j]);
+      else
+        near_field_.set(i, j, near_field.between(nodes_[i], nodes_[j]));
+  known_ = nodes_;
 }
 
 // The compliance between squares along the normal [m/N].

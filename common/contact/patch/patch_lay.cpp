@@ -123,7 +123,7 @@ void Patch::lay_feet(const Ground& ground) {
   for (Foot& f : feet_) f = {.depth = std::numeric_limits<double>::infinity()};
   for (int i = 0; i < grid_.feet(); ++i) foot_middle_[i] = foot_middle(i);
   for (const int t : near_) {
-    if (!presses(ground, t)) continue;
+    if (!presses(ground, t) || (!grid_.strip() && !surface.may_meet(t, laid_at_, normal_, grid_.radius()))) continue;
     const Triangle c = surface.corners(t);
     const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
     if (grid_.column_feet() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0))

@@ -31,16 +31,15 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const Triangle c = corners(static_cast<int>(t));
     const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
-    facet_normal_.push_back(doubled_area.normalized());
+    facet_.push_back({doubled_area.normalized(), (c[0] + c[1] + c[2]) / 3, 0});
     area_.push_back(0.5 * doubled_area.norm());
     box_.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
-    middle_.push_back((c[0] + c[1] + c[2]) / 3);
-    reach_.push_back(0);
-    for (const Vector3d& corner : c) reach_.back() = std::max(reach_.back(), (corner - middle_.back()).norm());
+    Facet& f = facet_.back();
+    for (const Vector3d& corner : c) f.reach = std::max(f.reach, (corner - f.middle).norm());
     for (int v = 0; v < 3; ++v) {
       const Vector3d a = (c[(v + 1) % 3] - c[v]).normalized(), b = (c[(v + 2) % 3] - c[v]).normalized();
       weight_[map.triangles[t][v]] += area_.back() / 3;
-      node_normal_[map.triangles[t][v]] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * facet_normal_.back();
+      node_normal_[map.triangles[t][v]] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * f.normal;
     }
   }
   for (Vector3d& n : node_normal_) n.normalize();
@@ -66,13 +65,12 @@ std::span<int> SmoothSurface::near(const Vector3d& point, double radius) const {
 }
 
 std::span<int> SmoothSurface::near(const Segment& segment, double radius) const {
-  const int candidates =
-      buckets_.query(segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end), radius, found_);
+  const int candidates = buckets_.query(segment, radius, found_);
   int kept = 0;
   for (int i = 0; i < candidates; ++i) {
     if (left_out_[found_[i]]) continue;
-    const Vector3d& middle = middle_[found_[i]];
-    const double reach = radius + reach_[found_[i]];
+    const Vector3d& middle = facet_[found_[i]].middle;
+    const double reach = radius + facet_[found_[i]].reach;
     if ((nearest_point(segment, middle) - middle).squaredNorm() <= reach * reach) found_[kept++] = found_[i];
   }
   std::sort(found_.begin(), found_.begin() + kept);

@@ -25,7 +25,7 @@ class SmoothSurface {
     const auto& n = map_.triangles[t];
     return {map_.position[n[0]], map_.position[n[1]], map_.position[n[2]]};
   }
-  const Eigen::Vector3d& facet_normal(int t) const { return facet_normal_[t]; }  ///< outward, unit
+  const Eigen::Vector3d& facet_normal(int t) const { return facet_[t].normal; }  ///< outward, unit
   Eigen::Vector3d normal(int t, const Eigen::Vector3d& weights) const;           ///< outward, unit, continuous
   const Eigen::Vector3d& node_normal(int n) const { return node_normal_[n]; }    ///< outward, unit
   bool touchable(int t) const { return std::ranges::min(map_.triangles[t]) < map_.touchable; }
@@ -36,16 +36,29 @@ class SmoothSurface {
   /// the next call, and the caller's till then.
   std::span<int> near(const Eigen::Vector3d& point, double radius) const;
   std::span<int> near(const Segment& segment, double radius) const;
+  /// Whether the line through a point along `way`, a unit, may come within `radius` of a triangle: false where it
+  /// passes farther from the ball about its corners.
+  bool may_meet(int t, const Eigen::Vector3d& point, const Eigen::Vector3d& way, double radius = 0) const {
+    const Facet& f = facet_[t];
+    const double far = kRounding * (f.reach + radius);
+    return way.cross(f.middle - point).squaredNorm() <= far * far;
+  }
   /// A triangle that is no longer there: near() leaves it out.
   void leave_out(int t) { left_out_[t] = 1; }
   bool is_left_out(int t) const { return left_out_[t] != 0; }
 
  private:
+  static constexpr double kRounding = 1 + 1e-6;
+  /// What is asked of a triangle first.
+  struct Facet {
+    Eigen::Vector3d normal, middle;  ///< [m]
+    double reach;                    ///< [m] of its corners from the middle
+  };
+
   const SurfaceMap& map_;
-  std::vector<Eigen::Vector3d> facet_normal_, node_normal_;
+  std::vector<Facet> facet_;  ///< per triangle
+  std::vector<Eigen::Vector3d> node_normal_;
   std::vector<std::array<Eigen::Vector3d, 2>> box_;  ///< [m] per triangle: its lowest and its highest corner
-  std::vector<Eigen::Vector3d> middle_;              ///< [m] per triangle
-  std::vector<double> reach_;                        ///< [m] of its corners from there
   std::vector<double> area_, weight_;
   std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;

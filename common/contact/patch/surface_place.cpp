@@ -31,7 +31,7 @@ std::optional<TrianglePoint> highest_along(const SmoothSurface& surface, std::sp
   double most = -std::numeric_limits<double>::infinity();
   for (const int t : triangles) {
     const double along = surface.facet_normal(t).dot(out);
-    if (along < facing) continue;
+    if (along < facing || !surface.may_meet(t, point, out)) continue;
     const Triangle c = surface.corners(t);
     const double s = surface.facet_normal(t).dot(c[0] - point) / along;
     const Eigen::Vector3d w = plane_coordinates(c, point + s * out);
