@@ -75,8 +75,8 @@ class Gate {
     const std::uint64_t peer = peer_of(writer);
     if (in_time(peer) && valid(message_) && in_budget(peer) && !anothers_name() && !anothers_run() &&
         has_room(writer, peer)) {
-      note_owner();
-      return true;
+      if (becomes_owner()) return true;
+      taken(message_, writer);
     }
     refuse();
     return false;
@@ -101,12 +101,13 @@ class Gate {
     if constexpr (requires { message_.run; }) return of_somebody() && runs_.another(run(), participant_, now_ns());
     return false;
   }
-  /// Only what is admitted makes an owner.
-  void note_owner() {
+  /// Only what is admitted makes an owner. False if another has become it since it was looked at.
+  bool becomes_owner() {
     if constexpr (kOfNodes)
-      if (!keeps_all_) names_.heard(message_.node, participant_, now_ns());
+      if (!keeps_all_ && !names_.admit(message_.node, participant_, now_ns())) return false;
     if constexpr (requires { message_.run; })
-      if (of_somebody()) runs_.heard(run(), participant_, now_ns());
+      if (of_somebody() && !runs_.admit(run(), participant_, now_ns())) return false;
+    return true;
   }
   RunKey run() const {
     if constexpr (kOfNodes)

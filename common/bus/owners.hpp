@@ -23,17 +23,18 @@ class Owners {
   /// Whether a key is another participant's.
   bool another(const Key& key, std::uint64_t participant, std::int64_t now_ns) const {
     const std::lock_guard lock(mutex_);
-    const auto found = of_.find(key);
-    return found != of_.end() && found->second.participant != participant && !silent(found->second, now_ns) &&
-           peers_.has(found->second.participant);
+    return has_another(key, participant, now_ns);
   }
-  /// What a participant said under a key has been admitted. One that is not known (0) comes to own nothing.
-  void heard(const Key& key, std::uint64_t participant, std::int64_t now_ns) {
-    if (participant == 0) return;
+  /// What a participant says under a key is to be admitted, unless the key has become another's by now: then false, and
+  /// nothing has changed. One that is not known (0) comes to own nothing.
+  bool admit(const Key& key, std::uint64_t participant, std::int64_t now_ns) {
     const std::lock_guard lock(mutex_);
+    if (has_another(key, participant, now_ns)) return false;
+    if (participant == 0) return true;
     if (of_.size() >= kKeys && !of_.contains(key))
       std::erase_if(of_, [&](const auto& entry) { return silent(entry.second, now_ns); });
     if (of_.size() < kKeys || of_.contains(key)) of_[key] = {participant, now_ns};
+    return true;
   }
 
  private:
@@ -41,6 +42,11 @@ class Owners {
     std::uint64_t participant = 0;
     std::int64_t heard_ns = 0;
   };
+  bool has_another(const Key& key, std::uint64_t participant, std::int64_t now_ns) const {
+    const auto found = of_.find(key);
+    return found != of_.end() && found->second.participant != participant && !silent(found->second, now_ns) &&
+           peers_.has(found->second.participant);
+  }
   static bool silent(const Owner& owner, std::int64_t now_ns) { return now_ns - owner.heard_ns >= kHeldNs; }
 
   const Peers& peers_;
