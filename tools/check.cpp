@@ -79,6 +79,7 @@ CheckReport check_body(const Scene& scene, const Body& body, CheckOutput& out) {
   const CheckSettings settings{
       .contact = scene.contact,
       .tools = scene.tools,
+      .script = [](const Tool& tool) { return script_of(tool.device); },
       .dt = 1 / scene.rates.haptic_hz,
       .stored = [&](ArchivePart part) { return stored_archive(scene, body, part); },
       .find_wall = [&](const std::string& name) { return find_wall(scene, name); },

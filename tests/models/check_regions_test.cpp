@@ -23,7 +23,7 @@ std::vector<std::string> warnings_of(std::optional<double> lower_young, ContactR
   const std::vector<Tool> tools(1);
   CheckReport report;
   report.say = [](const std::string&) {};
-  check(body, {contact, tools, 1e-3, [](ArchivePart) { return std::optional<Archive>(); }, {}, {}}, report);
+  check(body, {contact, tools, {}, 1e-3, [](ArchivePart) { return std::optional<Archive>(); }, {}, {}}, report);
   return report.warnings;
 }
 

@@ -50,6 +50,58 @@ std::vector<std::string> faults(const std::string& file, const std::string& text
   return found;
 }
 
+/// Libraries of common/, and what is linked to each of them.
+struct Libraries {
+  std::map<std::string, int> floors;  ///< of the folder that builds it, in the order of common/CMakeLists.txt
+  std::vector<std::pair<std::string, std::string>> links;
+  std::vector<std::string> from_elsewhere;  ///< sources that a folder takes from another
+
+  /// `text`: a folder's CMakeLists.txt.
+  void add(int floor, const std::string& text) {
+    static const std::regex command(R"((add_library|target_link_libraries)\(\s*(\S+)([^)]*)\))");
+    static const std::regex word(R"(\S+)");
+    const std::sregex_iterator end;
+    for (std::sregex_iterator at(text.begin(), text.end(), command); at != end; ++at) {
+      const std::string name = (*at)[2], words = (*at)[3];
+      const bool made = (*at)[1] == "add_library";
+      if (made) floors[name] = floor;
+      for (std::sregex_iterator w(words.begin(), words.end(), word); w != end; ++w) {
+        if (made && w->str().starts_with("..")) from_elsewhere.push_back(w->str());
+        if (!made) links.emplace_back(name, w->str());
+      }
+    }
+  }
+  /// One sentence for each link that leads upwards, and each source from elsewhere.
+  std::vector<std::string> faults() const {
+    std::vector<std::string> found;
+    for (const std::string& source : from_elsewhere) found.push_back(source + " is not its folder's own");
+    for (const auto& [from, to] : links)
+      if (floors.contains(to) && floors.at(to) > floors.at(from)) found.push_back(from + " links upwards, to " + to);
+    return found;
+  }
+};
+
+TEST(Layers, EveryLibraryLinksDownwards) {
+  const fs::path common = fs::path(PALPATE_SOURCE) / "common";
+  const std::string order = testing::text_of(common / "CMakeLists.txt");
+  static const std::regex folder(R"(add_subdirectory\((\w+)\))");
+  Libraries libraries;
+  int floor = 0;
+  for (std::sregex_iterator at(order.begin(), order.end(), folder), end; at != end; ++at)
+    libraries.add(floor++, testing::text_of(common / std::string((*at)[1]) / "CMakeLists.txt"));
+  for (const std::string& fault : libraries.faults()) ADD_FAILURE() << fault;
+  EXPECT_GT(libraries.floors.size(), 20u);
+  EXPECT_GT(libraries.links.size(), 60u);
+}
+
+TEST(Layers, ALinkUpwardsAndASourceFromElsewhereAreFound) {
+  Libraries libraries;
+  libraries.add(0, "add_library(low STATIC a.cpp ../high/b.cpp)\ntarget_link_libraries(low\n  PUBLIC beside high)\n");
+  libraries.add(1, "add_library(high STATIC c.cpp)\ntarget_link_libraries(high PRIVATE low fmt::fmt)\n");
+  EXPECT_EQ(libraries.faults(),
+            (std::vector<std::string>{"../high/b.cpp is not its folder's own", "low links upwards, to high"}));
+}
+
 TEST(Layers, EveryIncludeLeadsDownwards) {
   std::ifstream list(fs::path(PALPATE_SOURCE) / "common/layers.txt");
   const auto of_room = floors(list);

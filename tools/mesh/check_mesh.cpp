@@ -102,7 +102,7 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   const ContactSpec contact;
   constexpr int kFields = 3;  // position, displacement, normal
   const CheckSettings settings{
-      .contact = contact, .tools = tools, .dt = 1e-3, .stored = {}, .find_wall = {}, .check_guests = {}};
+      .contact = contact, .tools = tools, .script = {}, .dt = 1e-3, .stored = {}, .find_wall = {}, .check_guests = {}};
   out.memory(compliance_memory(settings, surface, 0, kFields, compressed ? compressed_bytes(surface) : 0));
   if (const double across = measures.extent.maxCoeff(); across > kMaxBody || across < kMinBody)
     out.warn(fmt::format("{} is {:.3g} m across: is it in metres?", file.string(), across));

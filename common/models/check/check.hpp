@@ -12,6 +12,7 @@
 #include "common/mesh/shell_mesh.hpp"
 #include "common/shell/spec.hpp"
 #include "common/tool/spec.hpp"
+#include "common/tool/trajectory.hpp"
 
 namespace palpate {
 
@@ -26,6 +27,8 @@ struct MemoryPart {
 struct CheckSettings {
   const ContactSpec& contact;
   std::span<const Tool> tools;
+  /// The motion of one of them, where it is known before the run.
+  std::function<std::optional<Trajectory>(const Tool&)> script;
   double dt;  ///< [s] of a haptic step
   /// The archive on disk if it is good; empty if there is none or it is refused.
   std::function<std::optional<Archive>(ArchivePart)> stored;

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/devices/device_spec.hpp"
 #include "common/fem/lumped_mass.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving/tried_contact.hpp"
@@ -192,7 +191,7 @@ void say_tried_contact(const MovingSpec& body, const CheckSettings& settings, do
     if (abilities_of(tool).ball)
       look(fmt::format("the tip of '{}' over the mean edge", tool.name), abilities_of(tool).radius / edge,
            Tried::kMinRadius, Tried::kMaxRadius, "");
-    if (const std::optional<Trajectory> script = script_of(tool.device))
+    if (const std::optional<Trajectory> script = settings.script(tool))
       look(fmt::format("the largest speed of '{}'", tool.name), max_speed(tool, *script), 0, Tried::kMaxSpeed, " m/s");
   }
 }
