@@ -43,14 +43,19 @@ void HandWatch::look() {
 void HandWatch::begin_anew() {
   look();
   for (FeltForce& felt : felt_) felt.begin_anew();
+  stolen_before_ = HostWatch::stolen();
 }
 
 double HandWatch::rate_hz(const HostWatch& host) const {
   const std::optional<ForceState>& first = felt_.back().first();
   if (!first || newest().sense_ns <= first->sense_ns) return 0;
-  double seconds = 1e-9 * static_cast<double>(newest().sense_ns - first->sense_ns);
-  for (const FeltForce::Late& late : felt_.back().late())
-    seconds -= std::min(1e-9 * static_cast<double>(late.lost_ns), host.stood_still(late.from_ns, late.to_ns));
+  double late = 0, stood = 0;
+  for (const FeltForce::Late& step : felt_.back().late()) {
+    late += 1e-9 * static_cast<double>(step.lost_ns);
+    stood += std::min(1e-9 * static_cast<double>(step.lost_ns), host.stood_still(step.from_ns, step.to_ns));
+  }
+  const double machines = std::max(stood, std::min(late, HostWatch::stolen() - stolen_before_));
+  const double seconds = 1e-9 * static_cast<double>(newest().sense_ns - first->sense_ns) - machines;
   return static_cast<double>(newest().step - first->step) / seconds;
 }
 

@@ -25,13 +25,15 @@ class HandWatch {
   int tools() const { return static_cast<int>(felt_.size()); }
   /// Of the last tool, of which each step tells last.
   const ForceState& newest() const { return felt_.back().state(); }
-  /// [Hz] of the steps, by their sense times. What a step was late counts only as far as the machine did not stand.
+  /// [Hz] of the steps, by their sense times. What steps were late counts only as far as the machine did not stand, or
+  /// was not taken away, whichever is more.
   double rate_hz(const HostWatch& host) const;
 
  private:
   Entity participant_, topic_, reader_;
   dds_instance_handle_t writer_ = 0;  ///< the first that was heard
   std::vector<FeltForce> felt_;       ///< per tool
+  double stolen_before_ = 0;          ///< [s] of the machine, when it began anew
 };
 
 }  // namespace palpate::testing

@@ -1,8 +1,11 @@
 #include "tests/realtime/host_watch.hpp"
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
@@ -68,6 +71,14 @@ double HostWatch::stood_still(std::int64_t from_ns, std::int64_t to_ns) const {
     counted_to = to;
   }
   return 1e-9 * static_cast<double>(sum);
+}
+
+double HostWatch::stolen() {
+  std::ifstream file("/proc/stat");
+  std::string cpu;
+  double user = 0, nice = 0, system = 0, idle = 0, io = 0, irq = 0, soft_irq = 0, stolen = 0;
+  file >> cpu >> user >> nice >> system >> idle >> io >> irq >> soft_irq >> stolen;
+  return stolen / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 double HostWatch::rate_hz(double ticks, std::int64_t from_ns, std::int64_t to_ns) const {

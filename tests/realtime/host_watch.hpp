@@ -17,6 +17,9 @@ class HostWatch {
 
   /// [s] of this time (of the monotonic clock) in which one core or another stood still.
   double stood_still(std::int64_t from_ns, std::int64_t to_ns) const;
+  /// [s] so far that the host gave to others while a core had work, of all cores together, as the kernel counts it in
+  /// hundredths. Pauses too short to be seen are in it.
+  static double stolen();
   /// [Hz] of so many ticks in this time, without what stood still. 0 where nothing else is left.
   double rate_hz(double ticks, std::int64_t from_ns, std::int64_t to_ns) const;
 
