@@ -9,6 +9,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
+#include "tests/realtime/host_watch.hpp"
 #include "tests/sanitized.hpp"
 
 namespace palpate::testing {
@@ -133,7 +134,7 @@ double LogOfQuasiStatic::off_the_even_pace(const fs::path& again) const {
   return at_share(error, 0.5);
 }
 
-// A host that has other things to do is late for all that it runs: the best of a few replays counts.
+// A host that has other things to do is late for all that it runs: a replay from which it took time is made anew.
 void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
   const auto on_a = std::make_unique<Inside>(hosts_->a());  // where nothing else is, on its loopback
   // All at once takes what the messages cost; those of a step are handed over one after another.
@@ -143,6 +144,7 @@ void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
   double handed_us = 0, heard_us = 0;
   for (int replay = 0; replay < 3; ++replay) {
     const fs::path again = scene_.folder() / fmt::format("again{}.lcmlog", replay);
+    const double stolen = HostWatch::stolen();
     const json report = replayed("", again);
     EXPECT_TRUE(report["complete"].get<bool>());
     EXPECT_EQ(report["skipped"], 0);
@@ -152,7 +154,7 @@ void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
         "replay: handed to the bus {:.1f} us (p99 {:.1f} us) after the recorded times, a message costs {:.1f} us; "
         "another process hears it {:.1f} us (median) off the even pace\n",
         handed_us, report["pace_us"]["p99"].get<double>(), message_us, heard_us);
-    if (handed_us < bound_us && heard_us < bound_us) break;
+    if ((handed_us < bound_us && heard_us < bound_us) || HostWatch::stolen() == stolen) break;
   }
   EXPECT_GT(handed_us, 0);
   EXPECT_LT(handed_us, bound_us);
