@@ -175,7 +175,7 @@ void LogOfQuasiStatic::expect_gap_named() const {
 }
 
 TEST_F(LogOfQuasiStatic, IsVerifiedAndReplayedAtItsOwnPaceAndAGapIsNamed) {
-  record(1500ms);
+  record(2500ms);
   expect_proof();
   expect_replay_at_its_own_pace();
   expect_gap_named();
