@@ -8,6 +8,7 @@
 
 #include "bench/report.hpp"
 #include "common/archive/load_sum.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/fem/surface_columns.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/precompute.hpp"
@@ -129,6 +130,7 @@ void run(int argc, char** argv) {
 }  // namespace palpate
 
 int main(int argc, char** argv) try {
+  palpate::use_blas_of_this_processor(argv);
   palpate::run(argc, argv);
   return 0;
 } catch (const std::exception& error) {

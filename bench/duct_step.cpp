@@ -3,6 +3,7 @@
 #include <map>
 
 #include "bench/report.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "tools/rig/press_rig.hpp"
@@ -74,6 +75,7 @@ Timed run(const Insertion& whole, int modes, int particles, int every) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   using namespace palpate;
   const bool quick = bench::quick(argc, argv);
   const Insertion insertion;

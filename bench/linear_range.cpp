@@ -2,6 +2,7 @@
 // contact; beside it what the range monitor sees of the linear answer. From these rows come its thresholds.
 #include "bench/report.hpp"
 #include "common/fem/newton_solid.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/mesh/surface_change.hpp"
@@ -72,6 +73,7 @@ void press_scene(const std::string& name, bool quick) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   const bool quick = palpate::bench::quick(argc, argv);
   palpate::press("kidney", palpate::kidney_body(), palpate::kidney_mesh(), quick);
   for (const char* scene : {"liver", "plate", "brain_cylinder"}) palpate::press_scene(scene, quick);

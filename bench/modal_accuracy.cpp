@@ -11,6 +11,7 @@
 #include "bench/report.hpp"
 #include "bench/shell_bodies.hpp"
 #include "common/fem/factorisation.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/models/modal_shell/modal_newmark.hpp"
 #include "common/shell/condensation.hpp"
 #include "common/shell/full_newmark.hpp"
@@ -223,6 +224,7 @@ void condensed_statics(int around, int along, int samples) {
 }  // namespace palpate::bench
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   using namespace palpate;
   using namespace palpate::bench;
   const bool few = quick(argc, argv);

@@ -1,6 +1,7 @@
 // Does a better offline discretisation cost anything at run time? The haptic step of the liver scene with tensors from
 // its own mesh and from quadratic locking-free elements, turn and turn about in one run; and what precompute takes.
 #include "bench/report.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/precompute.hpp"
 #include "tools/rig/press_rig.hpp"
@@ -57,5 +58,6 @@ void measure(const Scene& scene, bool quick) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   palpate::measure(palpate::load_scene(PALPATE_SCENES "/liver.toml"), palpate::bench::quick(argc, argv));
 }

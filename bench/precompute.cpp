@@ -8,6 +8,7 @@
 
 #include "bench/report.hpp"
 #include "common/fem/dense.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
 
@@ -118,6 +119,7 @@ void run(bool quick) {
 }  // namespace palpate::bench
 
 int main(int argc, char** argv) try {
+  palpate::use_blas_of_this_processor(argv);
   palpate::bench::run(palpate::bench::quick(argc, argv));
   return 0;
 } catch (const std::exception& error) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bench/report.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/geometry/dense_solvers.hpp"
 #include "common/shell/condensation.hpp"
 
@@ -117,5 +118,6 @@ int run(int argc, char** argv) {
 }  // namespace palpate::bench
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   return palpate::bench::run(argc, argv);
 }

@@ -7,6 +7,7 @@
 #include "bench/report.hpp"
 #include "common/contact/held_points.hpp"
 #include "common/fem/direct.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 #include "common/scene/ensure_archive.hpp"
@@ -72,6 +73,7 @@ void measure(const std::string& scene_file, const std::string& name, bool quick)
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   const bool quick = palpate::bench::quick(argc, argv);
   palpate::measure(PALPATE_SCENES "/liver.toml", "liver1400_linear", quick);
   palpate::measure(PALPATE_SCENES "/liver_nonlinear.toml", "liver1400_quasi_nonlinear", quick);

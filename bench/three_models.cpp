@@ -10,6 +10,7 @@
 #include "common/dynamics/corotational.hpp"
 #include "common/dynamics/spring_mass.hpp"
 #include "common/dynamics/tensor_mass.hpp"
+#include "common/fem/processor_blas.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -140,6 +141,7 @@ void rotation() {
 }  // namespace palpate::bench
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   using namespace palpate;
   using namespace palpate::bench;
   const int steps = quick(argc, argv) ? 4000 : 40000;

@@ -6,6 +6,7 @@
 
 #include "bench/report.hpp"
 #include "bench/touch_block.hpp"
+#include "common/fem/processor_blas.hpp"
 #include "common/fem/refine_graded.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tools/rig/slide.hpp"
@@ -267,6 +268,7 @@ void hertz_over_edges(bool quick) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   using namespace palpate;
   const bool quick = bench::quick(argc, argv);
   Liver liver(quick);

@@ -8,6 +8,7 @@
 #include "bench/report.hpp"
 #include "bench/solid_cases.hpp"
 #include "bench/solid_patch.hpp"
+#include "common/fem/processor_blas.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -138,5 +139,6 @@ int run(int argc, char** argv) {
 }  // namespace palpate::bench
 
 int main(int argc, char** argv) {
+  palpate::use_blas_of_this_processor(argv);
   return palpate::bench::run(argc, argv);
 }
