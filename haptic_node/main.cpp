@@ -130,9 +130,7 @@ void run(const NodeOptions& o) {
     throw std::runtime_error(fmt::format("{}: {} tools; at most {} run in one haptic node", o.scene, scene.tools.size(),
                                          StepRecord::kMaxTools));
   HapticStep haptic(scene, loaded.archives);
-  std::vector<std::unique_ptr<Device>> devices;
-  for (std::size_t t = 0; t < scene.tools.size(); ++t)
-    devices.push_back(make_device(scene, static_cast<int>(t), hands));
+  std::vector<std::unique_ptr<Device>> devices = make_devices(scene.tools, scene.rates.haptic_hz, hands);
 
   const std::uint64_t run_id = new_run();
   const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "haptic"));

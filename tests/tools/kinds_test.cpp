@@ -46,9 +46,9 @@ const std::vector<Table> kTables{
              "tools/organ",      // the same of the meshes that it makes
          },
      .question = R"(\b(as|holds_alternative)<\w*Spec>)"},
-    {.file = "common/devices/device_spec.hpp",
+    {.file = "common/tool/devices/device_spec.hpp",
      .least = 3,
-     .homes = "common/devices/.*",
+     .homes = "common/(tool/)?devices/.*",
      .permitted = {"tools/generate"},
      .words = {"log"}},
     {.file = "common/tool/ends/end_spec.hpp",
