@@ -30,7 +30,7 @@ Matrix3d across(const Vector3d& normal) {
 
 }  // namespace
 
-CoupledSolve::CoupledSolve(int particles, const CatheterWall* wall, int max_touches)
+CoupledSolve::CoupledSolve(int particles, const DuctWall* wall, int max_touches)
     : particles_(particles),
       modes_(wall ? static_cast<int>(wall->inverse().size()) : 0),
       stride_((modes_ + kLanes - 1) / kLanes * kLanes),
