@@ -86,7 +86,7 @@ class CoupledSolve {
   void response(const double* y, double* d, double* modal);
   bool revise(int pass);
 
-  int particles_, modes_, stride_, most_;
+  int particles_, modes_, stride_, max_touches_;
   const DuctWall* duct_;
   std::vector<CatheterTouch> touches_;
   std::vector<double> rows_;           ///< per touch 3 x stride_ [kg^-1/2]
