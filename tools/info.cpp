@@ -6,9 +6,9 @@
 #include "common/bus/print.hpp"
 #include "common/bus/task_figures.hpp"
 #include "common/describe/printable.hpp"
-#include "tools/commands.hpp"
 #include "tools/latency/hop_json.hpp"
 #include "tools/log_summary.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {
