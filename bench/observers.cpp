@@ -21,7 +21,7 @@
 #include "bench/udp_cost.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "tests/network/two_hosts.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

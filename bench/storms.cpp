@@ -40,10 +40,8 @@ struct Felt {
 class Motion {
  public:
   explicit Motion(const Scene& scene) : dt_(1 / scene.rates.haptic_hz) {
-    for (std::size_t t = 0; t < scene.tools.size(); ++t) {
-      guards_.emplace_back(scene.tools[t].motion, dt_);
-      devices_.push_back(make_device(scene, static_cast<int>(t)));
-    }
+    devices_ = make_devices(scene.tools, scene.rates.haptic_hz);
+    for (const Tool& tool : scene.tools) guards_.emplace_back(tool.motion, dt_);
     for (int k = 0; k == 0 || !over(k); ++k) add(k);
   }
   int ticks() const { return static_cast<int>(at_.size()); }

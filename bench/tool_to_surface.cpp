@@ -5,7 +5,7 @@
 #include "common/bus/dds_bus.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/scene/ensure_archive.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

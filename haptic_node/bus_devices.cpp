@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "common/log/log.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "common/tool/motion_guard.hpp"
 
 namespace palpate {
@@ -38,6 +42,20 @@ void BusDevices::say_unknown(std::uint32_t tool) {
   log_warning(
       fmt::format("a driver on topic {} moves tool {}, which no driver elsewhere moves in this scene; it is not heard",
                   topics::device_state.name, tool));
+}
+
+void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus, double seconds) {
+  BusDevices drivers(bus, devices);
+  const auto all_ready = [&] { return std::ranges::all_of(devices, [](const auto& d) { return d->ready(); }); };
+  if (!all_ready()) log_info(fmt::format("waiting for a driver on topic {}", topics::device_state.name));
+  const auto begin = std::chrono::steady_clock::now();
+  while (!all_ready() && !shutdown_requested()) {
+    if (seconds > 0 && std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(seconds))
+      throw std::runtime_error(
+          fmt::format("no driver on topic {} has spoken for {} s", topics::device_state.name, seconds));
+    std::this_thread::sleep_for(std::chrono::microseconds(250));
+    drivers.take();
+  }
 }
 
 }  // namespace palpate

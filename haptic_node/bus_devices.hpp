@@ -31,4 +31,8 @@ class BusDevices {
   bool said_unknown_ = false;
 };
 
+/// Waits until every driver elsewhere has spoken, saying once that it waits. Throws std::runtime_error if one has not
+/// after `seconds`; 0: there is no limit.
+void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus, double seconds);
+
 }  // namespace palpate

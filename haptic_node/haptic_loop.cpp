@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
 constexpr int kLoopPriority = 80, kPublisherPriority = 60;
 constexpr std::uint32_t kOfLeaving = silent_device | stale_model;  // no interventions while other nodes end too
-constexpr double kMostLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
+constexpr double kMaxLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
 
 }  // namespace
 
@@ -77,7 +77,7 @@ const LoopReport& HapticLoop::run(double seconds) {
   for (double end = 0;;) {
     const double time = static_cast<double>(timer.wait()) * haptic_.dt();
     if (!leaves_ && is_over(time, seconds)) leaves_ = true, end = time;
-    if (leaves_ && (!pushes() || time >= end + kMostLeaving)) break;
+    if (leaves_ && (!pushes() || time >= end + kMaxLeaving)) break;
     tick(time);
     wake_.release();
     shown_missed_.store(timer.statistics().skipped, std::memory_order_relaxed);

@@ -17,6 +17,7 @@
 #include "common/scene/scene.hpp"
 #include "common/sim/haptic_step.hpp"
 #include "common/sim/step_messages.hpp"
+#include "common/tool/dofs_of.hpp"
 #include "haptic_node/recorded_models.hpp"
 #include "idl/fields.hpp"
 #include "idl/topics.hpp"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/bus/task_figures.hpp"
+
 namespace palpate {
 namespace {
 
@@ -18,13 +20,6 @@ std::string describe(const std::string& tool, const ForceState& f) {
   if (f.flags & fault) return words + "  fault: force off";
   if (f.flags & (force_limited | slew_limited)) words += "  limited";
   return words;
-}
-
-void describe(const TaskRecord& task, std::vector<std::string>& lines) {
-  lines.push_back(fmt::format("inserted {:.0f} mm, deepest {:.0f} mm in {:.1f} s", 1e3 * task.inserted,
-                              1e3 * task.deepest, task.inserting_s));
-  lines.push_back(fmt::format("wall contacts {}   drops {}   largest force {:.2f} N", task.wall_contacts, task.drops,
-                              task.max_force));
 }
 
 bool tells_task(const Body& body) {
@@ -81,7 +76,8 @@ void Show::follow_cuts() {
 void Show::tell(const std::vector<std::string>& above) {
   std::vector<std::string> lines{scene_.title.empty() ? scene_.file.stem().string() : scene_.title};
   lines.insert(lines.end(), above.begin(), above.end());
-  for (const auto& [body, task] : latest_task_) describe(task, lines);
+  for (const auto& [body, task] : latest_task_)
+    for (const std::string& line : task_lines(task)) lines.push_back(line);
   double strongest = 0, full = 1;
   for (std::size_t i = 0; i < latest_force_.size(); ++i) {
     lines.push_back(describe(scene_.tools[i].name, latest_force_[i]));

@@ -164,7 +164,7 @@ void Stage::set_surface(int index, std::span<const Eigen::Vector3f> position, st
   for (const HertzDent& d : dents) dent(body, d);
   if (body.finish == Finish::duct) body.wall.place(body.position, body.normal);
   if (body.displacement.empty()) return;
-  float most = body.visual ? body.visual->most_displaced() : 0;
+  float most = body.visual ? body.visual->max_displacement() : 0;
   for (std::size_t i = 0; i < body.rest.size(); ++i) {
     body.displacement[i] = (body.position[i] - body.rest[i]).norm();
     most = std::max(most, body.displacement[i]);

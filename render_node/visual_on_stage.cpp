@@ -20,7 +20,7 @@ void VisualOnStage::place(std::span<const Eigen::Vector3f> nodes, std::span<cons
   if (displacement_.empty()) return;
   const std::vector<Eigen::Vector3f>&now = shape_.position(), &rest = shape_.mesh().position;
   for (std::size_t v = 0; v < now.size(); ++v) displacement_[v] = (now[v] - rest[v]).norm();
-  most_displaced_ = *std::ranges::max_element(displacement_);
+  max_displacement_ = *std::ranges::max_element(displacement_);
 }
 
 void VisualOnStage::dent(const HertzDent& dent) {

@@ -23,7 +23,7 @@ class VisualOnStage {
   void place(std::span<const Eigen::Vector3f> nodes, std::span<const HertzDent> dents);
   /// As VisualShape::part().
   void part(std::span<const int> piece);
-  float most_displaced() const { return most_displaced_; }  ///< [m] of its vertices; 0 unless that colours it
+  float max_displacement() const { return max_displacement_; }  ///< [m] of its vertices; 0 unless that colours it
 
   /// Appends a mesh for each part, with numbers from `id` on; the image has the number `texture`.
   void add_views(int id, int texture, Frame& frame) const;
@@ -37,7 +37,7 @@ class VisualOnStage {
   std::shared_ptr<const Image> image_;  ///< null: none
   std::vector<Eigen::Vector3f> rest_normal_;
   std::vector<float> displacement_;  ///< [m] per vertex; empty unless that colours it
-  float most_displaced_ = 0;
+  float max_displacement_ = 0;
   std::uint64_t cuts_ = 0;
 };
 

@@ -14,10 +14,10 @@ namespace palpate::ros {
 Commands::Commands(Node& node, Bus& bus, const Scene& scene) : node_(node), writer_(bus.writer(topics::device_state)) {
   // Above every number of a bridge that ran before on this machine.
   const auto first = static_cast<std::uint64_t>(now_ns() / 1'000'000);
-  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    const Tool& tool = scene.tools[i];
-    if (!make_device(scene, static_cast<int>(i))->on_bus()) continue;
-    const std::string topic = "/palpate/" + allowed_name(tool.name) + "/command";
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz);
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (!devices[i]->on_bus()) continue;
+    const std::string topic = "/palpate/" + allowed_name(scene.tools[i].name) + "/command";
     tools_.push_back({topic,
                       node.subscription(topic, sensor_msgs_msg_dds__JointState__desc),
                       {.tool = static_cast<std::uint32_t>(i), .seq = first}});

@@ -19,6 +19,7 @@ for stage in "$@"; do
       ./scripts/install.sh libcgal-demo  # a real liver, for its test
       PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 -E '^test_fuzz' ;;  # their long form is the stage fuzz
     stability)
+      ./scripts/install.sh plots
       ./scripts/build.sh release palpate palpate_study
       ./build/release/bin/palpate stability --jobs "$(nproc)" -o out/stability ;;
     mcap)
@@ -26,10 +27,11 @@ for stage in "$@"; do
       npm install --silent --no-save --prefix out/mcap_reader @mcap/core @foxglove/omgidl-parser @foxglove/omgidl-serialization
       PALPATE_MCAP_READER=$PWD/out/mcap_reader build/release/bin/test_mcap ;;
     docs)
+      ./scripts/install.sh plots
       ./scripts/build.sh release programs palpate_study
       python3 tests/docs/run_commands.py build/release/bin --all ;;
     python)
-      ./scripts/install.sh python3-dev pybind11-dev file
+      ./scripts/install.sh python plots file
       ./scripts/build.sh python palpate palpate_python
       for example in python/examples/*.py; do
         echo "$example"

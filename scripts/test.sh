@@ -2,7 +2,7 @@
 # Sets up, builds and runs all tests. Fails if one fails. Further arguments go to ctest (e.g. -R pattern).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-./scripts/install.sh libcgal-dev libinsighttoolkit5-dev libspnav-dev pybind11-dev python3-dev  # for what is optional, and its tests
+./scripts/install.sh images spacemouse python  # what is optional, and its tests
 ./scripts/build.sh release
 ./scripts/format.sh --check
 ctest --preset release --timeout 300 --parallel "$(nproc)" "$@"

@@ -4,7 +4,7 @@
 # ITK's headers, as Debian 12 configures them, are for GCC alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-./scripts/install.sh clang-tidy
+./scripts/install.sh programs tests clang-tidy
 cmake --preset tidy
 cmake --build --preset tidy --target palpate_idl  # its headers are generated
 files=("$@")

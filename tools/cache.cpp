@@ -17,8 +17,8 @@
 #include "common/mesh/kept_reading.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
-#include "tools/commands.hpp"
-#include "tools/human_bytes.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/human_bytes.hpp"
 
 namespace palpate {
 namespace {

@@ -16,11 +16,11 @@
 #include "common/tool/instrument.hpp"
 #include "render_node/image.hpp"
 #include "tools/check_tool.hpp"
-#include "tools/commands.hpp"
-#include "tools/human_bytes.hpp"
 #include "tools/mesh/check_mesh.hpp"
 #include "tools/node_plan.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/human_bytes.hpp"
+#include "tools/shared/set_option.hpp"
 #include "tools/tool_warnings.hpp"
 
 namespace palpate {

@@ -1,6 +1,6 @@
 #pragma once
 #include "common/scene/scene.hpp"
-#include "tools/check_output.hpp"
+#include "tools/shared/check_output.hpp"
 
 namespace palpate {
 

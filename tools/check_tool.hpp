@@ -5,7 +5,7 @@
 
 #include "common/models/check/check.hpp"
 #include "common/scene/scene.hpp"
-#include "tools/check_output.hpp"
+#include "tools/shared/check_output.hpp"
 
 namespace palpate {
 

@@ -7,8 +7,8 @@
 #include "common/bus/log_reader.hpp"
 #include "common/bus/print.hpp"
 #include "idl/topics.hpp"
-#include "tools/commands.hpp"
 #include "tools/mcap/export_mcap.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {

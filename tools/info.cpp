@@ -4,10 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/print.hpp"
+#include "common/bus/task_figures.hpp"
 #include "common/describe/printable.hpp"
-#include "tools/commands.hpp"
 #include "tools/latency/hop_json.hpp"
 #include "tools/log_summary.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {
@@ -92,7 +93,7 @@ void print_hops(const LogSummary& s) {
 
 void print_tasks(const LogSummary& s) {
   for (const TaskRecord& task : s.tasks)
-    fmt::print("\ntask of catheter {} in run {:016x}\n{}", task.body, task.run, task_text(task));
+    fmt::print("\ntask of catheter {} in run {:016x}\n{}\n", task.body, task.run, fmt::join(task_lines(task), "\n"));
 }
 
 void print_text(const LogSummary& s, const std::string& file) {

@@ -1,5 +1,5 @@
 #include "common/fem/processor_blas.hpp"
-#include "tools/commands.hpp"
+#include "tools/shared/commands.hpp"
 
 int main(int argc, char** argv) {
   palpate::use_blas_of_this_processor(argv);

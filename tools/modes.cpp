@@ -10,9 +10,9 @@
 
 #include "common/models/vibration.hpp"
 #include "common/scene/scene_changes.hpp"
-#include "tools/choose_body.hpp"
-#include "tools/commands.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/choose_body.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/set_option.hpp"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "common/node/node_setup.hpp"
-#include "tools/commands.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {

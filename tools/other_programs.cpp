@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "tools/child_process.hpp"
-#include "tools/commands.hpp"
+#include "tools/shared/child_process.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include "common/cli/progress.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene_changes.hpp"
-#include "tools/commands.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/set_option.hpp"
 
 namespace palpate {
 namespace {

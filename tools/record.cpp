@@ -7,9 +7,9 @@
 #include "common/bus/recorder.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
-#include "tools/commands.hpp"
 #include "tools/logs/log_files.hpp"
-#include "tools/network_options.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/network_options.hpp"
 
 namespace palpate {
 namespace {

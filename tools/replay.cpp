@@ -8,10 +8,10 @@
 #include "common/realtime/shutdown.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
-#include "tools/commands.hpp"
 #include "tools/log_player.hpp"
 #include "tools/logs/log_files.hpp"
-#include "tools/network_options.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/network_options.hpp"
 
 namespace palpate {
 namespace {

@@ -12,15 +12,15 @@
 #include "common/scene/moved_files.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "common/tool/trajectory.hpp"
-#include "tools/child_process.hpp"
-#include "tools/commands.hpp"
 #include "tools/domain_claim.hpp"
 #include "tools/guard_summary.hpp"
 #include "tools/node_plan.hpp"
 #include "tools/run_nodes.hpp"
 #include "tools/run_summary.hpp"
-#include "tools/say_stages.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/child_process.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/say_stages.hpp"
+#include "tools/shared/set_option.hpp"
 
 namespace palpate {
 namespace {

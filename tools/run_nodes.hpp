@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/bus/task_figures.hpp"
 #include "tools/guard_summary.hpp"
 
 namespace palpate {
@@ -22,14 +23,10 @@ void print_summary(const nlohmann::json& s) {
         number(haptic, "step_us_p999"), haptic.value("missed", 0), haptic.value("ticks", 0),
         number(haptic, "force_max_n"));
   if (haptic.is_object() && haptic.contains("tasks"))
-    for (const auto& task : haptic["tasks"])
-      fmt::print(
-          "task     {:8.1f} mm of '{}' inserted, {:.1f} mm at the deepest, {:.1f} s after it went in   largest force "
-          "{:.2f} N   {} wall contacts, "
-          "{} grasps, {} drops\n",
-          1e3 * number(task, "inserted_m"), task.value("body", ""), 1e3 * number(task, "deepest_m"),
-          number(task, "inserting_s"), number(task, "force_max_n"), task.value("wall_contacts", 0),
-          task.value("grasps", 0), task.value("drops", 0));
+    for (const auto& task : haptic["tasks"]) {
+      const auto value = [&](const TaskFigure& figure) { return number(task, figure.key().c_str()); };
+      fmt::print("task     '{}': {}\n", task.value("body", ""), fmt::join(task_lines(value), ", "));
+    }
   if (render.is_object())
     fmt::print("render   {:8.1f} Hz   tool to picture p50 {:.2f} ms, p99 {:.2f} ms   {} frames\n",
                number(render, "rate_hz"), 1e-3 * number(render, "latency_us_p50"),

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "common/mesh/mesh_file.hpp"
-#include "tools/commands.hpp"
 #include "tools/scene_for_mesh.hpp"
+#include "tools/shared/commands.hpp"
 #include "tools/visual_about.hpp"
 
 namespace palpate {

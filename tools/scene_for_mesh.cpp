@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/devices/device_spec.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/tool/devices/device_spec.hpp"
 
 namespace palpate {
 namespace {

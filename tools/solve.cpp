@@ -19,10 +19,10 @@
 #include "common/scene/moved_files.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "common/shell/boundary_conditions.hpp"
-#include "tools/choose_body.hpp"
-#include "tools/commands.hpp"
 #include "tools/hold_argument.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/choose_body.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/set_option.hpp"
 #include "tools/solution_file.hpp"
 #include "tools/solve_dynamic.hpp"
 

@@ -12,8 +12,8 @@
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/scene_changes.hpp"
-#include "tools/choose_body.hpp"
 #include "tools/drive/lock_step.hpp"
+#include "tools/shared/choose_body.hpp"
 #include "tools/solution_file.hpp"
 
 namespace palpate {

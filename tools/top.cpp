@@ -7,8 +7,8 @@
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
-#include "tools/commands.hpp"
-#include "tools/network_options.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/network_options.hpp"
 #include "tools/top_board.hpp"
 
 namespace palpate {

@@ -51,14 +51,6 @@ std::string to_json(const T& value) {
   }
 }
 
-/// A task record for the trainee: a line of what was reached, one of how.
-inline std::string task_text(const TaskRecord& t) {
-  return fmt::format(
-      "inserted {:.1f} mm, deepest {:.1f} mm after {:.2f} s, held for {:.2f} s\n"
-      "largest force {:.3f} N, wall contacts {}, grasps {}, drops {}\n",
-      1e3 * t.inserted, 1e3 * t.deepest, t.inserting_s, t.held_s, t.max_force, t.wall_contacts, t.grasps, t.drops);
-}
-
 /// Column names of csv_row: arrays become name_0, name_1, …; a sequence is one column.
 template <class M>
 std::string csv_header() {

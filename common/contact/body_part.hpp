@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-class CatheterWall;
+class DuctWall;
 
 /// What the bodies do to one tool in a step. Linear and corrected forces share their direction of press.
 struct ToolLoad {
@@ -65,7 +65,7 @@ class BodyPart {
   using FindPart = std::function<BodyPart*(const std::string& body)>;
   virtual void join(const FindPart& /*find*/) {}
   /// The wall that another body may be led into; null if it is none.
-  virtual CatheterWall* wall() { return nullptr; }
+  virtual DuctWall* wall() { return nullptr; }
 
   /// Brings the surface up to date, near the tools at least.
   virtual void update_surface(std::span<const MovingTool>) {}

@@ -1,19 +1,23 @@
 #include "common/devices/device.hpp"
 
 #include "common/devices/held_device.hpp"
-#include "common/tool/trajectory.hpp"
 
 namespace palpate {
+namespace {
 
-std::unique_ptr<Device> make_device(const Scene& scene, int tool, bool hands) {
-  const DevicePlace place{scene.tools[tool], static_cast<std::uint32_t>(tool), scene.rates.haptic_hz};
+std::unique_ptr<Device> make(const DevicePlace& place, bool hands) {
   auto device = std::visit([&](const auto& spec) { return make_device(spec, place); }, place.tool.device);
   if (device->on_bus() || !is_for_hands(place.tool.device, hands)) return device;
   return std::make_unique<HeldDevice>(HeldDevice::Settings{}, place.haptic_hz, std::move(device));
 }
 
-std::optional<Trajectory> script_of(const DeviceSpec& device) {
-  return std::visit([](const auto& spec) { return script(spec); }, device);
+}  // namespace
+
+std::vector<std::unique_ptr<Device>> make_devices(std::span<const Tool> tools, double haptic_hz, bool hands) {
+  std::vector<std::unique_ptr<Device>> devices;
+  for (const Tool& tool : tools)
+    devices.push_back(make({tool, static_cast<std::uint32_t>(devices.size()), haptic_hz}, hands));
+  return devices;
 }
 
 }  // namespace palpate

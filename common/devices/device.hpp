@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
+#include <span>
+#include <vector>
 
-#include "common/scene/scene.hpp"
-#include "common/sim/step_record.hpp"
+#include "common/tool/device_sample.hpp"
+#include "common/tool/spec.hpp"
 
 namespace palpate {
 
@@ -37,8 +39,8 @@ struct DevicePlace {
   double haptic_hz;
 };
 
-/// The device that the scene names for this tool; with `hands` people may take it, unless it is theirs anyway or its
-/// driver is elsewhere. Throws std::runtime_error for a missing or malformed file.
-std::unique_ptr<Device> make_device(const Scene& scene, int tool, bool hands = false);
+/// The devices that a scene names for its tools, one each; with `hands` people may take them, unless they are theirs
+/// anyway or their driver is elsewhere. Throws std::runtime_error for a missing or malformed file.
+std::vector<std::unique_ptr<Device>> make_devices(std::span<const Tool> tools, double haptic_hz, bool hands = false);
 
 }  // namespace palpate

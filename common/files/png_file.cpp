@@ -28,8 +28,8 @@ PngSize png_size(std::string_view bytes, const std::filesystem::path& file) {
   if (bytes.size() < kHead || !bytes.starts_with(kPngMark) || bytes.substr(12, 4) != "IHDR")
     refuse_png(file, "this is no PNG image");
   const std::uint32_t width = big_endian(bytes, kWidthAt), height = big_endian(bytes, kHeightAt);
-  constexpr std::uint32_t kMost = 0x7fffffff;
-  if (width == 0 || height == 0 || width > kMost || height > kMost) refuse_png(file, "the image has no size");
+  constexpr std::uint32_t kMaxSide = 0x7fffffff;
+  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) refuse_png(file, "the image has no size");
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 

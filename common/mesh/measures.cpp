@@ -45,10 +45,10 @@ MeshMeasures measures_of(const TetMesh& mesh) {
     m.volume += tet_volume(mesh, t);
     const auto [least, greatest] = angles_of(mesh, t);
     smallest.push_back(degrees(least));
-    m.largest_angle = std::max(m.largest_angle, degrees(greatest));
+    m.max_angle = std::max(m.max_angle, degrees(greatest));
   }
   m.extent = high - low;
-  m.smallest_angle = *std::ranges::min_element(smallest);
+  m.min_angle = *std::ranges::min_element(smallest);
   const auto middle = smallest.begin() + static_cast<std::ptrdiff_t>(smallest.size() / 2);
   std::ranges::nth_element(smallest, middle);
   m.median_angle = *middle;
@@ -61,8 +61,8 @@ std::string say_size(const MeshMeasures& m, double mass) {
 }
 
 std::string say_angles(const MeshMeasures& m) {
-  return fmt::format("dihedral angles: smallest {:.1f}, median {:.1f}, largest {:.1f} degrees", m.smallest_angle,
-                     m.median_angle, m.largest_angle);
+  return fmt::format("dihedral angles: smallest {:.1f}, median {:.1f}, largest {:.1f} degrees", m.min_angle,
+                     m.median_angle, m.max_angle);
 }
 
 }  // namespace palpate

@@ -10,9 +10,9 @@ inline constexpr double kTissueDensity = 1060;
 
 /// What a person asks of a mesh first.
 struct MeshMeasures {
-  Eigen::Vector3d extent;                              ///< [m] along x, y, z
-  double volume;                                       ///< [m^3]
-  double smallest_angle, median_angle, largest_angle;  ///< [degrees] between two faces of a tetrahedron
+  Eigen::Vector3d extent;                     ///< [m] along x, y, z
+  double volume;                              ///< [m^3]
+  double min_angle, median_angle, max_angle;  ///< [degrees] between two faces of a tetrahedron
 };
 
 /// Of a mesh with at least one tetrahedron; the median is that of every tetrahedron's smallest angle.

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr float kLeastVolume = 0.05f;  // that an affine map may leave of a body and still be a frame for it
+constexpr float kMinVolume = 0.05f;  // that an affine map may leave of a body and still be a frame for it
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void VisualShape::Frame::follow(std::span<const Vector3f> nodes) {
   for (const int n : node_) middle += nodes[n] / static_cast<float>(node_.size());
   Matrix3f map = Matrix3f::Zero();
   for (std::size_t i = 0; i < node_.size(); ++i) map += (nodes[node_[i]] - middle) * dual_[i].transpose();
-  map_ = map.determinant() > kLeastVolume ? map : Matrix3f::Identity();
+  map_ = map.determinant() > kMinVolume ? map : Matrix3f::Identity();
   inverse_ = map_.inverse();
   shift_ = middle - map_ * middle_;
 }

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/bus/task_figures.hpp"
+
 namespace palpate {
 
 nlohmann::json handling_summary(const std::string& tool, const HandlingFigures& f) {
@@ -19,15 +21,10 @@ nlohmann::json handling_summary(const std::string& tool, const HandlingFigures& 
 }
 
 nlohmann::json task_summary(const std::string& body, const TaskRecord& task) {
-  return {{"body", body},
-          {"inserted_m", task.inserted},
-          {"deepest_m", task.deepest},
-          {"inserting_s", task.inserting_s},
-          {"force_max_n", task.max_force},
-          {"wall_contacts", task.wall_contacts},
-          {"grasps", task.grasps},
-          {"drops", task.drops},
-          {"held_s", task.held_s}};
+  nlohmann::json summary{{"body", body}};
+  for (const TaskFigure& figure : task_figures())
+    std::visit([&](const auto member) { summary[figure.key()] = task.*member; }, figure.field);
+  return summary;
 }
 
 nlohmann::json resection_summary(const std::string& body, const Resection& resection) {

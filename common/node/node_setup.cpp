@@ -63,8 +63,8 @@ void say_ready(const NodeOptions& options) {
   std::fflush(stdout);
 }
 
-int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
-              const NodeOptions& options) {
+int node_main(const char* name, int argc, char** argv, cli::CommandLine& app,
+              const std::function<void(const NodeOptions&)>& body, const NodeOptions& options) {
   if (const auto status = app.read(argc, argv)) return *status;
   use_small_stacks();
   open_log(name);

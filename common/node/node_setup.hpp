@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ std::uint64_t new_run();
 void say_ready(const NodeOptions& options);
 
 /// Runs `body` with logging under the node's name; prints the sentence of an exception and returns the exit status.
-int node_main(const char* name, int argc, char** argv, cli::CommandLine& app, void (*body)(const NodeOptions&),
-              const NodeOptions& options);
+int node_main(const char* name, int argc, char** argv, cli::CommandLine& app,
+              const std::function<void(const NodeOptions&)>& body, const NodeOptions& options);
 
 }  // namespace palpate

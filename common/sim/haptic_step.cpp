@@ -43,12 +43,13 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
   std::vector<std::uint8_t> moving;
   std::vector<Eigen::Vector3d> gravity;
   for (int b = 0; b < bodies_; ++b) {
-    names_.push_back(name_of(scene.bodies[b]));
     const auto make = [&](const auto& spec) { return make_haptic_part(spec, archives[b], settings); };
     auto part = std::visit(make, scene.bodies[b]);
     moving.push_back(part == nullptr);
     gravity.push_back(std::visit([](const auto& spec) { return moving_gravity(spec); }, scene.bodies[b]));
-    if (part) add(b, std::move(part));
+    if (!part) continue;
+    entries_.push_back({b, name_of(scene.bodies[b]), part.get()});
+    parts_.push_back(std::move(part));
   }
   limits_ = std::make_unique<TissueLimits>(archives, moving, gravity);
   if (limits_->any()) {
@@ -58,7 +59,7 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
   }
   for (const Entry& entry : entries_)
     entry.part->join([&](const std::string& name) -> BodyPart* {
-      const auto of = std::ranges::find_if(entries_, [&](const Entry& other) { return names_[other.body] == name; });
+      const auto of = std::ranges::find(entries_, name, &Entry::name);
       return of == entries_.end() ? nullptr : of->part;
     });
   seen_.resize(rigs_.size());
@@ -66,11 +67,6 @@ HapticStep::HapticStep(const Scene& scene, const std::vector<Archive>& archives)
 }
 
 HapticStep::~HapticStep() = default;
-
-void HapticStep::add(int body, std::unique_ptr<BodyPart> part) {
-  entries_.push_back({body, part.get()});
-  parts_.push_back(std::move(part));
-}
 
 const BodyPart* HapticStep::part(int body) const {
   const auto entry = std::ranges::find(entries_, body, &Entry::body);
@@ -99,13 +95,12 @@ void HapticStep::start(std::span<const ToolDofs> dofs) {
 void HapticStep::place(std::span<const ToolDofs> dofs) {
   for (int t = 0; t < tools(); ++t)
     if (!rigs_[t]->start(dofs[t])) throw std::runtime_error("a tool's first pose is not a number");
-  resumed_.assign(rigs_.size(), false);
   see_tools();
 }
 
 std::string HapticStep::starts_inside() const {
   for (int t = 0; t < tools(); ++t)
-    if (!resumed_[t])
+    if (!rigs_[t]->resumed())
       if (std::string said = inside(t); !said.empty()) return said;
   return {};
 }
@@ -117,7 +112,7 @@ std::string HapticStep::inside(int tool) const {
       const double depth = entry.part->penetration(seen.axis(p), seen.radius(p));
       if (depth > 0)
         return fmt::format("tool '{}' starts inside body '{}': its {} reaches {:.1f} mm into it", rigs_[tool]->name(),
-                           names_[entry.body], rigs_[tool]->end().part_name(p), 1e3 * depth);
+                           entry.name, rigs_[tool]->end().part_name(p), 1e3 * depth);
     }
   return {};
 }
@@ -154,7 +149,7 @@ TouchContact HapticStep::contact_of(int tool, const HeldContact& held) const {
 bool HapticStep::resume(const ContactState& kept) {
   if (kept.tool >= rigs_.size()) return false;
   const int tool = static_cast<int>(kept.tool);
-  if (resumed_[tool] || inside(tool).empty()) return true;
+  if (rigs_[tool]->resumed() || inside(tool).empty()) return true;
   if (kept.contacts.empty() ||
       !std::ranges::all_of(kept.contacts, [&](const HeldContact& held) { return is_sound(kept.tool, held); }))
     return false;
@@ -165,7 +160,7 @@ bool HapticStep::resume(const ContactState& kept) {
     if (!entries_[e].part->fits(seen_[tool], of_part[e])) return false;
   }
   for (std::size_t e = 0; e < entries_.size(); ++e) entries_[e].part->adopt(of_part[e]);
-  resumed_[tool] = true;
+  rigs_[tool]->set_resumed();
   if (starts_inside().empty())
     for (auto& part : parts_) part->settle(seen_);
   return true;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/archive/archive.hpp"
@@ -75,6 +76,7 @@ class HapticStep {
   /// Every body that the tools meet here, in order.
   struct Entry {
     int body;
+    std::string name;
     BodyPart* part;
   };
   std::span<const Entry> entries() const { return entries_; }
@@ -93,7 +95,6 @@ class HapticStep {
   void restore(std::span<const std::uint8_t> from);  ///< throws std::runtime_error on a state of another scene
 
  private:
-  void add(int body, std::unique_ptr<BodyPart> part);
   std::string inside(int tool) const;
   bool is_sound(std::uint32_t tool, const HeldContact& held) const;
   TouchContact contact_of(int tool, const HeldContact& held) const;
@@ -105,16 +106,14 @@ class HapticStep {
 
   double dt_;
   int bodies_;
-  std::vector<std::string> names_;              ///< of the bodies
   std::unique_ptr<TissueLimits> limits_;        ///< what moving tissue can do
   std::vector<std::unique_ptr<ToolRig>> rigs_;  ///< whose ports passivity_ watches
   std::vector<std::unique_ptr<BodyPart>> parts_;
-  std::vector<Entry> entries_;  ///< which body each of parts_ is of, moving tissue's left out
+  std::vector<Entry> entries_;  ///< which body each of parts_ is, moving tissue's left out
   LocalPart* local_ = nullptr;  ///< one of parts_; null without moving tissue
   PassivityGuard passivity_;
   std::uint64_t step_ = 0;
-  std::vector<bool> resumed_;  ///< per tool
-  // What the bodies see of the tools in a step, and what they do to them.
+  // What the bodies see of the tools in a step, and what they do to them: one after the other, as the bodies take them.
   std::vector<MovingTool> seen_;
   std::vector<ToolLoad> loads_;
 };

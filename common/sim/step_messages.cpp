@@ -23,10 +23,6 @@ ToolState tool_state(const StepRecord& r, int tool) {
           .local_model_seq = from.model_seq};
 }
 
-ToolDofs dofs_of(const ToolState& s) {
-  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal, s.silent != 0};
-}
-
 ForceState force_state(const StepRecord& r, int tool) {
   const StepRecord::OfTool& from = r.of_tool[tool];
   return {.tool = static_cast<std::uint32_t>(tool),

@@ -7,8 +7,6 @@ namespace palpate {
 
 /// What a finished step says of one tool, run and seq apart.
 ToolState tool_state(const StepRecord& record, int tool);
-/// The degrees of freedom that such a message holds.
-ToolDofs dofs_of(const ToolState& state);
 ForceState force_state(const StepRecord& record, int tool);
 /// Everything but run and seq; keeps the message's memory.
 void describe_contacts(const StepRecord& record, int tool, ContactState& message);

@@ -13,13 +13,13 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
 
 void prepare_record(const HapticStep& haptic, StepRecord& r) {
   r.news = haptic.news();
-  BodyPart::Capacity most;
-  for (const auto& [body, part] : haptic.entries()) {
-    most.contacts += part->capacity().contacts;
-    most.forces += part->capacity().forces;
+  BodyPart::Capacity all;
+  for (const HapticStep::Entry& entry : haptic.entries()) {
+    all.contacts += entry.part->capacity().contacts;
+    all.forces += entry.part->capacity().forces;
   }
-  r.contacts.reserve(most.contacts);
-  r.forces.reserve(most.forces);
+  r.contacts.reserve(all.contacts);
+  r.forces.reserve(all.forces);
 }
 
 namespace {
@@ -72,11 +72,11 @@ void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples
                     .model_run = moving ? haptic.local(t).model().run : 0,
                     .model_seq = moving ? haptic.local(t).model().seq : 0};
   }
-  for (const auto& [b, part] : haptic.entries()) {
-    const auto body = static_cast<std::uint32_t>(b);
-    part->for_each_contact([&r, body](const TouchContact& c) { add_contact(c, body, r); });
-    if (!part->superposed()) continue;  // its shape follows from its own state
-    part->for_each_force([&r, body](int tool, int node, const Eigen::Vector3d& f) {
+  for (const HapticStep::Entry& entry : haptic.entries()) {
+    const auto body = static_cast<std::uint32_t>(entry.body);
+    entry.part->for_each_contact([&r, body](const TouchContact& c) { add_contact(c, body, r); });
+    if (!entry.part->superposed()) continue;  // its shape follows from its own state
+    entry.part->for_each_force([&r, body](int tool, int node, const Eigen::Vector3d& f) {
       r.forces.push_back({tool, {body, static_cast<std::uint32_t>(node), plain(f)}});
     });
   }

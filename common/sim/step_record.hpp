@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "common/sim/haptic_step.hpp"
-#include "common/tool/kinematics.hpp"
+#include "common/tool/device_sample.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
@@ -46,12 +46,6 @@ struct StepRecord {
 
 /// Makes room in a slot of the ring for the bodies of a scene.
 void prepare_record(const HapticStep& haptic, StepRecord& record);
-
-/// One tool's input of a step.
-struct DeviceSample {
-  ToolDofs dofs;
-  std::uint64_t seq = 0;  ///< of the device's sample; 0 for a scripted tool
-};
 
 /// Copies a finished step into `record`. No allocation.
 void fill_record(const HapticStep& haptic, std::span<const DeviceSample> samples, std::uint64_t step,

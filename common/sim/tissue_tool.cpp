@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/sim/step_messages.hpp"
+#include "common/tool/dofs_of.hpp"
 #include "common/tool/instrument.hpp"
 
 namespace palpate {

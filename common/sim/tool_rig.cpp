@@ -39,6 +39,7 @@ bool ToolRig::start(const ToolDofs& dofs) {
   before_ = now_;
   end_->start(dofs.grip);
   handle_ = end_->handle();
+  resumed_ = false;
   return true;
 }
 

@@ -40,6 +40,9 @@ class ToolRig {
 
   /// The tool stands here; call once, before the first step. False for a pose that is not a number.
   bool start(const ToolDofs& dofs);
+  /// The bodies have taken up the contacts that it had before it stood here.
+  void set_resumed() { resumed_ = true; }
+  bool resumed() const { return resumed_; }
   /// A pose that is not a number is a fault: the tool is taken to stand still, and false comes back.
   bool sense(const ToolDofs& dofs);
   /// Its jaws follow the handle.
@@ -79,6 +82,7 @@ class ToolRig {
   PortForce wanted_, let_go_;        ///< in the last step; what it lost as the jaws let go
   double sliding_ = 0, slide_step_;  ///< share of it that has not yet slid out
   bool lets_go_ = false;             ///< in this step
+  bool resumed_ = false;
   Port port_;
   Output output_;
 

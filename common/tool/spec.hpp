@@ -5,8 +5,8 @@
 
 #include "common/describe/description.hpp"
 #include "common/describe/meanings.hpp"
-#include "common/devices/device_spec.hpp"
 #include "common/geometry/direction.hpp"
+#include "common/tool/devices/device_spec.hpp"
 #include "common/tool/ends/end_spec.hpp"
 #include "common/tool/motion_limits.hpp"
 

@@ -14,8 +14,8 @@
 #include "palpate.h"
 
 static const int64_t NS_PER_S = 1000000000;
-static const int64_t PERIOD_NS = 1000000;  /* of the loop: 1 kHz */
-static const double TICK = 0.001;          /* the same [s] */
+static const int64_t PERIOD_NS = 1000000; /* of the loop: 1 kHz */
+static const double TICK = 0.001;         /* the same [s] */
 
 static volatile sig_atomic_t stopped = 0;
 
@@ -31,25 +31,27 @@ static int64_t now_ns(void) {
   return t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
-static void fail(const char *what, dds_return_t code) {
+static void fail(const char* what, dds_return_t code) {
   fprintf(stderr, "press: %s: %s\n", what, dds_strretcode(-code));
   exit(1);
 }
 
-static dds_entity_t checked(const char *what, dds_entity_t entity) {
+static dds_entity_t checked(const char* what, dds_entity_t entity) {
   if (entity < 0) fail(what, entity);
   return entity;
 }
 
 /* The hardware, here an emulated one: in and out within four seconds. */
-static void read_position(double seconds, double from, double to, palpate_DeviceState *state) {
+static void read_position(double seconds, double from, double to, palpate_DeviceState* state) {
   const double pi = acos(-1);
   state->depth = from + (to - from) * 0.5 * (1 - cos(2 * pi * seconds / 4));
 }
 
 /* The motors, here emulated ones: they remember the largest force and the largest change in a tick [N]. */
 static double largest = 0, change = 0;
-static double size(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+static double size(const double v[3]) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
 static void drive_motors(const double force[3]) {
   static double last[3];
   const double by[3] = {force[0] - last[0], force[1] - last[1], force[2] - last[2]};
@@ -59,24 +61,24 @@ static void drive_motors(const double force[3]) {
 }
 
 /* What the motors give, whatever is said on the network. */
-static const double MAX_FORCE = 10;          /* [N]; ten times that is no force for this device */
-static const double MAX_RATE = 500;          /* [N/s] at which the force rises or turns */
-static const int64_t SILENCE_NS = 20000000;  /* without a force for so long, it fades */
+static const double MAX_FORCE = 10;           /* [N]; ten times that is no force for this device */
+static const double MAX_RATE = 500;           /* [N/s] at which the force rises or turns */
+static const int64_t SILENCE_NS = 20000000;   /* without a force for so long, it fades */
 static const double FADE = 0.02, BACK = 0.05; /* [s] from all to nothing, and back */
 
 struct motors {
-  int follows;      /* a haptic loop, until it has been silent and its force is gone */
-  uint64_t run;     /* of that loop */
-  uint64_t step;    /* of it, told last */
-  int catches_up;   /* with a force of which steps were missing */
-  int64_t heard_ns; /* when it was heard last */
-  double told[3];   /* [N] then */
-  double share;     /* of it that the motors give */
-  double given[3];  /* [N] */
+  int follows;                         /* a haptic loop, until it has been silent and its force is gone */
+  uint64_t run;                        /* of that loop */
+  uint64_t step;                       /* of it, told last */
+  int catches_up;                      /* with a force of which steps were missing */
+  int64_t heard_ns;                    /* when it was heard last */
+  double told[3];                      /* [N] then */
+  double share;                        /* of it that the motors give */
+  double given[3];                     /* [N] */
   unsigned long long strange, refused; /* forces of other loops; those that cannot be */
 };
 
-static void hear(struct motors *m, const palpate_ForceState *said) {
+static void hear(struct motors* m, const palpate_ForceState* said) {
   const double newtons = size(said->force);
   if (m->follows && said->run != m->run) {
     m->strange++;
@@ -93,7 +95,7 @@ static void hear(struct motors *m, const palpate_ForceState *said) {
 }
 
 /* Once a tick. From step to step the force falls as fast as it is told, since the haptic node bounds that. */
-static void give(struct motors *m) {
+static void give(struct motors* m) {
   const int silent = !m->follows || now_ns() - m->heard_ns > SILENCE_NS;
   m->share = silent ? fmax(0, m->share - TICK / FADE) : fmin(1, m->share + TICK / BACK);
   if (silent && m->share == 0) m->follows = 0;
@@ -108,12 +110,12 @@ static void give(struct motors *m) {
 }
 
 /* Hears what has come for this tool. */
-static void take_forces(dds_entity_t reader, uint32_t tool, struct motors *motors) {
-  void *samples[64] = {NULL};
+static void take_forces(dds_entity_t reader, uint32_t tool, struct motors* motors) {
+  void* samples[64] = {NULL};
   dds_sample_info_t infos[64];
   const dds_return_t count = dds_take(reader, samples, infos, 64, 64);
   for (int i = 0; i < count; ++i) {
-    const palpate_ForceState *force = samples[i];
+    const palpate_ForceState* force = samples[i];
     if (infos[i].valid_data && force->tool == tool) hear(motors, force);
   }
   if (count > 0) dds_return_loan(reader, samples, count);
@@ -124,7 +126,7 @@ static void loop(dds_entity_t writer, dds_entity_t reader, uint32_t tool, double
   struct motors motors = {0};
   const int64_t begin = now_ns();
   int64_t next = begin;
-  int limp = 1; /* until the first force */
+  int limp = 1;                          /* until the first force */
   while (!stopped || motors.share > 0) { /* no kick at the end either */
     if (!stopped) {
       state.seq++;
@@ -150,7 +152,7 @@ static void loop(dds_entity_t writer, dds_entity_t reader, uint32_t tool, double
   printf("not felt: %llu forces of another run, %llu out of range\n", motors.strange, motors.refused);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   const uint32_t tool = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 0;
   const double from = argc > 2 ? strtod(argv[2], NULL) : 0.10;
   const double to = argc > 3 ? strtod(argv[3], NULL) : 0.12;
@@ -164,8 +166,8 @@ int main(int argc, char **argv) {
   dds_qset_history(reliable, DDS_HISTORY_KEEP_LAST, 2048);
   dds_qset_reliability(lossy, DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_history(lossy, DDS_HISTORY_KEEP_LAST, 16); /* another's force does not hide the one that is followed */
-  const dds_entity_t device_topic = checked(
-      "topic", dds_create_topic(participant, &palpate_DeviceState_desc, "palpate/device_state", NULL, NULL));
+  const dds_entity_t device_topic =
+      checked("topic", dds_create_topic(participant, &palpate_DeviceState_desc, "palpate/device_state", NULL, NULL));
   const dds_entity_t force_topic =
       checked("topic", dds_create_topic(participant, &palpate_ForceState_desc, "palpate/force_state", NULL, NULL));
   const dds_entity_t writer = checked("writer", dds_create_writer(participant, device_topic, reliable, NULL));

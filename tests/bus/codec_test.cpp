@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/bus/log_format.hpp"
 #include "common/bus/print.hpp"
+#include "common/bus/task_figures.hpp"
 #include "tests/bus/messages_for_tests.hpp"
 
 namespace palpate {
@@ -92,9 +94,22 @@ TEST(Print, JsonReadsBackWithEveryValue) {
 }
 
 TEST(Print, ATaskRecordIsTwoLinesForTheTrainee) {
-  EXPECT_EQ(task_text(task_sample()),
-            "inserted 10.0 mm, deepest 20.0 mm after 3.50 s, held for 9.50 s\n"
-            "largest force 0.250 N, wall contacts 6, grasps 7, drops 8\n");
+  const auto [reached, how] = task_lines(task_sample());
+  EXPECT_EQ(reached, "inserted 10.0 mm, deepest 20.0 mm, reached in 3.5 s, held for 9.5 s");
+  EXPECT_EQ(how, "largest force 0.25 N, wall contacts 6, grasps 7, drops 8");
+}
+
+TEST(Print, EveryFieldOfATaskRecordThatIsNoStampIsAFigureOfIt) {
+  const std::set<std::string> stamps{"body", "run", "seq", "step", "sense_ns", "publish_ns"};
+  const TaskRecord task = task_sample();
+  std::set<double> in_message, told;
+  fields(
+      [&](const char* name, const auto& field) {
+        if (!stamps.contains(name)) in_message.insert(static_cast<double>(field));
+      },
+      task);
+  for (const TaskFigure& figure : task_figures()) told.insert(figure.of(task));
+  EXPECT_EQ(told, in_message);
 }
 
 TEST(Print, CsvHasAsManyCellsAsColumns) {

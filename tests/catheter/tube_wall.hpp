@@ -11,7 +11,7 @@ namespace palpate {
 
 /// A duct for tests: a tube of rings of triangles about an axis curve, with smooth made-up modes that it
 /// integrates itself.
-class TubeWall : public CatheterWall {
+class TubeWall : public DuctWall {
  public:
   struct Shape {
     double radius = 4.5e-3;  ///< [m]

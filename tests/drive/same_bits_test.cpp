@@ -10,7 +10,7 @@
 #include "idl/topics.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/hostile/attacker.hpp"
 #include "tests/loopback/loopback_scene.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::testing {
 

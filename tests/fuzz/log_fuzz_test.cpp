@@ -7,7 +7,7 @@
 #include "common/bus/log_writer.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/bus/print.hpp"
-#include "common/devices/device_spec.hpp"
+#include "common/devices/device.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"

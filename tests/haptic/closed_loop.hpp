@@ -5,7 +5,7 @@
 #include <set>
 
 #include "common/archive/compliance.hpp"
-#include "common/devices/hand/emulated_hand.hpp"
+#include "common/devices/emulated_hand.hpp"
 #include "common/dynamics/stability.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/geometry/triangle.hpp"

@@ -1,4 +1,5 @@
 #pragma once
+#include "common/devices/device.hpp"
 #include "common/scene/scene.hpp"
 
 namespace palpate::testing {
@@ -11,6 +12,11 @@ inline Scene scene_with(const DeviceSpec& device) {
   tool.device = device;
   scene.tools.push_back(tool);
   return scene;
+}
+
+inline std::unique_ptr<Device> device_with(const DeviceSpec& spec) {
+  const Scene scene = scene_with(spec);
+  return std::move(make_devices(scene.tools, scene.rates.haptic_hz).front());
 }
 
 }  // namespace palpate::testing

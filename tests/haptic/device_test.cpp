@@ -13,6 +13,7 @@
 namespace palpate {
 namespace {
 
+using testing::device_with;
 using testing::scene_with;
 
 class DeviceTest : public ::testing::Test {
@@ -33,7 +34,7 @@ TEST_F(DeviceTest, ALogPlaysTheMotionOfItsToolStepByStepAndRepeatsWhatWasLost) {
       log.write(topics::tool_state.name, 2, ToolState{.tool = 1, .run = 7, .seq = step, .step = step, .depth = 9});
     }
   }
-  const auto device = make_device(scene_with(LogDeviceSpec{file_}), 0);
+  const auto device = device_with(LogDeviceSpec{file_});
   EXPECT_DOUBLE_EQ(device->read(0).dofs.depth, 0.040);
   EXPECT_DOUBLE_EQ(device->read(0.004).dofs.depth, 0.044);
   EXPECT_DOUBLE_EQ(device->read(0.005).dofs.depth, 0.044);
@@ -50,7 +51,7 @@ TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
     log.write(topics::tool_state.name, 2, ToolState{.tool = 3, .run = 7, .seq = 1, .step = 0});
   }
   try {
-    make_device(scene_with(LogDeviceSpec{file_}), 0);
+    device_with(LogDeviceSpec{file_});
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("no motion of tool 'probe'"), std::string::npos) << error.what();
@@ -60,8 +61,7 @@ TEST_F(DeviceTest, ALogWithoutTheToolIsRefusedByName) {
 TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
   Scene scene = scene_with(BusDeviceSpec{});
   scene.tools.push_back(scene.tools[0]);
-  std::vector<std::unique_ptr<Device>> devices;
-  for (int t = 0; t < 2; ++t) devices.push_back(make_device(scene, t));
+  auto devices = make_devices(scene.tools, 1000);
   const auto network = make_memory_network();
   const auto here = make_memory_bus(network), elsewhere = make_memory_bus(network);
   BusDevices drivers(*here, devices);
@@ -77,8 +77,7 @@ TEST_F(DeviceTest, ADriverElsewhereMovesItsOwnToolAlone) {
 
 TEST_F(DeviceTest, ADriverOfAToolThatNoneElsewhereMovesIsNotHeardAndSoItIsSaidOnce) {
   const Scene scene = scene_with(BusDeviceSpec{});
-  std::vector<std::unique_ptr<Device>> devices;
-  devices.push_back(make_device(scene, 0));
+  auto devices = make_devices(scene.tools, 1000);
   const auto network = make_memory_network();
   const auto here = make_memory_bus(network), elsewhere = make_memory_bus(network);
   BusDevices drivers(*here, devices);
@@ -95,7 +94,7 @@ TEST_F(DeviceTest, ADriverOfAToolThatNoneElsewhereMovesIsNotHeardAndSoItIsSaidOn
 }
 
 TEST_F(DeviceTest, AToolDoesThePartOfItsDriversMotionThatTheSceneSays) {
-  const auto device = make_device(scene_with(BusDeviceSpec{.motion_scale = 0.5}), 0);
+  const auto device = device_with(BusDeviceSpec{.motion_scale = 0.5});
   device->put({.dofs = {.yaw = 0.2, .pitch = -0.1, .depth = 0.12, .roll = 0.3, .grip = 0.4}, .seq = 1});
   const ToolDofs dofs = device->read(0).dofs;
   EXPECT_DOUBLE_EQ(dofs.yaw, 0.1);

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-using testing::scene_with;
+using testing::device_with;
 
 /// A driver that presses at 1 kHz or as a page does, and stops and goes on.
 struct Driver {
-  explicit Driver(const DeviceSpec& spec) : device(make_device(scene_with(spec), 0)) {}
+  explicit Driver(const DeviceSpec& spec) : device(device_with(spec)) {}
   DeviceSample tick(bool speaks, double depth) {
     if (speaks) device->put({{.depth = depth, .pedal = 1}, ++seq});
     return device->read(kDt * ++ticks);

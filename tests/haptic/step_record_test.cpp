@@ -44,9 +44,9 @@ TEST(StepRecordOf, ManyToolsOnManyBodiesTellsEveryContactAndNodalForceAndTakesNo
   EXPECT_EQ(allocations(), before);
 
   std::size_t contacts = 0, forces = 0;
-  for (const auto& [b, part] : step.entries()) {
-    part->for_each_contact([&](const TouchContact&) { ++contacts; });
-    part->for_each_force([&](int, int, const Eigen::Vector3d&) { ++forces; });
+  for (const HapticStep::Entry& entry : step.entries()) {
+    entry.part->for_each_contact([&](const TouchContact&) { ++contacts; });
+    entry.part->for_each_force([&](int, int, const Eigen::Vector3d&) { ++forces; });
   }
   ASSERT_GT(forces, 3u * TouchBody::kMaxContacts);
   EXPECT_EQ(record.contacts.size(), contacts);

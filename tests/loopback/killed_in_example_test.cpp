@@ -13,7 +13,7 @@
 #include "tests/fuzz/rounds.hpp"
 #include "tests/loopback/forces_of_runs.hpp"
 #include "tests/loopback/loopback_scene.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/loopback/forces_of_runs.hpp"
 #include "tests/loopback/loopback_scene.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/realtime/clock.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

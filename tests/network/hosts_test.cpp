@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "tests/network/hosts_or_skip.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::testing {
 namespace {

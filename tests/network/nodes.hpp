@@ -4,7 +4,7 @@
 
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/network/two_hosts.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::testing {
 

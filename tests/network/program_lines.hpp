@@ -3,7 +3,7 @@
 #include <string>
 #include <thread>
 
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::testing {
 

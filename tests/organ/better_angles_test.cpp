@@ -37,10 +37,10 @@ bool on_side(double x) {
 TEST(BetterAngles, WorstAnglesGrowAndTheShapeStays) {
   FilledSolid filled = spoilt_cube();
   const FilledSolid before = filled;
-  const double worst = measures_of(before.mesh).smallest_angle;
+  const double worst = measures_of(before.mesh).min_angle;
   ASSERT_LT(worst, 9);
   better_angles(14, filled);
-  EXPECT_GT(measures_of(filled.mesh).smallest_angle, worst + 3);
+  EXPECT_GT(measures_of(filled.mesh).min_angle, worst + 3);
   check_tet_mesh(filled.mesh, "cube");
   EXPECT_NEAR(measures_of(filled.mesh).volume, std::pow(kSide, 3), 1e-12);
   std::vector<std::array<bool, 3>> parts(filled.mesh.nodes.size(), {false, false, false});

@@ -149,7 +149,7 @@ TEST_P(BrokenSurface, EndsInAGoodMeshOrInWordsThatSayWhere) {
   const TetMesh body = load_tet_mesh(mesh, 1);
   const MeshMeasures measures = measures_of(body);
   EXPECT_NEAR(measures.volume, broken.volume, broken.within * broken.volume);
-  EXPECT_GE(measures.smallest_angle, 12);
+  EXPECT_GE(measures.min_angle, 12);
   EXPECT_EQ(topology_of(body), (Topology{1, 0}));
 }
 

@@ -45,7 +45,7 @@ TEST_F(MeshCommand, ABallInMillimetresBecomesAGoodMeshOfItsVolumeAndTheSameAgain
   const TetMesh body = load_tet_mesh(folder_ / "a.msh", 1);
   const MeshMeasures m = measures_of(body);
   EXPECT_NEAR(m.volume, 4.0 / 3 * std::numbers::pi * 1.25e-4, 5e-3 * 5.236e-4);
-  EXPECT_GE(m.smallest_angle, 12);
+  EXPECT_GE(m.min_angle, 12);
   EXPECT_NEAR(static_cast<double>(body.nodes.size()), 500, 50);
   for (const int n : body.groups.at("attachment").nodes) EXPECT_LE(body.nodes[n].z(), -0.05 + 0.0105);
   const Surface surface = extract_surface(body);

@@ -60,7 +60,7 @@ TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSame
       << made.out;
   EXPECT_NE(made.out.find("'small': a cavity of 1 voxels"), std::string::npos) << made.out;
   const TetMesh mesh = load_tet_mesh(folder_ / "a.msh", 1);
-  EXPECT_GE(measures_of(mesh).smallest_angle, 12);
+  EXPECT_GE(measures_of(mesh).min_angle, 12);
   const std::string all = voxels();
   for (const auto& [name, label] : {std::pair{"big", 7}, {"small", 9}}) {
     double volume = 0;

@@ -59,7 +59,7 @@ class Phantom : public ::testing::Test {
   }
   static void expect_measures(const TetMesh& mesh, double volume, int genus, double curvature) {
     EXPECT_NEAR(measures_of(mesh).volume, volume, 0.01 * volume);
-    EXPECT_GE(measures_of(mesh).smallest_angle, 12);
+    EXPECT_GE(measures_of(mesh).min_angle, 12);
     EXPECT_EQ(topology_of(mesh), (Topology{1, genus}));
     EXPECT_NEAR(total_mean_curvature(surface_of(mesh)), curvature, 0.01 * curvature);
   }

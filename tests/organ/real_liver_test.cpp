@@ -32,7 +32,7 @@ TEST(RealLiver, BecomesASceneWithItsVolumesInOnePieceEach) {
             0)
       << text_of(said);
   const TetMesh organ = load_tet_mesh(mesh, 1);
-  EXPECT_GE(measures_of(organ).smallest_angle, 12);
+  EXPECT_GE(measures_of(organ).min_angle, 12);
   for (const auto& [name, volume] : {std::pair{"liver", 1.605e-3}, {"gall_bladder", 8.991e-6}}) {
     TetMesh part{organ.nodes, {}, {}};
     for (const int t : organ.groups.at(name).tetrahedra) part.tetrahedra.push_back(organ.tetrahedra[t]);

@@ -11,7 +11,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/ros/twin.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 #include "twin.h"
 
 namespace palpate {

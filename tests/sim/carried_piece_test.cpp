@@ -46,8 +46,7 @@ Momentum floating(const DynamicOrgan& organ) {
 TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
   const Scene scene = load_scene(PALPATE_SOURCE_DIR "/scenes/hepatectomy.toml");
   TwoNodes nodes(scene, load_or_precompute(scene, ArchivePart::surface));
-  std::vector<std::unique_ptr<Device>> devices;
-  for (int t = 0; t < static_cast<int>(scene.tools.size()); ++t) devices.push_back(make_device(scene, t));
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz);
   const auto at = [&](int k) {
     std::vector<ToolDofs> dofs;
     for (const auto& device : devices) dofs.push_back(device->read(1e-3 * k).dofs);

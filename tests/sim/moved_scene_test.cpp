@@ -21,7 +21,7 @@ class Played {
   Played(const std::string& name, const Vector3d& at) : scene_(load_scene(PALPATE_SOURCE_DIR "/scenes/" + name)) {
     move(at);
     simulator_.emplace(scene_, archives_);
-    for (int t = 0; t < static_cast<int>(scene_.tools.size()); ++t) devices_.push_back(make_device(scene_, t));
+    devices_ = make_devices(scene_.tools, scene_.rates.haptic_hz);
     simulator_->start(inputs(0));
   }
 

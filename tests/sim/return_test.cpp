@@ -145,7 +145,7 @@ class InterruptedScript : public ::testing::Test {
   /// A scene with its script's motion.
   struct Played {
     explicit Played(const std::string& name) : scene(load_scene(PALPATE_SOURCE_DIR "/scenes/" + name + ".toml")) {
-      for (std::size_t t = 0; t < scene.tools.size(); ++t) device.push_back(make_device(scene, static_cast<int>(t)));
+      device = make_devices(scene.tools, scene.rates.haptic_hz);
     }
     std::vector<ToolDofs> at(int k) const {
       std::vector<ToolDofs> dofs;

@@ -98,8 +98,7 @@ TEST(TipOverARim, ContactNeverPutsOutWork) {
 Felt felt_in(const std::string& name, int tool, int from, int to) {
   const Scene scene = load_scene(PALPATE_SOURCE_DIR "/scenes/" + name);
   sim::Simulator simulator(scene, load_or_precompute(scene, ArchivePart::surface));
-  std::vector<std::unique_ptr<Device>> devices;
-  for (int t = 0; t < static_cast<int>(scene.tools.size()); ++t) devices.push_back(make_device(scene, t));
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz);
   const auto inputs = [&](int k) {
     std::vector<sim::ToolInput> inputs;
     for (const auto& device : devices) inputs.push_back(device->read(1e-3 * k));

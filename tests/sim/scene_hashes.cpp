@@ -84,8 +84,7 @@ void print_second(int second, const Hashes& h, const Course& course) {
 void run(const std::string& file, double seconds) {
   const Scene scene = load_scene(file);
   Simulator simulator(scene, load_or_precompute(scene, ArchivePart::surface));
-  std::vector<std::unique_ptr<Device>> devices;
-  for (int t = 0; t < simulator.tools(); ++t) devices.push_back(make_device(scene, t));
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz);
   std::vector<ToolInput> inputs(devices.size());
   const auto read = [&](double time) {
     std::ranges::transform(devices, inputs.begin(), [&](const auto& device) { return device->read(time); });

@@ -24,8 +24,8 @@ std::vector<Include> all_includes() {
   const fs::path root = PALPATE_SOURCE;
   const std::regex line(R"(#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> found;
-  for (const char* room :
-       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "drivers", "tools", "idl"})
+  for (const char* room : {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "drivers",
+                           "tools", "idl", "python"})
     for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
       const std::string kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp" && kind != ".h" && kind != ".c") continue;
@@ -56,6 +56,7 @@ TEST(ToolsHomes, EveryPackageIsIncludedInItsHomeAlone) {
       {R"(spnav\.h)", {"drivers/spacemouse"}},
       {R"(CGAL/.*)", {"tools/organ"}},
       {R"(itk[A-Z].*\.h)", {"tools/organ"}},
+      {R"(pybind11/.*)", {"python"}},
   };
   const std::vector<Include> includes = all_includes();
   for (const auto& [pattern, folders] : homes) {

@@ -35,8 +35,8 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
   const ProgramResult text = run_program(program("palpate") + " info " + log);
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_NE(text.out.find("task of catheter 1 in run 00000000000000ab\n"
-                          "inserted 10.0 mm, deepest 22.0 mm after 6.50 s, held for 5.25 s\n"
-                          "largest force 0.750 N, wall contacts 3, grasps 2, drops 1\n"),
+                          "inserted 10.0 mm, deepest 22.0 mm, reached in 6.5 s, held for 5.2 s\n"
+                          "largest force 0.75 N, wall contacts 3, grasps 2, drops 1\n"),
             std::string::npos)
       << text.out;
   const ProgramResult json = run_program(program("palpate") + " info --json " + log);

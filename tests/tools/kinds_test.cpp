@@ -46,9 +46,9 @@ const std::vector<Table> kTables{
              "tools/organ",      // the same of the meshes that it makes
          },
      .question = R"(\b(as|holds_alternative)<\w*Spec>)"},
-    {.file = "common/devices/device_spec.hpp",
+    {.file = "common/tool/devices/device_spec.hpp",
      .least = 3,
-     .homes = "common/devices/.*",
+     .homes = "common/(tool/)?devices/.*",
      .permitted = {"tools/generate"},
      .words = {"log"}},
     {.file = "common/tool/ends/end_spec.hpp",
@@ -100,7 +100,7 @@ TEST_P(Kinds, NoSourceElsewhereNamesOne) {
   ASSERT_GE(all.size(), table.least);
   int files = 0;
   for (const char* top :
-       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "tools", "idl"})
+       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "tools", "idl", "python"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(PALPATE_SOURCE) / top)) {
       const std::string extension = entry.path().extension(), file = fs::relative(entry.path(), PALPATE_SOURCE);
       if (extension != ".cpp" && extension != ".hpp") continue;

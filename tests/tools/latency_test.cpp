@@ -5,9 +5,9 @@
 
 #include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
-#include "tools/child_process.hpp"
 #include "tools/latency/hop_times.hpp"
 #include "tools/latency/round_trips.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {

@@ -106,8 +106,8 @@ TEST(Layers, EveryIncludeLeadsDownwards) {
   std::ifstream list(fs::path(PALPATE_SOURCE) / "common/layers.txt");
   const auto of_room = floors(list);
   int files = 0;
-  for (const char* top :
-       {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "drivers", "tools", "idl"})
+  for (const char* top : {"common", "haptic_node", "deform_node", "render_node", "web_node", "ros_bridge", "drivers",
+                          "tools", "idl", "python"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(PALPATE_SOURCE) / top)) {
       const std::string kind = entry.path().extension();
       if (kind != ".cpp" && kind != ".hpp") continue;

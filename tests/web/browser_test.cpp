@@ -26,7 +26,7 @@ void run(const std::string& name) {
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == kNoBrowser)
-    GTEST_SKIP() << "no chromium with its driver and python3-selenium here; scripts/install.sh installs them";
+    GTEST_SKIP() << "no chromium with its driver and python3-selenium here; scripts/install.sh tests installs them";
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 

@@ -13,12 +13,12 @@
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
-#include "tools/child_process.hpp"
-#include "tools/commands.hpp"
 #include "tools/drive/run.hpp"
 #include "tools/drive/sweep.hpp"
-#include "tools/say_stages.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/child_process.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/say_stages.hpp"
+#include "tools/shared/set_option.hpp"
 
 namespace palpate {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/bus/task_figures.hpp"
 #include "common/mesh/near_origin.hpp"
 #include "common/models/marked_to_resect.hpp"
 #include "tools/drive/pieces.hpp"
@@ -27,12 +28,8 @@ const DynamicOrgan* organ_of(const sim::Simulator& simulator, int body) {
 void add_task(const sim::Simulator& simulator, int body, const std::string& name, Figures& to) {
   for (const TaskRecord& task : simulator.tasks()) {
     if (static_cast<int>(task.body) != body) continue;
-    to.push_back({name + "inserted", task.inserted, "m"});
-    to.push_back({name + "deepest", task.deepest, "m"});
-    to.push_back({name + "force.max", task.max_force, "N"});
-    to.push_back({name + "wall_contacts", static_cast<double>(task.wall_contacts), "1"});
-    to.push_back({name + "grasps", static_cast<double>(task.grasps), "1"});
-    to.push_back({name + "drops", static_cast<double>(task.drops), "1"});
+    for (const TaskFigure& figure : task_figures())
+      to.push_back({name + std::string(figure.name), figure.of(task), std::string(figure.unit)});
   }
 }
 

@@ -8,11 +8,12 @@
 namespace palpate::drive {
 
 LockStep::LockStep(const Scene& scene, const std::vector<Archive>& archives)
-    : simulator_(scene, archives), inputs_(scene.tools.size()) {
+    : simulator_(scene, archives),
+      devices_(make_devices(scene.tools, scene.rates.haptic_hz)),
+      inputs_(scene.tools.size()) {
   for (int t = 0; t < simulator_.tools(); ++t) {
     guards_.emplace_back(scene.tools[t].motion, simulator_.dt());
-    devices_.push_back(make_device(scene, t));
-    if (devices_.back()->on_bus())
+    if (devices_[t]->on_bus())
       throw std::runtime_error(fmt::format(
           "tool '{}' is moved by a driver elsewhere (device '{}'), which lock step does not wait for: give it a motion "
           "with --set tool.{}.device=scripted and --set tool.{}.trajectory=FILE",

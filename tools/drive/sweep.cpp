@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "common/realtime/shutdown.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::drive {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/node/handling_summary.hpp"
-#include "common/sim/step_messages.hpp"
+#include "common/tool/dofs_of.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "common/bus/roles.hpp"
-#include "tools/commands.hpp"
 #include "tools/keys/key_folder.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {

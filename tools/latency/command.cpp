@@ -10,12 +10,12 @@
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/scene.hpp"
-#include "tools/child_process.hpp"
-#include "tools/commands.hpp"
 #include "tools/latency/hop_json.hpp"
 #include "tools/latency/observe.hpp"
 #include "tools/latency/round_trips.hpp"
-#include "tools/network_options.hpp"
+#include "tools/shared/child_process.hpp"
+#include "tools/shared/commands.hpp"
+#include "tools/shared/network_options.hpp"
 #include "tools/study/run_script.hpp"
 
 namespace palpate {

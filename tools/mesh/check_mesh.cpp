@@ -18,7 +18,7 @@
 #include "common/models/quasi_static/compress.hpp"
 #include "common/models/quasi_static/spec.hpp"
 #include "common/models/solid/precompute.hpp"
-#include "tools/human_bytes.hpp"
+#include "tools/shared/human_bytes.hpp"
 
 namespace palpate {
 namespace {

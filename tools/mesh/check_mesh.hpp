@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "tools/check_output.hpp"
+#include "tools/shared/check_output.hpp"
 
 namespace palpate {
 

@@ -8,11 +8,11 @@
 
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
-#include "tools/child_process.hpp"
-#include "tools/choose_body.hpp"
-#include "tools/commands.hpp"
 #include "tools/motion/choose_tool.hpp"
 #include "tools/motion/motion_maker.hpp"
+#include "tools/shared/child_process.hpp"
+#include "tools/shared/choose_body.hpp"
+#include "tools/shared/commands.hpp"
 
 namespace palpate {
 namespace {

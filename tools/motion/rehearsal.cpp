@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/devices/device_spec.hpp"
 #include "common/sim/simulator.hpp"
+#include "common/tool/devices/device_spec.hpp"
 
 namespace palpate {
 

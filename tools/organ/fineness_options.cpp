@@ -74,9 +74,9 @@ void tell_mesh(const TetMesh& mesh, const MeshOptions& o, Output& out) {
                      {"extent_m", m.extent},
                      {"volume_m3", m.volume},
                      {"mass_kg", mass},
-                     {"smallest_angle_deg", m.smallest_angle},
+                     {"smallest_angle_deg", m.min_angle},
                      {"median_angle_deg", m.median_angle},
-                     {"largest_angle_deg", m.largest_angle}});
+                     {"largest_angle_deg", m.max_angle}});
   tell_groups(mesh, out);
   if (m.extent.maxCoeff() > kMaxOrgan || m.extent.maxCoeff() < kMinOrgan)
     out.warn(fmt::format("{:.3g} m across: is --unit right?", m.extent.maxCoeff()));

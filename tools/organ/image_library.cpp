@@ -24,7 +24,7 @@ namespace {
 template <class T>
 using Image = itk::Image<T, 3>;
 
-constexpr std::int64_t kMostDeflated = 1032;  // times a file's size: no more bytes come of it
+constexpr std::int64_t kMaxDeflated = 1032;  // times a file's size: no more bytes come of it
 
 /// Whether a file is too short for so many bytes of voxels; false where these are in another. ITK makes room for all
 /// that is announced, and fills what a MetaImage file with its data within lacks.
@@ -39,7 +39,7 @@ bool is_cut_short(const std::string& file, std::int64_t bytes) {
   if (is_meta ? !has("LOCAL\n") : is_nrrd && (has("data file:") || has("datafile:"))) return false;
   if (is_meta && !has("CompressedData = True"))
     return size - static_cast<std::int64_t>(head.find("LOCAL\n")) - 6 < bytes;
-  return kMostDeflated * size < bytes;
+  return kMaxDeflated * size < bytes;
 }
 
 /// MetaImage lists by the number of axes, whatever that is: it would read for minutes.

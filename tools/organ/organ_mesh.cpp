@@ -33,7 +33,7 @@ constexpr int kOtherEdges = 5;         // tried where a mesh is no good
 constexpr double kLongestOfWall = 4;   // times its thickness: no edge finds both sides of a wall that is longer
 constexpr double kLongestOfGuess = 2;  // where the deviation asks for more nodes, longer edges do not help
 constexpr double kOfWall = 0.25;       // by how much of its thickness a wall's surfaces may be missed
-constexpr double kMostNodes = 3e6;     // of a mesh
+constexpr double kMaxNodes = 3e6;      // of a mesh
 constexpr double kFoundWithin = 1e-4;  // of the box's diagonal: the mesher finds a surface no more exactly
 constexpr double kMissing = 0.3;       // of a part's volume: more than chords take
 
@@ -160,12 +160,12 @@ double nodes_asked(const Solid& solid, const SolidMeasures& measures, const Mesh
 
 void check_affordable(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   const double nodes = nodes_asked(solid, measures, sizes);
-  if (nodes <= kMostNodes) return;
+  if (nodes <= kMaxNodes) return;
   double shortest = sizes.edge;
   for (const FinePlace& f : sizes.fine) shortest = std::min(shortest, f.edge);
   throw std::runtime_error(
       fmt::format("edges of {:.3g} mm would be about {:.2g} nodes, and a mesh has {:.2g} at most: ask for longer ones",
-                  1e3 * shortest, nodes, kMostNodes));
+                  1e3 * shortest, nodes, kMaxNodes));
 }
 
 /// A triangle cannot come nearer to the surface than the mesher finds it: it would be halved without end.
@@ -186,7 +186,7 @@ FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, cons
     if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
   }
   check_tet_mesh(filled.mesh, "the mesh that was made");
-  if (const double angle = measures_of(filled.mesh).smallest_angle; angle < kWorstAngle)
+  if (const double angle = measures_of(filled.mesh).min_angle; angle < kWorstAngle)
     throw std::runtime_error(
         fmt::format("its smallest dihedral angle is {:.1f} degrees, less than {}", angle, kWorstAngle));
   return filled;

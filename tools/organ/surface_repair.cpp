@@ -183,7 +183,7 @@ void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
 }
 
 /// Every hole is noted before one is refused.
-void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
+void close_holes(TriangleMesh& mesh, double max_hole, std::vector<Finding>& findings) {
   std::string refusal;
   for (const std::vector<int>& rim : rims_of(mesh)) {
     std::vector<Eigen::Vector3d> loop;
@@ -198,11 +198,11 @@ void close_holes(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& 
                  {0.5 * (low + high)},
                  "holes"};
     std::string fault;
-    if (across > largest_hole)
+    if (across > max_hole)
       fault = fmt::format(
           "{}, larger than {:.3g} mm: close it in the program that the surface comes from, or allow it "
           "by --hole",
-          say(hole), 1e3 * largest_hole);
+          say(hole), 1e3 * max_hole);
     const auto patch = fault.empty() ? close_loop(loop) : std::vector<Triangle>{};
     if (fault.empty() && patch.empty()) fault = say(hole) + " cannot be closed";
     for (const Triangle& t : patch) mesh.triangles.push_back({rim[t[0]], rim[t[1]], rim[t[2]]});
@@ -223,7 +223,7 @@ bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
 
 }  // namespace
 
-RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole, std::vector<Finding>& findings) {
+RepairedSurface repair_surface(TriangleMesh mesh, double max_hole, std::vector<Finding>& findings) {
   leave_unused_nodes_out(mesh, findings);
   mesh = join_corners(mesh, joined_distance(mesh));
   take_repeated_away(mesh, findings);
@@ -231,8 +231,8 @@ RepairedSurface repair_surface(TriangleMesh mesh, double largest_hole, std::vect
   note_needles(mesh, findings);
   note_crowded_edges(mesh, findings);
   orient(mesh, findings);
-  leave_open_shells_out(mesh, largest_hole, findings);
-  close_holes(mesh, largest_hole, findings);
+  leave_open_shells_out(mesh, max_hole, findings);
+  close_holes(mesh, max_hole, findings);
   keep_largest_shell(mesh, findings);
   const bool crosses = note_crossings(mesh, findings);
   return {std::move(mesh), crosses};

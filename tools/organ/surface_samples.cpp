@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kOfEachSurface = 40, kMostOfEach = 3000, kLookedAt = 30000;
+constexpr std::size_t kOfEachSurface = 40, kMaxOfEach = 3000, kLookedAt = 30000;
 constexpr double kMaxSteps = 1000;  // along an axis: lines are no denser than that,
 constexpr double kMaxPlaces = 4e6;  // nor do they cross in more places
 
@@ -26,7 +26,7 @@ std::vector<SurfaceSample> spread(const std::vector<SurfaceSample>& all, double 
   std::vector<SurfaceSample> chosen;
   const std::size_t stride = 1 + all.size() / kLookedAt, count = (all.size() + stride - 1) / stride;
   std::vector<double> distance(count, std::numeric_limits<double>::infinity());
-  for (std::size_t next = 0; chosen.size() < std::min(count, kMostOfEach);) {
+  for (std::size_t next = 0; chosen.size() < std::min(count, kMaxOfEach);) {
     if (chosen.size() >= kOfEachSurface && distance[next] < near * near) break;
     chosen.push_back(all[next * stride]);
     for (std::size_t i = 0; i < count; ++i)

@@ -166,13 +166,13 @@ double enclosed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
-void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings) {
+void leave_open_shells_out(TriangleMesh& mesh, double max_hole, std::vector<Finding>& findings) {
   const std::vector<TriangleMesh> parts = parts_of(mesh);
   const auto largest = std::ranges::max_element(parts, {}, surface_area);
   TriangleMesh kept = *largest;
   for (auto part = parts.begin(); part != parts.end(); ++part) {
     if (part == largest) continue;
-    if (widest_hole(*part) <= largest_hole && part->triangles.size() > 1)
+    if (widest_hole(*part) <= max_hole && part->triangles.size() > 1)
       append(kept, *part);
     else
       findings.push_back({fmt::format("an open sheet of {} triangles", part->triangles.size()),

@@ -20,9 +20,9 @@ double surface_area(const TriangleMesh& mesh);  ///< [m^2]
 /// [m^3] that a closed surface encloses; negative where its normals point inward.
 double enclosed_volume(const TriangleMesh& mesh);
 
-/// Leaves out open shells beside the one with the largest area whose holes are larger than `largest_hole` [m], and
+/// Leaves out open shells beside the one with the largest area whose holes are larger than `max_hole` [m], and
 /// notes each.
-void leave_open_shells_out(TriangleMesh& mesh, double largest_hole, std::vector<Finding>& findings);
+void leave_open_shells_out(TriangleMesh& mesh, double max_hole, std::vector<Finding>& findings);
 
 /// Of closed shells keeps the one that encloses most, its normals outward, with the cavities in it and what crosses it;
 /// the others are noted.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kRim = 4;               // cells around the surface
 constexpr double kCells = 8e6;        // of the grid
-constexpr double kMostAlong = 1000;   // of these along the longest extent
+constexpr double kMaxAlong = 1000;    // of these along the longest extent
 constexpr double kNoVolume = 1e-9;    // of the area to the power of 1.5
 constexpr double kCellsOfWall = 1.5;  // at least, for the grid to tell its sides apart
 
@@ -31,7 +31,7 @@ GridShape grid_around(const TriangleMesh& surface) {
     for (const int n : t) low = low.cwiseMin(surface.nodes[n]), high = high.cwiseMax(surface.nodes[n]);
   const double longest = (high - low).maxCoeff();
   const auto cells_of = [&](double cell) { return ((high - low).array() / cell + 2 * kRim).prod(); };
-  double cell = longest / kMostAlong;
+  double cell = longest / kMaxAlong;
   while (cells_of(cell) > kCells) cell *= 1.05;
   GridShape shape{{}, low - Eigen::Vector3d::Constant((kRim + 0.3183) * cell), Eigen::Vector3d::Constant(cell)};
   for (int a = 0; a < 3; ++a) shape.count[a] = static_cast<int>(std::ceil((high - low)[a] / cell)) + 2 * kRim + 1;

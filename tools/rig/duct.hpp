@@ -16,7 +16,7 @@ double tick_in_duct(CatheterBody& catheter, ModalBody& duct, std::span<const Eig
 class Duct {
  public:
   Duct();
-  const CatheterWall& wall() const { return *body_; }
+  const DuctWall& wall() const { return *body_; }
   double energy() const { return body_->energy(); }  ///< [J]
   void tick(CatheterBody& catheter, std::span<const Eigen::Isometry3d> jaws) { tick_in_duct(catheter, *body_, jaws); }
 

@@ -8,7 +8,7 @@
 
 #include "common/cli/command_line.hpp"
 #include "common/scene/scene_changes.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/set_option.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
 #include "tools/study/commands.hpp"

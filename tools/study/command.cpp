@@ -7,7 +7,7 @@
 
 #include "common/cli/progress.hpp"
 #include "common/scene/scene_changes.hpp"
-#include "tools/set_option.hpp"
+#include "tools/shared/set_option.hpp"
 #include "tools/study/commands.hpp"
 #include "tools/study/growth.hpp"
 #include "tools/study/run_script.hpp"

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastShare = 1e-9;  // of about the whole disc: what is less is rounding
+constexpr double kMinShare = 1e-9;    // of about the whole disc: what is less is rounding
 constexpr double kBeyond = 1 + 1e-9;  // squared radii of the disc's middle from an edge: it certainly lies beyond
 
 // Over a triangle from the disc's middle to a piece of a line at distance d, by the tangents of the angles from the
@@ -66,7 +66,7 @@ Vector3d overlap_normal(const SmoothSurface& surface, std::span<const int> trian
       continue;
     double share = 0;
     for (int v = 0; v < 3; ++v) share += beside_edge(a2, c[v], c[(v + 1) % 3], normal);
-    if (share > kLeastShare * a2 * a2 * a2) sum += faces * share * normal;
+    if (share > kMinShare * a2 * a2 * a2) sum += faces * share * normal;
   }
   return sum;
 }

@@ -30,7 +30,7 @@ int substeps_for(const Catheter& shape, double step, double bound) {
 
 }  // namespace
 
-CatheterBody::CatheterBody(const CatheterSettings& settings, const CatheterWall* wall)
+CatheterBody::CatheterBody(const CatheterSettings& settings, const DuctWall* wall)
     : chain_(settings.shape, settings.young, settings.density),
       radius_(settings.shape.radius),
       step_(settings.step),

@@ -49,7 +49,7 @@ class CatheterBody : public Stateful<CatheterBody> {
   /// `wall`: the duct that it is led into, nullptr for none; outlives the catheter. Throws std::runtime_error
   /// in words: bad numbers, a catheter wider than the duct, a stiffness that semi_implicit would need more
   /// than 64 substeps for.
-  CatheterBody(const CatheterSettings& settings, const CatheterWall* wall);
+  CatheterBody(const CatheterSettings& settings, const DuctWall* wall);
 
   /// One tick. `tools`: every part of every tool that may touch; the order of parts stays the same from tick
   /// to tick. `jaws`: per tool number the jaw's frame at the end of the tick; empty where nothing is held.
@@ -111,7 +111,7 @@ class CatheterBody : public Stateful<CatheterBody> {
   Eigen::Vector3d gravity_;
   bool implicit_;
   int substeps_ = 1;
-  const CatheterWall* wall_;
+  const DuctWall* wall_;
   Lumen lumen_;
   Sleeve sleeve_;
   Grasps grasps_;

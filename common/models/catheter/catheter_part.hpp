@@ -43,7 +43,7 @@ class CatheterPart : public BodyPart {
   std::vector<std::uint8_t> has_ball_;   ///< per tool
   std::vector<Eigen::Isometry3d> jaws_;  ///< per tool
   std::unique_ptr<CatheterBody> body_;
-  CatheterWall* duct_ = nullptr;  ///< what it is led into
+  DuctWall* duct_ = nullptr;  ///< what it is led into
   Task task_;
   int wall_contacts_ = 0;  ///< in the last step
   bool held_before_ = false;

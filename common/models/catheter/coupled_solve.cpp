@@ -30,11 +30,11 @@ Matrix3d across(const Vector3d& normal) {
 
 }  // namespace
 
-CoupledSolve::CoupledSolve(int particles, const CatheterWall* wall, int max_touches)
+CoupledSolve::CoupledSolve(int particles, const DuctWall* wall, int max_touches)
     : particles_(particles),
       modes_(wall ? static_cast<int>(wall->inverse().size()) : 0),
       stride_((modes_ + kLanes - 1) / kLanes * kLanes),
-      most_(max_touches),
+      max_touches_(max_touches),
       duct_(wall),
       rows_(static_cast<std::size_t>(max_touches) * 3 * stride_, 0.0),
       unpadded_(3 * modes_),
@@ -63,7 +63,7 @@ void CoupledSolve::begin() {
 
 void CoupledSolve::add(const CatheterTouch& touch) {
   const int i = static_cast<int>(touches_.size());
-  if (i == most_) return;
+  if (i == max_touches_) return;
   touches_.push_back(touch);
   stiffness_[i] = 1 / touch.compliance;
   if (!touch.on_wall) return;

@@ -37,7 +37,7 @@ class CoupledSolve {
   static constexpr double kTolerance = 1e-5;  ///< of the residual against the touches' push on the modes
   static constexpr double kCreep = 1e-3;      ///< [m/s] below it friction is viscous
 
-  CoupledSolve(int particles, const CatheterWall* wall, int max_touches);
+  CoupledSolve(int particles, const DuctWall* wall, int max_touches);
 
   /// Begins a tick: no touches, the wall's free motion.
   void begin();
@@ -86,8 +86,8 @@ class CoupledSolve {
   void response(const double* y, double* d, double* modal);
   bool revise(int pass);
 
-  int particles_, modes_, stride_, most_;
-  const CatheterWall* duct_;
+  int particles_, modes_, stride_, max_touches_;
+  const DuctWall* duct_;
   std::vector<CatheterTouch> touches_;
   std::vector<double> rows_;           ///< per touch 3 x stride_ [kg^-1/2]
   std::vector<double> unpadded_;       ///< 3 x modes_, of one touch

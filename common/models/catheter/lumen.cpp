@@ -22,7 +22,7 @@ double solid_angle(const Vector3d& p, const Vector3d& a, const Vector3d& b, cons
 
 }  // namespace
 
-Lumen::Lumen(const CatheterWall* wall, std::span<const Vector3d> x, double radius) : wall_(wall) {
+Lumen::Lumen(const DuctWall* wall, std::span<const Vector3d> x, double radius) : wall_(wall) {
   if (!wall_) return;
   if (wall_->mouths().empty()) throw std::runtime_error("the duct that the catheter is led into has no open end");
   edge_mouth_.assign(wall_->surface().triangle_count(), {-1, -1, -1});

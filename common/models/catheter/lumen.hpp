@@ -17,7 +17,7 @@ class Lumen {
   /// Finds the mouths' orientation and, by solid angles, the particles that are inside. Throws
   /// std::runtime_error where the wall has no mouth, or a mouth is too narrow for the catheter. No wall:
   /// nothing is inside.
-  Lumen(const CatheterWall* wall, std::span<const Eigen::Vector3d> x, double radius);
+  Lumen(const DuctWall* wall, std::span<const Eigen::Vector3d> x, double radius);
 
   std::span<const char> inside() const { return inside_; }
   std::span<char> inside() { return inside_; }
@@ -77,7 +77,7 @@ class Lumen {
   void cross(int particle, const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Mouth& mouth, const Cap& was,
              std::span<const Eigen::Vector3d> last_nodes);
 
-  const CatheterWall* wall_;
+  const DuctWall* wall_;
   std::vector<Mouth> mouths_;
   std::vector<Eigen::Vector3d> seen_,
       last_;  ///< the mouths' nodes, one mouth after the other, now and at the call before

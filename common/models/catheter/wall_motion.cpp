@@ -7,7 +7,7 @@ namespace palpate {
 
 constexpr int kSpread = 64;  // nodes whose motion stands for all
 
-WallMotion::WallMotion(const CatheterWall* wall) : wall_(wall) {
+WallMotion::WallMotion(const DuctWall* wall) : wall_(wall) {
   if (!wall_) return;
   const auto modes = static_cast<Eigen::Index>(wall_->inverse().size());
   const int nodes = static_cast<int>(wall_->surface().positions().size()), spread = std::min(nodes, kSpread);

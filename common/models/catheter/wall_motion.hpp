@@ -10,7 +10,7 @@ namespace palpate {
 /// How the nodes of a duct's wall move within a tick, for given motions of its modes; worked out where asked for.
 class WallMotion {
  public:
-  explicit WallMotion(const CatheterWall* wall);
+  explicit WallMotion(const DuctWall* wall);
 
   /// Takes up the modes' motions [kg^1/2 m] up to the beginning and up to the end of a substep.
   void set(std::span<const double> before, std::span<const double> now);
@@ -30,7 +30,7 @@ class WallMotion {
   const Node& at(int node);
   void read_rows(int node, double* rows) const;
 
-  const CatheterWall* wall_;
+  const DuctWall* wall_;
   Rows spread_;            ///< [kg^-1/2] of the spread nodes: 3 a node x modes
   Eigen::VectorXd moved_;  ///< [m] 3 a spread node
   Rows rows_;              ///< of the node in hand

@@ -18,7 +18,7 @@ constexpr double kInFront = 0.7;     ///< cosine above which a triangle faces a 
 
 }  // namespace
 
-WallTouches::WallTouches(int particles, const CatheterWall* wall, double radius, double friction)
+WallTouches::WallTouches(int particles, const DuctWall* wall, double radius, double friction)
     : wall_(wall), wall_motion_(wall), friction_(friction), past_(particles) {
   if (!wall_) return;
   reach_ = radius + wall_->half_thickness();

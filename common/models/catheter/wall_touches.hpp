@@ -21,7 +21,7 @@ class WallTouches {
   static constexpr double kLedBack = 0.3;  ///< of the reach: by how much a particle found deeper is led back in a tick
   static constexpr double kStiffening = 20;  ///< [1] the contact is so much stiffer beyond that depth
 
-  WallTouches(int particles, const CatheterWall* wall, double radius, double friction);
+  WallTouches(int particles, const DuctWall* wall, double radius, double friction);
 
   /// Finds the coming tick's touches, `h` [s] ahead.
   void find(std::span<const Eigen::Vector3d> x, std::span<const Eigen::Vector3d> v, double h, Lumen& lumen,
@@ -72,7 +72,7 @@ class WallTouches {
   CatheterTouch touch_at(int particle, const Near& near, const Eigen::Vector3d& normal, double distance) const;
   double past_force(int particle, const Eigen::Vector3d& normal) const;
 
-  const CatheterWall* wall_;
+  const DuctWall* wall_;
   WallMotion wall_motion_;
   double friction_, reach_ = 0, margin_ = 0;
   double travel_ = 0;  ///< [m] by which the wall may move in this tick

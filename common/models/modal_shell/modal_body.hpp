@@ -14,7 +14,7 @@ namespace palpate {
 ///   C* = R + Phi diag(4 / K^) Phi^T,   R = C - Phi Omega^-2 Phi^T,   K^ = omega^2 + 2 d/h + 4/h^2,
 /// so that a touched body comes to rest on the tool. Meeting them in the end position by Phi K^^-1 Phi^T, as the
 /// paper's scheme suggests, makes the force alternate from step to step for as long as the contact lasts.
-class ModalBody : public TouchBody, public CatheterWall {
+class ModalBody : public TouchBody, public DuctWall {
  public:
   static constexpr int kMaxWallForces = 512;  ///< of catheters in a step
 
@@ -42,7 +42,7 @@ class ModalBody : public TouchBody, public CatheterWall {
   std::span<const double> coordinates() const override { return x_; }  ///< X [kg^1/2 m]
   double energy() const;                                               ///< [J] kinetic and elastic, of the modes
 
-  CatheterWall* wall() override { return this; }
+  DuctWall* wall() override { return this; }
   std::vector<BodyNews> news() const override;
   void tell(BodyMessage& message) override;
 

@@ -13,7 +13,7 @@ constexpr double kMinShare = 1e-3;  // of the largest load; what is smaller woul
 std::vector<BodyNews> QuasiStaticBody::news() const {
   if (!memory_) return {};
   CreepState state;
-  state.loads.reserve(memory_->most_creep_loads());
+  state.loads.reserve(memory_->max_creep_loads());
   std::vector<BodyNews> news(1);
   news[0].message = std::move(state);  // a copy would have no room
   return news;

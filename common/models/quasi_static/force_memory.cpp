@@ -16,10 +16,10 @@ int waited(const LoadTrace& t) {
 
 }  // namespace
 
-ForceMemory::ForceMemory(const CreepStep& step, const Compliance<double>& softened, std::size_t most_loaded)
+ForceMemory::ForceMemory(const CreepStep& step, const Compliance<double>& softened, std::size_t max_loaded)
     : step_(step),
       softened_(softened),
-      room_(std::min<std::size_t>(2 * most_loaded, softened.column_nodes())),
+      room_(std::min<std::size_t>(2 * max_loaded, softened.column_nodes())),
       trace_of_(softened.column_nodes(), -1),
       faded_(step_, softened) {
   traces_.reserve(room_);

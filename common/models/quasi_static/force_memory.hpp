@@ -14,8 +14,8 @@ namespace palpate {
 /// construction.
 class ForceMemory {
  public:
-  /// `softened`: that compliance, which outlives this object. `most_loaded`: nodes that carry force at once, at most.
-  ForceMemory(const CreepStep& step, const Compliance<double>& softened, std::size_t most_loaded);
+  /// `softened`: that compliance, which outlives this object. `max_loaded`: nodes that carry force at once, at most.
+  ForceMemory(const CreepStep& step, const Compliance<double>& softened, std::size_t max_loaded);
   ForceMemory(const ForceMemory&) = delete;
 
   void begin();
@@ -39,8 +39,8 @@ class ForceMemory {
     faded_.for_each_load(visit);
   }
   /// Creep loads there can be.
-  std::size_t most_creep_loads() const { return room_ + FadingField::kMaxLoads + 1; }
-  std::size_t most_loads() const { return room_; }  ///< that for_each_load() visits
+  std::size_t max_creep_loads() const { return room_ + FadingField::kMaxLoads + 1; }
+  std::size_t max_loads() const { return room_; }  ///< that for_each_load() visits
 
   void state(State& s);
 

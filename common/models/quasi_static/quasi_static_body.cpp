@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kMostSettling = 10, kTimesSettling = 5;  // [s], of the longest relaxation time
+constexpr double kMaxSettling = 10, kTimesSettling = 5;  // [s], of the longest relaxation time
 
 bool has_patches(const StepSettings& settings) {
   return settings.contact.rule == ContactRule::patch;
@@ -40,11 +40,11 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
                                           edges_resolved(offline_of(body, map().size())), creep);
   by_mesh_ = !patch_ || patch_->parts() < parts_of(settings.tools);
   if (body.relaxation)
-    settling_ = static_cast<int>(std::min(kMostSettling, kTimesSettling * body.relaxation->times.back()) / settings.dt);
+    settling_ = static_cast<int>(std::min(kMaxSettling, kTimesSettling * body.relaxation->times.back()) / settings.dt);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
   const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
-  const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->most_loads() : 0);
+  const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->max_loads() : 0);
   sum_.emplace(compliance(), forces);
   under_.reserve(3 * kMaxContacts);
   touchable_.reserve(3 * kMaxContacts);

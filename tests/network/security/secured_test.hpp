@@ -8,8 +8,8 @@
 
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/network/hosts_or_skip.hpp"
-#include "tools/child_process.hpp"
 #include "tools/keys/key_folder.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate::testing {
 

@@ -1,5 +1,4 @@
 #include "common/devices/device.hpp"
-
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
@@ -21,10 +20,6 @@ class ScriptedDevice : public Device {
 
 std::unique_ptr<Device> make_device(const ScriptedDeviceSpec& spec, const DevicePlace& place) {
   return std::make_unique<ScriptedDevice>(spec.trajectory, place.tool);
-}
-
-std::optional<Trajectory> script(const ScriptedDeviceSpec& spec) {
-  return load_trajectory(spec.trajectory);
 }
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 #pragma once
-#include "common/devices/motion_file.hpp"
+#include "common/tool/devices/motion_file.hpp"
 
 namespace palpate {
 
@@ -10,6 +10,5 @@ struct ScriptedDeviceSpec : MotionFileSpec {
 };
 
 std::unique_ptr<Device> make_device(const ScriptedDeviceSpec& spec, const DevicePlace& place);
-std::optional<Trajectory> script(const ScriptedDeviceSpec& spec);
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 #pragma once
 #include <variant>
 
-#include "common/devices/bus/spec.hpp"
-#include "common/devices/hand/spec.hpp"
-#include "common/devices/log/spec.hpp"
-#include "common/devices/pointer/spec.hpp"
-#include "common/devices/scripted/spec.hpp"
+#include "common/tool/devices/bus.hpp"
+#include "common/tool/devices/hand.hpp"
+#include "common/tool/devices/log.hpp"
+#include "common/tool/devices/pointer.hpp"
+#include "common/tool/devices/scripted.hpp"
 
 namespace palpate {
 
@@ -28,6 +28,8 @@ inline bool is_for_hands(const DeviceSpec& device, bool asked) {
 }
 
 /// Empty where the motion is not known before the run.
-std::optional<Trajectory> script_of(const DeviceSpec& device);
+inline std::optional<Trajectory> script_of(const DeviceSpec& device) {
+  return std::visit([](const auto& spec) { return script(spec); }, device);
+}
 
 }  // namespace palpate

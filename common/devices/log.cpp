@@ -1,5 +1,3 @@
-#include "common/devices/device.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,8 @@
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
-#include "common/sim/step_messages.hpp"
-#include "common/tool/trajectory.hpp"
+#include "common/devices/device.hpp"
+#include "common/tool/dofs_of.hpp"
 #include "idl/topics.hpp"
 
 namespace palpate {
@@ -55,10 +53,6 @@ class LogDevice : public Device {
 
 std::unique_ptr<Device> make_device(const LogDeviceSpec& spec, const DevicePlace& place) {
   return std::make_unique<LogDevice>(spec.trajectory, place);
-}
-
-std::optional<Trajectory> script(const LogDeviceSpec&) {
-  return {};
 }
 
 }  // namespace palpate

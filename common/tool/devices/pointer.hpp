@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "common/devices/kind.hpp"
+#include "common/tool/devices/kind.hpp"
 
 namespace palpate {
 
@@ -29,7 +29,9 @@ std::unique_ptr<Device> make_device(const PointerDeviceSpec& spec, const DeviceP
 inline std::filesystem::path motion_file(const PointerDeviceSpec&) {
   return {};
 }
-std::optional<Trajectory> script(const PointerDeviceSpec& spec);
+inline std::optional<Trajectory> script(const PointerDeviceSpec&) {
+  return {};
+}
 constexpr ForHands for_hands(const PointerDeviceSpec&) {
   return ForHands::always;
 }

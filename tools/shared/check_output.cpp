@@ -1,4 +1,4 @@
-#include "tools/check_output.hpp"
+#include "tools/shared/check_output.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/describe/printable.hpp"
-#include "tools/human_bytes.hpp"
+#include "tools/shared/human_bytes.hpp"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/choose_body.hpp"
+#include "tools/shared/choose_body.hpp"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "common/describe/description.hpp"
+#include "common/tool/trajectory.hpp"
 
 namespace palpate {
 
@@ -22,14 +23,13 @@ inline void describe_lease(Description& d, double& lease) {
 inline constexpr std::string_view kNoDriverElsewhere = "no tool on the bus: no device topic and no thread for it";
 
 class Device;
-class Trajectory;
 struct DevicePlace;
 
-/// What programs ask of every kind of device are functions of its spec, declared beside it and defined in the kind's
-/// folder. Programs call them by std::visit on a DeviceSpec, and know of no kind otherwise.
+/// What programs ask of every kind of device are functions of its spec, declared beside it. Programs call them by
+/// std::visit on a DeviceSpec, and know of no kind otherwise.
 ///
-/// make_device(spec, place): the device of a tool of a scene. Throws std::runtime_error for a missing or malformed
-/// file.
+/// make_device(spec, place): the device of a tool, defined in common/devices/. Throws std::runtime_error for a missing
+/// or malformed file.
 ///
 /// motion_file(spec): the file that its motion comes from; empty without one.
 ///

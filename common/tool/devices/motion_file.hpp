@@ -1,5 +1,5 @@
 #pragma once
-#include "common/devices/kind.hpp"
+#include "common/tool/devices/kind.hpp"
 
 namespace palpate {
 
@@ -16,6 +16,9 @@ inline void describe(Description& d, MotionFileSpec& m) {
 
 inline std::filesystem::path motion_file(const MotionFileSpec& spec) {
   return spec.trajectory;
+}
+inline std::optional<Trajectory> script(const MotionFileSpec& spec) {
+  return load_trajectory(spec.trajectory);
 }
 constexpr ForHands for_hands(const MotionFileSpec&) {
   return ForHands::if_asked;

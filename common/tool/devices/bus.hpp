@@ -1,5 +1,5 @@
 #pragma once
-#include "common/devices/kind.hpp"
+#include "common/tool/devices/kind.hpp"
 
 namespace palpate {
 
@@ -23,7 +23,9 @@ std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace
 inline std::filesystem::path motion_file(const BusDeviceSpec&) {
   return {};
 }
-std::optional<Trajectory> script(const BusDeviceSpec& spec);
+inline std::optional<Trajectory> script(const BusDeviceSpec&) {
+  return {};
+}
 constexpr ForHands for_hands(const BusDeviceSpec&) {
   return ForHands::never;
 }

@@ -1,13 +1,11 @@
-#include "common/devices/device.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "common/devices/device.hpp"
 #include "common/devices/lease.hpp"
 #include "common/realtime/latest.hpp"
 #include "common/tool/hand_motion.hpp"
-#include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
@@ -72,10 +70,6 @@ class BusDevice : public Device {
 
 std::unique_ptr<Device> make_device(const BusDeviceSpec& spec, const DevicePlace& place) {
   return std::make_unique<BusDevice>(spec, place.haptic_hz);
-}
-
-std::optional<Trajectory> script(const BusDeviceSpec&) {
-  return {};
 }
 
 }  // namespace palpate

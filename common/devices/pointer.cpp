@@ -13,8 +13,4 @@ std::unique_ptr<Device> make_device(const PointerDeviceSpec& spec, const DeviceP
   return std::make_unique<HeldDevice>(settings, place.haptic_hz, start);
 }
 
-std::optional<Trajectory> script(const PointerDeviceSpec&) {
-  return {};
-}
-
 }  // namespace palpate

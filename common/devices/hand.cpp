@@ -1,6 +1,5 @@
 #include "common/devices/device.hpp"
-
-#include "common/devices/hand/emulated_hand.hpp"
+#include "common/devices/emulated_hand.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
@@ -42,10 +41,6 @@ class HandDevice : public Device {
 
 std::unique_ptr<Device> make_device(const HandDeviceSpec& spec, const DevicePlace& place) {
   return std::make_unique<HandDevice>(spec, place.tool);
-}
-
-std::optional<Trajectory> script(const HandDeviceSpec& spec) {
-  return load_trajectory(spec.trajectory);
 }
 
 }  // namespace palpate

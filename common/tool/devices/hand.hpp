@@ -1,5 +1,5 @@
 #pragma once
-#include "common/devices/motion_file.hpp"
+#include "common/tool/devices/motion_file.hpp"
 
 namespace palpate {
 
@@ -25,7 +25,5 @@ inline void describe(Description& d, HandDeviceSpec& h) {
 }
 
 std::unique_ptr<Device> make_device(const HandDeviceSpec& spec, const DevicePlace& place);
-/// The intended motion.
-std::optional<Trajectory> script(const HandDeviceSpec& spec);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
