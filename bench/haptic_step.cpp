@@ -133,10 +133,10 @@ void guards(const Scene& scene, const std::vector<Archive>& archives, bool quick
       port.motion = tick.motion;
       watch.observe();
       port.asked = tick.asked;
-      chain.limit(port.asked.force, port.asked.torque);
+      chain.limit(port.asked);
       watch.control();
       port.held = port.asked;
-      chain.apply(port.held.force, port.held.torque, {port.motion, port.spare});
+      chain.apply(port.held, {port.motion, port.spare});
     }
   });
   bench::report("haptic_step", "guards", "p50", 1e6 * samples.median() / kTogether, "us");

@@ -74,7 +74,7 @@ void ToolRig::ask(const ToolLoad& load) {
   port_.asked = {force_scale_ * load.force, force_scale_ * load.torque, force_scale_ * end_->torque()};
   slide_out(port_.asked);
   output_ = {.press = load.press, .flags = load.flags};
-  output_.flags |= safety_.limit(port_.asked.force, port_.asked.torque);
+  output_.flags |= safety_.limit(port_.asked);
 }
 
 void ToolRig::slide_out(PortForce& wanted) {
@@ -93,7 +93,7 @@ void ToolRig::give(bool healthy) {
   PortForce& given = port_.held = port_.asked;
   if (port_.limited) output_.flags |= passivity_limited;
   fade(given);
-  output_.flags |= safety_.apply(given.force, given.torque, {port_.motion, port_.spare, healthy});
+  output_.flags |= safety_.apply(given, {port_.motion, port_.spare, healthy});
   output_.force = given.force;
   output_.torque = given.torque;
   output_.along = generalised_force(trocar_, dofs_, given.force, given.torque);

@@ -52,7 +52,7 @@ class ToolRig {
   Port& port() { return port_; }
   /// Tells the port of the motion since the last step.
   void count_motion();
-  /// The port asks for what the tissue asks for, within the limits of force and torque.
+  /// The port asks for what the tissue asks for, within the limits of their size.
   void ask(const ToolLoad& load);
   /// The hand gets what the watch left of it: slew limits and a second force limit have the last word. `healthy` false
   /// reports a fault of this step.

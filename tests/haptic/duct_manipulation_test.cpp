@@ -146,6 +146,31 @@ TEST(DuctManipulation, JawsStopAtTheCatheterTakeItAndFeelIt) {
   EXPECT_EQ(t.haptic->grip_torque(1), 0);
 }
 
+// A scene may give the linkage any stiffness.
+TEST(DuctManipulation, AHardLinkageGivesTheHandleNoMoreThanTheHandMayFeel) {
+  Theatre t;
+  Tool& tool = t.duct.scene.tools[0];
+  std::get<ForcepsSpec>(tool.end).jaws.grip_stiffness = 1000;
+  t.haptic = std::make_unique<HapticStep>(t.duct.scene, t.duct.archives);
+  t.haptic->start(t.dofs);
+  const Vector3d above{0, 0.03, -0.02}, on{0, 0.008, -0.02};
+  t.move(0, above, on, kWideOpen, 200);
+  const double most = tool.max_force * SafetyChain::kHandleLever;
+  const double by = tool.max_force_rate * t.haptic->dt() * SafetyChain::kHandleLever;
+  double last = 0, largest = 0, change = 0;
+  const auto look = [&] {
+    largest = std::max(largest, t.haptic->grip_torque(0));
+    change = std::max(change, std::abs(t.haptic->grip_torque(0) - last));
+    last = t.haptic->grip_torque(0);
+  };
+  for (int i = 1; i <= 200; ++i) t.close(0, on, kWideOpen - 0.0035 * (i - 1), kWideOpen - 0.0035 * i, 1), look();
+  EXPECT_NEAR(largest, most, 1e-9);
+  t.haptic->trip();
+  for (int i = 0; i < 5; ++i) t.hold_still(1);
+  EXPECT_LT(t.haptic->grip_torque(0), 1e-9) << "after a fault";
+  EXPECT_LE(change, by + 1e-12);
+}
+
 TEST(DuctManipulation, AGraspedCatheterIsLedInAndPushesBack) {
   Theatre t;
   t.feed();

@@ -208,7 +208,7 @@ TEST(Passivity, NoMotionWithinTheAccelerationTakesOutMoreThanTheReserve) {
         port.asked = {.force = asked};
         guard.control();
         port.held = port.asked;
-        chain.apply(port.held.force, port.held.torque, {port.motion, port.spare});
+        chain.apply(port.held, {port.motion, port.spare});
         given = port.held.force;
       }
       EXPECT_GE(least, -0.01) << "slew " << slew << ", run " << run;
