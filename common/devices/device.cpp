@@ -8,7 +8,7 @@ namespace {
 std::unique_ptr<Device> make(const DevicePlace& place, bool hands) {
   auto device = std::visit([&](const auto& spec) { return make_device(spec, place); }, place.tool.device);
   if (device->on_bus() || !is_for_hands(place.tool.device, hands)) return device;
-  return std::make_unique<HeldDevice>(HeldDevice::Settings{}, place.haptic_hz, std::move(device));
+  return std::make_unique<HeldDevice>(HeldDevice::Settings{}, place, std::move(device));
 }
 
 }  // namespace

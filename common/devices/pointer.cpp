@@ -10,7 +10,7 @@ std::unique_ptr<Device> make_device(const PointerDeviceSpec& spec, const DeviceP
   settings.lease = spec.lease;
   const Tool& tool = place.tool;
   const ToolDofs start = dofs_for_tip(make_trocar(tool.pivot, tool.axis, tool.up), spec.start, 0);
-  return std::make_unique<HeldDevice>(settings, place.haptic_hz, start);
+  return std::make_unique<HeldDevice>(settings, place, start);
 }
 
 }  // namespace palpate

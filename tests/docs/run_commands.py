@@ -2,6 +2,7 @@
 """run_commands.py BIN [--all]: runs the `palpate` lines of README.md and docs/ word for word, in a folder with a copy of
 scenes/ and what docs/organ.md begins with, then the CTest project of docs/drive.md and the reader of docs/logs.md, each
 as the page has it. Some lines are shortened by an option of theirs, some exempt: the tables below say which and why.
+README.md is typed in a shell that finds the programs only once a line of the page has told it where.
 Without --all only those of README.md, docs/drive.md and docs/logs.md that take no minutes."""
 import contextlib
 import fnmatch
@@ -17,6 +18,7 @@ import tempfile
 import organ_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAMS = "build/release/bin"  # in a checkout
 PAGES_IN_SHORT = ["README.md", "docs/drive.md", "docs/logs.md"]
 
 # Never run: (page, line, why). `*` stands for anything.
@@ -32,7 +34,7 @@ EXEMPT = [
 SHORTENED = [
     ("palpate run *", "--seconds 1"),
     ("palpate run * --record *", "--seconds 2"),
-    ("palpate run * --web*", "--seconds 1"),
+    ("*palpate run * --web*", "--seconds 1"),
     ("palpate drive scenes/liver.toml * --log *", "--seconds 3"),
     ("palpate latency*", "--seconds 1"),
     ("palpate record *", "--seconds 2"),
@@ -61,18 +63,22 @@ ENDS_SO = [("palpate stability *", "points failed; see out/")]  # docs/stability
 # Logs that lines take and the page does not make.
 LOGS = ["out/liver.lcmlog", "monday.lcmlog", "friday.lcmlog", "session.lcmlog"]
 
+# How a line of a page begins that is typed.
+TYPED = ("palpate ", f"{PROGRAMS}/palpate ", "mkdir ", "export PATH=")
+
 
 def matches(line, patterns):
     return any(fnmatch.fnmatchcase(line, pattern) for pattern in patterns)
 
 
 def lines_of(page):
-    """The lines of indented and fenced blocks that begin with `palpate `, or make a folder for one."""
+    """The lines of indented and fenced blocks that begin with `palpate `, by a path too, make a folder for one, or tell the
+    shell where it is."""
     fenced = False
     for line in (ROOT / page).read_text().splitlines():
         if line.startswith("```"):
             fenced = not fenced
-        elif (fenced or line.startswith("    ")) and line.strip().startswith(("palpate ", "mkdir ")):
+        elif (fenced or line.startswith("    ")) and line.strip().startswith(TYPED):
             yield line.strip()
 
 
@@ -98,14 +104,21 @@ def block(page, language, word):
 
 
 class Place:
-    """A fresh folder with a copy of scenes/, and the programs first in PATH."""
+    """A fresh folder with a copy of scenes/ and the programs, which are first in PATH from find_programs() on."""
 
     def __init__(self, programs, folder):
         self.programs, self.folder = programs, folder
         self.failures = []
-        self.environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}"}
+        self.environment = dict(os.environ)
         shutil.copytree(ROOT / "scenes", folder / "scenes")
+        (folder / PROGRAMS).parent.mkdir(parents=True)
+        (folder / PROGRAMS).symlink_to(programs)
         (folder / "out").mkdir()
+
+    def find_programs(self, told=f'export PATH="$PWD/{PROGRAMS}:$PATH"'):
+        """By the line that a page has for it."""
+        self.environment["PATH"] = subprocess.run(["bash", "-c", f'{told}; printf %s "$PATH"'], cwd=self.folder, text=True,
+                                                  env=self.environment, check=True, capture_output=True).stdout
 
     def run(self, command, place="", folder="."):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -146,6 +159,9 @@ def run_page(place, page, everything):
         if reason or (matches(bare(line), LONG) and not everything):
             print(f"-                {page}: {bare(line)}: {reason or 'only with --all'}")
             continue
+        if bare(line).startswith("export "):
+            place.find_programs(bare(line))
+            continue
         with place.a_run() if matches(bare(line), BESIDE_A_RUN) else contextlib.nullcontext():
             place.run(shortened(line), page)
 
@@ -178,17 +194,27 @@ def run_reader(place):
         place.failures.append(f"the reader of docs/logs.md has {len(forces.splitlines())} forces, the log {counted}")
 
 
+def check_demo(place):
+    """What demo.sh says last is a line of README.md."""
+    said = re.findall(r'^echo "    (.*)"$', (ROOT / "scripts/demo.sh").read_text(), re.MULTILINE)[-1]
+    if said.replace("$bin", PROGRAMS) not in map(bare, lines_of("README.md")):
+        place.failures.append(f"scripts/demo.sh says {said}, README.md does not")
+
+
 def main():
     programs, everything = pathlib.Path(sys.argv[1]).resolve(), "--all" in sys.argv
     pages = ["README.md"] + sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))
     with tempfile.TemporaryDirectory(prefix="palpate-docs-") as folder:
         place = Place(programs, pathlib.Path(folder))
-        place.run(f"palpate drive scenes/liver.toml --seconds {5 if everything else 3} --log {LOGS[0]}", "logs for what follows")
+        place.run(f"{PROGRAMS}/palpate drive scenes/liver.toml --seconds {5 if everything else 3} --log {LOGS[0]}", "logs for what follows")
         for log in LOGS[1:]:
             shutil.copy(place.folder / LOGS[0], place.folder / log)
         organ_files.write_all(place.folder)
         for page in pages if everything else PAGES_IN_SHORT:
+            if page != "README.md":
+                place.find_programs()
             run_page(place, page, everything)
+        check_demo(place)
         run_project(place)
         run_reader(place)
         if everything:

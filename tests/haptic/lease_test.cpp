@@ -68,7 +68,8 @@ struct MotorDevice : Device {
 TEST(Lease, ADeviceUnderAHandGetsItsForceUntilTheHandTakesTheTool) {
   auto owned = std::make_unique<MotorDevice>();
   const MotorDevice& motors = *owned;
-  HeldDevice held({}, 1 / kDt, std::move(owned));
+  const Tool tool;
+  HeldDevice held({}, {tool, 0, 1 / kDt}, std::move(owned));
   held.read(kDt);
   held.render({{0, 0, 1.5}, {0, 0, 0}}, 0);
   EXPECT_EQ(motors.told, 1.5);
