@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""run_commands.py BIN [--all]: runs the `palpate` lines of README.md and docs/ word for word, in a folder with a copy of
-scenes/ and what docs/organ.md begins with, then the CTest project of docs/drive.md and the reader of docs/logs.md, each
-as the page has it. Some lines are shortened by an option of theirs, some exempt: the tables below say which and why.
+"""run_commands.py BIN [--all]: runs the lines of README.md and docs/ that call a program of this project word for word, in
+a folder with a copy of scenes/ and what docs/organ.md begins with, then the CTest project of docs/drive.md and the reader
+of docs/logs.md, each as the page has it. Sections for two hosts run as a whole, this machine being both. Some lines are
+shortened by an option of theirs, some exempt: the tables below say which and why.
 README.md is typed in a shell that finds the programs only once a line of the page has told it where.
 Without --all only those of README.md, docs/drive.md and docs/logs.md that take no minutes."""
 import contextlib
@@ -20,25 +21,44 @@ import organ_files
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = "build/release/bin"  # in a checkout
 PAGES_IN_SHORT = ["README.md", "docs/drive.md", "docs/logs.md"]
+COMMANDS = ("palpate ", f"{PROGRAMS}/palpate ", "mkdir ", "export PATH=", "haptic_node ", "render_node ", "web_node ", "ros_bridge ", "palpate_generate ", "./scripts/demo.sh")
+
+# Sections whose lines belong together: (page, heading, what goes before, what leaves nothing behind).
+WALKS_IN_SHORT = [("README.md", "Two machines", "true", "scripts/deploy.sh HOST --remove")]
+WALKS = WALKS_IN_SHORT + [("docs/deploy.md", "In short", "true", "true"),
+                          ("docs/security.md", "In short", "rm -r scenes/keys; cd scenes", "true")]  # README's keys
+
+# This machine in place of the pages' hosts, and its folders in place of theirs: (pattern, words).
+HERE = [(r"\bHOST\b|\b192\.168\.1\.\d+\b|\b10\.0\.0\.3\b", "127.0.0.1"), (r"\beth0\b", "lo"), (r"^\./scripts/build\.sh$", "true"),
+        (r"\bbuild/release\b", "{build}"), (r"/opt/palpate", "{folder}/opt")]
 
 # Never run: (page, line, why). `*` stands for anything.
 EXEMPT = [
     ("docs/papers.md", "*", "the test `papers` runs them"),
-    ("docs/deploy.md", "*", "names two hosts; the tests `deploy` and `network` make two"),
-    ("docs/security.md", "*", "names two hosts, and a scene on one of them; the tests `security` make them"),
-    ("*", "* HOST*", "names another host"),
+    ("docs/deploy.md", "*", "its lines belong together: a walk"),
+    ("docs/security.md", "*", "its lines belong together: a walk"),
+    ("README.md", "* scenes/two_hosts.toml *", "belongs to a walk"),
+    ("README.md", "* scenes/keys*", "belongs to a walk"),
+    ("docs/latency.md", "* HOST_?*", "names two hosts, of which one answers until Ctrl-C"),
+    ("docs/meshes.md", "*[[]*", "shows what may stand there"),
     ("docs/drive.md", "palpate drive --merge results.jsonl *", "belongs to the lines of tasks, which run together below"),
 ]
 
 # Run with more words at their end: (line, words). A later row goes before an earlier one.
 SHORTENED = [
     ("palpate run *", "--seconds 1"),
+    ("haptic_node *", "--seconds 2"),
+    ("render_node *", "--seconds 2"),
+    ("web_node *", "--seconds 2"),
+    ("ros_bridge *", "--seconds 2"),
+    ("*_node * --seconds *", ""),
     ("palpate run * --record *", "--seconds 2"),
     ("*palpate run * --web*", "--seconds 1"),
     ("palpate drive scenes/liver.toml * --log *", "--seconds 3"),
     ("palpate latency*", "--seconds 1"),
     ("palpate record *", "--seconds 2"),
-    ("palpate top", "--once"),
+    ("palpate top*", "--once"),
+    ("palpate top* --once*", ""),
     ("palpate study *", "--quick"),
     ("palpate stability *", "--quick"),
     ("* --quick*", ""),
@@ -48,14 +68,17 @@ SHORTENED = [
 
 # Only with --all: minutes of computing.
 LONG = ["palpate study *", "palpate stability *", "palpate modes *", "* --sweep *", "palpate drive *--set body.young*",
-        "palpate film * --speed 0.1 *"]
+        "palpate film * --speed 0.1 *", "./scripts/demo.sh"]
 
 # Need a program that is built only where its libraries are: (line, program).
 NEEDS = [("palpate mesh *", "palpate_organ"), ("palpate organ *", "palpate_organ"), ("palpate segment *", "palpate_organ"),
-         ("palpate * organ.*", "palpate_organ")]
+         ("palpate * organ.*", "palpate_organ"), ("palpate_generate *", "palpate_generate")]
 
 # Need a running system: one runs meanwhile.
-BESIDE_A_RUN = ["palpate record *", "palpate top*"]
+BESIDE_A_RUN = ["palpate record *", "palpate top*", "render_node *", "web_node *", "ros_bridge *"]
+
+# Run where the sources are.
+AT_THE_TOP = ["./scripts/demo.sh"]
 
 # May end with an error that ends with these words: (line, words).
 ENDS_SO = [("palpate stability *", "points failed; see out/")]  # docs/stability.md names them
@@ -63,28 +86,31 @@ ENDS_SO = [("palpate stability *", "points failed; see out/")]  # docs/stability
 # Logs that lines take and the page does not make.
 LOGS = ["out/liver.lcmlog", "monday.lcmlog", "friday.lcmlog", "session.lcmlog"]
 
-# How a line of a page begins that is typed.
-TYPED = ("palpate ", f"{PROGRAMS}/palpate ", "mkdir ", "export PATH=")
-
 
 def matches(line, patterns):
     return any(fnmatch.fnmatchcase(line, pattern) for pattern in patterns)
 
 
 def lines_of(page):
-    """The lines of indented and fenced blocks that begin with `palpate `, by a path too, make a folder for one, or tell the
-    shell where it is."""
+    """The lines of indented and fenced blocks that call a program, make a folder for one, or tell the shell where it is."""
     fenced = False
     for line in (ROOT / page).read_text().splitlines():
         if line.startswith("```"):
             fenced = not fenced
-        elif (fenced or line.startswith("    ")) and line.strip().startswith(TYPED):
+        elif (fenced or line.startswith("    ")) and line.strip().startswith(COMMANDS) and "►" not in line:
             yield line.strip()
 
 
+def section_lines(page, heading):
+    """All indented lines of a section."""
+    text = (ROOT / page).read_text().split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    return [line.strip() for line in text.splitlines() if line.startswith("    ")]
+
+
 def shortened(line):
-    words = next((more for pattern, more in reversed(SHORTENED) if fnmatch.fnmatchcase(bare(line), pattern)), "")
-    return f"{bare(line)} {words}".strip()
+    command, background = re.fullmatch(r"(.*?)( &)?", bare(line)).groups()
+    words = next((more for pattern, more in reversed(SHORTENED) if fnmatch.fnmatchcase(command, pattern)), "")
+    return f"{command} {words}".strip() + (background or "")
 
 
 def bare(line):
@@ -110,9 +136,10 @@ class Place:
         self.programs, self.folder = programs, folder
         self.failures = []
         self.environment = dict(os.environ)
-        shutil.copytree(ROOT / "scenes", folder / "scenes")
+        shutil.copytree(ROOT / "scenes", folder / "scenes", ignore=shutil.ignore_patterns("keys"))
         (folder / PROGRAMS).parent.mkdir(parents=True)
         (folder / PROGRAMS).symlink_to(programs)
+        (folder / "scripts").symlink_to(ROOT / "scripts")
         (folder / "out").mkdir()
 
     def find_programs(self, told=f'export PATH="$PWD/{PROGRAMS}:$PATH"'):
@@ -132,6 +159,27 @@ class Place:
             self.failures.append(command)
             print(done.stdout + done.stderr, flush=True)
         return done.stdout
+
+    def here(self, line):
+        """A line with this machine and its folders in place of the page's."""
+        for pattern, words in HERE:
+            line = re.sub(pattern, words.format(build=self.programs.parent, folder=self.folder), line)
+        return line
+
+    def make_other_host(self):
+        """A folder that is the home directory there, and an ssh that goes there whichever host is named."""
+        (self.folder / "far").mkdir()
+        ssh = self.folder / "ssh" / "ssh"
+        ssh.parent.mkdir()
+        ssh.write_text(f"""#!/bin/sh
+while [ "${{1#-}}" != "$1" ]; do shift 2; done  # -o WORD
+shift  # the host
+cd {self.folder}/far
+export HOME={self.folder}/far SSH_CONNECTION='127.0.0.1 1 127.0.0.1 22'
+exec sh -c "$*"
+""")
+        ssh.chmod(0o755)
+        self.environment["PATH"] = f"{ssh.parent}:{self.folder}/scripts:{self.environment['PATH']}"
 
     @contextlib.contextmanager
     def a_run(self):
@@ -163,7 +211,13 @@ def run_page(place, page, everything):
             place.find_programs(bare(line))
             continue
         with place.a_run() if matches(bare(line), BESIDE_A_RUN) else contextlib.nullcontext():
-            place.run(shortened(line), page)
+            place.run(place.here(shortened(line)), page, ROOT if matches(bare(line), AT_THE_TOP) else ".")
+
+
+def run_walk(place, page, heading, before, after):
+    """The lines of a section one after the other in one shell."""
+    lines = [place.here(shortened(line)) for line in [before, *section_lines(page, heading), after]]
+    place.run("\n".join(["set -e", *lines]), f"{page}, {heading}")
 
 
 def run_tasks(place):
@@ -215,6 +269,9 @@ def main():
                 place.find_programs()
             run_page(place, page, everything)
         check_demo(place)
+        place.make_other_host()
+        for walk in WALKS if everything else WALKS_IN_SHORT:
+            run_walk(place, *walk)
         run_project(place)
         run_reader(place)
         if everything:

@@ -46,19 +46,29 @@ double expect_same_bits(const std::map<std::uint64_t, ForceState>& nodes,
   return largest;
 }
 
-TEST(DriveSameBits, TheForcesAreThoseOfTheNodesFromTheSameInputs) {
-  const LoopbackScene scene("drive-bits", testing::kLinear);
-  const std::string recorded = scene.folder() / "nodes.lcmlog", again = scene.folder() / "drive.lcmlog";
-  const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"),
-                                           scene.scene(), testing::own_domain(), recorded));
+/// Runs a scene's nodes, and lock step from what they recorded.
+void expect_lock_step_repeats(const std::string& scene, const std::filesystem::path& folder) {
+  const std::string recorded = folder / "nodes.lcmlog", again = folder / "drive.lcmlog";
+  const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"), scene,
+                                           testing::own_domain(), recorded));
   ASSERT_EQ(run.status, 0) << run.err;
   const auto drive = run_program(fmt::format("{} drive {} --set tool.device=log --set tool.trajectory={} --log {}",
-                                             program("palpate"), scene.scene(), recorded, again));
+                                             program("palpate"), scene, recorded, again));
   ASSERT_EQ(drive.status, 0) << drive.err;
 
   const auto nodes = forces_in(recorded), lock_step = forces_in(again);
   ASSERT_GT(nodes.size(), 2000u);
   EXPECT_GT(expect_same_bits(nodes, lock_step), 0.05);
+}
+
+TEST(DriveSameBits, TheForcesAreThoseOfTheNodesFromTheSameInputs) {
+  const LoopbackScene scene("drive-bits", testing::kLinear);
+  expect_lock_step_repeats(scene.scene(), scene.folder());
+}
+
+TEST(DriveSameBits, TheForcesOfTheLiverAreThoseOfTheNodesFromTheSameInputs) {
+  const testing::OwnFolder folder("drive-bits-liver");
+  expect_lock_step_repeats(PALPATE_SOURCE "/scenes/liver.toml", folder.path());
 }
 
 // As a page does it: some sixty poses a second until the person lets go.

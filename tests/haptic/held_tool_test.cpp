@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/devices/device.hpp"
-#include "common/devices/hand/virtual_coupling.hpp"
+#include "common/devices/virtual_coupling.hpp"
 #include "common/tool/motion_guard.hpp"
 #include "tests/haptic/patch_block.hpp"
 #include "tools/rig/tip_at.hpp"

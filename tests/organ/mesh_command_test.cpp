@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "common/mesh/generators.hpp"
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tools/organ/fineness_options.hpp"
 #include "tools/organ/mesh_pieces.hpp"
 #include "tools/organ/surface_shells.hpp"
 
@@ -127,6 +129,28 @@ TEST_F(MeshCommand, FiguresArePrintedAsOneLineOfJson) {
   EXPECT_NEAR(figures["volume_m3"], measures_of(body).volume, 1e-9);
   EXPECT_NEAR(figures["mass_kg"], 1060 * measures_of(body).volume, 1e-6);
   EXPECT_TRUE(json["warnings"].empty());
+}
+
+/// [bytes] That `palpate check` says that a program, or the disk, takes.
+std::size_t checked_bytes(const nlohmann::json& checked, const std::string& owner) {
+  std::size_t sum = 0;
+  for (const auto& part : checked["memory"]) sum += part["owner"] == owner ? part["bytes"].get<std::size_t>() : 0;
+  return sum;
+}
+
+// 2,402 nodes of the surface, whose tensors are compressed: whole they are 208 MB.
+TEST_F(MeshCommand, WhatAFineMeshIsSaidToTakeIsWhatCheckSays) {
+  MeshOptions options;
+  options.output = (folder_ / "block.msh").string();
+  Output said(true);
+  said.next_mesh();
+  finish_mesh(make_block({0, 0, 0}, {0.1, 0.1, 0.1}, {20, 20, 20}), options, said);
+  const auto check = run_program(program("palpate") + " check --json " + options.output);
+  ASSERT_EQ(check.status, 0) << check.err;
+  const auto checked = nlohmann::json::parse(check.out);
+  EXPECT_EQ(said.mesh()["archive_bytes"], checked_bytes(checked, "disk"));
+  EXPECT_EQ(said.mesh()["haptic_node_bytes"], checked_bytes(checked, "haptic_node"));
+  EXPECT_LT(said.mesh()["archive_bytes"], 60e6);
 }
 
 // In the long tests as many as a scanner gives, in docs/organ.md with its time; a hundredth of that otherwise.

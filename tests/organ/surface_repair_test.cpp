@@ -80,12 +80,15 @@ TEST_F(SurfaceRepair, NodesThatNoTriangleUsesAreToldAndChangeNothing) {
 }
 
 TEST_F(SurfaceRepair, TurnedTrianglesAreTurnedBack) {
-  TriangleMesh turned = ball_;
-  for (const int t : {4, 40, 41}) std::swap(turned.triangles[t][0], turned.triangles[t][1]);
-  expect_has(finding(turned, volume_), "3 triangles turned against their neighbours");
+  for (const int first : {0, 4}) {
+    TriangleMesh turned = ball_;
+    for (const int t : {first, 40, 41}) std::swap(turned.triangles[t][0], turned.triangles[t][1]);
+    expect_has(finding(turned, volume_), "3 triangles turned against their neighbours");
+  }
   TriangleMesh inside_out = ball_;
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
-  EXPECT_NEAR(enclosed_volume(repaired_of(inside_out).mesh), volume_, 1e-9);
+  expect_has(finding(inside_out, volume_),
+             "a surface of 576 triangles inside out at (1239, 0, 970.9) mm: turned outward");
 }
 
 TEST_F(SurfaceRepair, AHoleIsClosedUpToItsSize) {
@@ -115,6 +118,17 @@ TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {
   const int n = static_cast<int>(ball_.nodes.size());
   sheet.triangles.push_back({n, n + 1, n + 2});
   expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (9000, 0, 0) mm");
+}
+
+TEST_F(SurfaceRepair, ANodeWhereTwoPartsTouchIsParted) {
+  TriangleMesh touching = ball_;
+  append(touching, make_sphere({1, 0, 1.2}, 0.2, 4));
+  const Repaired repaired = repaired_of(touching);
+  EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 1e-9);
+  ASSERT_EQ(repaired.findings.size(), 2u);
+  expect_has(say(repaired.findings[0]),
+             "1 nodes where the surface is not manifold, the first at (1000, 0, 1000) mm: parted there");
+  expect_has(say(repaired.findings[1]), "a stray shell of 64 triangles");
 }
 
 TEST_F(SurfaceRepair, ACrossingSurfaceIsToldWithItsPlace) {

@@ -15,9 +15,8 @@
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/check/surface_check.hpp"
-#include "common/models/quasi_static/compress.hpp"
+#include "common/models/quasi_static/free_surface.hpp"
 #include "common/models/quasi_static/spec.hpp"
-#include "common/models/solid/precompute.hpp"
 #include "tools/shared/human_bytes.hpp"
 
 namespace palpate {
@@ -32,18 +31,14 @@ struct Work {
   double factor = 0;      ///< [bytes] of the sparse factor
 };
 
-DofMap all_free(DofMap dofs) {
-  dofs.number();
-  return dofs;
-}
-
 /// By the analysis of the same sparse system, with `touchable` unknowns on the surface.
 Work work_of(const TetMesh& mesh, const Offline& offline, const SurfaceMap& surface, double touchable) {
   const FineSpace space = make_fine_space(mesh, offline);
   const NodeGraph graph = fine_graph(space, nullptr);
   std::vector<char> used(space.nodes.size());
   for (std::size_t n = 0; n < used.size(); ++n) used[n] = graph.begin[n + 1] > graph.begin[n];
-  const DofMap dofs = all_free(DofMap(used));
+  DofMap dofs(used);
+  dofs.number();
   const bool by_blocks = is_finer(offline) || form_of(surface.touchable) == TensorForm::compressed;
   const std::vector<Eigen::Matrix3d> blocks(graph.neighbour.size(), Eigen::Matrix3d::Identity());
   const std::vector<int> last = by_blocks ? std::vector<int>{} : surface.node_number;
@@ -80,7 +75,7 @@ bool names_mesh(const std::filesystem::path& file) {
 void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   const TetMesh mesh = load_tet_mesh(file, 1);
   const QuasiStaticSpec body;
-  const SurfaceMap surface = make_surface_map(body, mesh, all_free(DofMap(mesh)));
+  const SurfaceMap surface = free_surface(mesh);
   const MeshMeasures measures = measures_of(mesh);
   out.fact("mesh", file.string(), "mesh " + file.string());
   out.say(fmt::format("  {} nodes, {} tetrahedra; surface: {} nodes, {} triangles, mean edge {:.4g} m",
@@ -98,12 +93,7 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
       "{:.2g} s on this machine ({:.3g} Gflop), and {} for its factor",
       compressed ? "compressed " : "", offline.element == FiniteElement::p1 ? "linear" : "quadratic",
       work.operations / speed(), 1e-9 * work.operations, human_bytes(static_cast<std::size_t>(work.factor))));
-  const std::vector<Tool> tools(1);
-  const ContactSpec contact;
-  constexpr int kFields = 3;  // position, displacement, normal
-  const CheckSettings settings{
-      .contact = contact, .tools = tools, .script = {}, .dt = 1e-3, .stored = {}, .find_wall = {}, .check_guests = {}};
-  out.memory(compliance_memory(settings, surface, 0, kFields, compressed ? compressed_bytes(surface) : 0));
+  out.memory(free_surface_memory(surface));
   if (const double across = measures.extent.maxCoeff(); across > kMaxBody || across < kMinBody)
     out.warn(fmt::format("{} is {:.3g} m across: is it in metres?", file.string(), across));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 
 #include "common/cli/progress.hpp"
@@ -10,6 +11,7 @@
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/surface.hpp"
+#include "common/models/quasi_static/free_surface.hpp"
 #include "common/models/quasi_static/spec.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/organ/finding.hpp"
@@ -36,14 +38,24 @@ double mean_edge_of(const TetMesh& mesh, const Surface& surface) {
   return sum / (3 * static_cast<double>(surface.triangles.size()));
 }
 
-/// Of a quasi-static body whose every node can be touched: memory from its sizes, time as measured (docs/organ.md).
-void tell_cost(std::size_t surface_nodes, Output& out) {
-  const auto nodes = static_cast<double>(surface_nodes);
-  const double archive = 36 * nodes * nodes, haptic = 2 * archive;
-  const double seconds = (surface_nodes > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds) * nodes * nodes;
+std::size_t bytes_of(std::string_view owner, std::span<const MemoryPart> parts) {
+  std::size_t sum = 0;
+  for (const MemoryPart& part : parts) sum += part.owner == owner ? part.bytes : 0;
+  return sum;
+}
+
+/// Of a quasi-static body whose every node can be touched: memory as `palpate check` has it, time as measured
+/// (docs/organ.md).
+void tell_cost(const TetMesh& mesh, Output& out) {
+  const SurfaceMap surface = free_surface(mesh);
+  const std::vector<MemoryPart> parts = free_surface_memory(surface);
+  const std::size_t archive = bytes_of("disk", parts), haptic = bytes_of("haptic_node", parts);
+  const double nodes = surface.size();
+  const double seconds = (surface.size() > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds) * nodes * nodes;
   out.say(fmt::format(
-      "  to come, as a quasi_static body: archive of {:.3g} MB, haptic node {:.3g} MB, precomputation about {:.2g} s",
-      1e-6 * archive, 1e-6 * haptic, seconds));
+      "  to come, as a quasi_static body: archive of {:.3g} MB{}, haptic node {:.3g} MB, precomputation about {:.2g} s",
+      1e-6 * static_cast<double>(archive), form_of(surface.touchable) == TensorForm::compressed ? " (compressed)" : "",
+      1e-6 * static_cast<double>(haptic), seconds));
   out.mesh().update({{"archive_bytes", archive}, {"haptic_node_bytes", haptic}, {"precomputation_s", seconds}});
 }
 
@@ -80,7 +92,7 @@ void tell_mesh(const TetMesh& mesh, const MeshOptions& o, Output& out) {
   tell_groups(mesh, out);
   if (m.extent.maxCoeff() > kMaxOrgan || m.extent.maxCoeff() < kMinOrgan)
     out.warn(fmt::format("{:.3g} m across: is --unit right?", m.extent.maxCoeff()));
-  tell_cost(surface.nodes.size(), out);
+  tell_cost(mesh, out);
 }
 
 }  // namespace

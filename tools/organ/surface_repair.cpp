@@ -151,7 +151,7 @@ void note_crowded_edges(const TriangleMesh& mesh, std::vector<Finding>& findings
   note("edges that more than two triangles share", "parted there", std::move(places), findings);
 }
 
-/// Turned triangles are the fewer ones of each shell.
+/// Turned triangles are the fewer ones of each shell: all come to lie as most of theirs did.
 void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
   const std::vector<Triangle> before = mesh.triangles;
   const std::vector<Eigen::Vector3d> known = mesh.nodes;
@@ -174,6 +174,7 @@ void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
       std::vector<int> others;
       std::ranges::set_difference(shell, of_shell, std::back_inserter(others));
       of_shell = others;
+      for (const int t : shell) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     }
     for (const int t : of_shell) places.push_back(place_of(mesh, mesh.triangles[t]));
   }

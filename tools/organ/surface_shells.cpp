@@ -54,6 +54,16 @@ void turn(TriangleMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
+/// Its normals outward, noted where they were not.
+void turn_outward(TriangleMesh& shell, std::vector<Finding>& findings) {
+  if (enclosed_volume(shell) >= 0) return;
+  turn(shell);
+  findings.push_back({fmt::format("a surface of {} triangles inside out", shell.triangles.size()),
+                      "turned outward",
+                      {shell.nodes[0]},
+                      "surfaces inside out"});
+}
+
 void append(TriangleMesh& mesh, const TriangleMesh& more) {
   const int shift = static_cast<int>(mesh.nodes.size());
   mesh.nodes.insert(mesh.nodes.end(), more.nodes.begin(), more.nodes.end());
@@ -187,7 +197,7 @@ void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<TriangleMesh> parts = parts_of(mesh);
   std::ranges::stable_sort(parts, std::ranges::greater{}, [](const auto& p) { return std::abs(enclosed_volume(p)); });
   TriangleMesh kept = parts[0];
-  if (enclosed_volume(kept) < 0) turn(kept);
+  turn_outward(kept, findings);
   const SurfaceTree largest(kept);
   for (std::size_t p = 1; p < parts.size(); ++p) place_shell(parts[p], largest, kept, findings);
   mesh = kept;

@@ -25,7 +25,7 @@ double enclosed_volume(const TriangleMesh& mesh);
 void leave_open_shells_out(TriangleMesh& mesh, double max_hole, std::vector<Finding>& findings);
 
 /// Of closed shells keeps the one that encloses most, its normals outward, with the cavities in it and what crosses it;
-/// the others are noted.
+/// the others are noted, and that it was inside out.
 void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings);
 
 }  // namespace palpate
