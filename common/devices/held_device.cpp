@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/tool/fade.hpp"
+
 namespace palpate {
 
 HeldDevice::HeldDevice(const Settings& settings, const DevicePlace& place, const ToolDofs& start)
@@ -33,7 +35,7 @@ DeviceSample HeldDevice::read(double seconds) {
   }
   silent_ = lease_.over(seconds);
   if (silent_) motion_.hold();
-  faded_ = silent_ ? 1 : std::max(faded_ - dt_ / ToolRig::kReturn, 0.0);
+  faded_ = silent_ ? 1 : std::max(faded_ - dt_ / kReturnSeconds, 0.0);
   DeviceSample now{giving_way(motion_.step()), seq_};
   now.dofs.silent = silent_;
   if (silent_) now.dofs.pedal = 0;

@@ -1,7 +1,7 @@
 #pragma once
 #include "common/devices/device.hpp"
-#include "common/devices/virtual_coupling.hpp"
 #include "common/devices/lease.hpp"
+#include "common/devices/virtual_coupling.hpp"
 #include "common/realtime/latest.hpp"
 #include "common/tool/hand_motion.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/geometry/segment.hpp"
+#include "common/tool/fade.hpp"
 #include "common/tool/instrument.hpp"
 #include "idl/messages.hpp"
 
@@ -30,8 +31,8 @@ ToolRig::ToolRig(int index, const Tool& tool, double dt)
       safety_(tool.max_force, tool.max_force_rate, dt),
       force_scale_(tool.force_scale),
       motion_limits_(tool.motion),
-      fade_step_(dt / kFade),
-      return_step_(dt / kReturn),
+      fade_step_(dt / kFadeSeconds),
+      return_step_(dt / kReturnSeconds),
       slide_step_(dt / kSlideOut) {}
 
 bool ToolRig::start(const ToolDofs& dofs) {

@@ -57,8 +57,6 @@ class ToolRig {
   /// The hand gets what the watch left of it: slew limits and a second force limit have the last word. `healthy` false
   /// reports a fault of this step.
   void give(bool healthy);
-  /// A hand that has let go is given nothing any more, and one that is back gets its force by and by.
-  static constexpr double kFade = 0.02, kReturn = 0.05;  ///< [s] from all to nothing, and back
   /// What jaws let go slides out of them: its load does not leave the hand at once.
   static constexpr double kSlideOut = 0.02;  ///< [s]
   void trip() { safety_.trip(); }
