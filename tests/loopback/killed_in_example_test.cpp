@@ -1,4 +1,5 @@
-// What the hands feel when the real deformation node of an example is killed in the midst of it, by the log.
+// What the hands feel when the real deformation node of an example is killed, or stands still, in the midst of it, by
+// the log.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,7 +28,10 @@ constexpr int kTools = 2;
 // meanwhile were, and is pushed back as hard as it presses.
 constexpr int kAfter = 2500;
 constexpr int kFirst = 1500, kLast = 13000;  // steps between which it dies
-const std::string kScene = PALPATE_SOURCE "/scenes/hepatectomy.toml";
+constexpr int kFirstStop = 800;              // step: the scalpel comes down on the plate
+constexpr int kStops = 6;                    // in a run of ten seconds
+constexpr auto kStop = 400ms;
+constexpr auto kToEnd = std::numeric_limits<std::uint64_t>::max();
 
 /// The largest force of each tool until a step, the largest of all, and the largest change of one in a step [N].
 struct FeltByTools {
@@ -55,18 +59,19 @@ FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t un
   return felt;
 }
 
-class KilledInAnExample : public ::testing::Test {
+class InAnExample : public ::testing::Test {
  protected:
+  explicit InAnExample(const std::string& name) : scene_(PALPATE_SOURCE "/scenes/" + name + ".toml") {}
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     std::string output;
-    ASSERT_EQ(run_command(program("palpate") + " precompute " + kScene, &output), 0) << output;
+    ASSERT_EQ(run_command(program("palpate") + " precompute " + scene_, &output), 0) << output;
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Runs the example in real time; `meanwhile` is called once the haptic node is there, with the deformation node.
   template <class Meanwhile>
-  FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = std::numeric_limits<std::uint64_t>::max()) {
+  FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = kToEnd) {
     const std::string file = folder_ / "run.lcmlog";
     ChildProcess recorder("palpate", {program("palpate"), "record", "--keep", "everything", "--force", "-o", file,
                                       "--domain", std::to_string(own_domain())});
@@ -79,14 +84,25 @@ class KilledInAnExample : public ::testing::Test {
     return felt_by_tools_in(file, until);
   }
   ChildProcess node(const std::string& name) const {
-    return {name, {program(name), kScene, "--domain", std::to_string(own_domain()), "--supervised"}};
+    return {name, {program(name), scene_, "--domain", std::to_string(own_domain()), "--supervised"}};
   }
   bool reaches(std::uint64_t step) { return forces_.reach(step); }
 
  private:
+  std::string scene_;
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / fmt::format("palpate-killed-in-example-{}", getpid());
   ForcesOfRuns forces_;
+};
+
+class KilledInAnExample : public InAnExample {
+ protected:
+  KilledInAnExample() : InAnExample("hepatectomy") {}
+};
+
+class StoppedInAnExample : public InAnExample {
+ protected:
+  StoppedInAnExample() : InAnExample("plate_cut") {}
 };
 
 TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
@@ -114,6 +130,28 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
     }
     EXPECT_GT(felt.steps, step) << round;
     EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
+  });
+}
+
+TEST_F(StoppedInAnExample, ADeformationNodeThatStandsStillIsNoKickByTheLog) {
+  const FeltByTools undisturbed = run([this](auto&) { EXPECT_TRUE(reaches(kFirstStop)); });
+  repeat(1, 10min, [&](int round) {
+    std::mt19937 random(round);
+    const FeltByTools felt = run([&](const std::unique_ptr<ChildProcess>& deform) {
+      ASSERT_TRUE(reaches(kFirstStop + random() % 1000));
+      for (int i = 0; i < kStops; ++i) {
+        kill(deform->pid(), SIGSTOP);
+        std::this_thread::sleep_for(kStop);
+        kill(deform->pid(), SIGCONT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 700));
+      }
+    });
+    fmt::print("round {}: {:.3f} N undisturbed, by {:.3f} N a step; {:.3f} N, by {:.3f} N a step\n", round,
+               undisturbed.force[0], undisturbed.change, felt.force[0], felt.change);
+    EXPECT_GT(undisturbed.force[0], 0.05) << round;
+    EXPECT_LE(felt.force[0], 1.1 * undisturbed.force[0]) << round;
+    EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
+    EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kFirstStop + kStops * 1000)) << round;
   });
 }
 
