@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs everything in bench/ and the liver scene, and writes out/bench.csv:
 # bench,case,metric,value,unit,machine,commit. --quick takes fewer samples. Leave the machine alone meanwhile.
+# The live view's rows, `web`, are scripts/live_view.py's, which needs a browser.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=()
@@ -8,7 +9,7 @@ seconds=10
 for argument in "$@"; do
   case "$argument" in
     --quick) quick=(--quick); seconds=4 ;;
-    -h|--help) sed -n '2,3p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,4p' "$0"; exit 0 ;;
     *) echo "bench.sh: unknown argument $argument" >&2; exit 2 ;;
   esac
 done

@@ -114,6 +114,17 @@ def path_plot(sessions, courses, tool):
     return picture_of(figure, f"path of {tool}")
 
 
+def thinned(sessions, tool):
+    """What a log that keeps enough does not tell of the force."""
+    said = []
+    for i, session in enumerate(sessions):
+        steps = next((t.get("steps_per_force") for t in session["tools"] if t["name"] == tool), None)
+        if steps:
+            said.append(f"The log of {session_name(sessions, i)} has one force in {steps} steps: largest and mean force are those of these steps, and a peak "
+                        "between two is not in them.")
+    return "".join(f"<p class=small>{html.escape(s)}</p>" for s in said)
+
+
 def figures_table(sessions, tool):
     found = [next((t for t in s["tools"] if t["name"] == tool), None) for s in sessions]
     head = "".join(f"<th>{html.escape(session_name(sessions, i))}" for i in range(len(sessions)))
@@ -161,7 +172,7 @@ def main():
     for i, session in enumerate(sessions):
         body.append(f"<h2>{html.escape(session_name(sessions, i))}</h2>{outcome(session)}{strip(folder, session)}")
     for tool in tools:
-        body.append(f"<h2>{html.escape(tool)}</h2>{figures_table(sessions, tool)}{force_plot(sessions, courses, tool)}{path_plot(sessions, courses, tool)}")
+        body.append(f"<h2>{html.escape(tool)}</h2>{figures_table(sessions, tool)}{thinned(sessions, tool)}{force_plot(sessions, courses, tool)}{path_plot(sessions, courses, tool)}")
     body.append("<p class=small>The force is the one that the hand got. Paths are those of the tip in the world, from above and from the front; dots mark "
                 "where it pressed, larger ones harder.</p>")
     (folder / "index.html").write_text(f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"

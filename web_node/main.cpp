@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/dynamics/elastic_mesh.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/mesh/near_origin.hpp"
+#include "common/models/marked_to_resect.hpp"
 #include "common/node/node_setup.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -99,6 +101,14 @@ void summarise(const web::WebReport& r, const web::Server::Seen& seen, bool supe
                   r.frames, summary["rate_hz"].get<double>(), seen.refused, seen.malformed, seen.skipped));
 }
 
+std::map<int, Resection> resections_of(const LoadedScene& loaded) {
+  std::map<int, Resection> all;
+  for (std::size_t b = 0; b < loaded.archives.size(); ++b)
+    if (const Box* marked = marked_to_resect(loaded.scene.bodies[b]))
+      all.emplace(static_cast<int>(b), Resection(*marked, elastic_mesh(loaded.archives[b])));
+  return all;
+}
+
 void run(const NodeOptions& o) {
   LoadedScene loaded = load_for_node(o, ArchivePart::header);
   const Scene& scene = loaded.scene;
@@ -127,10 +137,11 @@ void run(const NodeOptions& o) {
   web::Server server(settings, {.said = [&](std::uint32_t page, const web::Said& said) { pages.said(page, said); },
                                 .gone = [&](std::uint32_t page) { hands.gone(page); }});
   server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene), visuals, origin)});
+  std::map<int, Resection> resections = resections_of(loaded);
   loaded.archives.clear();
   catch_shutdown_signals();
   web::WebLoop loop(scene, origin, std::move(bodies), *source, *bus, presence, hands, server);
-  if (topology) loop.set_topology(&*topology);
+  if (topology) loop.set_topology(&*topology, std::move(resections));
   fmt::print("live view: {}\n", link_to(settings, server.port()));
   say_ready(o);
   std::fflush(stdout);

@@ -4,6 +4,7 @@
 
 #include "common/devices/lease.hpp"
 #include "common/log/log.hpp"
+#include "common/node/handling_summary.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -89,6 +90,10 @@ void WebLoop::take_tool(const ToolState& state) {
 void WebLoop::follow_cuts() {
   const std::vector<int> changed = topology_->take();
   for (const int body : changed) {
+    if (const auto whole = whole_.find(body); whole != whole_.end()) {
+      resections_.at(body) = whole->second;
+      resections_.at(body).cut(topology_->cut(body));
+    }
     topologies_[body].triangles = topology_->triangles(body);
     if (!bodies_[body].visual) continue;
     topologies_[body].triangles = bared(bodies_[body].triangles, topologies_[body].triangles);
@@ -165,7 +170,7 @@ void WebLoop::keep_house(std::int64_t now) {
 }
 
 void WebLoop::send_status(std::int64_t now) {
-  json nodes = json::array(), said = json::array(), tasks = json::array();
+  json nodes = json::array(), said = json::array(), tasks = json::array(), resections = json::array();
   for (const auto& [name, peer] : presence_.peers())
     if (peer.accepted && now - peer.heard_ns < 10 * kNsPerS)
       nodes.push_back({{"role", peer.status.role},
@@ -176,11 +181,14 @@ void WebLoop::send_status(std::int64_t now) {
   for (const char* role : {"haptic", "deform"})
     if (const std::string silence = link_.silence(role, now); !silence.empty()) said.push_back(silence);
   for (const auto& [body, task] : latest_task_) tasks.push_back(of(task, scene_));
+  for (const auto& [body, resection] : resections_)
+    resections.push_back(resection_summary(name_of(scene_.bodies[body]), resection));
   const Percentiles latency = percentiles_us(recent_latency_);
   const Server::Seen seen = server_.seen();
   const json status{{"nodes", nodes},
                     {"said", said},
                     {"tasks", tasks},
+                    {"resections", resections},
                     {"rate_hz", rate_hz_},
                     {"latency_ms", {{"p50", 1e-3 * latency.p50}, {"p99", 1e-3 * latency.p99}}},
                     {"viewers", seen.viewers},

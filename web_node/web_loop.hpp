@@ -7,6 +7,7 @@
 #include "common/bus/clock_link.hpp"
 #include "common/bus/link_watch.hpp"
 #include "common/bus/presence.hpp"
+#include "common/dynamics/resection.hpp"
 #include "common/node/surface_source.hpp"
 #include "common/node/topology_feed.hpp"
 #include "common/realtime/histogram.hpp"
@@ -40,7 +41,11 @@ class WebLoop {
   WebLoop(const Scene& scene, const Eigen::Vector3d& origin, std::vector<Beginning> bodies, SurfaceSource& source,
           Bus& bus, Presence& presence, const Hands& hands, Server& server);
 
-  void set_topology(TopologyFeed* topology) { topology_ = topology; }
+  /// `resections`: uncut, of the bodies whose scene marks what is to be cut off.
+  void set_topology(TopologyFeed* topology, std::map<int, Resection> resections) {
+    topology_ = topology;
+    whole_ = resections_ = std::move(resections);
+  }
   /// Until `seconds` are over (0: no limit) or a stop is requested.
   const WebReport& run(double seconds);
 
@@ -71,6 +76,7 @@ class WebLoop {
   ClockFollower clock_;
   LinkWatch link_;
   TopologyFeed* topology_ = nullptr;
+  std::map<int, Resection> whole_, resections_;  ///< before any cut, and now
   std::unique_ptr<Reader<ToolState>> tools_;
   std::unique_ptr<Reader<ForceState>> forces_;
   std::unique_ptr<Reader<TaskRecord>> tasks_;  ///< null where no body tells a task

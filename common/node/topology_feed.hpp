@@ -21,6 +21,8 @@ class TopologyFeed {
   /// Which piece of such a body each of its tetrahedra belongs to: -1 for one that is gone, 0 for what is joined to a
   /// rest that cannot be cut, then from 1. Valid until the next call.
   std::span<const int> pieces(int body);
+  /// Tetrahedra that tools have cut, not torn or fallen away.
+  std::span<const int> cut(int body) const { return memory_.cut(body); }
   const CutMesh& mesh(int body) const { return *bodies_.at(body).mesh; }
   std::size_t cuts() const;                                    ///< tetrahedra gone, of all bodies
   std::uint64_t refused() const { return memory_.refused(); }  ///< messages that do not fit the archives

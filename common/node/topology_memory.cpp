@@ -40,10 +40,12 @@ void TopologyMemory::listen() {
 // The first change of a run has all that was gone before it. One that does not fit counts as seen: asked for anew, it
 // would come again and again.
 bool TopologyMemory::apply(const TopologyChange& change, Followed& body) {
-  if (change.seq == 1) body.removed.clear();
+  if (change.seq == 1) body.removed.clear(), body.cut.clear();
   const bool fits = body.removed.size() + change.removed.size() <= body.tetrahedra &&
                     std::ranges::all_of(change.removed, [&](std::uint32_t t) { return t < body.tetrahedra; });
   if (fits) body.removed.insert(body.removed.end(), change.removed.begin(), change.removed.end());
+  if (fits && change.cause == RemovalCause::cut)
+    body.cut.insert(body.cut.end(), change.removed.begin(), change.removed.end());
   body.run = change.run;
   body.seq = change.seq;
   body.news = true;

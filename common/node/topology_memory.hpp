@@ -22,6 +22,8 @@ class TopologyMemory {
   std::vector<int> take();
 
   const std::vector<int>& removed(int body) const { return bodies_.at(body).removed; }  ///< in order of removal
+  /// Those of them that tools have cut, not torn or fallen away, since the deformation node began.
+  const std::vector<int>& cut(int body) const { return bodies_.at(body).cut; }
   /// Start of the deformation node whose changes these are, 0: none. Another one's list may be any other.
   std::uint64_t run(int body) const { return bodies_.at(body).run; }
   std::uint64_t refused() const { return refused_; }  ///< messages that do not fit the archives
@@ -30,7 +32,7 @@ class TopologyMemory {
   struct Followed {
     std::size_t tetrahedra = 0;
     std::uint64_t run = 0, seq = 0;
-    std::vector<int> removed;
+    std::vector<int> removed, cut;
     HeldTopology told;
     std::int64_t told_ns = 0;
     bool news = true;  ///< not told yet

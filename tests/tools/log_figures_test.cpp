@@ -59,6 +59,16 @@ TEST_F(Figures, EachRunOfTheHapticNodeBeginsWhereTheLogHasIt) {
   EXPECT_NEAR(last_time(), 0.33, 1e-9);
 }
 
+TEST_F(Figures, ALogOfFewForcesSaysOfHowManyStepsEachIs) {
+  for (int ms = 0; ms < 320; ++ms) step(ms * kMs, 1, ms * kMs, 0.5);
+  EXPECT_FALSE(figures_.json()["tools"][0].contains("steps_per_force"));
+  for (int ms = 320; ms < 16 * 320; ++ms)
+    tell(ms * kMs, topics::tool_state, ToolState{.run = 1, .sense_ns = ms * kMs, .depth = 0.1});
+  const auto thinned = figures_.json()["tools"][0];
+  EXPECT_EQ(thinned["steps_per_force"], 16);
+  EXPECT_FALSE(thinned.contains("force_change_max_n"));
+}
+
 TEST_F(Figures, WhatTissueHasLostAddsUpByItsCause) {
   tell(1 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 1, .cause = cut, .removed = {1, 2, 3}});
   tell(2 * kMs, topics::topology_change, TopologyChange{.run = 1, .seq = 2, .cause = cut, .removed = {7, 8}});

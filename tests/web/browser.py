@@ -2,6 +2,7 @@
 """browser.py CASE: what a person at the live view does and sees, in headless Chromium, and what a hostile page does
 to it. Exit status 77: no browser."""
 import argparse
+import base64
 import json
 import math
 import os
@@ -19,6 +20,8 @@ from live_page import Nodes, Page, expect, need_browser, open_browser, open_smal
 from watcher import FRAME, TAKEN, Connection, Watcher
 
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
+LAG = "Math.hypot(...palpate.frame.tools[0].parts[0].slice(12, 15).map((x, i) => x - palpate.hand.pose.tip[i]))"
+HANDLING = "document.querySelector('#handling p').textContent"
 MOVED = "Math.max(...palpate.bodies()[0].displacement)"
 
 
@@ -36,9 +39,38 @@ import(new URL('curve.js', location.href).href).then(({ Curve }) => {
 }, (error) => done(String(error)));"""
 
 
+def forces_in(options, log, folder):
+    """What the log has of each step's force, without when it was told."""
+    told = folder / f"{log.stem}.jsonl"
+    subprocess.run([f"{options.bin}/palpate", "export", log, "--topic", "force_state", "--jsonl", "-o", told],
+                   check=True, stdout=subprocess.DEVNULL)
+    steps = [json.loads(line)["message"] for line in told.read_text().splitlines()]
+    return {step["step"]: [step[what] for what in ("force", "torque", "energy", "flags")] for step in steps}
+
+
+def is_repeated(options, session):
+    """The session's motion, in lock step, gives its forces again, bit for bit."""
+    again = session.with_name("again.lcmlog")
+    subprocess.run([f"{options.bin}/palpate", "drive", f"{options.source}/scenes/liver.toml", "--log", again,
+                    "--set", "tool.device=log", "--set", f"tool.trajectory={session}"],
+                   check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, PALPATE_CACHE=options.cache))
+    told, repeated = (forces_in(options, log, session.parent) for log in (session, again))
+    expect(len(told) > 300, f"{len(told)} forces in the session's log")
+    expect(max(math.hypot(*force) for force, *_ in told.values()) > 0.05, "nothing was pressed")
+    others = [step for step, force in told.items() if repeated.get(step) != force]
+    expect(not others, f"{len(others)} of {len(told)} forces are others, from step {others[:1]} on")
+
+
 def press(options):
-    """Click and drag deform the organ, the curve rises, release brings it back."""
-    with Nodes(options, "liver.toml") as nodes:
+    """Click and drag deform the organ, the curve rises, release brings it back; the session's log is a motion."""
+    with tempfile.TemporaryDirectory() as folder:
+        session = pathlib.Path(folder) / "session.lcmlog"
+        press_by_mouse(options, ["--record", str(session)])
+        is_repeated(options, session)
+
+
+def press_by_mouse(options, arguments):
+    with Nodes(options, "liver.toml", 0, arguments) as nodes:
         browser = open_small_browser()
         try:
             page = Page(browser, nodes.address)
@@ -55,6 +87,18 @@ def press(options):
             page.let_go(0.54, 0.56)
             page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
             expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+            page.press(0.45, 0.6)
+            for _ in range(100):
+                page.get("palpate.deeper(0.0006)")
+                time.sleep(0.01)
+            deep = page.wait("palpate.hand.depth > 0.059 && palpate.hand.depth", 5)
+            time.sleep(0.5)
+            pulled, lag = page.get(FORCE), page.get(LAG)
+            print(f"led {1e3 * deep:.0f} mm deep the tip stays {1e3 * lag:.0f} mm behind, with {pulled:.2f} N")
+            expect(pulled < 2.1 and lag > 0.01, (pulled, lag))
+            page.let_go(0.45, 0.6)
+            page.wait(f"{FORCE} < 0.01 && {LAG} < 0.001", 6)
+            page.wait(f"/ s, path \\d{{2,}} mm, peak 2.\\d+\\sN/.test({HANDLING})", 3)
             curve = browser.execute_async_script(SMALL_CURVE)
             expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
             expect(not page.errors(), page.errors())
@@ -73,8 +117,22 @@ const begin = tip();
 globalThis.wentRight = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * right[i], 0);"""
 
 
+PAD_UP_AND_ROLLED = """navigator.getGamepads = () => [{ connected: true, id: 'Gamepad (Vendor: 045e)',
+axes: [0, -0.6, 0.7, 0], buttons: Array.from({ length: 8 }, () => ({ value: 0 })) }];
+const { up } = palpate.picture.axes, tip = () => palpate.frame.tools[0].parts[0].slice(12, 15);
+const begin = tip(), rolled = palpate.frame.tools[0].roll;
+globalThis.wentUp = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * up[i], 0);
+globalThis.turned = () => palpate.frame.tools[0].roll - rolled;"""
+MOVED_BY_TWO = """const { forward } = palpate.picture.axes, tip = () => palpate.frame.tools[0].parts[0].slice(12, 15);
+const begin = tip();
+globalThis.wentAhead = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * forward[i], 0);"""
+BUTTONS_ARE_SEEN = """(() => { const bar = document.getElementById('bar'), box = bar.getBoundingClientRect();
+return document.fullscreenElement?.contains(bar) && box.height > 20 && box.bottom <= innerHeight + 1; })()"""
+
+
 def touch(options):
-    """A finger on a phone presses the organ, and sees the curve; the cap of a 6-axis mouse moves the tool."""
+    """A finger on a phone presses the organ, and sees the curve; two push and roll the tool; a 6-axis mouse and a
+    gamepad move it; a page that fills the screen has its buttons."""
     with Nodes(options, "liver.toml") as nodes:
         browser = open_browser()
         try:
@@ -89,8 +147,25 @@ def touch(options):
             page.touch("touchMove", (0.52, 0.55))
             page.touch("touchEnd")
             page.wait(f"{FORCE} < 0.01", 6)
+            page.get("palpate.setMode('move')")
+            page.touch("touchStart", (0.4, 0.4))
+            page.wait("palpate.hand.drag?.kind === 'move'", 5)
+            browser.execute_script(MOVED_BY_TWO)
+            page.touch("touchStart", (0.4, 0.4), (0.6, 0.4))
+            page.touch("touchMove", (0.48, 0.4), (0.52, 0.4))
+            ahead = page.wait("wentAhead() > 0.004 && wentAhead()", 5)
+            page.touch("touchMove", (0.5, 0.39), (0.5, 0.41))
+            rolled = page.wait("palpate.frame.tools[0].roll > 1 && palpate.frame.tools[0].roll", 5)
+            print(f"two fingers pushed the tool {1e3 * ahead:.0f} mm ahead and rolled it by {rolled:.2f} rad")
+            page.touch("touchEnd")
+            expect(page.get("!palpate.camera.free"), "two fingers on a tool turned the camera")
             browser.execute_script(CAP_TO_THE_RIGHT)
             page.wait("palpate.hand.holds(palpate.frame, palpate.me) && wentRight() > 0.01", 10)
+            browser.execute_script(PAD_UP_AND_ROLLED)
+            page.wait("wentUp() > 0.01 && turned() > 0.2", 10)
+            for kind in ("keyDown", "keyUp"):
+                browser.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "key": "f", "text": "f"})
+            page.wait(BUTTONS_ARE_SEEN, 5)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
@@ -322,18 +397,65 @@ def triangles_at_rest(options, scene):
     return int(re.search(r"surface: .* (\d+) triangles", said)[1])
 
 
+def topology_of(port):
+    """What a page that opens now is told of it, as base64, and its number."""
+    connection = Connection(port)
+    while True:
+        _, body = connection.read()
+        if body[:4] == b"\2\0\0\0":
+            size = int.from_bytes(body[4:8], "little")
+            return base64.b64encode(body).decode(), json.loads(body[8:8 + size])["number"]
+
+
+# The frame that is shown now, again and again, with the topology that it is given.
+SHOW_FRAME_WITH = """const [text, number] = arguments;
+globalThis.shown ??= palpate.frame.bodies[0].words.buffer;
+globalThis.build ??= palpate.picture.build.bind(palpate.picture);
+globalThis.take ??= palpate.picture.take.bind(palpate.picture);
+const frame = shown.slice();
+new DataView(frame).setUint32(4, number, true);
+palpate.picture.build = () => {};
+palpate.picture.take = () => take(frame);
+build(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+palpate.picture.take();
+palpate.paused = false;"""
+MARKED = "body.dynamic.resect=[[-1, 0, -1], [1, 1, 1]]"
+TOLD_OF_CUTS = "[...document.getElementById('tasks').textContent.matchAll(/(\\d+) element/g)].map((found) => +found[1])"
+
+
 def cut(options):
-    """What a scalpel cuts is gone in the page, however late that is opened."""
-    whole = triangles_at_rest(options, "plate_cut.toml")
-    with Nodes(options, "plate_cut.toml") as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait("palpate.frame?.topology > 0", 15)
-            page.wait(f"palpate.bodies()[0].refinement.coarseTriangles.length !== {3 * whole}", 5)
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    """What a scalpel cuts is gone in the page, however late that is opened, and from its picture; how much of what is
+    marked, and of the rest, is said beside it."""
+    whole_triangles = triangles_at_rest(options, "plate_cut.toml")
+    with tempfile.TemporaryDirectory() as folder:
+        summary = pathlib.Path(folder) / "summary.json"
+        with Nodes(options, "plate_cut.toml", 0, ["--set", MARKED, "--summary", str(summary)]) as nodes:
+            whole = topology_of(nodes.port)
+            browser = open_small_browser()
+            try:
+                page = Page(browser, nodes.address)
+                page.wait("palpate.frame?.topology > 0", 15)
+                page.wait(f"palpate.bodies()[0].refinement.coarseTriangles.length !== {3 * whole_triangles}", 5)
+                page.wait("palpate.frame.sense > 11", 20)  # the scalpel is out of the plate
+                page.wait(f"{TOLD_OF_CUTS}.length === 2", 5)
+                time.sleep(1)
+                told = page.get(TOLD_OF_CUTS)
+                browser.execute_script(views.STAND)
+                pictures = []
+                for topology in (topology_of(nodes.port), whole, topology_of(nodes.port)):
+                    browser.execute_script(SHOW_FRAME_WITH, *topology)
+                    pictures.append(views.look(page))
+                seen, uncut, again = pictures
+                of_cut, of_nothing = views.apart(seen, uncut), views.apart(seen, again)
+                print(f"{told} elements cut; the cut makes {of_cut:.2f} in the picture, the same twice {of_nothing:.2f}")
+                expect(of_nothing < 0.02, "the same is shown otherwise")
+                expect(of_cut > 0.2, "the cut is not in the picture")
+                expect(not page.errors(), page.errors())
+            finally:
+                browser.quit()
+            expect(nodes.stop() == 0, "palpate run failed")
+        resection = json.loads(summary.read_text())["deform_node"]["resections"][0]
+    expect(told == [resection["cut_inside"], resection["cut_outside"]] and min(told) > 0, (told, resection))
 
 
 def hostile(options):

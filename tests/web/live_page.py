@@ -142,7 +142,7 @@ class Page:
         self.mouse("mouseReleased", x, y, False)
 
     def touch(self, kind, *shares):
-        points = [dict(zip("xy", self.place(*share))) for share in shares]
+        points = [dict(zip("xy", self.place(*share)), id=finger) for finger, share in enumerate(shares)]
         self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
     def errors(self):

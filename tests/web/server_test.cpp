@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 #include <list>
 #include <thread>
 
@@ -92,9 +93,16 @@ TEST_F(WebServer, ServesItsFilesAndNothingElse) {
 
 TEST_F(WebServer, NoFileOfThePageNamesAnotherHost) {
   Client client(server_.port());
-  for (const char* path : {"/", "/main.js", "/style.css", "/link.js", "/picture.js", "/panel.js", "/hand.js"}) {
+  ASSERT_EQ(client.get("/shaders.json", client.host()), 200u);
+  EXPECT_EQ(client.body.find("://"), std::string::npos);
+  std::vector<std::string> paths{"/"};
+  for (const auto& file : std::filesystem::directory_iterator(PALPATE_SOURCE "/web_node/page"))
+    paths.push_back("/" + file.path().filename().string());
+  ASSERT_GT(paths.size(), 25u);
+  for (const std::string& path : paths) {
     ASSERT_EQ(client.get(path, client.host()), 200u) << path;
-    EXPECT_EQ(client.body.find("://"), std::string::npos) << path;
+    for (const char* elsewhere : {"://", "\"//", "'//", "`//", "(//"})
+      EXPECT_EQ(client.body.find(elsewhere), std::string::npos) << path << " " << elsewhere;
   }
 }
 
@@ -113,7 +121,9 @@ TEST(WebServerWithSecret, LetsInWhoKnowsIt) {
   EXPECT_EQ(Client(server.port()).get("/0123456789abcdee/", client.host()), 403u);
   const std::string origin = "http://" + client.host();
   EXPECT_FALSE(Client(server.port()).upgrade(origin));
+  EXPECT_EQ(server.seen().refused, 3u);
   EXPECT_TRUE(Client(server.port()).upgrade(origin, "/0123456789abcdef/live"));
+  EXPECT_EQ(server.seen().refused, 3u);
 }
 
 TEST_F(WebServer, APageThatTakesNothingGetsNoQueueButTheNewestOnceItDoes) {

@@ -18,6 +18,7 @@ class Connection:
                             "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
                             f"Sec-WebSocket-Key: {key}\r\n\r\n".encode())
         self.file = self.socket.makefile("rb")
+        self.kind, self.parts = 0, []  # of a message that is not whole yet
         answer = self.file.readline().split()
         if not answer:
             raise ConnectionError("closed before it answered")
@@ -26,14 +27,22 @@ class Connection:
             pass
 
     def read(self):
-        """Kind and bytes of the next message; None at the end."""
-        head = self.file.read(2)
-        if len(head) < 2:
-            return None
-        size = head[1] & 127
-        if size > 125:
-            size = int.from_bytes(self.file.read(2 if size == 126 else 8), "big")
-        return head[0] & 15, self.file.read(size)
+        """Kind and bytes of the next message, whole; None at the end."""
+        while True:
+            head = self.file.read(2)
+            if len(head) < 2:
+                return None
+            size = head[1] & 127
+            if size > 125:
+                size = int.from_bytes(self.file.read(2 if size == 126 else 8), "big")
+            last, kind, body = head[0] & 0x80, head[0] & 15, self.file.read(size)
+            if kind > 2:  # a ping or the end, between the parts of a message too
+                return kind, body
+            self.kind = kind or self.kind
+            self.parts.append(body)
+            if last:
+                whole, self.parts = b"".join(self.parts), []
+                return self.kind, whole
 
     def send(self, body, kind=2):
         size = len(body)

@@ -76,7 +76,10 @@ nlohmann::ordered_json LogFigures::json() const {
   for (std::size_t t = 0; t < tools_.size(); ++t) {
     const OfTool& tool = tools_[t];
     nlohmann::ordered_json one = handling_summary(scene_.tools[t].name, tool.handling.figures());
-    if (2 * tool.forces < tool.steps) one.erase("force_change_max_n");  // one force stands for many steps
+    if (2 * tool.forces < tool.steps) {
+      one.erase("force_change_max_n");
+      one["steps_per_force"] = tool.forces == 0 ? 0 : (tool.steps + tool.forces / 2) / tool.forces;
+    }
     for (std::size_t bit = 0; bit < kFlags.size(); ++bit)
       if (kFlags[bit] && tool.flagged[bit] > 0) one["flags"][kFlags[bit]] = tool.flagged[bit];
     all["tools"].push_back(one);

@@ -1,4 +1,6 @@
 // Mouse, touch and keys over the picture.
+const pinched = 0.1;  // [m] that the tool goes when two fingers come nearer by the picture's height
+
 export class Input {
   constructor(canvas, app) {
     this.canvas = canvas;
@@ -28,8 +30,9 @@ export class Input {
     event.preventDefault();
     this.touches.set(event.pointerId, [event.clientX, event.clientY]);
     if (this.touches.size === 2) {
-      this.app.endDrag();
-      this.kind = 'two';
+      const moved = this.kind === 'tool' && this.app.mode === 'move';
+      if (!moved) this.app.endDrag();
+      this.kind = moved ? 'both' : 'two';
       return;
     }
     if (this.touches.size > 2) return;
@@ -43,6 +46,7 @@ export class Input {
     const now = [event.clientX, event.clientY], height = this.canvas.clientHeight;
     const by = [(now[0] - before[0]) / height, (now[1] - before[1]) / height];
     if (this.kind === 'two') this.pinch(event.pointerId, now, by);
+    if (this.kind === 'both') this.grasp(event.pointerId, now);
     this.touches.set(event.pointerId, now);
     this.leadTool(event);
     if (this.kind === 'orbit') this.app.camera.orbit(3.5 * by[0], 3.5 * by[1]);
@@ -63,9 +67,19 @@ export class Input {
     this.app.camera.orbit(1.7 * by[0], 1.7 * by[1]);
   }
 
+  // Two fingers on a tool that is moved: together pushes it away, apart pulls it near, a twist rolls it.
+  grasp(id, now) {
+    const other = [...this.touches].find(([key]) => key !== id)?.[1];
+    if (!other) return;
+    const [was, is] = [this.touches.get(id), now].map((p) => [p[0] - other[0], p[1] - other[1]]);
+    this.app.deeper(pinched * (Math.hypot(...was) - Math.hypot(...is)) / this.canvas.clientHeight);
+    this.app.hand.roll(Math.atan2(was[0] * is[1] - was[1] * is[0], was[0] * is[0] + was[1] * is[1]));
+  }
+
   up(event) {
     if (!this.touches.delete(event.pointerId)) return;
-    if (this.kind === 'tool') this.app.endDrag();
+    if (this.kind === 'tool' || this.kind === 'both') this.app.endDrag();
+    if (this.kind === 'both') this.kind = undefined;
     if (this.touches.size === 0) this.kind = undefined;
   }
 

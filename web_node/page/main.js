@@ -1,6 +1,7 @@
 // The page: what comes over the link is drawn, what the hand does goes back.
 import { Curve, roundUp } from './curve.js';
 import { Hand } from './hand.js';
+import { Handling } from './handling.js';
 import { Input } from './input.js';
 import { Link } from './link.js';
 import { Panel } from './panel.js';
@@ -36,6 +37,7 @@ class App {
       binary: (buffer) => this.binary(buffer),
     });
     this.hand = new Hand(this.link);
+    this.handling = new Handling();
     this.keys = keyTable(this);
     this.input = new Input(canvas, this);
     wireButtons(this);
@@ -85,6 +87,7 @@ class App {
     const forces = this.next.tools.map((tool) => size(tool.force)), strongest = Math.max(0, ...forces);
     this.curve.add(this.next.sense, forces);
     if (strongest > this.look.forceMax) this.look.forceMax = roundUp(strongest);
+    this.handling.add(this.next, this.hand.tool, this.hand.holds(this.next, this.me));
     if (document.hidden) return;
     this.hand.watch(this.next, this.me);
     this.link.tellTaken();
@@ -155,6 +158,7 @@ class App {
     if (!this.frame) return;
     this.panel.legend(this.look);
     this.panel.frame(this.frame, this.me);
+    this.panel.handling(this.handling);
     this.panel.hand(this.hand.holds(this.next, this.me) && performance.now() - this.hand.lateAt < lateSeen);
     this.curve.draw();
     this.askOrGive();
@@ -266,9 +270,10 @@ class App {
     URL.revokeObjectURL(link.href);
   }
 
+  // The page as it is, with its buttons.
   fullScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
-    else document.getElementById('stage').requestFullscreen?.();
+    else document.documentElement.requestFullscreen?.();
   }
 }
 

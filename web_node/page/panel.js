@@ -88,7 +88,7 @@ export class Panel {
     const told = status.nodes.filter((node) => node.text && !(node.driver_silent && !this.elsewhere));
     this.said = [...status.said, ...told.map((node) => node.text)];
     this.note();
-    this.tasks(status.tasks);
+    this.tasks(status.tasks, status.resections);
   }
 
   // A tool in this page's hand has been let go within the last second.
@@ -102,8 +102,21 @@ export class Panel {
     byId('note').textContent = [...own, ...this.said].join('; ');
   }
 
-  tasks(tasks) {
-    byId('tasks').replaceChildren(...tasks.flatMap((task) => [
+  handling({ seconds, path, strongest }) {
+    const section = byId('handling');
+    section.hidden = seconds === 0;
+    const peak = forceReading(strongest, this.forceMax).replace(' ', '\u00a0');
+    section.querySelector('p').textContent = `${seconds.toFixed(1)} s, path ${(1e3 * path).toFixed(0)} mm, peak ${peak}`;
+  }
+
+  tasks(tasks, resections) {
+    const cut = (name, elements, volume) => row('p', `${name}: ${(1e6 * volume).toFixed(2)} cm³ cut, ` +
+      `${elements} element${elements === 1 ? '' : 's'}`);
+    byId('tasks').replaceChildren(...resections.flatMap((of) => [
+      row('h2', `Task: cut the marked part of ${of.body} off`),
+      cut('Inside the marked part', of.cut_inside, of.cut_inside_m3),
+      cut('Outside, which is to stay', of.cut_outside, of.cut_outside_m3),
+    ]), ...tasks.flatMap((task) => [
       row('h2', `Task: ${task.body}`),
       row('p', `${(1e3 * task.inserted_m).toFixed(0)} mm inserted, ${(1e3 * task.deepest_m).toFixed(0)} mm at the ` +
         `deepest in ${task.inserting_s.toFixed(1)} s`),
@@ -121,6 +134,14 @@ export class Panel {
   }
 
   help(mode) {
+    const fingers = {
+      press: 'Hold a finger on the organ to press it, drag to slide; let go and the tool lifts off. ' +
+        'Two fingers turn and zoom.',
+      move: 'A finger moves the tool across the view. Two fingers: together pushes it away, apart pulls it near, ' +
+        'a twist rolls it.',
+      look: 'A finger turns the camera, two zoom.',
+    };
+    if (matchMedia('(pointer: coarse)').matches) return void (byId('help').textContent = fingers[mode]);
     const words = {
       press: 'Hold the button on the organ to press it, drag to slide, wheel for depth; let go and the tool lifts off.',
       move: 'Drag moves the tool across the view, wheel for depth, with Shift for roll; it stays where it is left.',
