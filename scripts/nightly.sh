@@ -20,7 +20,7 @@ for stage in "$@"; do
       PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 -E '^test_fuzz' ;;  # their long form is the stage fuzz
     stability)
       ./scripts/build.sh release palpate palpate_study
-      ./build/release/bin/palpate stability --jobs "$(nproc)" -o out/stability ;;
+      ./build/release/bin/palpate stability -o out/stability ;;
     mcap)
       ./scripts/build.sh release palpate test_mcap
       npm install --silent --no-save --prefix out/mcap_reader @mcap/core @foxglove/omgidl-parser @foxglove/omgidl-serialization
