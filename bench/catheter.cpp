@@ -1,4 +1,5 @@
 // Time of one tick of the catheter over particles, modes of the wall and inserted length.
+#include "bench/only.hpp"
 #include "bench/report.hpp"
 #include "common/models/catheter/catheter_body.hpp"
 #include "tests/catheter/tube_wall.hpp"
@@ -54,12 +55,13 @@ void measure(const std::string& name, int particles, int modes, double inside, i
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  using palpate::measure;
   const int count = palpate::bench::quick(argc, argv) ? 400 : 3000;
-  measure("reference", 60, 50, 0.09, count);
+  const auto measure = [&](const std::string& name, int particles, int modes, double inside) {
+    if (palpate::bench::is_asked_for(name, argc, argv)) palpate::measure(name, particles, modes, inside, count);
+  };
+  measure("reference", 60, 50, 0.09);
   for (const int particles : {20, 40, 60, 120, 240})
-    measure(fmt::format("particles{}", particles), particles, 50, 0.09, count);
-  for (const int modes : {0, 10, 20, 50, 100, 200}) measure(fmt::format("modes{}", modes), 60, modes, 0.09, count);
-  for (const int depth : {0, 30, 60, 90, 120, 150})
-    measure(fmt::format("inserted_mm{}", depth), 60, 50, 1e-3 * depth, count);
+    measure(fmt::format("particles{}", particles), particles, 50, 0.09);
+  for (const int modes : {0, 10, 20, 50, 100, 200}) measure(fmt::format("modes{}", modes), 60, modes, 0.09);
+  for (const int depth : {0, 30, 60, 90, 120, 150}) measure(fmt::format("inserted_mm{}", depth), 60, 50, 1e-3 * depth);
 }

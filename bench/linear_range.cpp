@@ -1,5 +1,6 @@
 // How wrong linear elasticity is by how far a press goes, against neo-Hookean tissue on the same mesh with the same
 // contact; beside it what the range monitor sees of the linear answer. From these rows come its thresholds.
+#include "bench/only.hpp"
 #include "bench/report.hpp"
 #include "common/fem/newton_solid.hpp"
 #include "common/fem/processor_blas.hpp"
@@ -74,7 +75,10 @@ void press_scene(const std::string& name, bool quick) {
 
 int main(int argc, char** argv) {
   palpate::use_blas_of_this_processor(argv);
+  using palpate::bench::is_asked_for;
   const bool quick = palpate::bench::quick(argc, argv);
-  palpate::press("kidney", palpate::kidney_body(), palpate::kidney_mesh(), quick);
-  for (const char* scene : {"liver", "plate", "brain_cylinder"}) palpate::press_scene(scene, quick);
+  if (is_asked_for("kidney", argc, argv))
+    palpate::press("kidney", palpate::kidney_body(), palpate::kidney_mesh(), quick);
+  for (const char* scene : {"liver", "plate", "brain_cylinder"})
+    if (is_asked_for(scene, argc, argv)) palpate::press_scene(scene, quick);
 }

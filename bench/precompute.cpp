@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "bench/only.hpp"
 #include "bench/report.hpp"
 #include "common/fem/dense.hpp"
 #include "common/fem/processor_blas.hpp"
@@ -103,16 +104,20 @@ void measure_conjugate_gradients(const Case& one, const std::string& text, doubl
   report("precompute", name, "error", error, "1");
 }
 
-void run(bool quick) {
+void run(int argc, char** argv) {
+  const bool is_quick = quick(argc, argv);
   const std::string liver_file = std::string(PALPATE_SOURCE_DIR) + "/scenes/meshes/liver.msh";
   const auto liver = make_case("liver1400", load_tet_mesh(liver_file, 1), "attachment");
-  measure_precompute(liver, quick ? 5 : 15);
-  measure_precompute(make_block_case("nodes210", {4, 5, 6}), quick ? 5 : 15);
-  measure_precompute(make_block_case("nodes1728", {11, 11, 11}), quick ? 3 : 9);
-  measure_precompute(make_block_case("box10k", {20, 20, 22}), quick ? 1 : 3);
-  measure_conjugate_gradients(liver, "1e-3", 1e-3, quick ? 8 : 64);
-  measure_conjugate_gradients(liver, "1e-6", 1e-6, quick ? 8 : 64);
-  measure_conjugate_gradients(liver, "1e-9", 1e-9, quick ? 8 : 64);
+  const auto measure = [&](const Case& one, int runs) {
+    if (is_asked_for(one.name, argc, argv)) measure_precompute(one, runs);
+  };
+  measure(liver, is_quick ? 5 : 15);
+  measure(make_block_case("nodes210", {4, 5, 6}), is_quick ? 5 : 15);
+  measure(make_block_case("nodes1728", {11, 11, 11}), is_quick ? 3 : 9);
+  measure(make_block_case("box10k", {20, 20, 22}), is_quick ? 1 : 3);
+  for (const auto& [text, tolerance] : {std::pair{"1e-3", 1e-3}, {"1e-6", 1e-6}, {"1e-9", 1e-9}})
+    if (is_asked_for(fmt::format("liver1400_cg_tol{}", text), argc, argv))
+      measure_conjugate_gradients(liver, text, tolerance, is_quick ? 8 : 64);
 }
 
 }  // namespace
@@ -120,7 +125,7 @@ void run(bool quick) {
 
 int main(int argc, char** argv) try {
   palpate::use_blas_of_this_processor(argv);
-  palpate::bench::run(palpate::bench::quick(argc, argv));
+  palpate::bench::run(argc, argv);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bench_precompute: %s\n", error.what());

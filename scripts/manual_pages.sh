@@ -11,7 +11,8 @@ page palpate "a distributed haptic simulator of soft tissue" "$bin/palpate"
 "$bin/palpate" help | sed -n 's/^  \([a-z]\+\)  *\(.*\)/\1 \2/p' | while read -r name meaning; do
   page "palpate-$name" "$meaning" "$bin/palpate $name"
 done
-for node in haptic_node deform_node render_node web_node ros_bridge; do
-  page "$node" "$("$bin/$node" --help | sed -n '1s/^[a-z_]*: //p')" "$bin/$node"
+for program in haptic_node deform_node render_node web_node ros_bridge palpate_spacemouse; do
+  [ -x "$bin/$program" ] || continue  # a driver is built where its library is
+  page "$program" "$("$bin/$program" --help | sed -n '1s/^[a-z_]*: //p')" "$bin/$program"
 done
 gzip -9nf "$folder"/*.1

@@ -21,7 +21,7 @@ for stage in "$@"; do
     stability)
       ./scripts/install.sh plots
       ./scripts/build.sh release palpate palpate_study
-      ./build/release/bin/palpate stability --jobs "$(nproc)" -o out/stability ;;
+      ./build/release/bin/palpate stability -o out/stability ;;
     mcap)
       ./scripts/build.sh release palpate test_mcap
       npm install --silent --no-save --prefix out/mcap_reader @mcap/core @foxglove/omgidl-parser @foxglove/omgidl-serialization

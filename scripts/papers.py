@@ -2,7 +2,7 @@
 
 BIN_DIR is the folder of the built programs. The items stand in scripts/papers_items.py, each with its commands, which are run,
 and with the ranges in which its values must be: where a command fails or a value has left its range, so does this program.
---short leaves out what takes long and writes no page; --only NAME takes the items whose name has NAME in it, likewise.
+--short runs the items' shorter commands and writes no page; --only NAME takes the items whose name has NAME in it, likewise.
 --listed runs nothing, and fails where the page has another item, wording or command than these."""
 import argparse
 import csv
@@ -30,11 +30,10 @@ simulation*, INRIA RR-3510, 1998 (**RR3510**); C. Basdogan, C.-H. Ho and M. A. S
 Transactions on Mechatronics 6(3), 2001 (**BHS01**).
 
     python3 scripts/papers.py build/release/bin           # all of it, this page
-    python3 scripts/papers.py build/release/bin --short   # judged, without the items that take long: what the tests run
+    python3 scripts/papers.py build/release/bin --short   # judged, what takes long in a shorter form: what the tests run
 
 The commands below are run from the top of the repository with `build/release/bin` in the `PATH`; files go to `out/papers` (`mkdir -p out/papers`). Figures in *italics* depend
-on the machine, here {machine}; linear algebra takes one core; the tests judge all others, but for the items with a †, which take too long: `scripts/nightly.sh papers`
-judges these. The papers' own are of a Pentium of 166 MHz, DEC Alphas of 233 and 400 MHz
+on the machine, here {machine}; linear algebra takes one core; the tests judge all others (`scripts/nightly.sh papers` those of the commands as they stand here). The papers' own are of a Pentium of 166 MHz, DEC Alphas of 233 and 400 MHz
 and a pair of Pentium II of 300 MHz: much of what lies between theirs and ours is 25 years of hardware.
 """
 
@@ -42,8 +41,8 @@ and a pair of Pentium II of 300 MHz: much of what lies between theirs and ours i
 class Run:
     """What the commands of one item printed and wrote."""
 
-    def __init__(self, outputs, folder):
-        self.outputs, self.folder = outputs, folder
+    def __init__(self, outputs, folder, is_short=False):
+        self.outputs, self.folder, self.is_short = outputs, folder, is_short
 
     def rows(self, suite):
         """Values of benchmark rows, suite,case,metric,value,unit, by "case metric"."""
@@ -96,14 +95,20 @@ class Runner:
         return self.done[command]
 
     def values(self, item):
-        if not item.commands or (self.short and item.too_long):
-            return {}
-        return item.values(Run([self.output(c) for c in item.commands], self.folder))
+        commands = item.short if self.short and item.short else item.commands
+        values = item.values(Run([self.output(c) for c in commands], self.folder, self.short)) if commands else {}
+        if commands and not values:
+            raise ValueError(f"{item.paper} {item.name}: its commands give no value")
+        return values
+
+    def judged(self, item, values):
+        """Names and ranges; in the short form of what it gives."""
+        return [(name, limits) for name, limits in item.judged.items() if name in values or not (self.short and item.short)]
 
 
-def complaints(item, values):
+def complaints(item, values, judged):
     """Sentences on values outside their ranges."""
-    for name, (low, high) in item.judged.items() if values else ():
+    for name, (low, high) in judged:
         if not low <= values[name] <= high:
             yield f"{item.paper} {item.name}: {name} is {values[name]:.6g}, and was to be from {low:g} to {high:g}"
 
@@ -121,8 +126,7 @@ def typeset(text):
 
 
 def row(item, ours, differs):
-    mark = " †" if item.too_long else ""
-    return f"| **{item.name}**{mark} | {item.claim} | {typeset(ours)} | {typeset(differs)} |"
+    return f"| **{item.name}** | {item.claim} | {typeset(ours)} | {typeset(differs)} |"
 
 
 def commands_of(title, items):
@@ -177,7 +181,7 @@ def main():
         runner = Runner(arguments.programs.resolve(), pathlib.Path(folder), arguments.short)
         for item in (i for items in PAPERS.values() for i in items if arguments.only in f"{i.paper} {i.name}"):
             values[item] = runner.values(item)
-            bad += complaints(item, values[item])
+            bad += complaints(item, values[item], runner.judged(item, values[item]))
             print(f"{item.paper} {item.name}: " + ", ".join(f"{name} {value:.6g}" for name, value in values[item].items()), flush=True)
     if not arguments.short and not arguments.only:
         write_page(arguments.docs, values, measured_on)

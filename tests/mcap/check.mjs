@@ -1,4 +1,4 @@
-// check.mjs FILE.mcap INFO.json TOPIC=ROWS.jsonl...: every message, count and time of an MCAP file, read by the
+// check.mjs FILE.mcap INFO.json TOPIC=ROWS.jsonl...: every message, count, time and latency of an MCAP file, read by the
 // reference reader and decoded by the types in the file, against what `palpate info` and `palpate export` say.
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { parseIDL } from "@foxglove/omgidl-parser";
@@ -38,7 +38,7 @@ for await (const message of reader.readMessages({ validateCrcs: true })) {
   assert.ok(message.logTime >= last);
   last = message.logTime;
   const of = readers.get(message.channelId);
-  of.messages.push({ time: message.logTime, sequence: message.sequence, value: of.reader.readMessage(message.data) });
+  of.messages.push({ time: message.logTime, published: message.publishTime, value: of.reader.readMessage(message.data) });
 }
 
 let count = 0;
@@ -73,5 +73,47 @@ for (const argument of rows) {
     same(of.messages[i].value, row.message, `${topic}[${i}]`);
   });
 }
-console.log(`${count} messages of ${readers.size} topics agree`);
+
+// Latencies [ns] by the file's own times, moved back to the clock of the recorder's host.
+const messagesOf = (topic) => [...readers.values()].find((r) => r.topic === topic)?.messages ?? [];
+const told = messagesOf("palpate/force_state")[0];
+const since1970 = told.published - told.value.publish_ns;
+
+// Percentiles of `info` are the middles of bins that are a 32nd of their value wide.
+function agree(times, said, where) {
+  const sorted = times.map((t) => Math.max(Number(t), 0)).sort((a, b) => a - b);
+  for (const [name, share] of Object.entries({ p50: 0.5, p90: 0.9, p99: 0.99, p999: 0.999 })) {
+    const own = sorted[Math.max(Math.ceil(share * sorted.length), 1) - 1];
+    assert.ok(Math.abs(1e3 * said[name] - own) <= own / 32 + 1, `${where} ${name}: ${own} ns and ${said[name]} us`);
+  }
+  assert.ok(Math.abs(1e3 * said.max - sorted.at(-1)) < 0.5, `${where} max: ${sorted.at(-1)} ns and ${said.max} us`);
+  return sorted.at(-1) > 0;
+}
+// The first surface with each step.
+function firstOfEachStep(surfaces) {
+  const newest = new Map();
+  return surfaces.filter(({ value }) => {
+    const step = `${value.run} ${value.step}`;
+    const known = newest.has(value.body);
+    if (value.run == 0 && known) return false;
+    if (newest.get(value.body) === step) return false;
+    newest.set(value.body, step);
+    return value.run != 0;
+  });
+}
+const toPublish = ({ published, value }) => published - since1970 - value.sense_ns;
+let latencies = 0;
+for (const { topic, messages } of readers.values()) {
+  const sensed = messages.filter(({ value }) => value.sense_ns > 0);
+  const figures = info.topics[topic];
+  if (figures.sense_to_publish_us) latencies += agree(sensed.map(toPublish), figures.sense_to_publish_us, `${topic} to publish`);
+  if (figures.sense_to_receive_us)
+    latencies += agree(sensed.map((m) => m.time - since1970 - m.value.sense_ns), figures.sense_to_receive_us, `${topic} to receive`);
+}
+for (const [hop, messages] of [
+  ["tool_to_force", messagesOf("palpate/force_state")],
+  ["tool_to_surface", firstOfEachStep(messagesOf("palpate/surface_state"))],
+])
+  if (info.hops_us[hop]) latencies += agree(messages.map(toPublish), info.hops_us[hop], hop);
+console.log(`${count} messages of ${readers.size} topics agree, and ${latencies} latencies that are more than nothing`);
 await handle.close();

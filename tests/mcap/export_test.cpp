@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {
@@ -75,30 +76,49 @@ TEST_F(McapExport, OfNothingIsRefused) {
 }
 
 // With the reference reader and the decoder of another project, where they are installed: scripts/nightly.sh mcap.
-TEST_F(McapExport, AgreesWithTheLogInTheReferenceReader) {
-  const char* modules = std::getenv("PALPATE_MCAP_READER");
-  if (!modules)
-    GTEST_SKIP() << "PALPATE_MCAP_READER names no folder with node_modules/@mcap/core: scripts/nightly.sh mcap";
-  const fs::path here = fs::path(modules) / "check.mjs";  // beside its modules
-  fs::copy_file(PALPATE_SOURCE "/tests/mcap/check.mjs", here, fs::copy_options::overwrite_existing);
-  ASSERT_EQ(
-      run_program(fmt::format("{} export {} --mcap -o {}", palpate(), log().string(), file("b.mcap").string())).status,
-      0);
-  std::ofstream(file("info.json")) << run_program(palpate() + " info --json " + log().string()).out;
-  std::string command =
-      fmt::format("node {} {} {}", here.string(), file("b.mcap").string(), file("info.json").string());
-  const json topics = json::parse(testing::text_of(file("info.json")))["topics"];
-  for (const auto& [topic, summary] : topics.items()) {
-    const fs::path rows = file(fs::path(topic).filename().string() + ".jsonl");
-    ASSERT_EQ(run_program(
-                  fmt::format("{} export {} --topic {} --jsonl -o {}", palpate(), log().string(), topic, rows.string()))
-                  .status,
-              0);
-    command += fmt::format(" {}={}", topic, rows.string());
+class McapInTheReferenceReader : public McapExport {
+ protected:
+  void SetUp() override {
+    if (!modules_)
+      GTEST_SKIP() << "PALPATE_MCAP_READER names no folder with node_modules/@mcap/core: scripts/nightly.sh mcap";
   }
-  const auto checked = run_program(command);
-  EXPECT_EQ(checked.status, 0) << checked.err;
-  EXPECT_NE(checked.out.find("messages of"), std::string::npos) << checked.out;
+  /// What it says of a log's export beside what `info` and `export` say of the log.
+  std::string said_of(const fs::path& log) const {
+    const fs::path here = fs::path(modules_) / "check.mjs";  // beside its modules
+    fs::copy_file(PALPATE_SOURCE "/tests/mcap/check.mjs", here, fs::copy_options::overwrite_existing);
+    const fs::path exported = file("b.mcap"), info = file("info.json");
+    const std::string of_log = " export " + log.string();
+    EXPECT_EQ(run_program(palpate() + of_log + " --mcap -o " + exported.string()).status, 0);
+    std::ofstream(info) << run_program(palpate() + " info --json " + log.string()).out;
+    std::string command = fmt::format("node {} {} {}", here.string(), exported.string(), info.string());
+    const json topics = json::parse(testing::text_of(info))["topics"];
+    for (const auto& [topic, summary] : topics.items()) {
+      const fs::path rows = file(fs::path(topic).filename().string() + ".jsonl");
+      EXPECT_EQ(run_program(palpate() + of_log + " --topic " + topic + " --jsonl -o " + rows.string()).status, 0);
+      command += fmt::format(" {}={}", topic, rows.string());
+    }
+    const auto checked = run_program(command);
+    EXPECT_EQ(checked.status, 0) << checked.err;
+    return checked.out;
+  }
+  const char* modules_ = std::getenv("PALPATE_MCAP_READER");
+};
+
+TEST_F(McapInTheReferenceReader, EveryMessageAgreesWithTheLog) {
+  const std::string said = said_of(log());
+  EXPECT_NE(said.find("messages of"), std::string::npos) << said;
+}
+
+// In lock step all latencies are nothing: these are of a run of the nodes.
+TEST_F(McapInTheReferenceReader, LatenciesComputedFromItAreThoseOfInfo) {
+  const fs::path recorded = file("nodes.lcmlog");
+  const auto run = run_program(fmt::format("{} run {} --seconds 2 --processes 3 --domain {} --record {}", palpate(),
+                                           scene_->scene(), testing::own_domain(), recorded.string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string said = said_of(recorded);
+  const std::size_t at = said.find("agree, and ");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_GE(std::stoi(said.substr(at + 11)), 6) << said;
 }
 
 }  // namespace

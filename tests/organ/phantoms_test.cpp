@@ -130,6 +130,8 @@ TEST_F(Phantom, AWallOfOneAndAHalfVoxelsKeepsBothItsSides) {
   });
   const double counted = 1e-9 * static_cast<double>(voxels);
   EXPECT_NEAR(measures_of(mesh).volume, counted, 0.01 * counted);
+  const double wall = 4.0 / 3 * std::numbers::pi * (std::pow(kOuter, 3) - std::pow(kInner, 3));
+  EXPECT_NEAR(measures_of(mesh).volume, wall, 0.01 * wall);
   EXPECT_EQ(pieces_of(mesh).size(), 1u);
   EXPECT_EQ(topology_of(mesh), (Topology{2, 0}));
   const TriangleMesh surface = surface_of(mesh);

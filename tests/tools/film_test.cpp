@@ -76,6 +76,17 @@ TEST_F(ToolsFilm, ItIsAsSlowAndAsLongAsAskedFor) {
   EXPECT_EQ(pictures("slow"), 61);
 }
 
+TEST_F(ToolsFilm, ItsFiguresArePrintedAsOneLineOfJson) {
+  const auto drawn = draw("figures", "--from 0.7 --to 0.9 --json");
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(std::ranges::count(drawn.out, '\n'), 1) << drawn.out;
+  const auto figures = nlohmann::json::parse(drawn.out);
+  EXPECT_EQ(figures["film"], film("figures").string());
+  EXPECT_EQ(figures["pictures"], pictures("figures"));
+  EXPECT_NEAR(figures["seconds"].get<double>(), 0.2, 0.05);
+  EXPECT_GT(figures["force_max_n"].get<double>(), 0.01);
+}
+
 TEST_F(ToolsFilm, AStretchShowsWhatTheWholeFilmShowsThen) {
   ASSERT_EQ(draw("whole").status, 0);
   ASSERT_EQ(draw("stretch", "--from 0.5 --to 0.8").status, 0);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "common/bus/memory_bus.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/topics.hpp"
@@ -60,6 +62,27 @@ TEST_F(TopBoardTest, ForcesAreCountedAnewFromLookToLook) {
   EXPECT_EQ(board_.json(1)["tools"][0]["force_max_n"], 0.5);
   board_.begin_anew();
   EXPECT_EQ(board_.json(1)["tools"][0]["steps_hz"], 0);
+}
+
+// Latencies of 1 to 1000 us, each once: 997 has no divisor in common with 1000, so that they come in no order.
+TEST_F(TopBoardTest, PercentilesAreThoseOfAKnownDistribution) {
+  for (std::uint64_t i = 1; i <= 1000; ++i) {
+    const std::int64_t sense = now_ns(), us = static_cast<std::int64_t>(997 * i % 1000) + 1;
+    forces_->write({.run = 1, .seq = i, .step = i, .sense_ns = sense, .publish_ns = sense + 1000 * us});
+    board_.take();
+  }
+  const auto force = board_.json(1)["hops_us"]["tool_to_force"];
+  EXPECT_NEAR(force["p50"], 500, 500.0 / 32);
+  EXPECT_NEAR(force["p90"], 900, 900.0 / 32);
+  EXPECT_NEAR(force["p99"], 990, 990.0 / 32);
+  EXPECT_EQ(force["max"], 1000);
+  const std::string text = board_.text(1), line = text.substr(text.find("tool to force"));
+  std::istringstream words(line.substr(line.find("force") + 5));
+  double p50 = 0, p99 = 0, max = 0;
+  words >> p50 >> p99 >> max;
+  EXPECT_NEAR(p50, 500, 500.0 / 32) << text;
+  EXPECT_NEAR(p99, 990, 990.0 / 32) << text;
+  EXPECT_EQ(max, 1000) << text;
 }
 
 TEST_F(TopBoardTest, SaysHowLateTheTissueIs) {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "common/cli/progress.hpp"
 #include "common/models/content_hash.hpp"
@@ -17,6 +16,7 @@
 #include "tools/drive/sweep.hpp"
 #include "tools/shared/child_process.hpp"
 #include "tools/shared/commands.hpp"
+#include "tools/shared/jobs_option.hpp"
 #include "tools/shared/say_stages.hpp"
 #include "tools/shared/set_option.hpp"
 
@@ -29,7 +29,7 @@ struct DriveOptions {
   std::string scene, log, course, output;
   std::vector<std::string> set, sweep, expect, merge;
   double seconds = 0;
-  int jobs = 0, point = -1;
+  int jobs = 1, point = -1;
   bool csv = false, json = false, tasks = false;
 };
 
@@ -134,8 +134,7 @@ void run_sweep(const DriveOptions& o) {
   if (o.tasks) return print_tasks(o, commands);
   setenv("OMP_NUM_THREADS", "1", 0);  // each run keeps to one core
   std::size_t done = 0;
-  const int jobs = o.jobs > 0 ? o.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<PointResult> results = run_points(commands, jobs, [&](const PointResult& result) {
+  std::vector<PointResult> results = run_points(commands, o.jobs, [&](const PointResult& result) {
     std::string set;
     for (const SceneChange& change : points[result.point]) set.append(" ").append(change.argument());
     cli::say(fmt::format("[{}/{}]{}: {} {}", ++done, points.size(), set, result.outcome, result.reason));
@@ -187,7 +186,7 @@ void add_drive_command(cli::Command& app) {
   command.add_option("-o,--output", o->output, "Write what is printed to this file").output_file("", {".csv", ".json"});
   command.add_option("--log", o->log, "Write a topic log, as a recorder would").output_file("", {".lcmlog"});
   command.add_option("--course", o->course, "Write each step's tips and forces").output_file(".csv");
-  command.add_option("--jobs", o->jobs, "Runs at the same time (default: one a core)").between(1, 1024);
+  add_jobs_option(command, o->jobs, "Runs");
   command.add_flag("--tasks", o->tasks, "Print the command of each run, one a line, and run none");
   command.add_option("--merge", o->merge, "Files with what such commands printed, for one table")
       .excludes({"--set", "--sweep", "--tasks"});

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/cli/command_line.hpp"
 #include "common/cli/progress.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -10,7 +12,11 @@
 namespace palpate {
 namespace {
 
-void make_film(const LogFilmSettings& settings) {
+struct FilmOptions : LogFilmSettings {
+  bool json = false;
+};
+
+void make_film(const FilmOptions& settings) {
   catch_shutdown_signals();
   const LogFilmReport report = film_log(settings, [&](long done, long due) {
     if (done % 10 == 0) cli::say_in_place(fmt::format("{} of {} pictures", done, due));
@@ -18,14 +24,21 @@ void make_film(const LogFilmSettings& settings) {
   });
   cli::say_in_place("");
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
-  fmt::print("{}: {} pictures, {:.2f} s, largest force {:.2f} N\n", settings.film, report.frames, report.seconds,
-             report.peak_force);
+  const nlohmann::ordered_json figures{{"film", settings.film},
+                                       {"pictures", report.frames},
+                                       {"seconds", report.seconds},
+                                       {"force_max_n", report.peak_force}};
+  if (settings.json)
+    fmt::print("{}\n", figures.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  else
+    fmt::print("{}: {} pictures, {:.2f} s, largest force {:.2f} N\n", settings.film, report.frames, report.seconds,
+               report.peak_force);
 }
 
 void add_film_command(cli::Command& app) {
   cli::Command command = app.add_command(
       "film", "Draw a topic log: every picture that is due, faster or slower than it was, the same bytes each time");
-  auto s = std::make_shared<LogFilmSettings>();
+  auto s = std::make_shared<FilmOptions>();
   command.add_option("LOG", s->log, "Topic log").required();
   command.add_option("-o,--output", s->film, "Film (MP4)").required().output_file(".mp4");
   command.add_option("--still", s->still, "Picture (PNG) of the moment of the greatest force").output_file(".png");
@@ -40,6 +53,7 @@ void add_film_command(cli::Command& app) {
       .show_default();
   command.add_option("--data", s->data,
                      "Folder for the files that the log brings along, and with those that are too large for it");
+  command.add_flag("--json", s->json, "Print one line of JSON");
   command.tells_progress();
   command.examples({"palpate film out/liver.lcmlog --speed 0.25 --from 2 --to 4 -o out/slow.mp4"});
   command.does([s] { make_film(*s); });

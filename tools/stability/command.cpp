@@ -8,6 +8,7 @@
 
 #include "common/cli/command_line.hpp"
 #include "common/scene/scene_changes.hpp"
+#include "tools/shared/jobs_option.hpp"
 #include "tools/shared/set_option.hpp"
 #include "tools/stability/subject.hpp"
 #include "tools/stability/table.hpp"
@@ -62,10 +63,10 @@ void add_stability_command(cli::Command& app) {
   command.add_flag("--quick", options->quick, "The subset that takes a minute");
   command.add_option("--only", options->run.only, "Cases whose name contains this");
   command.add_flag("--json", options->json, "Print one line of JSON a case");
-  command.add_option("--jobs", options->run.jobs, "Cases at the same time").between(1, 1024).show_default();
+  add_jobs_option(command, options->run.jobs, "Cases");
   command.tells_progress();
   command.examples({"palpate stability --quick -o out/stability",
-                    "palpate stability scenes/plate.toml --set contact.friction=0.5 --jobs 2 -o out/plate"});
+                    "palpate stability scenes/plate.toml --set contact.friction=0.5 --jobs 1 -o out/plate"});
   command.does([options] { run(*options); });
 }
 
