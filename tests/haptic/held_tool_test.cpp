@@ -27,7 +27,7 @@ class HeldTool : public ::testing::Test {
     tool.max_force_rate = 250;
     block_.scene.tools.push_back(tool);
     haptic_ = std::make_unique<HapticStep>(block_.scene, std::vector{block_.archive});
-    device_ = make_device(block_.scene, 0);
+    device_ = std::move(make_devices(block_.scene.tools, block_.scene.rates.haptic_hz).front());
     guard_ = std::make_unique<MotionGuard>(haptic_->rig(0).motion_limits(), haptic_->dt());
     haptic_->start(std::array{device_->read(0).dofs});
     tick();
