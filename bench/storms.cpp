@@ -1,5 +1,7 @@
 // What does a hand feel when the deformation or the haptic node is killed at any moment and another one comes? In lock
-// step, in the example scenes of moving tissue, against the undisturbed run with the same motion.
+// step, in the example scenes of moving tissue, against the undisturbed run with the same motion. Ends with status 1 if
+// a death gave a hand more than a tenth over the undisturbed run's largest force, or more in a tick than its slew
+// limit.
 //   bench_storms [--quick] [TRIALS] [SCENE or SCENE_deform or SCENE_haptic]
 //   bench_storms course SCENE deform|haptic FROM TO    the size of each tool's force, tick by tick, of one death
 #include <sys/wait.h>
@@ -22,7 +24,7 @@ namespace {
 using namespace palpate;
 
 constexpr int kMaxTools = 4;
-constexpr int kAfter = 1500;                                 // ticks that are watched once the node is back
+constexpr int kAfter = 4000;                                 // ticks that are watched once the node is back
 constexpr double kTolerance = 1.1;                           // of the undisturbed run's largest force
 constexpr int kShortest = 10, kLongest = 2000;               // ticks that the deformation node is away
 constexpr int kHapticShortest = 300, kHapticLongest = 2500;  // likewise: it takes half a second to begin
@@ -34,6 +36,7 @@ struct Felt {
   int first = 0, end = 0, back = 0;  ///< ticks: when it dies, when one looks no longer, when another is there
   double largest[kMaxTools]{};       ///< [N]
   double rise = 0, change = 0;       ///< [N] in a tick: of the size, and of the vector, the tick of a death left out
+  bool too_fast = false;             ///< a change beyond its tool's slew limit
 };
 
 /// A scene with what moves its tools, as the haptic node reads it.
@@ -68,7 +71,10 @@ class Motion {
 
 class Hands {
  public:
-  explicit Hands(const TwoNodes& nodes, int tools) : nodes_(nodes), before_(tools) { see(); }
+  Hands(const TwoNodes& nodes, const Scene& scene) : nodes_(nodes), before_(scene.tools.size()) {
+    for (const Tool& tool : scene.tools) max_change_.push_back(tool.max_force_rate / scene.rates.haptic_hz);
+    see();
+  }
   /// Looks at the forces of a tick; `counts`: its changes too.
   void look(Felt& felt, bool counts) {
     for (std::size_t t = 0; t < before_.size(); ++t) {
@@ -76,7 +82,9 @@ class Hands {
       felt.largest[t] = std::max(felt.largest[t], force.norm());
       if (!counts) continue;
       felt.rise = std::max(felt.rise, force.norm() - before_[t].norm());
-      felt.change = std::max(felt.change, (force - before_[t]).norm());
+      const double change = (force - before_[t]).norm();
+      felt.change = std::max(felt.change, change);
+      felt.too_fast |= change > max_change_[t] * (1 + 1e-9);
     }
     see();
   }
@@ -87,12 +95,13 @@ class Hands {
   }
   const TwoNodes& nodes_;
   std::vector<Eigen::Vector3d> before_;
+  std::vector<double> max_change_;  ///< [N] in a tick
 };
 
 /// One death, from here on.
-Felt disturb(TwoNodes& nodes, const Motion& motion, int tools, Victim victim, int tick, int away) {
+Felt disturb(TwoNodes& nodes, const Motion& motion, const Scene& scene, Victim victim, int tick, int away) {
   Felt felt{.first = tick, .end = std::min(tick + away + kAfter, motion.ticks()), .back = tick + away};
-  Hands hands(nodes, tools);
+  Hands hands(nodes, scene);
   victim == Victim::deform ? nodes.kill_tissue() : nodes.kill_haptic();
   for (int k = tick; k < felt.end; ++k) {
     if (k == felt.back) victim == Victim::deform ? nodes.restart_tissue() : nodes.restart_haptic(motion.at(k));
@@ -103,12 +112,12 @@ Felt disturb(TwoNodes& nodes, const Motion& motion, int tools, Victim victim, in
 }
 
 /// In a process of its own, so that the run itself goes on undisturbed.
-Felt disturb_a_copy(TwoNodes& nodes, const Motion& motion, int tools, Victim victim, int tick, int away) {
+Felt disturb_a_copy(TwoNodes& nodes, const Motion& motion, const Scene& scene, Victim victim, int tick, int away) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   const pid_t child = fork();
   if (child == 0) {
-    const Felt felt = disturb(nodes, motion, tools, victim, tick, away);
+    const Felt felt = disturb(nodes, motion, scene, victim, tick, away);
     _exit(write(ends[1], &felt, sizeof felt) == sizeof felt ? 0 : 1);
   }
   close(ends[1]);
@@ -135,7 +144,6 @@ struct Storm {
 
 Storm storm(const Scene& scene, const std::vector<Archive>& archives, Victim victim, int trials) {
   const Motion motion(scene);
-  const int tools = static_cast<int>(scene.tools.size());
   std::mt19937 random(victim == Victim::deform ? 17 : 18);
   std::multimap<int, int> deaths;  // by tick, for so many ticks
   const bool deform = victim == Victim::deform;
@@ -147,10 +155,10 @@ Storm storm(const Scene& scene, const std::vector<Archive>& archives, Victim vic
   TwoNodes nodes(scene, archives);
   nodes.start(motion.at(0));
   Storm all;
-  Hands hands(nodes, tools);
+  Hands hands(nodes, scene);
   for (int k = 1; k < motion.ticks(); ++k) {
     for (auto [at, end] = deaths.equal_range(k); at != end; ++at)
-      all.felt.push_back(disturb_a_copy(nodes, motion, tools, victim, k, at->second));
+      all.felt.push_back(disturb_a_copy(nodes, motion, scene, victim, k, at->second));
     nodes.step(motion.at(k));
     hands.look(all.whole, true);
     for (int i = 0; i < nodes.world().organs(); ++i)
@@ -161,7 +169,7 @@ Storm storm(const Scene& scene, const std::vector<Archive>& archives, Victim vic
 
 /// The worst of some trials.
 struct Worst {
-  int trials = 0, over = 0;
+  int trials = 0, over = 0, too_fast = 0;
   double force = 0, ratio = 0, rise = 0, change = 0;
   Felt of;  ///< that with the largest ratio
 
@@ -174,12 +182,14 @@ struct Worst {
     }
     ++trials;
     over += is_over;
+    too_fast += felt.too_fast;
     rise = std::max(rise, felt.rise);
     change = std::max(change, felt.change);
   }
 };
 
-void tell(const std::string& name, const Storm& storm, int tools) {
+/// Says how many trials gave a hand more than they may.
+int tell(const std::string& name, const Storm& storm, int tools) {
   const auto row = [&](const std::string& metric, double value, const char* unit) {
     bench::report("storms", name, metric, value, unit);
   };
@@ -194,11 +204,13 @@ void tell(const std::string& name, const Storm& storm, int tools) {
     row(std::string("force") + suffix, worst->force, "N");
     row(std::string("force_ratio") + suffix, worst->ratio, "1");
     row(std::string("over_a_tenth_more") + suffix, worst->over, "1");
+    row(std::string("beyond_the_slew_limit") + suffix, worst->too_fast, "1");
     row(std::string("rise") + suffix, worst->rise, "N/tick");
     row(std::string("change") + suffix, worst->change, "N/tick");
     row(std::string("worst_from_tick") + suffix, worst->of.first, "1");
     row(std::string("worst_to_tick") + suffix, worst->of.back, "1");
   }
+  return whole.over + whole.too_fast + missed.over + missed.too_fast;
 }
 
 std::string scene_file(const std::string& name) {
@@ -221,17 +233,19 @@ void print_course(const std::string& name, Victim victim, int from, int to) {
   }
 }
 
-void run(int trials, const std::string& only) {
-  for (const std::string name : {"plate_cut", "hepatectomy", "cylinder_tear", "cylinder_hybrid"}) {
+int run(int trials, const std::string& only) {
+  int bad = 0;
+  for (const std::string name : {"plate_cut", "hepatectomy", "cylinder_tear", "cylinder_hybrid", "block_partial"}) {
     if (!only.starts_with(only.empty() ? "" : name)) continue;
     const Scene scene = load_scene(scene_file(name));
     const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
     for (const Victim victim : {Victim::deform, Victim::haptic}) {
       const std::string row = name + (victim == Victim::deform ? "_deform" : "_haptic");
       if (only.empty() || only == name || only == row)
-        tell(row, storm(scene, archives, victim, trials), static_cast<int>(scene.tools.size()));
+        bad += tell(row, storm(scene, archives, victim, trials), static_cast<int>(scene.tools.size()));
     }
   }
+  return bad;
 }
 
 }  // namespace
@@ -252,7 +266,10 @@ int main(int argc, char** argv) {
       else
         only = argv[i];
     }
-    run(trials, only);
+    if (const int bad = run(trials, only); bad > 0) {
+      fmt::print(stderr, "bench_storms: {} times a hand was given more than it may be\n", bad);
+      return 1;
+    }
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_storms: {}\n", error.what());
     return 1;
