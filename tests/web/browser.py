@@ -147,6 +147,7 @@ def touch(options):
             page.touch("touchMove", (0.52, 0.55))
             page.touch("touchEnd")
             page.wait(f"{FORCE} < 0.01", 6)
+            page.wait(f"{LAG} < 0.001", 5)  # it has lifted off
             page.get("palpate.setMode('move')")
             page.touch("touchStart", (0.4, 0.4))
             page.wait("palpate.hand.drag?.kind === 'move'", 5)
