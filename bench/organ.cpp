@@ -14,7 +14,7 @@
 #include "bench/report.hpp"
 #include "common/bus/dds_bus.hpp"
 #include "tests/organ/phantom_image.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace {
 using namespace palpate;

@@ -8,7 +8,7 @@
 #include "tests/bus/domain.hpp"
 #include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
-#include "tools/child_process.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {
