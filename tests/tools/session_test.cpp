@@ -11,6 +11,7 @@
 #include "common/bus/log_reader.hpp"
 #include "idl/topics.hpp"
 #include "tests/bus/domain.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/shared/child_process.hpp"
@@ -412,6 +413,7 @@ void expect_felt_as(const Felt& felt, const Felt& undisturbed) {
 }
 
 TEST(OverloadTest, BesideBusyLoopsPicturesAreLeftOutFirstAndAPressIsFelt) {
+  if (kSanitized) GTEST_SKIP() << "nothing is in time there";
   const auto found = on_one_core({8, 8, 4}, 2);
   if (!found) GTEST_SKIP() << "no right to realtime priority";
   EXPECT_LT(found->steps, 0.02);
@@ -422,6 +424,7 @@ TEST(OverloadTest, BesideBusyLoopsPicturesAreLeftOutFirstAndAPressIsFelt) {
 
 // The kernel stops all realtime threads of a core for 50 ms of each second in which they leave it nothing.
 TEST(OverloadTest, OnOneCoreTheTissueFallsBehindTheForceDoesNotAndAPressIsFelt) {
+  if (kSanitized) GTEST_SKIP() << "nothing is in time there";
   const auto found = on_one_core({30, 30, 16}, 0);
   if (!found) GTEST_SKIP() << "no right to realtime priority";
   EXPECT_LT(found->steps, 0.02);
