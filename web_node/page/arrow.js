@@ -2,7 +2,7 @@
 import { cross, size, unit } from './vec.js';
 
 // Lengths are shares of the camera's distance.
-const around = 20, fullScale = 0.3, longest = 0.4, widest = 1;  // [N]: beyond it the scale of lengths stays
+const around = 48, fullScale = 0.3, longest = 0.4, widest = 1;  // [N]: beyond it the scale of lengths stays
 const leastShown = 0.02;  // share of the scale
 
 export function arrowMesh() {

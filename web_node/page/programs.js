@@ -10,10 +10,21 @@ export function inThisDialect(text) {
 
 const arrowVertex = `layout(location = 0) in vec3 position;
 uniform mat4 placement;
-void main() { gl_Position = scene.view_projection * (placement * vec4(position, 1.0)); }`;
+out vec3 place;
+void main() {
+  place = (placement * vec4(position, 1.0)).xyz;
+  gl_Position = scene.view_projection * vec4(place, 1.0);
+}`;
+// Lit from above the camera's left shoulder, so that an arrow towards the eye is seen as one.
 const arrowFragment = `uniform float share;
+in vec3 place;
 out vec4 pixel;
-void main() { pixel = vec4(scale_colour(share), 1.0); }`;
+void main() {
+  vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
+  normal *= sign(dot(normal, scene.eye.xyz - place));
+  vec3 to_light = normalize(normalize(scene.up.xyz) - 0.7 * normalize(scene.right.xyz) - 0.8 * scene.forward.xyz);
+  pixel = vec4((0.35 + 0.65 * max(dot(normal, to_light), 0.0)) * scale_colour(share), 1.0);
+}`;
 const coverVertex = `void main() {
   gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
 }`;
