@@ -1,0 +1,48 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/bus/domain.hpp"
+#include "tests/tools/program_result.hpp"
+
+namespace palpate::testing {
+
+/// The files that a whole session of `palpate run` leaves.
+struct Session {
+  explicit Session(const std::filesystem::path& folder)
+      : film(folder / "session.mp4"),
+        still(folder / "session.png"),
+        log(folder / "session.lcmlog"),
+        summary(folder / "session.json") {}
+  std::vector<std::string> arguments(const LoopbackScene& scene, int processes) const {
+    return {program("palpate"),
+            "run",
+            scene.scene(),
+            "--processes",
+            std::to_string(processes),
+            "--domain",
+            std::to_string(own_domain()),
+            "--film",
+            film,
+            "--still",
+            still,
+            "--record",
+            log,
+            "--summary",
+            summary};
+  }
+  std::filesystem::path film, still, log, summary;
+};
+
+/// As one line of a shell.
+inline std::string joined(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += word + " ";
+  return line;
+}
+
+/// A tool that stands above the tissue for a minute.
+inline constexpr const char* kLongRest = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n60,0,0,0.17,0,0\n";
+
+}  // namespace palpate::testing
