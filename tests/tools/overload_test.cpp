@@ -146,8 +146,10 @@ TEST(OverloadTest, OnOneCoreTheTissueFallsBehindTheForceDoesNotAndAPressIsFelt) 
   EXPECT_LT(found->steps, 0.02);
   EXPECT_GT(found->tissue, 0.1);
   EXPECT_NE(found->said.find("the tissue falls behind by"), std::string::npos) << found->said;
-  if (found->tissue < 0.8)  // beyond, models come too late to be felt
-    expect_felt_as(found->felt, found->undisturbed);
+  if (found->tissue < 0.8) return expect_felt_as(found->felt, found->undisturbed);
+  // Models come too late to be felt in full; no more is felt all the same.
+  EXPECT_LT(found->felt.largest, 1.1 * found->undisturbed.largest);
+  EXPECT_LT(found->felt.change, 0.1 * found->undisturbed.held);
 }
 
 }  // namespace
