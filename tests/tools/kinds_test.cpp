@@ -25,7 +25,7 @@ struct Table {
   /// Folders of sources that work with kinds of their own choice.
   std::set<std::string> permitted;
   std::set<std::string> words = {};  ///< names that stand in quotes for something else, too
-  std::string question = {};         ///< regular expression that asks one of them what it is, by a base
+  std::string question = {};         ///< regular expression that asks one of them what it is, by a base; has "Spec>"
 };
 
 void PrintTo(const Table& table, std::ostream* out) {
@@ -78,15 +78,17 @@ std::vector<Kind> kinds_in(const Table& table) {
 /// What of a source names one of the table's kinds, or asks something whether it is one.
 std::vector<std::string> names_in(const std::string& text, const Table& table, const std::vector<Kind>& kinds) {
   std::vector<std::string> found;
-  const auto look = [&](const std::string& pattern) {
+  // A regular expression costs more than all else: it is asked where a word is that it needs.
+  const auto look = [&](const std::string& word, const std::string& pattern) {
     std::smatch match;
-    if (std::regex_search(text, match, std::regex(pattern))) found.push_back(match[0]);
+    if (text.find(word) != std::string::npos && std::regex_search(text, match, std::regex(pattern)))
+      found.push_back(match[0]);
   };
-  if (!table.question.empty()) look(table.question);
+  if (!table.question.empty()) look("Spec>", table.question);
   for (const Kind& kind : kinds) {
-    look("\\b" + kind.spec + "\\b");
-    look((table.words.contains(kind.name) ? "[!=]= *\"" : "\"") + kind.name + "\"");
-    look(kind.files);
+    look(kind.spec, "\\b" + kind.spec + "\\b");
+    look(kind.name + "\"", (table.words.contains(kind.name) ? "[!=]= *\"" : "\"") + kind.name + "\"");
+    look(kind.files, kind.files);
   }
   return found;
 }
