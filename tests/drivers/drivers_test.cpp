@@ -11,31 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What drivers are built with, installed. Removed with the object.
-class DevelopmentPrefix {
- public:
-  DevelopmentPrefix() {
-    must(fmt::format("{} --install {} --prefix {} --component dev", PALPATE_CMAKE, PALPATE_BUILD, folder_.string()));
-  }
-  ~DevelopmentPrefix() { fs::remove_all(folder_); }
-
-  /// Builds the example of that name from its installed sources, with a sanitizer where the library is; its program.
-  std::string build(const std::string& name) const {
-    const fs::path made = folder_ / ("build-" + name);
-    must(fmt::format("{} -S {} -B {} -DCMAKE_PREFIX_PATH={} '-DCMAKE_CXX_FLAGS={}' '-DCMAKE_C_FLAGS={}'", PALPATE_CMAKE,
-                     (folder_ / "share/palpate/drivers" / name).string(), made.string(), folder_.string(),
-                     PALPATE_CXX_FLAGS, PALPATE_C_FLAGS));
-    must(fmt::format("{} --build {}", PALPATE_CMAKE, made.string()));
-    return made / "press";
-  }
-
- private:
-  static void must(const std::string& command) {
-    std::string said;
-    if (run_command(command, &said) != 0) throw std::runtime_error(said);
-  }
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("palpate-dev-{}", getpid());
-};
+/// The program of the example in that language, which the test driver_examples of ctest builds.
+std::string example_in(const std::string& language) {
+  return fs::path(PALPATE_EXAMPLES) / language / "press";
+}
 
 const std::vector<std::string> kPress{"0", "0.18", "0.199"};
 
@@ -46,19 +25,16 @@ std::vector<std::string> with(std::vector<std::string> command, std::vector<std:
 }
 
 TEST(Drivers, InCWithTheMiddlewareAndTheInstalledMessagesAlone) {
-  const DevelopmentPrefix prefix;
-  const std::string press = prefix.build("c");
   DriverRig rig;
   const std::string network =
       fmt::format("{} network {} --domain {} 2>/dev/null", program("palpate"), rig.scene(), own_domain());
-  expect_a_whole_driver(rig, with({"/bin/sh", "-c", "CYCLONEDDS_URI=\"$(" + network + ")\" exec \"$@\"", "sh", press}));
+  expect_a_whole_driver(
+      rig, with({"/bin/sh", "-c", "CYCLONEDDS_URI=\"$(" + network + ")\" exec \"$@\"", "sh", example_in("c")}));
 }
 
 TEST(Drivers, InCppWithTheInstalledLibrary) {
-  const DevelopmentPrefix prefix;
-  const std::string press = prefix.build("cpp");
   DriverRig rig;
-  expect_a_whole_driver(rig, with({press}, {std::to_string(own_domain())}));
+  expect_a_whole_driver(rig, with({example_in("cpp")}, {std::to_string(own_domain())}));
 }
 
 TEST(Drivers, InPythonWithItsModule) {
