@@ -1,4 +1,4 @@
-# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME or ALONE, or ALL, as such. CACHE: the user's, for them.
+# Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME, ALONE or WAITS, or ALL, as such. CACHE: the user's, for them.
 cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 get_filename_component(name ${PROGRAM} NAME)
@@ -14,7 +14,10 @@ if(flags MATCHES " avx512f " AND flags MATCHES " avx512dq " AND flags MATCHES " 
 elseif(flags MATCHES " avx2 " AND flags MATCHES " fma ")
   list(APPEND environment OPENBLAS_CORETYPE=Haswell)
 endif()
+# ctest's processors are slots here, two for each core and one more (scripts/test.sh): what takes a core takes two.
 set(on_time RESOURCE_LOCK on_time PROCESSORS 2 COST 100)
+set(computes PROCESSORS 2)
+set(waits PROCESSORS 1 COST -1)  # after all that computes: begins where two slots are not free
 set(tests "")
 foreach(line IN LISTS lines)
   if(line MATCHES "^([^ ]+)\\.( |$)")  # cases are indented
@@ -27,6 +30,11 @@ foreach(line IN LISTS lines)
       list(APPEND properties ${on_time})
     else()
       set(launcher "nice -n 10")  # what judges no time yields to what does
+      if("${suite}" IN_LIST WAITS OR WAITS STREQUAL "ALL")
+        list(APPEND properties ${waits})
+      else()
+        list(APPEND properties ${computes})
+      endif()
     endif()
     string(APPEND tests "add_test([=[${name}.${suite}]=] ${launcher} [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n")
     list(JOIN properties " " properties)

@@ -1,9 +1,11 @@
-# palpate_test_suites(TARGET [ON_TIME ALL | SUITE...] [ALONE ALL | SUITE...] [PROPERTIES NAME VALUE ...]): one test of
-# ctest for every GoogleTest suite of a program, so that the cases of a suite share a process and what it has set up.
-# Suites are listed after each build of the program. Those ON_TIME judge when something comes: of these one runs at a
-# time, and the others, which run beside it, yield to it. Those ALONE measure lateness, and nothing runs beside them.
+# palpate_test_suites(TARGET [ON_TIME ALL | SUITE...] [ALONE ALL | SUITE...] [WAITS ALL | SUITE...]
+# [PROPERTIES NAME VALUE ...]): one test of ctest for every GoogleTest suite of a program, so that the cases of a suite
+# share a process and what it has set up. Suites are listed after each build of the program. Those ON_TIME judge when
+# something comes: of these one runs at a time, and the others, which run beside it, yield to it. Those ALONE measure
+# lateness, and nothing runs beside them. Those that WAIT for most of their time take no core from the rest, which
+# computes.
 function(palpate_test_suites target)
-  cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;PROPERTIES")
+  cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;WAITS;PROPERTIES")
   if(suites_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "palpate_test_suites(${target}): ${suites_UNPARSED_ARGUMENTS}")
   endif()
@@ -12,7 +14,7 @@ function(palpate_test_suites target)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${suites_PROPERTIES}"
             -D CACHE=${PROJECT_BINARY_DIR}/cache
-            -D "ON_TIME=${suites_ON_TIME}" -D "ALONE=${suites_ALONE}"
+            -D "ON_TIME=${suites_ON_TIME}" -D "ALONE=${suites_ALONE}" -D "WAITS=${suites_WAITS}"
             -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
     BYPRODUCTS ${list})
   # ctest reads it at its start; without the program the test fails by name.

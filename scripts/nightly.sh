@@ -12,6 +12,7 @@ export PATH=/usr/bin:$PATH  # the python3 that has Debian's modules
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp ignore_noninstrumented_modules=1"
 [ $# -gt 0 ] || set -- long address fuzz thread tidy stability mcap docs python papers packages
+slots=$((2 * $(nproc) + 1))  # as in test.sh
 for stage in "$@"; do
   echo "# $stage"
   case "$stage" in
@@ -59,10 +60,10 @@ for stage in "$@"; do
       ./scripts/build.sh "$stage" "${tests[@]}"
       # OpenMP's own joins are not seen by the thread sanitizer; resident memory means nothing under any. What the
       # commands of the pages print is judged in the stages docs and papers.
-      OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 --parallel "$(nproc)" -R "$chosen" -E 'HapticMemory|^papers|^docs_commands' ;;
+      OMP_NUM_THREADS=1 ctest --preset "$stage" --timeout 1200 --parallel "$slots" -R "$chosen" -E 'HapticMemory|^papers|^docs_commands' ;;
     fuzz)
       ./scripts/build.sh address test_fuzz
-      PALPATE_LONG_TESTS=1 ctest --preset address --timeout 1200 --parallel "$(nproc)" -R '^test_fuzz' ;;
+      PALPATE_LONG_TESTS=1 ctest --preset address --timeout 1200 --parallel "$slots" -R '^test_fuzz' ;;
     tidy) ./scripts/tidy.sh ;;
     -h|--help) sed -n '2,8p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
