@@ -2,8 +2,7 @@
 # [PROPERTIES NAME VALUE ...]): one test of ctest for every GoogleTest suite of a program, so that the cases of a suite
 # share a process and what it has set up. Suites are listed after each build of the program. Those ON_TIME judge when
 # something comes: of these one runs at a time, and the others, which run beside it, yield to it. Those ALONE measure
-# lateness, and nothing runs beside them. Those that WAIT for most of their time take no core from the rest, which
-# computes.
+# lateness, and nothing runs beside them. Those that WAIT take less than half of a core; the rest computes.
 function(palpate_test_suites target)
   cmake_parse_arguments(PARSE_ARGV 1 suites "" "" "ON_TIME;ALONE;WAITS;PROPERTIES")
   if(suites_UNPARSED_ARGUMENTS)
