@@ -1,4 +1,5 @@
-// What jaws carry has weight and inertia and nothing else: in hepatectomy, from the cut to the end.
+// What jaws carry has weight and inertia and nothing else: in hepatectomy, from when the scalpel is off what it has cut
+// to the end.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kForceps = 0, kSevered = 12800, kEnd = 14200;  // [ticks] while the segment is carried away
+constexpr int kForceps = 0, kSevered = 12000, kEnd = 15000;  // [ticks] in which the segment hangs and is carried away
+constexpr double kOff = 0.01;                                // of weight and inertia, by which the force may be off
 
 /// What floats of a body.
 struct Momentum {
@@ -70,7 +72,7 @@ TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
     ASSERT_GT(now.mass, 0);
     if (before.mass > 0) {
       const Vector3d carried = now.mass * gravity - (now.sum - before.sum) / (1e-3 * kMean);
-      EXPECT_LT((felt - carried).norm(), 0.1 * carried.norm()) << "tick " << k;
+      EXPECT_LT((felt - carried).norm(), kOff * carried.norm()) << "tick " << k;
       worst = std::max(worst, (felt - carried).norm() / carried.norm());
     }
     before = now;
@@ -84,7 +86,7 @@ TEST(CarriedPiece, HasWeightAndInertiaAndNothingElse) {
   const Vector3d carried = before.mass * (gravity - speeds / 1e-3 / (1e-3 * static_cast<double>(jaws.size() - 2)));
   fmt::print("in the mean {:.4f} N, where {:.4f} kg under the jaws' own motion ask for {:.4f} N, off by {:.4f} N\n",
              all_felt.norm(), before.mass, carried.norm(), (all_felt - carried).norm());
-  EXPECT_LT((all_felt - carried).norm(), 0.1 * carried.norm());
+  EXPECT_LT((all_felt - carried).norm(), kOff * carried.norm());
 }
 
 /// [J] of motion and of the tissue's springs.
