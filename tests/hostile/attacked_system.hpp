@@ -38,6 +38,7 @@ class AttackedSystem {
 
   Attacker& attacker() { return attacker_; }
   HandWatch& hand() { return hand_; }
+  bool in_free_air() const;  ///< the script has not begun to lead its tool down
   /// Returns once the tools that press have come down and rest. Until then all are in free air.
   void press();
   /// The driver elsewhere lifts its tool and comes down again as it did at first: what it has cost is paid.

@@ -53,6 +53,7 @@ void Hostile::TearDown() {
   if (ended_) return;
   system_->watch(20ms);
   EXPECT_TRUE(system_->all_run());
+  if (is_in_free_air()) EXPECT_TRUE(system_->in_free_air()) << "it lasted to step " << hand().newest().step;
   for (int tool = 0; tool < hand().tools(); ++tool) expect_guarded(tool);
   const double rate_hz = hand().rate_hz(*host_);
   EXPECT_GE(rate_hz, kMinHz);
