@@ -1,10 +1,11 @@
 // secured_peer DOMAIN INTERFACE PEER KEYS ROLE WRITES READS TOOL
 // Joins with the keys of a role, or without where KEYS is -, writes each of the topics in WRITES (a list with commas,
 // or -) as the tool TOOL at 200 Hz, and reads those in READS, until it is interrupted. It prints "heard" once another
-// tool is, and at the end "wrote N to M readers" and, for each other tool that was heard, "tool T: N samples", or the
-// sentence by which it was refused. It does not count itself.
+// tool is, a hundred times and more, and at the end "wrote N to M readers" and, for each other tool that was heard,
+// "tool T: N samples", or the sentence by which it was refused. It does not count itself.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <sstream>
@@ -25,6 +26,9 @@ struct Peer {
   std::map<std::uint32_t, std::uint64_t> heard;
   std::vector<std::function<void()>> ports;
 
+  bool hears() const {
+    return std::ranges::any_of(heard, [](const auto& of_tool) { return of_tool.second > 100; });
+  }
   template <class M>
   void writes(Bus& bus, const Topic<M>& topic, bool reads_it) {
     ports.push_back([this, reads_it, writer = std::shared_ptr<Writer<M>>(bus.writer(topic))] {
@@ -79,11 +83,11 @@ void run(char** a) {
   });
   for_each_named(a[7], [&](const auto& topic) { peer.reads(*bus, topic); });
   PeriodicTimer timer(200, 0);
-  bool alone = true;
+  bool hears = false;
   for (timer.wait(); !shutdown_requested(); timer.wait()) {
     ++peer.seq;
     for (const auto& port : peer.ports) port();
-    if (std::exchange(alone, peer.heard.empty()) != alone) say("heard");
+    if (!std::exchange(hears, peer.hears()) && hears) say("heard");
   }
   fmt::print("wrote {} to {} readers\n", peer.wrote, peer.readers);
   for (const auto& [tool, samples] : peer.heard) fmt::print("tool {}: {} samples\n", tool, samples);

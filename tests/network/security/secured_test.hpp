@@ -44,7 +44,7 @@ class Peer {
                   fmt::format("{} exec {} {} {} {} {} {} {} {} {}", task.environment, program("secured_peer"), domain,
                               device, other, task.keys.string(), task.role, task.writes, task.reads, task.tool)}) {}
 
-  /// Whether it has heard anybody.
+  /// Whether it has heard anybody a hundred times.
   bool heard() {
     take();
     return heard_;
