@@ -1,5 +1,5 @@
-// What the hands feel when the real deformation node of an example is killed, or stands still, in the midst of it, by
-// the log.
+// What the hands feel in an example that real nodes play, by the log: as often as it is played what lock step gives,
+// and when its deformation node is killed, or stands still, in the midst of it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,11 +33,16 @@ constexpr int kFirstStop = 800;              // step: the scalpel comes down on 
 constexpr int kStops = 6;                    // in a run of ten seconds
 constexpr auto kStop = 400ms;
 constexpr auto kToEnd = std::numeric_limits<std::uint64_t>::max();
+// Of the largest force of forceps and scalpel, by which a run in real time may be off lock step. Measured: the forceps'
+// within 0.1 %; the scalpel's 3 % more where the tissue lost 0.01 s in all, 4 to 6 % more where it lost 0.05 to 0.09 s.
+constexpr std::array kAlike{0.05, 0.1};
+constexpr double kLate = 0.2;  // [s] that the tissue may lose in such a run
 
 /// The largest force of each tool until a step, the largest of all, and the largest change of one in a step [N].
 struct FeltByTools {
   std::array<double, kTools> force{};
   double later = 0, change = 0;
+  double late = 0;  ///< [s] the tissue, in the end
   std::uint64_t steps = 0;
 };
 
@@ -46,7 +51,9 @@ FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t un
   FeltByTools felt;
   std::array<ForceState, kTools> last;
   ForceState now;
+  DeformStep tick;
   for (LogEvent event; log.next(event);) {
+    if (event.read(topics::deform_step, tick)) felt.late = 1e-9 * static_cast<double>(tick.late_ns);
     if (!event.read(topics::force_state, now)) continue;
     ForceState& before = last.at(now.tool);
     double& largest = now.step < until ? felt.force[now.tool] : felt.later;
@@ -70,6 +77,12 @@ class InAnExample : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
+  FeltByTools in_lock_step() const {
+    const std::string file = folder_ / "lock_step.lcmlog";
+    std::string said;
+    EXPECT_EQ(run_command(program("palpate") + " drive " + scene_ + " --log " + file, &said), 0) << said;
+    return felt_by_tools_in(file, kToEnd);
+  }
   /// Runs the example in real time; `meanwhile` is called once the haptic node is there, with the deformation node.
   template <class Meanwhile>
   FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = kToEnd) {
@@ -99,6 +112,10 @@ class InAnExample : public ::testing::Test {
 class KilledInAnExample : public InAnExample {
  protected:
   KilledInAnExample() : InAnExample("hepatectomy") {}
+  const FeltByTools& undisturbed() {
+    static const FeltByTools felt = in_lock_step();  // for all cases
+    return felt;
+  }
 };
 
 class StoppedInAnExample : public InAnExample {
@@ -106,10 +123,25 @@ class StoppedInAnExample : public InAnExample {
   StoppedInAnExample() : InAnExample("plate_cut") {}
 };
 
+// A run in which the tissue fell behind is played anew, three times at most.
+TEST_F(KilledInAnExample, WithoutThatItIsFeltAsInLockStepEachTime) {
+  if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: MissedTicks.* are of that";
+  for (int time = 0; time < (std::getenv("PALPATE_LONG_TESTS") ? 5 : 2); ++time) {
+    FeltByTools felt = run([](auto&) {});
+    for (int again = 0; again < 2 && felt.late > kLate; ++again) felt = run([](auto&) {});
+    if (felt.late > kLate) GTEST_SKIP() << "no core here for the tissue, which is " << felt.late << " s late";
+    EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kLast)) << time;
+    for (int tool = 0; tool < kTools; ++tool) {
+      fmt::print("tool {}: {:.4f} N in lock step, {:.4f} N with tissue {:.3f} s late\n", tool,
+                 undisturbed().force[tool], felt.force[tool], felt.late);
+      EXPECT_NEAR(felt.force[tool], undisturbed().force[tool], kAlike[tool] * undisturbed().force[tool]) << time;
+    }
+  }
+}
+
 TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: MissedTicks.* are of that";
-  const FeltByTools undisturbed = run([this](auto&) { EXPECT_TRUE(reaches(kFirst)); });
-  ASSERT_GT(undisturbed.steps, static_cast<std::uint64_t>(kLast));
+  ASSERT_GT(undisturbed().steps, static_cast<std::uint64_t>(kLast));
   repeat(1, 25min, [&](int round) {
     std::mt19937 random(round);
     const std::uint64_t step = std::uniform_int_distribution<>(kFirst, kLast)(random);
@@ -127,8 +159,8 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
       fmt::print(
           "round {}, at step {}, away {} ms, tool {}: {:.3f} N undisturbed, {:.3f} N, {:.3f} N later, by {:.3f} N a "
           "step\n",
-          round, step, away.count(), tool, undisturbed.force[tool], felt.force[tool], felt.later, felt.change);
-      EXPECT_LE(felt.force[tool], 1.1 * undisturbed.force[tool]) << round;
+          round, step, away.count(), tool, undisturbed().force[tool], felt.force[tool], felt.later, felt.change);
+      EXPECT_LE(felt.force[tool], 1.1 * undisturbed().force[tool]) << round;
     }
     EXPECT_GT(felt.steps, step) << round;
     EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
@@ -136,7 +168,8 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
 }
 
 TEST_F(StoppedInAnExample, ADeformationNodeThatStandsStillIsNoKickByTheLog) {
-  const FeltByTools undisturbed = run([this](auto&) { EXPECT_TRUE(reaches(kFirstStop)); });
+  // A sanitizer's tissue falls behind in both.
+  const FeltByTools undisturbed = kSanitized ? run([](auto&) {}) : in_lock_step();
   repeat(1, 10min, [&](int round) {
     std::mt19937 random(round);
     const FeltByTools felt = run([&](const std::unique_ptr<ChildProcess>& deform) {
