@@ -45,24 +45,39 @@ class OrganCommand : public ::testing::Test {
     return all;
   }
   static std::size_t voxel(int i, int j, int k) { return (static_cast<std::size_t>(k) * kY + j) * kX + i; }
-  ProgramResult organ(const std::filesystem::path& image, const std::string& arguments) const {
+  static ProgramResult organ(const std::filesystem::path& image, const std::string& arguments) {
     return run_program(program("palpate") + " organ " + image.string() + " " + arguments);
+  }
+  /// Both balls as one mesh, for all cases: with pictures, and once more, told as JSON.
+  struct Balls {
+    Balls() {
+      const auto image = write_file(folder / "balls.inr", header() + voxels());
+      const std::string to = "--label 7=liver --label 9=fat --group attachment=below:x --edge 0.006 -o ";
+      drawn = organ(image, to + mesh() + " --preview " + (folder / "pictures").string());
+      told = organ(image, to + again() + " --json");
+    }
+    std::string mesh() const { return folder / "balls.msh"; }
+    std::string again() const { return folder / "again.msh"; }
+    const OwnFolder folder{"organ-balls"};
+    ProgramResult drawn, told;
+  };
+  static const Balls& balls() {
+    static const Balls made;
+    return made;
   }
   const OwnFolder folder_{"organ-image"};
 };
 
 TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSameAgain) {
-  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
-  const std::string labels = "--label 7=big --label 9=small --group attachment=below:x --edge 0.006 -o ";
-  const auto made = organ(image, labels + (folder_ / "a.msh").string());
+  const ProgramResult& made = balls().drawn;
   ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_NE(made.out.find("'big': a stray piece of 1 voxels (0.002 ml) at (3, 3, 6) mm: left out"), std::string::npos)
+  EXPECT_NE(made.out.find("'liver': a stray piece of 1 voxels (0.002 ml) at (3, 3, 6) mm: left out"), std::string::npos)
       << made.out;
-  EXPECT_NE(made.out.find("'small': a cavity of 1 voxels"), std::string::npos) << made.out;
-  const TetMesh mesh = load_tet_mesh(folder_ / "a.msh", 1);
+  EXPECT_NE(made.out.find("'fat': a cavity of 1 voxels"), std::string::npos) << made.out;
+  const TetMesh mesh = load_tet_mesh(balls().mesh(), 1);
   EXPECT_GE(measures_of(mesh).min_angle, 12);
   const std::string all = voxels();
-  for (const auto& [name, label] : {std::pair{"big", 7}, {"small", 9}}) {
+  for (const auto& [name, label] : {std::pair{"liver", 7}, {"fat", 9}}) {
     double volume = 0;
     for (const int t : mesh.groups.at(name).tetrahedra) volume += tet_volume(mesh, mesh.tetrahedra[t]);
     const double counted = 2e-9 * static_cast<double>(std::count(all.begin(), all.end(), label));
@@ -76,8 +91,7 @@ TEST_F(OrganCommand, TwoLabelsBecomeOneMeshOfTwoGroupsWithTheirVolumesAndTheSame
                                 std::abs((mesh.nodes[n] - Eigen::Vector3d(0.042, 0.022, 0.022)).norm() - 0.01));
     EXPECT_LT(off, 2.45e-3) << mesh.nodes[n].transpose();
   }
-  ASSERT_EQ(organ(image, labels + (folder_ / "b.msh").string()).status, 0);
-  EXPECT_EQ(text_of(folder_ / "a.msh"), text_of(folder_ / "b.msh"));
+  EXPECT_EQ(text_of(balls().mesh()), text_of(balls().again()));
 }
 
 TEST_F(OrganCommand, ASurfaceToBeLookedAtHasAMaterialForEachLabel) {
@@ -97,10 +111,7 @@ TEST_F(OrganCommand, ASurfaceToBeLookedAtHasAMaterialForEachLabel) {
 }
 
 TEST_F(OrganCommand, PicturesShowTheBorderTheTetrahedraAndBothSurfaces) {
-  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
-  const auto made = organ(image, "--label 7=big --label 9=small --edge 0.006 --preview " +
-                                     (folder_ / "pictures").string() + " -o " + (folder_ / "p.msh").string());
-  ASSERT_EQ(made.status, 0) << made.err;
+  ASSERT_EQ(balls().drawn.status, 0) << balls().drawn.err;
   const auto coloured = [](const Image& picture, int from,
                            int to) {  // pixels between two columns, neither grey nor black
     int count = 0;
@@ -112,7 +123,7 @@ TEST_F(OrganCommand, PicturesShowTheBorderTheTetrahedraAndBothSurfaces) {
     return count;
   };
   for (const char* name : {"slice_0011.png", "surface.png"}) {
-    const Image picture = read_png(folder_ / "pictures" / name);
+    const Image picture = read_png(balls().folder / "pictures" / name);
     const int left = coloured(picture, 0, picture.width / 2),
               right = coloured(picture, picture.width / 2, picture.width);
     EXPECT_GT(left, 10000) << name;
@@ -174,19 +185,16 @@ TEST_F(OrganCommand, AWallOfTwoVoxelsIsMeshedWithItsCavity) {
 }
 
 TEST_F(OrganCommand, TwoBallsBecomeASceneThatPassesItsCheck) {
-  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
-  const std::string mesh = folder_ / "balls.msh", scene = folder_ / "balls.toml";
-  ASSERT_EQ(organ(image, "--label 7=liver --label 9=fat --group attachment=below:x --edge 0.006 -o " + mesh).status, 0);
-  const auto made = run_program(program("palpate") + " scene " + mesh + " --tissue liver -o " + scene);
+  ASSERT_EQ(balls().drawn.status, 0) << balls().drawn.err;
+  const std::string scene = balls().folder / "balls.toml";
+  const auto made = run_program(program("palpate") + " scene " + balls().mesh() + " --tissue liver -o " + scene);
   ASSERT_EQ(made.status, 0) << made.err;
   const auto checked = run_program(program("palpate") + " check " + scene);
   EXPECT_EQ(checked.status, 0) << checked.out << checked.err;
 }
 
 TEST_F(OrganCommand, FiguresArePrintedAsOneLineOfJson) {
-  const auto image = write_file(folder_ / "balls.inr", header() + voxels());
-  const auto made =
-      organ(image, "--label 7=big --label 9=small --edge 0.006 --json -o " + (folder_ / "a.msh").string());
+  const ProgramResult& made = balls().told;
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_EQ(std::ranges::count(made.out, '\n'), 1) << made.out;
   const auto json = nlohmann::json::parse(made.out);
@@ -195,10 +203,10 @@ TEST_F(OrganCommand, FiguresArePrintedAsOneLineOfJson) {
   ASSERT_EQ(json["meshes"].size(), 1u);
   const auto& labels = json["meshes"][0]["labels"];
   ASSERT_EQ(labels.size(), 2u);
-  EXPECT_EQ(labels[1]["name"], "small");
+  EXPECT_EQ(labels[1]["name"], "fat");
   EXPECT_NEAR(labels[0]["volume_m3"], labels[0]["volume_of_voxels_m3"], 1e-7);
   EXPECT_EQ(labels[0]["topology"], labels[0]["topology_of_voxels"]);
-  EXPECT_EQ(json["meshes"][0]["nodes"], load_tet_mesh(folder_ / "a.msh", 1).nodes.size());
+  EXPECT_EQ(json["meshes"][0]["nodes"], load_tet_mesh(balls().again(), 1).nodes.size());
 }
 
 TEST_F(OrganCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
