@@ -42,7 +42,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   if (body.relaxation)
     settling_ = static_cast<int>(std::min(kMaxSettling, kTimesSettling * body.relaxation->times.back()) / settings.dt);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
-  const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
+  const std::size_t by_patches = patch_ ? PatchTouch::kMaxForces * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
   const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->max_loads() : 0);
   sum_.emplace(compliance(), forces);
@@ -173,7 +173,7 @@ BodyPart::Capacity QuasiStaticBody::capacity() const {
   Capacity most = TouchBody::capacity();
   if (!patch_) return most;
   most.contacts += patch_->parts();
-  most.forces += Patch::kMaxNodes * patch_->parts();
+  most.forces += PatchTouch::kMaxForces * patch_->parts();
   return most;
 }
 
