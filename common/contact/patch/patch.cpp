@@ -50,6 +50,7 @@ void Patch::lift() {
   loaded_ = 0;
   std::ranges::fill(active_, 0);
   bent_.setZero();
+  resumed_.setZero();
   force_.setZero();
   pressing_ = depth_ = 0;
   if (memory_) memory_->forget();
