@@ -116,5 +116,22 @@ TEST_F(PatchOnFineTriangles, ASlideHasNoJumps) {
   }
 }
 
+// Nodes that come towards what presses them, which no tissue does, leave no pressures that solve the contact.
+TEST(PatchOnNodesThatPush, SaysThatItsPressuresDoNotSettle) {
+  Archive pushing = testing::flat_patch(kNodes, kEdge, -1);
+  pushing.young = {bench::kBlockYoung};
+  pushing.poisson = {bench::kBlockPoisson};
+  PressRig rig(bench::touch_scene(bench::touch_block(), 0), {pushing});
+  const auto centre = [](double depth) { return Vector3d(0.3 * kEdge, 0.1 * kEdge, kTipRadius - depth); };
+  rig.start(centre(-1e-3));
+  int flagged = 0;
+  for (int i = 1; i <= 50; ++i) {
+    rig.press(centre(-1e-3 + 1e-4 * i));
+    EXPECT_TRUE(rig.force().allFinite()) << i;
+    flagged += (rig.haptic().flags(0) & regularised) != 0;
+  }
+  EXPECT_GT(flagged, 0);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -231,6 +231,7 @@ void Patch::settle_pressures() {
       if (moved < wanted_[p] - kTouchTolerance) active_[p] = 1, changed = true;
     }
   }
+  settled_ = !changed;
   for (double& f : pressure_force_) f = std::max(f, 0.0);
 }
 

@@ -100,6 +100,9 @@ class Patch {
   /// After lay(): the share of the last step's pressures whose cells have left the tissue, over a rim.
   double lost() const { return lost_; }
 
+  /// Whether the last pressures are the solution; else they are the last of a bounded number of tries.
+  bool settled() const { return settled_; }
+
   bool touches() const { return pressing_ > 0; }
   double pressing() const { return pressing_; }              ///< [N]
   const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
@@ -218,6 +221,7 @@ class Patch {
   Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
   std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
+  bool settled_ = true;
   double pressing_ = 0, depth_ = 0;
   double lost_ = 0;
   std::span<int> near_;  ///< triangles, of lay() alone

@@ -48,7 +48,8 @@ void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<con
 }
 
 // One patch after another, each against the others' newest forces.
-void PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) {
+bool PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) {
+  bool settled = true;
   for (Part& own : parts_) {
     std::span<const int> nodes;
     if (beside.holds(own.tool))
@@ -57,7 +58,9 @@ void PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) 
       nodes = press(own, tools[own.tool], beside);
     load_body(own);
     if (beside.past && !nodes.empty()) remember(own, nodes);
+    settled &= nodes.empty() || own.patch.settled();
   }
+  return settled;
 }
 
 std::span<const int> PatchTouch::press(Part& own, const MovingTool& tool, const Beside& beside) {

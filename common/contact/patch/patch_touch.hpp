@@ -40,8 +40,8 @@ class PatchTouch {
     std::function<bool(int tool)> holds;            ///< jaws of the tool hold it: then they touch, and no patch does
     Past past = {};                                 ///< of tissue that relaxes
   };
-  /// Solves for the forces of one step.
-  void touch(std::span<const MovingTool> tools, const Beside& beside);
+  /// Solves for the forces of one step. False if pressures of a patch did not settle: what it gives then is bounded.
+  bool touch(std::span<const MovingTool> tools, const Beside& beside);
   /// Sum over a tool's patches of their pressures' forces [N] on the tissue, without shear.
   Eigen::Vector3d pressing(int tool) const;
   /// Adds what they do to the tools.

@@ -126,14 +126,16 @@ void QuasiStaticBody::recall_ahead(std::span<const int> nodes, std::span<double>
 // The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches and
 // the past leave it.
 LawOutcome QuasiStaticBody::hold(std::span<const MovingTool> tools) {
+  bool settled = true;
   if (patch_) {
     PatchTouch::Beside beside{.others = [this](const VisitForce& visit) { TouchBody::for_each_force(visit); },
                               .holds = [this](int tool) { return law().grasps(tool); }};
     if (memory_) beside.past = [this](std::span<const int> nodes, std::span<double> u) { recall_ahead(nodes, u); };
-    patch_->touch(tools, beside);
+    settled = patch_->touch(tools, beside);
   }
   if (patch_ || memory_) lay_ground();
-  const LawOutcome outcome = TouchBody::hold(tools);
+  LawOutcome outcome = TouchBody::hold(tools);
+  if (!settled) ++outcome.raised;
   if (memory_) remember();
   return outcome;
 }
