@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "bench/report.hpp"
+#include "bench/shaft_block.hpp"
 #include "common/realtime/spsc_ring.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/tool/motion_guard.hpp"
@@ -10,6 +11,13 @@
 
 namespace palpate {
 namespace {
+
+void report_steps(const char* name, const bench::Samples& steps) {
+  bench::report("haptic_step", name, "p50", 1e6 * steps.median(), "us");
+  bench::report("haptic_step", name, "p99", 1e6 * steps.p99(), "us");
+  bench::report("haptic_step", name, "p999", 1e6 * steps.p999(), "us");
+  bench::report("haptic_step", name, "max", 1e6 * steps.max(), "us");
+}
 
 /// The scripted motion of the liver scene; steps in contact are sampled. Returns their hand-over to the ring.
 bench::Samples one_contact(const Scene& scene, const std::vector<Archive>& archives, const char* name, bool quick) {
@@ -36,10 +44,7 @@ bench::Samples one_contact(const Scene& scene, const std::vector<Archive>& archi
       pushes.add(std::chrono::duration<double>(pushed - stepped).count());
     }
   }
-  bench::report("haptic_step", name, "p50", 1e6 * steps.median(), "us");
-  bench::report("haptic_step", name, "p99", 1e6 * steps.p99(), "us");
-  bench::report("haptic_step", name, "p999", 1e6 * steps.p999(), "us");
-  bench::report("haptic_step", name, "max", 1e6 * steps.max(), "us");
+  report_steps(name, steps);
   return pushes;
 }
 
@@ -99,6 +104,31 @@ void many_contacts(Scene scene, const std::vector<Archive>& archives, bool quick
   bench::report("held_nodes", "liver1400_64", "p999", 1e6 * samples.p999(), "us");
 }
 
+/// Two probes that lie level on a block, side by side, each with its tip's 44 squares and its shaft's 80 rectangles,
+/// and rub along it.
+void two_tools(bool quick) {
+  using namespace bench;
+  const QuasiStaticSpec block = touch_block();
+  Scene scene = shaft_scene(block, ContactRule::patch, 0.3);
+  scene.tools.resize(2, scene.tools[0]);
+  scene.tools[1].name += "1";
+  const auto aside = [](int tool) { return (tool == 0 ? -1.5 : 1.5) * kShaftRadius; };
+  for (int t = 0; t < 2; ++t) scene.tools[t].pivot.y() = aside(t);
+  PressRig rig(scene, {precompute(block, shaft_block_of_edges(2 * kShaftRadius))});
+  const auto tips = [&](double along, double depth) {
+    std::array<ToolDofs, 2> dofs;
+    for (int t = 0; t < 2; ++t)
+      dofs[t] = tip_at(rig.scene().tools[t], {2 * kShaftRadius + along, aside(t), kShaftRadius - depth});
+    return dofs;
+  };
+  rig.start(tips(0, -1e-3));
+  for (int i = 0; i <= 100; ++i) rig.press(tips(0, -1e-3 + (kShaftRadius / 2 + 1e-3) * i / 100));
+  Samples steps;
+  steps.measure(200, quick ? 2000 : 20000,
+                [&](int i) { rig.press(tips(0.5 * kShaftRadius * std::sin(0.01 * i), kShaftRadius / 2)); });
+  report_steps("two_tools_tip_and_shaft", steps);
+}
+
 /// What stands between the device's sample and the tool, and between the tissue's force and the hand, over the scripted
 /// motion. The step cannot be run without it, so that it is timed apart, a hundred ticks at a time.
 void guards(const Scene& scene, const std::vector<Archive>& archives, bool quick) {
@@ -156,5 +186,6 @@ int main(int argc, char** argv) {
   palpate::one_contact(palpate::relaxing(scene), archives, "liver1400_relaxing", quick);
   palpate::one_contact(palpate::by_nodes(scene), archives, "liver1400_nodes", quick);
   palpate::one_contact(palpate::by_nodes(palpate::relaxing(scene)), archives, "liver1400_nodes_relaxing", quick);
+  palpate::two_tools(quick);
   palpate::many_contacts(scene, archives, quick);
 }

@@ -171,6 +171,24 @@ TEST_F(PatchRule, JawsThatHoldTheTissueAreAllThatTouchesIt) {
   EXPECT_EQ(pressed_besides(), 1) << "let go, the tip presses again";
 }
 
+TEST_F(PatchRule, AStabAtAMetreASecondFeelsWhatASlowPressFeels) {
+  PressRig fast = PatchRule::rig(0.3), slow = PatchRule::rig(0.3), deep = PatchRule::rig(0.3);
+  const auto tip = [](double depth) { return at(0.004, 0.001, depth); };
+  const double full = fast.dt();  // [m] a tick at 1 m/s
+  for (PressRig* rig : {&fast, &slow, &deep}) rig->start(tip(-0.01));
+  for (int i = 1; i <= 700; ++i) deep.step(tip(-0.01 + 0.02 * full * i));
+  const double most = deep.force().norm();
+  double depth = -0.01;
+  for (int i = 0; i < 28; ++i) {
+    const double next = depth + (i < 14 ? full : -full);
+    for (int k = 1; k <= 50; ++k) slow.step(tip(depth + (next - depth) * k / 50));
+    fast.step(tip(next));
+    depth = next;
+    EXPECT_LT((fast.force() - slow.force()).norm(), 0.002 * most) << depth;
+  }
+  EXPECT_EQ(fast.force(), Vector3d::Zero());
+}
+
 TEST_F(PatchRule, TwoTipsThatComeCloseFeelEachOtherSmoothly) {
   PressRig rig = PatchRule::rig(0, 2);
   const auto tips = [&](double apart, double depth) {

@@ -93,6 +93,29 @@ TEST_F(ResumedContacts, OfTissueThatRelaxesGoOnRelaxed) {
   }
 }
 
+TEST_F(ResumedContacts, OfATipThatHasLeftAreForgotten) {
+  block_.scene.contact.rule = ContactRule::patch;
+  block_.scene.passivity.controller = false;
+  HapticStep before(block_.scene, block_.archives), again(block_.scene, block_.archives),
+      fresh(block_.scene, block_.archives);
+  before.start(std::array{pressed(0)});
+  for (int i = 0; i <= kPressed + 50; ++i) before.step(std::array{pressed(i)});
+  StepRecord record{};
+  prepare_record(before, record);
+  fill_record(before, std::array{DeviceSample{pressed(kPressed + 50), 0}}, 1, 0, record);
+  ContactState kept;
+  describe_contacts(record, 0, kept);
+  again.place(std::array{pressed(kPressed + 50)});
+  ASSERT_TRUE(again.resume(kept));
+  fresh.start(std::array{pressed(0)});
+  for (int i = 0; i <= kPressed; ++i) {
+    again.step(std::array{pressed(i)});
+    fresh.step(std::array{pressed(i)});
+  }
+  EXPECT_GT(fresh.force(0).norm(), 0.1);
+  EXPECT_LT((again.force(0) - fresh.force(0)).norm(), 1e-9 * fresh.force(0).norm());
+}
+
 TEST_F(ResumedContacts, AreTakenUpOnce) {
   ASSERT_TRUE(again_.resume(kept_));
   const std::size_t taken = again_.law(0).contacts().size();

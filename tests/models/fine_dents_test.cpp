@@ -3,7 +3,7 @@
 
 #include "common/archive/compliance.hpp"
 #include "common/bus/codec.hpp"
-#include "common/contact/patch/patch.hpp"
+#include "common/contact/patch/patch_touch.hpp"
 #include "tests/haptic/patch_block.hpp"
 #include "tools/rig/press_rig.hpp"
 
@@ -73,11 +73,11 @@ TEST_F(DentUnderATip, GoesWithTheTip) {
   for (const Vector3d& u : rig->displacement()) EXPECT_EQ(u, Vector3d::Zero());
 }
 
-// A tip rests on as many nodes as a patch may, a shaft on three for each of its strip's feet.
+// A tip loads as many nodes as a patch may, a shaft three for each of its strip's feet.
 TEST(ContactStateSize, OfATipAndAShaftThatTouchStaysBelowFourKilobytes) {
   ContactState state;
   const PatchGrid shaft(0.002, 0.1, HalfSpace{6000, 0.3});
-  state.forces.resize(Patch::kMaxNodes + 3 * shaft.feet());
+  state.forces.resize(PatchTouch::kMaxForces + 3 * shaft.feet());
   state.contacts.resize(2);
   Bytes bytes;
   encode(state, bytes);

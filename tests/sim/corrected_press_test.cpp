@@ -85,6 +85,30 @@ TEST_P(CorrectedPress, TheShapeWidensByTheLawOfThePlaceAlone) {
   EXPECT_GT(most, 1.05);
 }
 
+// A patch presses on pressures of its own: no node is held under it, and all of them give way by the law.
+TEST_P(CorrectedPress, NodesStayWhereAToolHoldsThem) {
+  PressRig rig(corrected_, archives_);
+  press(rig, 0.021);
+  ContactState state = rig.simulator().contacts(0);
+  state.run = 1;
+  Deformer linear(scene_, archives_), corrected(corrected_, archives_);
+  for (Deformer* deformer : {&linear, &corrected}) {
+    ASSERT_TRUE(deformer->take(state));
+    deformer->deform();
+  }
+  ASSERT_FALSE(state.forces.empty());
+  int held = 0, aside = 0;
+  const Eigen::Vector3f press = Eigen::Map<const Vector3d>(state.press.data()).cast<float>();
+  for (const NodalForce& f : state.forces) {
+    const Eigen::Vector3f &u = linear.surface(0).displacement[f.node], &v = corrected.surface(0).displacement[f.node];
+    held += u == v;
+    aside += (u - u.dot(press) * press).norm() > 2e-5f;
+  }
+  const auto loaded = static_cast<int>(state.forces.size());
+  ASSERT_GT(aside, 0);
+  EXPECT_EQ(held, GetParam() == ContactRule::patch ? loaded - aside : loaded);
+}
+
 INSTANTIATE_TEST_SUITE_P(Rules, CorrectedPress, ::testing::Values(ContactRule::barycentric, ContactRule::patch),
                          [](const auto& info) { return std::string(word_of(info.param)); });
 

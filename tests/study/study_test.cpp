@@ -85,18 +85,25 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
     ADD_FAILURE() << value << " " << friction;
     return TouchRow{};
   };
+  // Bounds are one and a half times what is measured.
+  const auto by_patch = [](std::string_view rule) { return rule == "as it is"; };
   for (const char* rule : {"as it is", "alpha", "barycentric"}) {
     const TouchRow free = touch(rule, 0);
     EXPECT_GT(free.ripple, 1e-3);
-    EXPECT_LT(free.ripple, 0.2) << rule;
+    EXPECT_LT(free.ripple, by_patch(rule) ? 0.025 : 0.09) << rule;
     EXPECT_GT(free.spread, free.ripple) << rule;
-    EXPECT_LT(free.spread, 1) << rule;
+    EXPECT_LT(free.spread, by_patch(rule) ? 0.2 : 0.3) << rule;
   }
-  EXPECT_LT(touch("as it is", 0).jump, 0.01);
+  for (const double friction : {0.0, 0.3}) {
+    const TouchRow own = touch("as it is", friction);
+    EXPECT_LT(own.ripple, 0.045) << friction;
+    EXPECT_LT(own.jump, 0.0013) << friction;
+    EXPECT_LT(own.buzz, 4e-5) << friction;
+    EXPECT_EQ(own.turn, 0) << friction;
+  }
   const double dragged = std::hypot(1, 0.3) * touch("as it is", 0).mean_force_N;
   EXPECT_NEAR(touch("as it is", 0.3).mean_force_N, dragged, 0.03 * dragged)
       << "but for what shear does along the normal";
-  EXPECT_EQ(touch("as it is", 0.3).turn, 0);
   for (const Note& note : result.notes) EXPECT_EQ(note.text.find("slide"), std::string::npos) << note.text;
   double least = 1e300, most = 0;
   for (const SlideRow& r : result.slides) {
@@ -104,7 +111,7 @@ TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {
     most = std::max(most, r.reference_force_N);
   }
   EXPECT_LT(most, 1.3 * least);
-  EXPECT_NEAR(most, result.depths[2].reference_force_N, 0.3 * most);
+  EXPECT_NEAR(most, result.depths[2].reference_force_N, 0.01 * most) << "the slide passes through the first place";
 
   // Tensor-mass tissue comes to rest where the tensors are, and springs do not, once the ball has come to the
   // nodes.

@@ -45,7 +45,8 @@ std::vector<SlideTick> slide(PressRig& rig, const SurfacePath& path, double radi
     const Vector3d centre = centre_at(place, radius, depth);
     rig.press(centre);
     const Vector3d on_tool = -rig.force(), motion = (centre - before).normalized();
-    const Vector3d tangential = on_tool - on_tool.dot(place.inward) * place.inward;
+    const Vector3d& pressed = rig.haptic().press(0);
+    const Vector3d tangential = on_tool - on_tool.dot(pressed) * pressed;
     ticks.push_back({path.at(i), on_tool.norm(), tangential.dot(motion)});
     before = centre;
   }

@@ -13,7 +13,8 @@ inline constexpr double kSlideSpeed = 0.05;  ///< [m/s] at which slides are made
 struct SlideTick {
   double path;        ///< [m] of the tip over the surface; negative in the run-up
   double force;       ///< [N] its size
-  double tangential;  ///< [N] on the tool, within the surface and along the motion: negative holds the tool back
+  double tangential;  ///< [N] on the tool, along the motion, of what is not along its contacts' normals: negative
+                      ///< holds the tool back
 };
 
 /// Presses a rig's only tool, a ball, into the first place of a path at the slide's speed, lets it rest, and leads it

@@ -12,7 +12,7 @@
 namespace palpate::study {
 namespace {
 
-constexpr Fineness kMesh{0.8, 1 / 7.0, 0.4, 18500}, kQuickMesh{1, 1 / 5.0, 0.5, 10500};
+constexpr Fineness kMesh{0.9, 1 / 4.0, 0.45, 8000}, kQuickMesh{1.1, 1 / 3.0, 0.6, 4500};
 constexpr double kApart = 1 / 6.0;  // radii between two places of the converged solution
 
 }  // namespace
@@ -52,12 +52,14 @@ std::vector<double> SolidCase::solve_slide(std::span<const Patch> places, double
   std::vector<Eigen::Vector3d> centres;
   for (const Patch& at : places) centres.push_back(at.point);
   int strides = 0;
-  const LinearContact contact(refined(places, quick_ ? kQuickMesh : kMesh, strides), centres, reach(depth));
+  const LinearContact contact(refined(places, quick_ ? kQuickMesh : kMesh, strides), centres, reach(depth),
+                              FiniteElement::p2);
   std::vector<double> forces;
   for (const Patch& at : places)
     forces.push_back(contact.press({centre_at(at, presses().radius, depth), presses().radius}).force.norm());
-  say_(fmt::format("  linear reference along the slide, {} places: {} nodes, {} may touch the ball: {:.1f} s",
-                   places.size(), contact.problem().mesh.nodes.size(), contact.candidates(), seconds_since(begin)));
+  say_(fmt::format(
+      "  linear reference along the slide, {} places: {} nodes and those between, {} may touch the ball: {:.1f} s",
+      places.size(), contact.problem().mesh.nodes.size(), contact.candidates(), seconds_since(begin)));
   return forces;
 }
 

@@ -74,7 +74,7 @@ StaticProblem SolidCase::refined(std::span<const Patch> places, Fineness finenes
 // Everything that a reference's numbers depend on: the body at rest without what the run time adds to it, the press,
 // the mesh.
 std::string SolidCase::key(std::span<const Patch> places, const Fineness& fineness) const {
-  constexpr int definitions = 4;  // changes with every change of how references are solved
+  constexpr int definitions = 5;  // changes with every change of how references are solved
   const Body plain = as_kind<QuasiStaticSpec>(solid());
   std::string text = fmt::format("{} {}{} {} {} {}", definitions, content_hash(plain), second_mesh_, fineness.edge,
                                  fineness.ball, fineness.growth);

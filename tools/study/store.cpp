@@ -57,7 +57,7 @@ void Store::keep(const Point& point, const Result& result) const {
 }
 
 std::string study_key(const Scene& scene, bool quick) {
-  constexpr int definitions = 4;  // changes with every change of what the figures mean
+  constexpr int definitions = 5;  // changes with every change of what the figures mean
   std::string key =
       fmt::format("{} {} {} {}", PALPATE_VERSION, definitions, quick ? "quick" : "whole", scene_hash(scene));
   for (const Body& body : scene.bodies)

@@ -17,7 +17,7 @@ constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which 
 }  // namespace
 
 Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
-    : grid_(grid), kernel_(grid), near_field_(kMaxNodes), last_near_field_(kMaxNodes) {
+    : grid_(grid), max_nodes_(3 * grid.feet()), kernel_(grid), near_field_(max_nodes_), last_near_field_(max_nodes_) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
@@ -35,13 +35,14 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
   right_.assign(ld, 0.0);
   floor_.assign(ld, 0.0);
   rows_.reserve(points);
-  nodes_.reserve(kMaxNodes);
-  nodes_give_.assign(kMaxNodes * kMaxNodes, 0.0);
-  lifted_.reserve(kMaxNodes);
-  known_.reserve(kMaxNodes);
-  k_.assign(kMaxNodes * kMaxNodes, 0.0);
+  nodes_.reserve(max_nodes_);
+  nodes_give_.assign(max_nodes_ * max_nodes_, 0.0);
+  lifted_.reserve(max_nodes_);
+  known_.reserve(max_nodes_);
+  k_.assign(max_nodes_ * max_nodes_, 0.0);
   k_feet_.assign(grid.feet() * grid.feet(), 0.0);
-  foot_to_node_.assign(kMaxNodes * grid.feet(), 0.0);
+  foot_to_node_.assign(max_nodes_ * grid.feet(), 0.0);
+  forces_.resize(max_nodes_);
 }
 
 void Patch::lift() {
@@ -49,6 +50,7 @@ void Patch::lift() {
   loaded_ = 0;
   std::ranges::fill(active_, 0);
   bent_.setZero();
+  resumed_.setZero();
   force_.setZero();
   pressing_ = depth_ = 0;
   if (memory_) memory_->forget();
@@ -229,6 +231,7 @@ void Patch::settle_pressures() {
       if (moved < wanted_[p] - kTouchTolerance) active_[p] = 1, changed = true;
     }
   }
+  settled_ = !changed;
   for (double& f : pressure_force_) f = std::max(f, 0.0);
 }
 
@@ -310,7 +313,7 @@ Eigen::Matrix3d Patch::give() const {
     for (int v = 0; v < 3; ++v) share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p];
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    for (std::size_t j = 0; j < nodes_.size(); ++j) give -= share[i] * share[j] * nodes_give_[i * kMaxNodes + j];
+    for (std::size_t j = 0; j < nodes_.size(); ++j) give -= share[i] * share[j] * nodes_give_[i * max_nodes_ + j];
   Eigen::Matrix<double, 3, 2> plane;
   plane << across_, up_;
   return give / (pressing_ * pressing_) * normal_ * normal_.transpose() + plane * sheared_give_ * plane.transpose();
@@ -318,7 +321,7 @@ Eigen::Matrix3d Patch::give() const {
 
 bool Patch::fits(int nodes) const {
   const auto known = [&](int node) { return node >= 0 && node < nodes; };
-  return loaded_ >= 0 && loaded_ <= kMaxNodes && std::ranges::all_of(anchor_.nodes, known) &&
+  return loaded_ >= 0 && loaded_ <= max_nodes_ && std::ranges::all_of(anchor_.nodes, known) &&
          std::ranges::all_of(forces(), known, &PatchForce::node);
 }
 

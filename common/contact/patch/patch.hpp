@@ -48,11 +48,12 @@ struct TriangleCut {
 /// length, their place and their common normal follow the tool's pose without a jump.
 class Patch {
  public:
-  static constexpr int kMaxNodes = 64;  ///< near nodes that a patch may rest on
-  static constexpr int kMaxCells = 80;  ///< of any grid
+  static constexpr int kMaxCells = 80;             ///< of any grid
+  static constexpr int kMaxNodes = 3 * kMaxCells;  ///< that any patch may rest on
 
   /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
   explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
+  int max_nodes() const { return max_nodes_; }  ///< that it may rest on: three corners below each foot
 
   /// What the patch looks at; all outlive the patch.
   struct Ground {
@@ -99,6 +100,9 @@ class Patch {
   /// After lay(): the share of the last step's pressures whose cells have left the tissue, over a rim.
   double lost() const { return lost_; }
 
+  /// Whether the last pressures are the solution; else they are the last of a bounded number of tries.
+  bool settled() const { return settled_; }
+
   bool touches() const { return pressing_ > 0; }
   double pressing() const { return pressing_; }              ///< [N]
   const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
@@ -118,11 +122,12 @@ class Patch {
   static constexpr int kTurns = 6;  ///< at most, of the normal towards that of what lies below
 
   struct Foot {
-    std::array<int, 3> local{-1, -1, -1};  ///< of nodes_
+    int triangle = -1;           ///< that it stands on; -1: none
+    std::array<int, 3> local{};  ///< of nodes_, its corners
     Eigen::Vector3d weights;
     /// [m] Along the normal, of the rest surface below the patch's origin; infinite where there is none.
     double depth = 0;
-    bool stands() const { return local[0] >= 0; }  ///< on tissue, with all three corners
+    bool stands() const { return triangle >= 0; }
   };
   struct Cell {
     double gap = 0;    ///< [m] by which the part reaches below the rest surface here; -infinity where there is none
@@ -174,6 +179,8 @@ class Patch {
   void lay_squares();
   void stand_on_nearest(const Ground& ground, int foot);
   void lay_feet(const Ground& ground);
+  void stand_on(const SurfaceMap& map, Foot& foot);
+  void stand_on_triangles(const SurfaceMap& map);
   bool presses(const Ground& ground, int triangle) const;
   Eigen::Vector3d in_plane(const Eigen::Vector3d& p) const;
   Eigen::Vector2d foot_middle(int foot) const;
@@ -200,6 +207,7 @@ class Patch {
   void add_slip(const Eigen::Vector3d& bent_before);
 
   const PatchGrid& grid_;
+  const int max_nodes_;
   Eigen::Vector3d normal_, across_, up_, at_, force_, travel_;
   Eigen::Vector3d laid_at_ = Eigen::Vector3d::Zero();       ///< [m] the sphere's middle, the segment's start, at lay()
   Eigen::Isometry3d back_ = Eigen::Isometry3d::Identity();  ///< the tool's motion within the step, backwards
@@ -213,6 +221,7 @@ class Patch {
   Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
   std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
   std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
+  bool settled_ = true;
   double pressing_ = 0, depth_ = 0;
   double lost_ = 0;
   std::span<int> near_;  ///< triangles, of lay() alone
@@ -231,9 +240,9 @@ class Patch {
   std::vector<int> known_;                  ///< nodes that near_field_ is of
   NodeBlocks near_field_;                   ///< K between nodes_
   NodeBlocks last_near_field_;              ///< between the nodes of before
-  std::vector<double> k_;                   ///< [m/N] K along the normal, kMaxNodes a row
+  std::vector<double> k_;                   ///< [m/N] K along the normal, max_nodes_ a row
   std::array<double, kMaxNodes> at_nodes_;  ///< [m/N] along the normal, of a force on one foot
-  std::array<PatchForce, kMaxNodes> forces_;
+  std::vector<PatchForce> forces_;
   int loaded_ = 0;                    ///< how many of them
   std::vector<double> k_feet_;        ///< [m/N] K between feet, along the normal
   std::vector<double> foot_to_node_;  ///< [m/N] likewise from a foot to a node: one entry a foot, row by row of nodes

@@ -54,9 +54,9 @@ void Patch::fill_normal() {
 void Patch::fill_feet() {
   const int count = static_cast<int>(nodes_.size()), feet = grid_.feet();
   for (int j = 0; j < count; ++j) {
-    double* const row = &k_[j * kMaxNodes];
+    double* const row = &k_[j * max_nodes_];
     near_field_.along(normal_, j, j, count, row + j);
-    for (int i = j + 1; i < count; ++i) k_[i * kMaxNodes + j] = row[i];
+    for (int i = j + 1; i < count; ++i) k_[i * max_nodes_ + j] = row[i];
   }
   for (int a = 0; a < feet; ++a) {
     if (!feet_[a].stands()) continue;
@@ -133,7 +133,7 @@ void Patch::raise_eigenvalues() {
 void Patch::add_nodes_give(std::span<const NodeGive> give) {
   std::ranges::fill(nodes_give_, 0.0);
   for (const auto& [i, j, block] : give)
-    nodes_give_[i * kMaxNodes + j] = nodes_give_[j * kMaxNodes + i] = normal_.dot(block * normal_);
+    nodes_give_[i * max_nodes_ + j] = nodes_give_[j * max_nodes_ + i] = normal_.dot(block * normal_);
   const int n = grid_.size();
   for (const int p : rows_) {
     fill_at_foot(foot(p), nodes_give_);
@@ -148,8 +148,8 @@ void Patch::add_nodes_give(std::span<const NodeGive> give) {
 
 // What a force on a foot does to each node, by what it does from node to node.
 void Patch::fill_at_foot(const Foot& f, const std::vector<double>& between_nodes) {
-  const double* const row[] = {&between_nodes[f.local[0] * kMaxNodes], &between_nodes[f.local[1] * kMaxNodes],
-                               &between_nodes[f.local[2] * kMaxNodes]};
+  const double* const row[] = {&between_nodes[f.local[0] * max_nodes_], &between_nodes[f.local[1] * max_nodes_],
+                               &between_nodes[f.local[2] * max_nodes_]};
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     at_nodes_[i] = f.weights[0] * row[0][i] + f.weights[1] * row[1][i] + f.weights[2] * row[2][i];
 }

@@ -29,7 +29,6 @@ Vector3d across_of(const Eigen::Isometry3d& tool, const Vector3d& normal) {
 int Patch::local(int node) {
   const auto found = std::ranges::find(nodes_, node);
   if (found != nodes_.end()) return static_cast<int>(found - nodes_.begin());
-  if (static_cast<int>(nodes_.size()) == kMaxNodes) return -1;
   nodes_.push_back(node);
   return static_cast<int>(nodes_.size()) - 1;
 }
@@ -132,7 +131,6 @@ void Patch::lay_feet(const Ground& ground) {
     const Vector2d high = flat[0].cwiseMax(flat[1]).cwiseMax(flat[2]).head<2>().array() + kOnEdge * grid_.radius();
     const Vector2d e1 = (flat[1] - flat[0]).head<2>(), e2 = (flat[2] - flat[0]).head<2>();
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
-    std::array<int, 3> corners{-2, -2, -2};
     for (int column = 0; column < grid_.columns(); ++column) {
       const int first = grid_.first_foot(column), last = grid_.first_foot(column + 1) - 1;
       if (foot_middle_[first].x() < low.x()) continue;
@@ -146,11 +144,26 @@ void Patch::lay_feet(const Ground& ground) {
         const Vector3d w(1 - w1 - w2, w1, w2);
         const double depth = w[0] * flat[0].z() + w[1] * flat[1].z() + w[2] * flat[2].z();
         if (depth >= feet_[i].depth) continue;
-        for (int v = 0; v < 3 && corners[v] == -2; ++v) corners[v] = local(surface.map().triangles[t][v]);
-        if (std::ranges::min(corners) >= 0) feet_[i] = {corners, w, depth};
+        feet_[i] = {.triangle = t, .weights = w, .depth = depth};
       }
     }
   }
+  stand_on_triangles(surface.map());
+}
+
+void Patch::stand_on(const SurfaceMap& map, Foot& foot) {
+  for (int v = 0; v < 3; ++v) foot.local[v] = local(map.triangles[foot.triangle][v]);
+}
+
+// Nodes come in the order of the triangles' numbers.
+void Patch::stand_on_triangles(const SurfaceMap& map) {
+  std::array<int, kMaxCells> order;
+  int standing = 0;
+  for (int i = 0; i < grid_.feet(); ++i)
+    if (feet_[i].stands()) order[standing++] = i;
+  std::sort(order.begin(), order.begin() + standing,
+            [&](int a, int b) { return feet_[a].triangle < feet_[b].triangle; });
+  for (const int i : std::span(order).first(standing)) stand_on(map, feet_[i]);
 }
 
 bool Patch::presses(const Ground& ground, int t) const {

@@ -252,9 +252,8 @@ void Patch::stand_on_nearest(const Ground& ground, int foot) {
   const Vector3d under = laid_at_ + x * across_ + foot_middle_[foot].y() * up_ +
                          (flank_.slope * x + grid_.radius() * flank_.steep) * normal_;
   const TrianglePoint nearest = nearest_point(ground.surface, under, near_);
-  std::array<int, 3> corners;
-  for (int v = 0; v < 3; ++v) corners[v] = local(ground.surface.map().triangles[nearest.triangle][v]);
-  if (std::ranges::min(corners) >= 0) feet_[foot] = {corners, nearest.weights, 0};
+  feet_[foot] = {.triangle = nearest.triangle, .weights = nearest.weights};
+  stand_on(ground.surface.map(), feet_[foot]);
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/contact/patch/fewer_forces.hpp"
 #include "common/contact/patch/patch_parts.hpp"
 
 namespace palpate {
@@ -23,6 +24,7 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
   double largest = 0;
   for (const PatchPart& part : patch_parts(settings.tools, !creep)) {
     parts_.push_back({part.tool, part.part, Patch(grids_.of(part.radius, part.length), creep)});
+    parts_.back().forces.reserve(Patch::kMaxNodes);
     largest = std::max(largest, part.radius);
   }
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
@@ -31,13 +33,13 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
 
 void PatchTouch::for_each_force(const VisitForce& visit) const {
   for (const Part& p : parts_)
-    for (const PatchForce& f : p.patch.forces()) visit(p.tool, f.node, f.force);
+    for (const PatchForce& f : p.forces) visit(p.tool, f.node, f.force);
 }
 
 Vector3d PatchTouch::displacement(int node) const {
   Vector3d sum = Vector3d::Zero();
   for (const Part& p : parts_)
-    for (const PatchForce& f : p.patch.forces()) sum += moved_by(compliance_, node, f.node, f.force);
+    for (const PatchForce& f : p.forces) sum += moved_by(compliance_, node, f.node, f.force);
   return sum;
 }
 
@@ -46,25 +48,32 @@ void PatchTouch::add_displacement(int from, const Vector3d& force, std::span<con
 }
 
 // One patch after another, each against the others' newest forces.
-void PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) {
-  const Past& past = beside.past;
-  const Patch::Ground ground{surface_, *near_field_, friction_};
+bool PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) {
+  bool settled = true;
   for (Part& own : parts_) {
-    if (beside.holds(own.tool)) {
+    std::span<const int> nodes;
+    if (beside.holds(own.tool))
       own.patch.lift();
-      continue;
-    }
-    const MovingTool& tool = tools[own.tool];
-    const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
-    if (nodes.empty()) continue;
-    moved_.assign(nodes.size(), Vector3d::Zero());
-    if (past) past(nodes, {moved_.data()->data(), 3 * nodes.size()});
-    beside.others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
-    meet_others(own, nodes, static_cast<bool>(past));
-    own.patch.press(ground, moved_);
-    own.offset = tool.to_part(own.part, own.patch.at());
-    if (past) remember(own, nodes);
+    else
+      nodes = press(own, tools[own.tool], beside);
+    load_body(own);
+    if (beside.past && !nodes.empty()) remember(own, nodes);
+    settled &= nodes.empty() || own.patch.settled();
   }
+  return settled;
+}
+
+std::span<const int> PatchTouch::press(Part& own, const MovingTool& tool, const Beside& beside) {
+  const Patch::Ground ground{surface_, *near_field_, friction_};
+  const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
+  if (nodes.empty()) return nodes;
+  moved_.assign(nodes.size(), Vector3d::Zero());
+  if (beside.past) beside.past(nodes, {moved_.data()->data(), 3 * nodes.size()});
+  beside.others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
+  meet_others(own, nodes, static_cast<bool>(beside.past));
+  own.patch.press(ground, moved_);
+  own.offset = tool.to_part(own.part, own.patch.at());
+  return nodes;
 }
 
 // A patch lies in the other's dent, which the mesh is too coarse to show. Of tissue that relaxes the past knows the
@@ -73,7 +82,7 @@ void PatchTouch::meet_others(Part& own, std::span<const int> nodes, bool relaxes
   for (const Part& other : parts_) {
     if (&other == &own || !other.patch.touches()) continue;
     if (!relaxes) own.patch.lie_beside(other.patch);
-    for (const PatchForce& f : other.patch.forces()) {
+    for (const PatchForce& f : other.forces) {
       if (relaxes) {
         add_displacement(f.node, f.force, nodes);
         continue;
@@ -83,9 +92,14 @@ void PatchTouch::meet_others(Part& own, std::span<const int> nodes, bool relaxes
   }
 }
 
+void PatchTouch::load_body(Part& part) {
+  part.forces.assign(part.patch.forces().begin(), part.patch.forces().end());
+  hand_to_fewer(kMaxForces, surface_.map().position, part.forces);
+}
+
 void PatchTouch::remember(Part& part, std::span<const int> nodes) {
   moved_.assign(nodes.size(), Vector3d::Zero());
-  for (const PatchForce& f : part.patch.forces()) add_displacement(f.node, f.force, nodes);
+  for (const PatchForce& f : part.forces) add_displacement(f.node, f.force, nodes);
   part.patch.remember(moved_);
 }
 
@@ -132,6 +146,7 @@ void PatchTouch::state(State& s) {
     p.patch.state(s);
     s.value(p.offset);
     s.require(p.patch.fits(surface_.map().size()), "the state holds a patch that this body cannot have");
+    if (s.restoring()) load_body(p);
   }
 }
 

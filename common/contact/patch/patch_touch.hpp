@@ -12,6 +12,10 @@ namespace palpate {
 /// relax. Nothing is allocated after construction.
 class PatchTouch {
  public:
+  /// On so many nodes the body feels a patch: on more of them it presses where triangles are finer than a fifth of the
+  /// part's radius, and what the outermost carry the next ones take over. The patch itself knows all of its nodes.
+  static constexpr int kMaxForces = 64;
+
   /// `map` and `compliance` outlive this object; `half_space`: the material at the surface; `resolved`: see
   /// NearField. `creep`: of tissue that
   /// relaxes; compliance and material are softer by its instant() then.
@@ -36,8 +40,8 @@ class PatchTouch {
     std::function<bool(int tool)> holds;            ///< jaws of the tool hold it: then they touch, and no patch does
     Past past = {};                                 ///< of tissue that relaxes
   };
-  /// Solves for the forces of one step.
-  void touch(std::span<const MovingTool> tools, const Beside& beside);
+  /// Solves for the forces of one step. False if pressures of a patch did not settle: what it gives then is bounded.
+  bool touch(std::span<const MovingTool> tools, const Beside& beside);
   /// Sum over a tool's patches of their pressures' forces [N] on the tissue, without shear.
   Eigen::Vector3d pressing(int tool) const;
   /// Adds what they do to the tools.
@@ -54,9 +58,12 @@ class PatchTouch {
   struct Part {
     int tool, part;
     Patch patch;
+    std::vector<PatchForce> forces;  ///< on the body
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   };
 
+  std::span<const int> press(Part& own, const MovingTool& tool, const Beside& beside);
+  void load_body(Part& part);
   void add_displacement(int from, const Eigen::Vector3d& force, std::span<const int> nodes);
   void meet_others(Part& own, std::span<const int> nodes, bool relaxes);
   void remember(Part& part, std::span<const int> nodes);

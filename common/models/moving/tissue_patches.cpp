@@ -78,11 +78,11 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
                       .above = (part.length > 0 ? kSegmentAbove : kAbove) * part.radius});
     largest = std::max(largest, part.radius);
   }
-  constexpr int pairs = Patch::kMaxNodes * (Patch::kMaxNodes + 1) / 2;
   for (Part& own : parts_) {
-    for (std::vector<int>* nodes : {&own.nodes, &own.known}) nodes->reserve(Patch::kMaxNodes);
-    for (std::vector<NodeGive>* give : {&own.world_give, &own.give}) give->reserve(still ? pairs : Patch::kMaxNodes);
-    for (std::vector<Vector3d>* of_nodes : {&own.last, &own.beside}) of_nodes->reserve(Patch::kMaxNodes);
+    const int most = own.patch.max_nodes(), pairs = most * (most + 1) / 2;
+    for (std::vector<int>* nodes : {&own.nodes, &own.known}) nodes->reserve(most);
+    for (std::vector<NodeGive>* give : {&own.world_give, &own.give}) give->reserve(still ? pairs : most);
+    for (std::vector<Vector3d>* of_nodes : {&own.last, &own.beside}) of_nodes->reserve(most);
   }
   moved_.reserve(Patch::kMaxNodes);
   went_.reserve(Patch::kMaxNodes);

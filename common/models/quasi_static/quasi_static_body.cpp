@@ -42,7 +42,7 @@ QuasiStaticBody::QuasiStaticBody(const Archive& archive, const QuasiStaticSpec& 
   if (body.relaxation)
     settling_ = static_cast<int>(std::min(kMaxSettling, kTimesSettling * body.relaxation->times.back()) / settings.dt);
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
-  const std::size_t by_patches = patch_ ? Patch::kMaxNodes * parts_of(settings.tools) : 0;
+  const std::size_t by_patches = patch_ ? PatchTouch::kMaxForces * parts_of(settings.tools) : 0;
   if (creep) memory_ = std::make_unique<ForceMemory>(*creep, compliance(), 3 * kMaxContacts + by_patches);
   const std::size_t forces = std::max(9 * kMaxContacts + by_patches, memory_ ? memory_->max_loads() : 0);
   sum_.emplace(compliance(), forces);
@@ -126,14 +126,16 @@ void QuasiStaticBody::recall_ahead(std::span<const int> nodes, std::span<double>
 // The patches first, against what the other contacts did in the last step; then those, on the tissue as the patches and
 // the past leave it.
 LawOutcome QuasiStaticBody::hold(std::span<const MovingTool> tools) {
+  bool settled = true;
   if (patch_) {
     PatchTouch::Beside beside{.others = [this](const VisitForce& visit) { TouchBody::for_each_force(visit); },
                               .holds = [this](int tool) { return law().grasps(tool); }};
     if (memory_) beside.past = [this](std::span<const int> nodes, std::span<double> u) { recall_ahead(nodes, u); };
-    patch_->touch(tools, beside);
+    settled = patch_->touch(tools, beside);
   }
   if (patch_ || memory_) lay_ground();
-  const LawOutcome outcome = TouchBody::hold(tools);
+  LawOutcome outcome = TouchBody::hold(tools);
+  if (!settled) ++outcome.raised;
   if (memory_) remember();
   return outcome;
 }
@@ -173,7 +175,7 @@ BodyPart::Capacity QuasiStaticBody::capacity() const {
   Capacity most = TouchBody::capacity();
   if (!patch_) return most;
   most.contacts += patch_->parts();
-  most.forces += Patch::kMaxNodes * patch_->parts();
+  most.forces += PatchTouch::kMaxForces * patch_->parts();
   return most;
 }
 

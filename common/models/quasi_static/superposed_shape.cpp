@@ -29,7 +29,9 @@ Eigen::Vector3d press_direction(const ContactState& contacts, std::uint32_t body
 SuperposedShape::SuperposedShape(const QuasiStaticSpec& body, const Archive& archive, const StepSettings& settings)
     : BodyShape(archive.surface), sum_(archive) {
   if (body.nonlinear) nonlinear_ = make_nonlinear(body, archive);
-  if (settings.contact.rule == ContactRule::patch && !patch_parts(settings.tools, false).empty())
+  if (settings.contact.rule != ContactRule::patch) return;
+  patches_ = patch_parts(settings.tools, true);
+  if (!patch_parts(settings.tools, false).empty())
     fine_ = std::make_unique<FineDents>(map(), archive, HalfSpace{archive.young[0], archive.poisson[0]}, settings.tools,
                                         edges_resolved(offline_of(body, map().size())));
 }
@@ -64,8 +66,9 @@ void SuperposedShape::correct(const ContactsOnBody& contacts, std::vector<Eigen:
   }
   held_.clear();
   for (const auto& [tool, state] : contacts.of_tool)
-    for (const NodalForce& f : state.forces)
-      if (f.body == contacts.body) held_.push_back(static_cast<int>(f.node));
+    for (const HeldContact& c : state.contacts)
+      for (int v = 0; v < 3 && c.body == contacts.body && !by_patch(state, c); ++v)
+        if (c.weights[v] != 0) held_.push_back(static_cast<int>(c.nodes[v]));
   keep_held<float>(held_, flat(linear_), flat(total));
 }
 
@@ -80,6 +83,12 @@ SuperposedShape::Press SuperposedShape::press_of(const ContactState& tool, std::
   }
   const Eigen::Vector3d direction = press_direction(tool, body);
   return {nonlinear_->at(place.mean()), direction, std::abs(sum.dot(direction))};
+}
+
+bool SuperposedShape::by_patch(const ContactState& tool, const HeldContact& contact) const {
+  return std::ranges::any_of(patches_, [&](const PatchPart& part) {
+    return part.tool == static_cast<int>(tool.tool) && part.part == static_cast<int>(contact.sample);
+  });
 }
 
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive,

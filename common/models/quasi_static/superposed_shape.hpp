@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/contact/patch/patch_parts.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/models/body_shape.hpp"
 #include "common/models/quasi_static/column_sum.hpp"
@@ -32,10 +33,12 @@ class SuperposedShape : public BodyShape {
     double force;  ///< [N] linear, along it
   };
   Press press_of(const ContactState& tool, std::uint32_t body) const;
+  bool by_patch(const ContactState& tool, const HeldContact& contact) const;
 
   ColumnSum sum_;
   std::optional<BodyNonlinear> nonlinear_;
   std::unique_ptr<FineDents> fine_;  ///< null: no tip presses by a patch
+  std::vector<PatchPart> patches_;   ///< parts of tools that press by patches, and hold no node
   std::vector<int> held_;
   std::vector<Eigen::Vector3f> linear_;  ///< sum of the linear displacements, for the nodes that are held
   std::vector<Eigen::Vector3f> of_tool_;
