@@ -45,7 +45,7 @@ MovingPress drawn(std::mt19937& random) {
   const double size = between(Tried::kMinCell, Tried::kMaxCell);
   p.cell = {size, size, size * one_of(std::array{1.0, 1.0, 0.3, 0.1})};
   p.young = between(Tried::kMinYoung, Tried::kMaxYoung);
-  p.poisson = one_of(std::array{0.0, 0.3, 0.45});
+  p.poisson = one_of(std::array{0.0, 0.3, Tried::kMaxPoisson});
   p.density = one_of(std::array{300.0, 1000.0, 3000.0});
   p.damping = one_of(std::array{5.0, 60.0});
   p.integrator = one_of(std::array{Integrator::rk4, Integrator::semi_implicit});
