@@ -8,11 +8,11 @@ namespace palpate {
 namespace {
 
 // What is not a patch's rests on points, under each of which the tissue gives way as under a patch of one square.
-ToolContacts::Options beside_patches(const TissuePatches* patches, const ContactLaw& law) {
+ToolContacts::Options beside_patches(const TissuePatches* patches, const std::function<bool(int tool)>& grasps) {
   ToolContacts::Options options;
   if (!patches) return options;
-  options.elsewhere = [patches, &law](int tool, int part, int facet) {
-    return patches->has(tool, part) && patches->covers(facet) && !law.grasps(tool);
+  options.elsewhere = [patches, grasps](int tool, int part, int facet) {
+    return patches->has(tool, part) && patches->covers(facet) && !grasps(tool);
   };
   options.face_give = [patches](double radius) { return patches->give_of_point(radius); };
   return options;
@@ -40,7 +40,8 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
           settings.contact.rule == ContactRule::patch
               ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
               : nullptr),
-      contacts_(surface, law_, parts_of(settings.tools), beside_patches(patches_.get(), law_)),
+      contacts_(surface, law_, parts_of(settings.tools),
+                beside_patches(patches_.get(), [this](int tool) { return grasping(tool); })),
       fading_ticks_(fading_ticks(settings.dt)) {
   aimed_.reserve(kMaxContacts);
   const std::size_t leavers = kMaxContacts + 2 * settings.tools.size() * fading_ticks_;  // a tip's and a shaft's a tick
@@ -57,7 +58,7 @@ std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools,
   loose_.clear();
   if (patches_)
     patches_->find(
-        tools, [this](int tool) { return law_.grasps(tool); }, loose());
+        tools, [this](int tool) { return grasping(tool); }, loose());
   return loose_;
 }
 
@@ -76,7 +77,7 @@ void TissueTouch::gather() {
 }
 
 bool TissueTouch::grasping(int tool) const {
-  return law_.grasps(tool);
+  return law_.grasps(tool) || (still_ && still_->grasping(tool));
 }
 
 std::span<const JawHold> TissueTouch::held(std::span<const MovingTool> tools) {

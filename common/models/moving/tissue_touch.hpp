@@ -40,6 +40,7 @@ class TissueTouch {
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
+  /// Whether its jaws hold something of the body, of either part of a hybrid.
   bool grasping(int tool) const;
   /// What jaws hold. `tools`: as they are at the beginning and end of a step. Valid until the next call.
   std::span<const JawHold> held(std::span<const MovingTool> tools);
