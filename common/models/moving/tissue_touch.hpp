@@ -93,6 +93,7 @@ class TissueTouch {
   std::vector<TouchContact> all_;
   std::vector<JawHold> holds_;
   int fading_ticks_;
+  std::size_t max_leavers_;
   std::vector<Leaver> leavers_;
   std::vector<PatchForce> loose_;  ///< [N] of the last cut or find()
   double dt_ = 0;                  ///< [s] of the step that the response is for
