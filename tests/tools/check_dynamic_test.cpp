@@ -164,7 +164,7 @@ class ToolsCheckContact : public ToolsCheckDynamic {
       replaced(replaced(scene_, "hybrid = { region = [{ group = \"lower\" }] }", ""), "\"hybrid\"", "\"tensor_mass\"");
   const std::string tried_ =
       "  stable contact of tips: tried from 100 to 1e+08 Pa, Poisson's ratio up to 0.45, edges of 0.04 to 50 mm, tips "
-      "of 0.2 to 4 edges";
+      "of 0.2 to 4 edges, 0.3 radii deep";
 };
 
 TEST_F(ToolsCheckContact, BeyondWhatWasTriedIsPointedOut) {

@@ -52,7 +52,7 @@ MovingPress drawn(std::mt19937& random) {
   p.precision = one_of(std::array{Precision::float32, Precision::float64});
   p.radius = size * between(Tried::kMinRadius, Tried::kMaxRadius);
   p.cells = cells_under(p.radius, size);
-  p.depth = std::min(0.3 * p.radius, 0.2 * p.cells.z() * p.cell.z());
+  p.depth = std::min(Tried::kMaxDepth * p.radius, 0.2 * p.cells.z() * p.cell.z());
   p.beside = {share() - 0.5, share() - 0.5};
   p.friction = one_of(std::array{0.0, 0.05, 0.3, Tried::kMaxFriction});
   p.gesture = one_of(std::array{"held", "tapped", "slid", "stabbed"});
