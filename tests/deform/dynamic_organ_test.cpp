@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
 
 #include "common/fem/direct.hpp"
@@ -129,6 +130,39 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
     move(second, i);
     ASSERT_EQ(first.world().hash(), second.world().hash()) << "tick " << i;
   }
+}
+
+// Counts of ticks go down by one in a tick.
+TEST(DynamicOrgan, AStateWhoseForcesFadeForLongerThanTheyDoIsRefused) {
+  Scene scene = block_scene();
+  std::get<ProbeSpec>(scene.tools[0].end).cautery = Cautery{0.0065};
+  Bench bench(scene, middle_block_mesh(6));
+  const double low = kTop + kRadius - 0.003;
+  for (int i = 0; i < 300; ++i) bench.tick(from_above(i, 250, kTop + kRadius + 0.001, low));
+  bench.tick(low, 0, true);
+  ASSERT_FALSE(bench.organ().removed().empty());
+  int counts = 0;
+  for (int i = 0; i < 15; ++i) {
+    std::vector<std::uint8_t> now = bench.world().save();
+    bench.tick(low + 0.02);
+    const std::vector<std::uint8_t> next = bench.world().save();
+    if (next.size() != now.size()) continue;
+    for (std::size_t at = 0; at + sizeof(int) <= now.size(); ++at) {
+      int left, later;
+      std::memcpy(&left, &now[at], sizeof left);
+      std::memcpy(&later, &next[at], sizeof later);
+      if (left < 2 || left > 20 || later != left - 1) continue;
+      ++counts;
+      for (const int wrong : {0, 21}) {
+        std::memcpy(&now[at], &wrong, sizeof wrong);
+        Bench other(bench);
+        EXPECT_THROW(other.world().restore(now), std::runtime_error) << wrong << " ticks at byte " << at;
+      }
+      std::memcpy(&now[at], &left, sizeof left);
+    }
+    if (counts > 0) break;
+  }
+  EXPECT_GT(counts, 1) << "of nodes and of the tool";
 }
 
 TEST(DynamicOrgan, AStateOfAnotherSceneIsRefused) {

@@ -59,6 +59,22 @@ TEST(HybridPatch, IsAtRestThePatchOnTissueWithoutInertia) {
   }
 }
 
+TEST(HybridPatch, IsLiftedWhileJawsHoldThePartWithoutInertia) {
+  Scene scene = hybrid_scene(0.2);
+  std::get<ProbeSpec>(scene.tools[0].end).jaws = ClosingJaws{0.012, 0.012, 0.1};
+  PressRig rig = rig_of(scene);
+  const auto press = [&](double depth, double grip) {
+    ToolDofs dofs = tip_at(scene.tools[0], tip(-0.012, depth));
+    dofs.grip = grip;
+    rig.press(std::array{dofs});
+  };
+  for (int i = 0; i < 300; ++i) press(-0.0005 + 0.0015 * smooth(i / 200.0), 0.6);
+  ASSERT_FALSE(rig.organ().contacts().empty()) << "the patch";
+  for (int i = 0; i < 100; ++i) press(0.001, 0.05);
+  ASSERT_TRUE(rig.organ().still_part()->grasping(0));
+  EXPECT_TRUE(rig.organ().contacts().empty());
+}
+
 class HybridPatchSlides : public ::testing::TestWithParam<double> {};
 
 TEST_P(HybridPatchSlides, AHeldToolDoesNotChatter) {

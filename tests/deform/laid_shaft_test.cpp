@@ -38,6 +38,18 @@ Vector3d laid_tip(double aside, double depth) {
   return {0.06, 0.0013 + aside, kSurface + kShaftRadius - depth};
 }
 
+constexpr double kLayer = 0.01;  // [m]
+
+/// The uppermost layer of cells has been cut away: what lies bare is touched by points.
+bool begin_without_top(PressRig& rig) {
+  const ElasticMesh& mesh = rig.organ().mesh();
+  std::vector<std::uint32_t> layer;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    if (std::ranges::all_of(mesh.tetrahedra[t], [&](int n) { return mesh.rest[n].z() > kSurface - kLayer - 1e-6; }))
+      layer.push_back(static_cast<std::uint32_t>(t));
+  return rig.tissue().organ(0).begin_without(layer);
+}
+
 void lay_down(PressRig& rig, double aside, int ticks = 600) {
   for (int i = 0; i < ticks; ++i) rig.press(laid_tip(aside, -0.001 + (kLaid + 0.001) * std::min(1.0, i / 300.0)));
 }
@@ -147,15 +159,10 @@ TEST_P(LaidShaftSlides, HasNoJumpFromTriangleToTriangle) {
 // way stays bent as the point slides. Where it went straight again in each step that slid, the shaft stuck and slipped
 // by turns.
 TEST_P(LaidShaftSlides, FrictionStaysAsItSlidesOverACutFace) {
-  const double friction = GetParam(), floor = kSurface - 0.01;
+  const double friction = GetParam();
   PressRig rig = laid_rig(laid_scene(friction));
-  const ElasticMesh& mesh = rig.organ().mesh();
-  std::vector<std::uint32_t> layer;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    if (std::ranges::all_of(mesh.tetrahedra[t], [&](int n) { return mesh.rest[n].z() > floor - 1e-6; }))
-      layer.push_back(static_cast<std::uint32_t>(t));
-  ASSERT_TRUE(rig.tissue().organ(0).begin_without(layer));
-  const Vector3d lower(0, 0, -0.01);
+  ASSERT_TRUE(begin_without_top(rig));
+  const Vector3d lower(0, 0, -kLayer);
   for (int i = 0; i < 1500; ++i) rig.press(lower + laid_tip(0, testing::from_above(i, 1200, -0.02, kLaid)));
   ASSERT_GT(rig.force().norm(), 0.1);
   double least = 1, jump = 0;
@@ -170,14 +177,32 @@ TEST_P(LaidShaftSlides, FrictionStaysAsItSlidesOverACutFace) {
   EXPECT_LT(jump, 0.005);
 }
 
-// Laid down, drawn aside and lifted, over and over: what the tool gets back is never more than what it has put in.
+// Laid down, drawn aside and lifted, over and over.
+testing::WorkOfCycles work_of_laying(PressRig& rig, double lower) {
+  const auto tip = [=](double turn) -> Vector3d {
+    return laid_tip(-0.01 * std::cos(turn), 0.0005 - 0.0015 * std::cos(turn) + 0.001 * std::sin(turn)) -
+           lower * Vector3d::UnitZ();
+  };
+  return testing::work_of_cycles(rig, tip(0), tip);
+}
+
+// What the tool gets back is never more than what it has put in.
 TEST_P(LaidShaftSlides, ContactNeverPutsOutWork) {
   PressRig rig = laid_rig(laid_scene(GetParam()));
-  const testing::WorkOfCycles work = testing::work_of_cycles(rig, laid_tip(-0.01, -0.001), [](double turn) {
-    return laid_tip(-0.01 * std::cos(turn), 0.0005 - 0.0015 * std::cos(turn) + 0.001 * std::sin(turn));
-  });
+  const testing::WorkOfCycles work = work_of_laying(rig, 0);
   EXPECT_GT(work.most, 1e-5);
   EXPECT_GT(work.least, -1e-3 * work.most);
+}
+
+// Points do put out work, as they leave triangles without friction.
+TEST_P(LaidShaftSlides, PointsOverACutFacePutOutWorkOnlyWithoutFriction) {
+  PressRig rig = laid_rig(laid_scene(GetParam()));
+  ASSERT_TRUE(begin_without_top(rig));
+  for (int i = 0; i < 300; ++i)
+    rig.press(laid_tip(-0.01, testing::from_above(i, 200, -0.02, -0.001)) - kLayer * Vector3d::UnitZ());
+  const testing::WorkOfCycles work = work_of_laying(rig, kLayer);
+  EXPECT_GT(work.most, 1e-5);
+  EXPECT_GT(work.least, (GetParam() == 0 ? -0.6 : -1e-3) * work.most) << work.least / work.most;
 }
 
 INSTANTIATE_TEST_SUITE_P(Friction, LaidShaftSlides, ::testing::Values(0, 0.1, 0.2));

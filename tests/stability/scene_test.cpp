@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 
 #include "common/mesh/generators.hpp"
@@ -81,6 +82,21 @@ TEST_F(StabilityOfAScene, ItsMovingTissueGivesTheSameRowEachTime) {
     EXPECT_EQ(row.energy_growth, again.at(value).energy_growth) << row.parameter;
     EXPECT_EQ(row.note, again.at(value).note) << row.parameter;
   }
+}
+
+/// The scene as it is, with a change.
+Row as_it_is(Scene scene, const std::function<void(TensorMassSpec&)>& change) {
+  change(std::get<TensorMassSpec>(scene.bodies[0]));
+  return run_guarded(scene_points(scene, {.quick = true}).front());
+}
+
+TEST_F(StabilityOfAScene, MovingTissueThatIsFlungHasFailedThoughTheHandIsAtRest) {
+  const Scene block = scene("tensor_mass");
+  const Row row = as_it_is(block, [](TensorMassSpec& body) { body.dynamic.gravity = {0, 0, -2000}; });
+  EXPECT_EQ(row.outcome, "failed");
+  EXPECT_NE(row.note.find("tissue of 'block': reach over the diagonal"), std::string::npos) << row.note;
+  const Row light = as_it_is(block, [](TensorMassSpec& body) { body.dynamic.gravity = {0, 0, -2}; });
+  EXPECT_EQ(light.outcome, "stable") << light.note;
 }
 
 TEST_F(StabilityOfAScene, RowsHoldForItsMotionItsMeshAndHowMuchIsRun) {

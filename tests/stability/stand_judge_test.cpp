@@ -12,17 +12,19 @@ namespace {
 
 struct Standing {
   double offset = 0, chatter = 0, alternation = 0, gained = 0, reach = 0.001;
+  Eigen::Vector3d along = Eigen::Vector3d::UnitZ();  ///< the chatter and what turns round
 };
 
 /// A press to 2 N that is done with half a joule of work, and a second of standing.
 Result judged(const Standing& s) {
   StandJudge judge;
-  for (int i = 0; i < 100; ++i) judge.look(0.02 * i, 0.005, 0.005 * (i + 1), s.reach);
+  const Eigen::Vector3d press = Eigen::Vector3d::UnitZ();
+  for (int i = 0; i < 100; ++i) judge.look(0.02 * i * press, 0.005, 0.005 * (i + 1), s.reach);
   for (int i = 0; i < 1000; ++i) {
     const double swing = s.chatter * std::sqrt(2) * std::sin(0.1 * i) + s.alternation * (i % 2 ? 1 : -1);
-    judge.look(2 * (1 + s.offset + swing), 0, 0.5 * (1 + s.gained), s.reach);
+    judge.look(2 * ((1 + s.offset) * press + swing * s.along), 0, 0.5 * (1 + s.gained), s.reach);
   }
-  return judge.result(2, 0.1);
+  return judge.result(2, press, 0.1);
 }
 
 TEST(StandJudge, IsContentWithTissueThatStands) {
@@ -33,15 +35,18 @@ TEST(StandJudge, IsContentWithTissueThatStands) {
 }
 
 TEST(StandJudge, NamesTheBoundThatIsMissed) {
-  const std::pair<Standing, const char*> faults[] = {{{.offset = 0.03}, "off the static answer"},
-                                                     {{.offset = -0.03}, "off the static answer"},
-                                                     {{.chatter = 0.006}, "chatter"},
-                                                     {{.alternation = 0.003}, "alternation"},
-                                                     {{.gained = 0.03}, "energy beyond the work"},
-                                                     {{.reach = 0.06}, "reach over the diagonal"},
-                                                     {{.offset = NAN}, "off the static answer"},
-                                                     {{.gained = NAN}, "energy beyond the work"},
-                                                     {{.reach = NAN}, "reach over the diagonal"}};
+  const std::pair<Standing, const char*> faults[] = {
+      {{.offset = 0.03}, "off the static answer"},
+      {{.offset = -0.03}, "off the static answer"},
+      {{.chatter = 0.006}, "chatter"},
+      {{.alternation = 0.003}, "alternation"},
+      {{.chatter = 0.006, .along = Eigen::Vector3d::UnitX()}, "chatter"},
+      {{.alternation = 0.003, .along = Eigen::Vector3d::UnitY()}, "alternation"},
+      {{.gained = 0.03}, "energy beyond the work"},
+      {{.reach = 0.06}, "reach over the diagonal"},
+      {{.offset = NAN}, "off the static answer"},
+      {{.gained = NAN}, "energy beyond the work"},
+      {{.reach = NAN}, "reach over the diagonal"}};
   for (const auto& [fault, word] : faults) {
     const Result r = judged(fault);
     EXPECT_EQ(r.outcome, Outcome::failed) << word;

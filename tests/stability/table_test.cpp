@@ -109,6 +109,23 @@ TEST_F(StabilityTable, AnInterruptionCostsNoRowThatWasThere) {
   EXPECT_EQ(rows[1].max_force, 2);
 }
 
+TEST_F(StabilityTable, WhatIsKnownToFailCountsNoMore) {
+  std::filesystem::create_directories(folder_);
+  const auto list = folder_ / "known.txt";
+  const Point one = failing("one"), two = failing("two");
+  std::ofstream(list) << "# why these fail\n\none | " << one.parameter << " | " << one.value << " | a reason\n";
+  const std::vector<Point> points{one, two, stable("three", 3)};
+  EXPECT_EQ(run_table({one, stable("three", 3)}, folder_, "one", {.known = list}), 0);
+  EXPECT_EQ(run_table(points, folder_, "one", {.known = list}), 1) << "the second is new";
+  EXPECT_EQ(run_table(points, folder_, "one"), 2);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_table({stable("one", 1), two}, folder_, "two", {.known = list}), 1);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("known to fail, and does not: one | "), std::string::npos);
+  std::ofstream(list) << "one | reason\n";
+  EXPECT_THROW(run_table(points, folder_, "one", {.known = list}), std::runtime_error);
+  EXPECT_THROW(run_table(points, folder_, "one", {.known = folder_ / "none"}), std::runtime_error);
+}
+
 TEST_F(StabilityTable, ATableOfSomethingElseStaysAsItIs) {
   std::filesystem::create_directories(folder_);
   std::ofstream(csv()) << "my,own,figures\n1,2,3\n";

@@ -151,19 +151,52 @@ TEST_F(ToolsCheckDynamic, ATickThatTakesLongerThanItLastsIsPointedOut) {
   EXPECT_EQ(stiff.out.find("  fits a tick: "), std::string::npos) << stiff.out;
 }
 
-TEST_F(ToolsCheckDynamic, ContactBeyondWhatWasTriedIsPointedOut) {
-  std::ofstream(folder_ / "rest.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.1,0,1\n0.1,0,0,0.3,0,1\n";
-  const std::string tool =
-      "[[tool]]\nname = \"probe\"\npivot = [0.2, 0, 1]\nradius = 0.0005\ntrajectory = \"rest.csv\"\n";
-  const ProgramResult said = testing::run_program(check(scene_ + tool));
-  expect_line(said,
-              "  stable contact of tips: tried from 100 to 1e+08 Pa, edges of 0.04 to 50 mm, tips of 0.2 to 4 edges");
+/// A body that moves as a whole, and a probe with what is set of it.
+class ToolsCheckContact : public ToolsCheckDynamic {
+ protected:
+  ToolsCheckContact() {
+    std::ofstream(folder_ / "rest.csv") << "time,yaw,pitch,depth,roll,grip\n0,0,0,0.1,0,1\n0.1,0,0,0.3,0,1\n";
+  }
+  static std::string with_probe(const std::string& body, const std::string& set) {
+    return body + "[[tool]]\nname = \"probe\"\npivot = [0.2, 0, 1]\ntrajectory = \"rest.csv\"\n" + set;
+  }
+  const std::string whole_ =
+      replaced(replaced(scene_, "hybrid = { region = [{ group = \"lower\" }] }", ""), "\"hybrid\"", "\"tensor_mass\"");
+  const std::string tried_ =
+      "  stable contact of tips: tried from 100 to 1e+08 Pa, Poisson's ratio up to 0.45, edges of 0.04 to 50 mm, tips "
+      "of 0.2 to 4 edges, 0.3 radii deep";
+};
+
+TEST_F(ToolsCheckContact, BeyondWhatWasTriedIsPointedOut) {
+  const std::string text = with_probe(whole_, "radius = 0.0005\nshaft_radius = 0.02\n");
+  const ProgramResult said = testing::run_program(check(text));
+  expect_line(said, tried_);
   expect_line(said, "warning: body 'cylinder': the tip of 'probe' over the mean edge is 0.");
+  expect_line(said, "warning: body 'cylinder': the shaft of 'probe' over the mean edge is ");
   expect_line(said, "warning: body 'cylinder': the largest speed of 'probe' is ");
-  const ProgramResult stiff = testing::run_program(check(replaced(scene_ + tool, "young = 1500", "young = 1e9")));
+  const ProgramResult stiff = testing::run_program(
+      check(replaced(replaced(text, "young = 1500", "young = 1e9"), "poisson = 0.4", "poisson = 0.47")));
   expect_line(stiff,
               "warning: body 'cylinder': young is 1e+09 Pa, and contact with moving tissue was found stable from "
               "100 to 1e+08 Pa");
+  expect_line(stiff, "warning: body 'cylinder': poisson is 0.47, and contact with moving tissue was found stable");
+}
+
+TEST_F(ToolsCheckContact, IsSaidToHaveBeenTriedOnlyWhereItWas) {
+  const ProgramResult tried = testing::run_program(check(with_probe(whole_, "shaft_radius = 0.001\n")));
+  expect_line(tried, tried_);
+  EXPECT_EQ(tried.out.find("the shaft of 'probe'"), std::string::npos) << "narrower than an edge: " << tried.out;
+  const auto expect_untried = [&](const std::string& text, const std::string& what) {
+    const ProgramResult said = testing::run_program(check(text));
+    expect_line(said, "  stable contact: not tried " + what + ": try it by palpate stability SCENE\n");
+    EXPECT_EQ(said.out.find("tried from"), std::string::npos) << said.out;
+  };
+  expect_untried(with_probe(whole_, "[contact]\nrule = \"barycentric\"\n"), "under rule \"barycentric\"");
+  expect_untried(with_probe(scene_, ""), "with a hybrid body");
+  expect_untried(with_probe(replaced(whole_, "\"tensor_mass\"", "\"spring_mass\""), ""), "with a spring_mass body");
+  expect_untried(with_probe(whole_ + "corotational = true\n", ""), "with elements that turn with the tissue");
+  const ProgramResult averaged = testing::run_program(check(with_probe(whole_ + "element = \"nodal_strain\"\n", "")));
+  expect_line(averaged, "  stable contact of tips: with strain averaged at the nodes not of all");
 }
 
 TEST_F(ToolsCheckDynamic, AContrastBeyondRoundingIsRefusedAsThat) {

@@ -1,10 +1,18 @@
 #include "tools/stability/case.hpp"
 
+#include <fmt/format.h>
+
 namespace palpate::stability {
 
 const char* word_of(Outcome outcome) {
   static constexpr const char* kWords[] = {"stable", "regularised", "refused", "failed"};
   return kWords[static_cast<int>(outcome)];
+}
+
+void hold(Result& row, const char* what, double value, double bound) {
+  if (value <= bound) return;
+  row.outcome = Outcome::failed;
+  row.note += fmt::format("{}{} {:.2g} (at most {:g})", row.note.empty() ? "" : ", ", what, value, bound);
 }
 
 std::vector<Point> all_points(const Extent& extent) {

@@ -26,6 +26,9 @@ struct Result {
   std::string note;
 };
 
+/// Fails the row where a value is beyond its bound, or is not a number, and says so in its note.
+void hold(Result& row, const char* what, double value, double bound);
+
 /// One value of one parameter. `run` throws std::runtime_error for what the product refuses; what else it throws, the
 /// system's own errors among it, is a failure.
 struct Point {

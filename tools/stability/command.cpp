@@ -48,7 +48,9 @@ void run(const StabilityOptions& o) {
     fmt::print(stderr, "stability: {}\n", missing);
   else if (!o.json)
     fmt::print("{}\n", (std::filesystem::path(o.folder) / "index.html").string());
-  if (failed > 0) throw std::runtime_error(fmt::format("{} points failed; see {}/stability.csv", failed, o.folder));
+  if (failed > 0)
+    throw std::runtime_error(fmt::format("{} points failed{}; see {}/stability.csv", failed,
+                                         o.run.known.empty() ? "" : " that are not known to", o.folder));
 }
 
 }  // namespace
@@ -60,8 +62,11 @@ void add_stability_command(cli::Command& app) {
   const cli::Option scene = command.add_option("SCENE", options->scene, "Scene file; without one, the general cases");
   add_set_option(command, options->set).needs(scene);
   command.add_option("-o,--output", options->folder, "Folder for stability.csv, plots and page").required();
-  command.add_flag("--quick", options->quick, "The subset that takes a minute");
+  command.add_flag("--quick", options->quick, "A subset that takes some minutes");
   command.add_option("--only", options->run.only, "Cases whose name contains this");
+  command.add_option("--known", options->run.known,
+                     "List of points that are known to fail, `case | parameter | value | why` a line: an error is what "
+                     "fails beside them");
   command.add_flag("--json", options->json, "Print one line of JSON a case");
   add_jobs_option(command, options->run.jobs, "Cases");
   command.tells_progress();

@@ -8,6 +8,7 @@
 #include "tools/rig/kinds.hpp"
 #include "tools/rig/press_rig.hpp"
 #include "tools/stability/press.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -32,6 +33,12 @@ double bound_of(const Scene& scene, const Archive& archive) {
   return max_step(motion.integrator, model->frequency_bound(), motion.damping);
 }
 
+/// [1] What the energy of plucked tissue may come to, of what it was: RK4 lets none grow but by rounding; that of
+/// semi-implicit steps swings about its mean, the more the nearer the step is to its bound.
+double bound_of_energy(Integrator integrator) {
+  return integrator == Integrator::rk4 ? 1 + 1e-9 : 2;
+}
+
 /// Free motion from a pluck at one step size: the energy of the undamped tissue may not grow.
 Result pluck(const Scene& scene, double step, int count) {
   const Archive archive = precompute_on(scene.bodies[0], small_block_mesh());
@@ -53,7 +60,7 @@ Result pluck(const Scene& scene, double step, int count) {
   Result r{.max_force = strongest,
            .energy_growth = last - first,
            .note = fmt::format("bound {:.3g} s; energy is the tissue's own, {:.3g} J at first", bound, first)};
-  if (!(last <= 20 * first)) r.outcome = Outcome::failed;
+  hold(r, "energy, of that at first", last / first, bound_of_energy(motion_of(scene.bodies[0]).integrator));
   return r;
 }
 
@@ -146,6 +153,24 @@ std::vector<Point> cut_points(const Extent& extent) {
            return r;
          }});
   }
+  points.push_back({"cut under load", "by", "cautery beside a tip that stands", [] {
+                      Scene scene = moving_block_scene();
+                      scene.tools.push_back(scene.tools[0]);
+                      std::get<ProbeSpec>(scene.tools[1].end).cautery = Cautery{.radius = 0.004};
+                      PressRig rig(scene, {precompute_on(scene.bodies[0], small_block_mesh(8))});
+                      TissueWatch watch;
+                      for (int i = 0; i < 1500; ++i) {
+                        const double down = std::min(1.0, i / 200.0), across = std::clamp((i - 400) / 1000.0, 0.0, 1.0);
+                        ToolDofs cutting = tip_at(scene.tools[1], {0.03 - 0.06 * across, 0.004, 0.021});
+                        cutting.pedal = i > 400;
+                        rig.press(std::array{tip_at(scene.tools[0], {0, -0.004, 0.0262 - 0.004 * down}), cutting});
+                        watch.look(rig.organ(), work_on(rig.tissue(), 0));
+                      }
+                      Result r = watch.result();
+                      r.note += fmt::format("; {} of {} tetrahedra gone", rig.organ().removed().size(),
+                                            rig.organ().mesh().tetrahedra.size());
+                      return r;
+                    }});
   for (double threshold : extent.quick ? std::vector{0.05} : std::vector{1e-6, 1e-3, 0.05, 0.5})
     points.push_back({"tearing", "volume change [1]", fmt::format("{:g}", threshold), [=] {
                         Scene scene = moving_block_scene();

@@ -45,14 +45,14 @@ MovingPress drawn(std::mt19937& random) {
   const double size = between(Tried::kMinCell, Tried::kMaxCell);
   p.cell = {size, size, size * one_of(std::array{1.0, 1.0, 0.3, 0.1})};
   p.young = between(Tried::kMinYoung, Tried::kMaxYoung);
-  p.poisson = one_of(std::array{0.0, 0.3, 0.45});
+  p.poisson = one_of(std::array{0.0, 0.3, Tried::kMaxPoisson});
   p.density = one_of(std::array{300.0, 1000.0, 3000.0});
   p.damping = one_of(std::array{5.0, 60.0});
   p.integrator = one_of(std::array{Integrator::rk4, Integrator::semi_implicit});
   p.precision = one_of(std::array{Precision::float32, Precision::float64});
   p.radius = size * between(Tried::kMinRadius, Tried::kMaxRadius);
   p.cells = cells_under(p.radius, size);
-  p.depth = std::min(0.3 * p.radius, 0.2 * p.cells.z() * p.cell.z());
+  p.depth = std::min(Tried::kMaxDepth * p.radius, 0.2 * p.cells.z() * p.cell.z());
   p.beside = {share() - 0.5, share() - 0.5};
   p.friction = one_of(std::array{0.0, 0.05, 0.3, Tried::kMaxFriction});
   p.gesture = one_of(std::array{"held", "tapped", "slid", "stabbed"});

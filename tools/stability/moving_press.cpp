@@ -9,6 +9,7 @@
 #include "tools/rig/press_rig.hpp"
 #include "tools/stability/press.hpp"
 #include "tools/stability/stand_judge.hpp"
+#include "tools/stability/watch.hpp"
 
 namespace palpate::stability {
 namespace {
@@ -124,12 +125,6 @@ int standing_ticks(const MovingPress& p) {
   return static_cast<int>((kStand + rest) / kTick);
 }
 
-double reach_of(const DynamicOrgan& organ) {
-  double reach = 0;
-  for (int n = 0; n < organ.mesh().nodes(); ++n) reach = larger(reach, organ.model().displacement(n).norm());
-  return reach;
-}
-
 }  // namespace
 
 Result press_moving(const MovingPress& p) {
@@ -139,16 +134,13 @@ Result press_moving(const MovingPress& p) {
   const Archive archive = precompute_on(scene.bodies[0], mesh);
   PressRig rig(scene, {archive});
   StandJudge judge;
-  Vector3d before = stroke.path(0);
-  rig.press(before);
+  rig.press(stroke.path(0));
   for (int i = 1; i <= stroke.ticks + standing_ticks(p); ++i) {
-    const Vector3d tip = stroke.path(i), step = tip - before;
-    rig.press(tip);
-    const Vector3d force = rig.force();
-    judge.look(-force.z(), force.dot(step), rig.organ().model().energy(), reach_of(rig.organ()));
-    before = tip;
+    rig.press(stroke.path(i));
+    judge.look(rig.force(), work_on(rig.tissue(), 0), rig.organ().model().energy(), reach_of(rig.organ()));
   }
-  return judge.result(static_force(scene, mesh, archive, stroke), p.cells.cast<double>().cwiseProduct(p.cell).norm());
+  return judge.result(static_force(scene, mesh, archive, stroke), -Vector3d::UnitZ(),
+                      p.cells.cast<double>().cwiseProduct(p.cell).norm());
 }
 
 }  // namespace palpate::stability

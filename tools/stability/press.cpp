@@ -30,14 +30,11 @@ Path down_and_up(double above, double depth, int ticks) {
 PressedTissue press_tissue(const Scene& scene, const TetMesh& mesh, const Path& path, int ticks, bool pedal) {
   PressRig rig(scene, {precompute_on(scene.bodies[0], mesh)});
   TissueWatch watch;
-  Eigen::Vector3d before = path(0);
   for (int i = 0; i < ticks; ++i) {
-    const Eigen::Vector3d tip = path(i);
-    ToolDofs dofs = tip_at(scene.tools[0], tip);
+    ToolDofs dofs = tip_at(scene.tools[0], path(i));
     dofs.pedal = pedal;
     rig.press(std::array{dofs});
-    watch.look(rig.organ(), rig.force().dot(tip - before));
-    before = tip;
+    watch.look(rig.organ(), work_on(rig.tissue(), 0));
   }
   return {watch.result(), rig.organ().removed().size(), rig.organ().mesh().tetrahedra.size()};
 }

@@ -24,6 +24,19 @@ struct Bend {
   bool controller = true;
 };
 
+/// Fails the row where moving tissue was flung, or has more energy than the work. Where it has weight this does work
+/// too, and its reach alone counts.
+void judge_tissue(const Scene& scene, std::span<const int> bodies, std::span<const TissueWatch> watches, Result& row) {
+  for (std::size_t i = 0; i < watches.size(); ++i) {
+    const Body& body = scene.bodies[bodies[i]];
+    Result tissue{.note = {}};
+    watches[i].judge(tissue, motion_of(body).gravity.isZero());
+    if (tissue.outcome != Outcome::failed) continue;
+    row.outcome = Outcome::failed;
+    row.note += fmt::format("{}tissue of '{}': {}", row.note.empty() ? "" : "; ", name_of(body), tissue.note);
+  }
+}
+
 /// The scene as the nodes run it, in lock step.
 Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend& bend) {
   PressRig rig(scene, archives);
@@ -36,13 +49,16 @@ Result play(const Scene& scene, const std::vector<Archive>& archives, const Bend
   };
   rig.start(at(0));
   Watch watch;
+  std::vector<TissueWatch> tissue(rig.tissue().organs());
   for (int i = 0; i < 60000; ++i) {
     const double time = i * rig.dt() * bend.speed;
     if (time > tools.duration()) break;
     rig.step(at(time));
     watch.look(rig.haptic());
+    for (int o = 0; o < rig.tissue().organs(); ++o) tissue[o].look(rig.tissue().organ(o), work_on(rig.tissue(), o));
   }
   Result r = watch.result(scene.passivity.reserve);
+  judge_tissue(scene, rig.tissue().bodies(), tissue, r);
   r.note += fmt::format("{}energy at the end {:.4g} J", r.note.empty() ? "" : "; ", rig.simulator().energy());
   return r;
 }

@@ -8,12 +8,15 @@ namespace palpate::stability {
 struct TableRun {
   std::string only;  ///< the points whose name contains this
   int jobs = 1;      ///< at the same time
+  /// A list of points that are known to fail, as `case | parameter | value | why` a line; # begins a comment. Empty:
+  /// none is.
+  std::filesystem::path known;
 };
 
 /// Runs these points and writes `folder`/stability.csv after each, in the order of `points`; rows that are there from
 /// an earlier run for the same `subject` stay, failed ones until they have been run again. Progress on stderr. Returns
-/// how many of those points failed. Throws std::runtime_error if the folder cannot be written or holds another table of
-/// that name.
+/// how many of those points failed that are not known to; of a known one that did not fail it tells on stderr. Throws
+/// std::runtime_error if the folder cannot be written or holds another table of that name, or the list cannot be read.
 int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject,
               const TableRun& how = {});
 

@@ -58,12 +58,34 @@ Result Watch::result(double reserve) const {
   return r;
 }
 
+double reach_of(const DynamicOrgan& organ) {
+  double reach = 0;
+  for (int n = 0; n < organ.mesh().nodes(); ++n)
+    if (organ.topology().has_node(n)) reach = larger(reach, organ.displacement(n).norm());
+  return reach;
+}
+
+double work_on(const DynamicWorld& tissue, int organ) {
+  double work = 0;
+  const auto add = [&](const TouchContact& c, const Eigen::Vector3d& force) {
+    const ToolPoint& by = c.tool_point();
+    const MovingTool& tool = tissue.in_tick(by.tool).moving;
+    const Eigen::Vector3d before = c.grasped ? tool.before * (tool.now.inverse() * c.at)
+                                             : tool.to_world_before(by.part, tool.to_part(by.part, c.at));
+    work += force.dot(c.at - before);
+  };
+  for (const TouchContact& c : tissue.organ(organ).contacts()) add(c, c.force);
+  if (const HybridTouch* still = tissue.organ(organ).still_part())
+    for (std::size_t c = 0; c < still->contacts().size(); ++c)
+      add(still->contacts()[c], still->force(static_cast<int>(c)));
+  return work;
+}
+
 void TissueWatch::look(const DynamicOrgan& organ, double work) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& x : organ.mesh().rest) box.extend(x);
   diagonal_ = box.diagonal().norm();
-  for (int n = 0; n < organ.mesh().nodes(); ++n)
-    if (organ.topology().has_node(n)) reach_ = larger(reach_, organ.displacement(n).norm());
+  reach_ = larger(reach_, reach_of(organ));
   whole_ &= organ.removed().empty();
   largest_ = larger(largest_, force_on_moving_part(organ).norm());
   work_ += work;
@@ -73,14 +95,14 @@ void TissueWatch::look(const DynamicOrgan& organ, double work) {
 
 Result TissueWatch::result() const {
   Result r{.max_force = largest_, .energy_growth = gained_, .note = "energy is the tissue's beyond the work"};
-  const auto hold = [&](const char* what, double value, double bound) {
-    if (value <= bound) return;
-    r.outcome = Outcome::failed;
-    r.note += fmt::format(", {} {:.2g} (at most {:g})", what, value, bound);
-  };
-  hold("reach over the diagonal", reach_ / diagonal_, whole_ ? StandJudge::kReach : kLoose);
-  hold("energy beyond the work, of it", gained_ > kNoEnergy ? gained_ / max_work_ : 0, StandJudge::kEnergy);
+  judge(r, true);
   return r;
+}
+
+void TissueWatch::judge(Result& row, bool energy) const {
+  hold(row, "reach over the diagonal", reach_ / diagonal_, whole_ ? StandJudge::kReach : kLoose);
+  if (energy)
+    hold(row, "energy beyond the work, of it", gained_ > kNoEnergy ? gained_ / max_work_ : 0, StandJudge::kEnergy);
 }
 
 void CatheterWatch::look(const CatheterBody& body) {
@@ -92,7 +114,7 @@ Result CatheterWatch::result(double energy_growth) const {
   Result r{.max_force = force_,
            .energy_growth = energy_growth,
            .note = fmt::format("energy is the catheter's own; reach {:.3g} m", reach_)};
-  if (!std::isfinite(force_) || !(reach_ <= 10)) r.outcome = Outcome::failed;
+  if (!std::isfinite(force_) || !(reach_ <= kReach)) r.outcome = Outcome::failed;
   return r;
 }
 

@@ -25,6 +25,11 @@ class Watch {
   int steps_ = 0, regularised_ = 0, limited_ = 0, slewed_ = 0, faults_ = 0, stale_ = 0, damped_ = 0;
 };
 
+/// [m] from rest: the farthest that a node is which something of the body still hangs on.
+double reach_of(const DynamicOrgan& organ);
+/// [J] of all tools' forces on a body of the tissue, in the tick that has just been made.
+double work_on(const DynamicWorld& tissue, int organ);
+
 /// What happens to moving tissue, tick by tick.
 class TissueWatch {
  public:
@@ -35,6 +40,8 @@ class TissueWatch {
   /// work by more than its share. max_force is the largest contact force on the tissue that moves [N]; energy_growth
   /// the most that the tissue had beyond the work.
   Result result() const;
+  /// Judges it by the first alone where other than tools' work goes into it, as weight does: not by `energy`.
+  void judge(Result& row, bool energy) const;
 
  private:
   double largest_ = 0, work_ = 0, max_work_ = 0, gained_ = 0, reach_ = 0, diagonal_ = 0;
@@ -44,9 +51,11 @@ class TissueWatch {
 /// What happens to a catheter, tick by tick.
 class CatheterWatch {
  public:
+  static constexpr double kReach = 1;  ///< [m] from the origin: some lengths of the cases' catheters
+
   void look(const CatheterBody& body);
-  /// Failed if a place or a force was not a number or the catheter went more than 10 m away; max_force is that of a
-  /// tool [N].
+  /// Failed if a place or a force was not a number or the catheter went farther away than kReach; max_force is that of
+  /// a tool [N].
   Result result(double energy_growth) const;
 
  private:

@@ -199,7 +199,7 @@ Eigen::Vector3d DynamicOrgan::displacement(int node) const {
 }
 
 bool DynamicOrgan::holds(int tool) const {
-  return contacts_.grasping(tool) || (still_ && still_->grasping(tool));
+  return contacts_.grasping(tool);
 }
 
 void DynamicOrgan::cut(std::span<const ToolInTick> tools) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/contact/patch/patch_parts.hpp"
 #include "common/fem/lumped_mass.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving/tried_contact.hpp"
@@ -112,6 +113,14 @@ double max_speed(const Tool& tool, const Trajectory& script) {
   return fastest;
 }
 
+// How contact with a body is not that of the stability cases; empty: it is.
+std::string untried(const MovingSpec& body, std::string_view kind, const ContactSpec& contact) {
+  if (contact.rule != ContactRule::patch) return fmt::format("under rule \"{}\"", word_of(contact.rule));
+  if (kind != TriedContact::kKind) return fmt::format("with a {} body", kind);
+  if (body.dynamic.corotational) return "with elements that turn with the tissue";
+  return {};
+}
+
 }  // namespace
 
 void say_steps(const MovingSpec& body, DynamicOrgan& organ, const Archive& archive, const CheckSettings& settings,
@@ -166,14 +175,19 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
                     body.name, share));
 }
 
-void say_tried_contact(const MovingSpec& body, const CheckSettings& settings, double edge, int steps,
-                       CheckReport& report) {
+void say_tried_contact(const MovingSpec& body, std::string_view kind, const CheckSettings& settings, double edge,
+                       int steps, CheckReport& report) {
   using Tried = TriedContact;
+  if (body.dynamic.element == TetElement::nodal_strain)
+    return report.say("  stable contact of tips: with strain averaged at the nodes not of all (docs/stability.md)");
+  if (const std::string what = untried(body, kind, settings.contact); !what.empty())
+    return report.say(fmt::format("  stable contact: not tried {}: try it by palpate stability SCENE", what));
   report.say(fmt::format(
-      "  stable contact of tips: tried from {:g} to {:g} Pa, edges of {:g} to {:g} mm, tips of {:g} to {:g} "
-      "edges, friction up to {:g}, {:g} m/s, {:g} steps a tick",
-      Tried::kMinYoung, Tried::kMaxYoung, 1e3 * Tried::kMinCell, 1e3 * Tried::kMaxCell, Tried::kMinRadius,
-      Tried::kMaxRadius, Tried::kMaxFriction, Tried::kMaxSpeed, Tried::kMaxSteps));
+      "  stable contact of tips: tried from {:g} to {:g} Pa, Poisson's ratio up to {:g}, edges of {:g} to "
+      "{:g} mm, tips "
+      "of {:g} to {:g} edges, {:g} radii deep, friction up to {:g}, {:g} m/s, {:g} steps a tick",
+      Tried::kMinYoung, Tried::kMaxYoung, Tried::kMaxPoisson, 1e3 * Tried::kMinCell, 1e3 * Tried::kMaxCell,
+      Tried::kMinRadius, Tried::kMaxRadius, Tried::kMaxDepth, Tried::kMaxFriction, Tried::kMaxSpeed, Tried::kMaxSteps));
   const auto look = [&](const std::string& whose, double value, double low, double high, const char* unit) {
     if (value >= low && value <= high) return;
     report.warnings.push_back(
@@ -184,9 +198,16 @@ void say_tried_contact(const MovingSpec& body, const CheckSettings& settings, do
   look("young", body.material.young, Tried::kMinYoung, Tried::kMaxYoung, " Pa");
   for (const MaterialRegion& region : body.materials)
     look("young of a region", region.material.young, Tried::kMinYoung, Tried::kMaxYoung, " Pa");
+  look("poisson", body.material.poisson, 0, Tried::kMaxPoisson, "");
+  for (const MaterialRegion& region : body.materials)
+    look("poisson of a region", region.material.poisson, 0, Tried::kMaxPoisson, "");
   look("the mean edge", edge, Tried::kMinCell, Tried::kMaxCell, " m");
   look("friction", settings.contact.friction, 0, Tried::kMaxFriction, "");
   look("the number of steps a tick", steps, 1, Tried::kMaxSteps, "");
+  for (const PatchPart& part : patch_parts(settings.tools, true))
+    if (part.length > 0)
+      look(fmt::format("the shaft of '{}' over the mean edge", settings.tools[part.tool].name), part.radius / edge, 0,
+           Tried::kMaxShaft, "");
   for (const Tool& tool : settings.tools) {
     if (abilities_of(tool).ball)
       look(fmt::format("the tip of '{}' over the mean edge", tool.name), abilities_of(tool).radius / edge,

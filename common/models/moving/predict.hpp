@@ -1,4 +1,6 @@
 #pragma once
+#include <string_view>
+
 #include "common/archive/archive.hpp"
 #include "common/dynamics/spec.hpp"
 #include "common/fem/direct.hpp"
@@ -16,9 +18,9 @@ void say_steps(const MovingSpec& body, DynamicOrgan& organ, const Archive& archi
 /// Says how far the body sinks under its gravity, by a static solve of linear elements; nothing without gravity.
 void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& report);
 
-/// Says where contact with moving tissue has been tried, and warns of what lies beyond it. `edge` [m]: mean of the
-/// surface; `steps`: of the tissue in a tick, under tools.
-void say_tried_contact(const MovingSpec& body, const CheckSettings& settings, double edge, int steps,
-                       CheckReport& report);
+/// Says where contact with tissue like this has been tried, or that it has not, and warns of what lies beyond it.
+/// `edge` [m]: mean of the surface; `steps`: of the tissue in a tick, under tools.
+void say_tried_contact(const MovingSpec& body, std::string_view kind, const CheckSettings& settings, double edge,
+                       int steps, CheckReport& report);
 
 }  // namespace palpate

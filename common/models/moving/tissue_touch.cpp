@@ -8,11 +8,11 @@ namespace palpate {
 namespace {
 
 // What is not a patch's rests on points, under each of which the tissue gives way as under a patch of one square.
-ToolContacts::Options beside_patches(const TissuePatches* patches, const ContactLaw& law) {
+ToolContacts::Options beside_patches(const TissuePatches* patches, const std::function<bool(int tool)>& grasps) {
   ToolContacts::Options options;
   if (!patches) return options;
-  options.elsewhere = [patches, &law](int tool, int part, int facet) {
-    return patches->has(tool, part) && patches->covers(facet) && !law.grasps(tool);
+  options.elsewhere = [patches, grasps](int tool, int part, int facet) {
+    return patches->has(tool, part) && patches->covers(facet) && !grasps(tool);
   };
   options.face_give = [patches](double radius) { return patches->give_of_point(radius); };
   return options;
@@ -40,12 +40,13 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
           settings.contact.rule == ContactRule::patch
               ? std::make_unique<TissuePatches>(archive, mesh, topology, surface, model, still, response_, settings)
               : nullptr),
-      contacts_(surface, law_, parts_of(settings.tools), beside_patches(patches_.get(), law_)),
-      fading_ticks_(fading_ticks(settings.dt)) {
+      contacts_(surface, law_, parts_of(settings.tools),
+                beside_patches(patches_.get(), [this](int tool) { return grasping(tool); })),
+      fading_ticks_(fading_ticks(settings.dt)),
+      max_leavers_((kMaxContacts + 2 * settings.tools.size()) * fading_ticks_) {  // with a tip's and a shaft's patch
   aimed_.reserve(kMaxContacts);
-  const std::size_t leavers = kMaxContacts + 2 * settings.tools.size() * fading_ticks_;  // a tip's and a shaft's a tick
-  all_.reserve(kMaxContacts + leavers + 2 * settings.tools.size());
-  leavers_.reserve(leavers);
+  all_.reserve(kMaxContacts + max_leavers_ + 2 * settings.tools.size());
+  leavers_.reserve(max_leavers_);
   holds_.reserve(kMaxContacts);
   loose_.reserve(3 * kMaxContacts + 2 * settings.tools.size() * Patch::kMaxNodes);
 }
@@ -57,7 +58,7 @@ std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools,
   loose_.clear();
   if (patches_)
     patches_->find(
-        tools, [this](int tool) { return law_.grasps(tool); }, loose());
+        tools, [this](int tool) { return grasping(tool); }, loose());
   return loose_;
 }
 
@@ -76,7 +77,7 @@ void TissueTouch::gather() {
 }
 
 bool TissueTouch::grasping(int tool) const {
-  return law_.grasps(tool);
+  return law_.grasps(tool) || (still_ && still_->grasping(tool));
 }
 
 std::span<const JawHold> TissueTouch::held(std::span<const MovingTool> tools) {
@@ -224,7 +225,7 @@ void TissueTouch::state(State& s, std::span<const MovingTool> tools) {
 void TissueTouch::leavers_state(State& s, std::span<const MovingTool> tools) {
   int count = static_cast<int>(leavers_.size());
   s.value(count);
-  s.require(count >= 0 && count <= kMaxContacts * fading_ticks_, "the state names an impossible number of contacts");
+  s.require(count >= 0 && count <= static_cast<int>(max_leavers_), "the state names an impossible number of contacts");
   leavers_.resize(count);
   for (Leaver& l : leavers_) {
     palpate::state(s, l.by);
@@ -236,7 +237,8 @@ void TissueTouch::leavers_state(State& s, std::span<const MovingTool> tools) {
     const int known = static_cast<int>(tools.size());
     const bool tool = l.by.tool >= 0 && l.by.tool < known && l.by.part >= 0 && l.by.part < tools[l.by.tool].size();
     const bool nodes = std::ranges::all_of(l.anchor.nodes, [&](int n) { return n >= 0 && n < mesh_.nodes(); });
-    s.require(tool && nodes, "the state holds a contact that this scene cannot have");
+    const bool fades = l.ticks_left > 0 && l.ticks_left <= fading_ticks_;
+    s.require(tool && nodes && fades, "the state holds a contact that this scene cannot have");
   }
 }
 

@@ -40,6 +40,7 @@ class TissueTouch {
   /// Forgets what a tool touches, its jaws' hold as well.
   void drop_tool(int tool);
   ToolContacts& search() { return contacts_; }
+  /// Whether its jaws hold something of the body, of either part of a hybrid.
   bool grasping(int tool) const;
   /// What jaws hold. `tools`: as they are at the beginning and end of a step. Valid until the next call.
   std::span<const JawHold> held(std::span<const MovingTool> tools);
@@ -92,6 +93,7 @@ class TissueTouch {
   std::vector<TouchContact> all_;
   std::vector<JawHold> holds_;
   int fading_ticks_;
+  std::size_t max_leavers_;
   std::vector<Leaver> leavers_;
   std::vector<PatchForce> loose_;  ///< [N] of the last cut or find()
   double dt_ = 0;                  ///< [s] of the step that the response is for
