@@ -38,7 +38,7 @@ void write_header(Hdf5Writer& file, const Archive& archive) {
   file.attribute("body", archive.body);
   file.attribute("model", archive.model);
   file.attribute("has_dynamic", std::int64_t{archive.parts.dynamic});
-  file.attribute("has_hybrid", std::int64_t{archive.parts.hybrid});
+  file.attribute("has_hybrid", std::int64_t{archive.parts.condensed});
   file.attribute("has_modal", std::int64_t{archive.parts.modal});
   file.attribute("content_hash", archive.content_hash);
   file.attribute("mesh_nodes", std::int64_t{archive.mesh_nodes});
@@ -169,7 +169,7 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   archive.body = reader.text("body");
   archive.model = reader.text("model");
   archive.parts = {
-      .dynamic = reader.flag("has_dynamic"), .hybrid = reader.flag("has_hybrid"), .modal = reader.flag("has_modal")};
+      .dynamic = reader.flag("has_dynamic"), .condensed = reader.flag("has_hybrid"), .modal = reader.flag("has_modal")};
   archive.content_hash = reader.text("content_hash");
   archive.software = reader.text("software");
   archive.mesh_nodes = reader.count("mesh_nodes");

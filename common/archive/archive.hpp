@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/archive/hybrid_tensors.hpp"
+#include "common/archive/condensed_tensors.hpp"
 #include "common/archive/pressed_place.hpp"
 
 namespace palpate {
@@ -42,9 +42,9 @@ struct ModalTensors {
 
 /// What an archive has beside a surface and its compliance, as the kind of tissue says; its data must agree.
 struct ArchiveParts {
-  bool dynamic = false;  ///< tetrahedra that move with inertia
-  bool hybrid = false;   ///< tensors that join them to a quasi-static part
-  bool modal = false;    ///< modes
+  bool dynamic = false;    ///< tetrahedra that move with inertia
+  bool condensed = false;  ///< tensors that join them to a quasi-static part
+  bool modal = false;      ///< modes
 };
 
 /// Tensors of one body as stored in the HDF5 archive. Compliance only: T^f_k = C_kk^-1 and
@@ -79,7 +79,7 @@ struct Archive {
   double specimen_force_slope = 0;    ///< [N/m]
   double specimen_radial_slope = 0;   ///< [1]
   std::vector<PressedPlace> presses;  ///< empty unless the scene asks for them
-  std::optional<HybridTensors> hybrid;
+  std::optional<CondensedTensors> condensed;
   std::optional<ModalTensors> modal;  ///< of a shell, beside the static compliance of its nodes
 };
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/archive/condensed_tensors.hpp"
 #include "common/archive/hdf5_file.hpp"
-#include "common/archive/hybrid_tensors.hpp"
 
 namespace palpate {
 

@@ -11,10 +11,10 @@ void multiply(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
-void stiffen(HybridTensors& hybrid, double factor) {
-  hybrid.bound *= factor;
-  multiply(hybrid.stiffness, factor);
-  multiply(hybrid.sag, 1 / factor);
+void stiffen(CondensedTensors& condensed, double factor) {
+  condensed.bound *= factor;
+  multiply(condensed.stiffness, factor);
+  multiply(condensed.sag, 1 / factor);
 }
 
 void stiffen(std::vector<PressedPlace>& presses, double factor) {
@@ -36,7 +36,7 @@ void scale_young(Archive& archive, double young) {
     archive.compressed = std::make_shared<CompressedCompliance>(archive.compressed->scaled(1 / factor));
   archive.specimen_force_slope *= factor;
   stiffen(archive.presses, factor);
-  if (archive.hybrid) stiffen(*archive.hybrid, factor);
+  if (archive.condensed) stiffen(*archive.condensed, factor);
   if (archive.modal) multiply(archive.modal->omega, std::sqrt(factor));
 }
 

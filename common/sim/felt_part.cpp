@@ -64,9 +64,9 @@ class MovingFelt final : public FeltPart {
 };
 
 /// What moves at once; its stiffness is its own, with the connection nodes standing still.
-class StillFelt final : public FeltPart {
+class CondensedFelt final : public FeltPart {
  public:
-  explicit StillFelt(const HybridTouch& touch) : touch_(touch) {}
+  explicit CondensedFelt(const CondensedTouch& touch) : touch_(touch) {}
 
   const ContactSurface& surface() const override { return touch_.surface(); }
   std::span<const int> find(const Segment& axis, double radius) const override {
@@ -91,7 +91,7 @@ class StillFelt final : public FeltPart {
   }
 
  private:
-  const HybridTouch& touch_;
+  const CondensedTouch& touch_;
 };
 
 }  // namespace
@@ -99,7 +99,7 @@ class StillFelt final : public FeltPart {
 std::vector<std::unique_ptr<FeltPart>> felt_parts(const DynamicOrgan& organ, const LocalStiffness& known) {
   std::vector<std::unique_ptr<FeltPart>> parts;
   parts.push_back(std::make_unique<MovingFelt>(organ, known));
-  if (organ.still_part()) parts.push_back(std::make_unique<StillFelt>(*organ.still_part()));
+  if (organ.condensed_part()) parts.push_back(std::make_unique<CondensedFelt>(*organ.condensed_part()));
   return parts;
 }
 

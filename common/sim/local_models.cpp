@@ -11,11 +11,11 @@ namespace {
 constexpr int kAskedEach = 8;  // ticks from one look at what stiffness is wanted to the next
 
 /// The quasi-static part of a hybrid body as its connection nodes feel it.
-CondensedPart condensed_part(const Archive& archive, const DynamicOrgan& organ) {
-  CondensedPart part;
-  if (!archive.hybrid) return part;
-  part.part = &organ.still_part()->part();
-  const HybridTensors& h = *archive.hybrid;
+Condensation condensation_of(const Archive& archive, const DynamicOrgan& organ) {
+  Condensation part;
+  if (!archive.condensed) return part;
+  part.part = &organ.condensed_part()->part();
+  const CondensedTensors& h = *archive.condensed;
   part.nodes = h.connection;
   part.stiffness.setZero(3 * h.connection.size(), 3 * h.connection.size());
   const auto place = [&](const Dof& d) {
@@ -38,7 +38,7 @@ LocalModels::LocalModels(const DynamicWorld& world, const std::vector<Archive>& 
     double edges = 0;
     for (const auto& t : mesh.tetrahedra) edges += (mesh.rest[t[0]] - mesh.rest[t[1]]).norm();
     OfOrgan& own = organs_.emplace_back();
-    own.stiffness = std::make_unique<LocalStiffness>(mesh, condensed_part(archives[world.bodies()[i]], organ), worker);
+    own.stiffness = std::make_unique<LocalStiffness>(mesh, condensation_of(archives[world.bodies()[i]], organ), worker);
     own.parts = felt_parts(organ, *own.stiffness);
     own.look_ahead = 1.5 * edges / static_cast<double>(mesh.tetrahedra.size());
   }

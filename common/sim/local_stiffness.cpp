@@ -20,7 +20,7 @@ constexpr double kFloatingHz = 0.2;  // far below an organ's lowest frequency
 
 // K + w^2 M over the free dofs of the remaining tetrahedra, with what is joined to it.
 SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
-                           const CondensedPart& joined) {
+                           const Condensation& joined) {
   SparseMatrix k = assemble_stiffness(mesh, materials, dofs);
   std::vector<Eigen::Triplet<double, std::int64_t>> extra;
   const double w = 2 * std::numbers::pi * kFloatingHz;
@@ -54,7 +54,7 @@ int LocalStiffness::Answer::find(int node) const {
   return at != nodes.end() && *at == node ? static_cast<int>(at - nodes.begin()) : -1;
 }
 
-LocalStiffness::LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Worker worker)
+LocalStiffness::LocalStiffness(const ElasticMesh& mesh, Condensation joined, Worker worker)
     : mesh_(mesh), joined_(std::move(joined)) {
   if (worker == Worker::thread) worker_.emplace([this](const std::stop_token& stop) { work(stop); });
 }

@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "common/describe/state.hpp"
+#include "common/dynamics/condensed_part.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
-#include "common/dynamics/hybrid_part.hpp"
 #include "common/fem/boundary_conditions.hpp"
 
 namespace palpate {
 
 /// Stiffness of one part of a body that is condensed onto some of its nodes, to be added where it is joined.
-struct CondensedPart {
+struct Condensation {
   std::vector<int> nodes;
-  Eigen::MatrixXd stiffness;         ///< [N/m] 3 nodes x 3 nodes; rows of fixed axes are zero
-  const HybridPart* part = nullptr;  ///< what its other nodes do; outlives this
+  Eigen::MatrixXd stiffness;            ///< [N/m] 3 nodes x 3 nodes; rows of fixed axes are zero
+  const CondensedPart* part = nullptr;  ///< what its other nodes do; outlives this
 };
 
 /// The static compliance of a dynamic body at a few of its nodes, for the local contact model. It is solved from the
@@ -42,7 +42,7 @@ class LocalStiffness {
     Eigen::Matrix3d block(int i, int j) const { return compliance.block<3, 3>(3 * i, 3 * j); }
   };
 
-  LocalStiffness(const ElasticMesh& mesh, CondensedPart joined, Worker worker);
+  LocalStiffness(const ElasticMesh& mesh, Condensation joined, Worker worker);
 
   /// Wants these nodes (ascending, the first max_nodes count) after the removal of all of `removed` so far. The newest
   /// question is answered; false if the worker is at it, so that it was not taken.
@@ -68,7 +68,7 @@ class LocalStiffness {
   Answer solve(const Question& question) const;
 
   const ElasticMesh mesh_;
-  const CondensedPart joined_;
+  const Condensation joined_;
   Answer current_, next_;
   Question question_;
   bool asked_ = false, answered_ = false;

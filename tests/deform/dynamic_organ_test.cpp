@@ -123,7 +123,7 @@ TEST(DynamicOrgan, ARestoredHybridGoesOnBitForBitFromAKeyframe) {
   };
   const int keyframe = static_cast<int>(first.world().keyframe_interval());
   for (int i = 0; i < keyframe; ++i) move(first, i);
-  EXPECT_FALSE(first.organ().still_part()->contacts().empty());
+  EXPECT_FALSE(first.organ().condensed_part()->contacts().empty());
   second.world().restore(first.world().save());
   for (int i = keyframe; i < 3 * keyframe; ++i) {
     move(first, i);
@@ -242,7 +242,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
   const TetMesh fine = make_block({-0.03, -0.03, 0}, {0.03, 0.03, 0.015}, {12, 12, 3});
   const TetMesh coarse = make_block({-0.03, -0.03, 0.015}, {0.03, 0.03, 0.03}, {6, 6, 2});
   Bench bench(scene, fine, coarse);
-  EXPECT_EQ(bench.organ().still_part()->part().connection().size(), 49u);
+  EXPECT_EQ(bench.organ().condensed_part()->part().connection().size(), 49u);
   for (int i = 0; i < 2000; ++i) bench.tick(from_above(i, 600, kTop + kRadius + 0.001, kTop + kRadius - 0.003));
   ASSERT_TRUE(bench.finite());
   Scene alike = block_scene();
@@ -252,7 +252,7 @@ TEST(DynamicOrgan, ACoarsePartJoinedAtTheSharedNodesIsHeldByTheFineOne) {
       << "the part below is finer and joined at fewer nodes, so softer";
   EXPECT_GT(bench.force().z(), whole);
   for (int i = 0; i < 1500; ++i) bench.tick(kTop + 0.03);
-  EXPECT_LT(bench.organ().still_part()->part().gap(bench.organ().model()), 1e-5)
+  EXPECT_LT(bench.organ().condensed_part()->part().gap(bench.organ().model()), 1e-5)
       << "at rest both sides lie on one another again";
 }
 

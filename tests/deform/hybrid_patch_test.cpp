@@ -71,7 +71,7 @@ TEST(HybridPatch, IsLiftedWhileJawsHoldThePartWithoutInertia) {
   for (int i = 0; i < 300; ++i) press(-0.0005 + 0.0015 * smooth(i / 200.0), 0.6);
   ASSERT_FALSE(rig.organ().contacts().empty()) << "the patch";
   for (int i = 0; i < 100; ++i) press(0.001, 0.05);
-  ASSERT_TRUE(rig.organ().still_part()->grasping(0));
+  ASSERT_TRUE(rig.organ().condensed_part()->grasping(0));
   EXPECT_TRUE(rig.organ().contacts().empty());
 }
 

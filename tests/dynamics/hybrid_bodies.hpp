@@ -3,7 +3,7 @@
 #include <memory>
 #include <random>
 
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 #include "common/dynamics/tensor_mass.hpp"
 #include "common/fem/direct.hpp"
 #include "common/models/hybrid/precompute.hpp"
@@ -81,7 +81,7 @@ struct HybridRun {
 
   Archive archive;
   TensorMass<Scalar> model;
-  HybridPart part;
+  CondensedPart part;
 };
 
 /// Lumped weights [N] per mesh node.

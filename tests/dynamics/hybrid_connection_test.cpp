@@ -37,7 +37,7 @@ struct Stack {
 TEST(PartialConnection, JoinsTheNodesThatCoincide) {
   const Stack stack;
   const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
-  const auto& hybrid = *archive.hybrid;
+  const auto& hybrid = *archive.condensed;
   ASSERT_EQ(hybrid.connection.size(), 9u);
   for (int node : hybrid.connection) EXPECT_NEAR(archive.surface.position[node].z(), 0.02, 1e-9);
   EXPECT_EQ(archive.tetrahedra.size(), stack.coarse.tetrahedra.size());
@@ -50,7 +50,7 @@ TEST(PartialConnection, JoinsTheNodesThatCoincide) {
 TEST(PartialConnection, NodesCoincideWithinATolerance) {
   Stack stack;
   for (auto& node : stack.coarse.nodes) node += Vector3d(5e-6, -5e-6, 5e-6);
-  EXPECT_EQ(precompute(stack.body, stack.fine, &stack.coarse).hybrid->connection.size(), 9u);
+  EXPECT_EQ(precompute(stack.body, stack.fine, &stack.coarse).condensed->connection.size(), 9u);
   for (auto& node : stack.coarse.nodes) node.x() += 1e-4;
   EXPECT_THROW(precompute(stack.body, stack.fine, &stack.coarse), std::runtime_error);
 }
@@ -62,14 +62,14 @@ TEST(PartialConnection, ReportsTheGapBetweenTheSurfaces) {
     if (node.z() > 0.0199 && !shared) node.z() -= 7e-4;
   }
   const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
-  EXPECT_NEAR(archive.hybrid->max_gap, 7e-4, 1e-5);
+  EXPECT_NEAR(archive.condensed->max_gap, 7e-4, 1e-5);
   stack.body.dynamic.gravity.setZero();
   const HybridRun<double> weightless(precompute(stack.body, stack.fine, &stack.coarse), 0, 60, Vector3d::Zero());
-  EXPECT_NEAR(weightless.part.gap(weightless.model), archive.hybrid->max_gap, 1e-12);
+  EXPECT_NEAR(weightless.part.gap(weightless.model), archive.condensed->max_gap, 1e-12);
   HybridRun<double> run(archive, 0, 60, kAslant);
   run.run(1.0);
   const double opened = run.part.gap(run.model);
-  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.hybrid->max_gap, 1e3 * opened);
+  std::printf("gap at rest %.3f mm, under gravity %.3f mm\n", 1e3 * archive.condensed->max_gap, 1e3 * opened);
   EXPECT_GT(opened, 0);
   EXPECT_LT(opened, 5e-3);
 }
@@ -78,9 +78,9 @@ TEST(PartialConnection, FullConnectionHasNoGap) {
   Stack stack;
   stack.coarse = make_block({0, 0, 0.02}, {0.04, 0.04, 0.06}, {4, 4, 4});
   const auto archive = precompute(stack.body, stack.fine, &stack.coarse);
-  EXPECT_EQ(archive.hybrid->connection.size(), 25u);
-  EXPECT_TRUE(archive.hybrid->gap.empty());
-  EXPECT_EQ(archive.hybrid->interface.size(), 32u);
+  EXPECT_EQ(archive.condensed->connection.size(), 25u);
+  EXPECT_TRUE(archive.condensed->gap.empty());
+  EXPECT_EQ(archive.condensed->interface.size(), 32u);
 }
 
 TEST(PartialConnection, RestsWhereTheJoinedMeshWould) {
@@ -98,7 +98,7 @@ TEST(PartialConnection, RestsWhereTheJoinedMeshWould) {
 TEST(HybridInterface, FacesLieBetweenTheParts) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   const auto archive = precompute(hybrid_body(random_part(mesh, 4)), mesh);
-  const auto& hybrid = *archive.hybrid;
+  const auto& hybrid = *archive.condensed;
   ASSERT_GT(hybrid.interface.size(), 10u);
   const auto& x = archive.surface.position;
   for (const auto& [a, b, c, facet] : hybrid.interface) {
@@ -163,7 +163,7 @@ TEST(HybridRefusal, OfAQuasiStaticPartThatWouldFloat) {
           << sentence;
     } else {
       EXPECT_EQ(sentence, "");
-      EXPECT_TRUE(precompute(stack.body, stack.fine, &stack.coarse).hybrid->held_by_connection);
+      EXPECT_TRUE(precompute(stack.body, stack.fine, &stack.coarse).condensed->held_by_connection);
     }
   }
 }

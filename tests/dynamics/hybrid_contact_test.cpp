@@ -20,7 +20,7 @@ const Vector3d kGravity(0, 0, -9.81);
 enum class Where { quasi_static, border };
 
 /// Triangles of the top whose nodes all belong to the quasi-static part, or that lie across the border.
-std::vector<std::array<int, 3>> top_triangles(const HybridPart& part, const SurfaceMap& map, Where where) {
+std::vector<std::array<int, 3>> top_triangles(const CondensedPart& part, const SurfaceMap& map, Where where) {
   std::vector<std::array<int, 3>> found;
   const double top = std::ranges::max(map.position, {}, [](const Vector3d& x) { return x.z(); }).z();
   for (const auto& t : map.triangles) {
@@ -270,7 +270,7 @@ TEST(HybridContact, StiffnessOfANodeIsTheForceForItsDisplacement) {
 TEST(HybridContact, ANodeGivesWayUnderAnotherByThePartAndByTheConnectionNodes) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   const auto archive = precompute(hybrid_body(random_part(mesh, 5)), mesh);
-  HybridPart part(archive, 0, false);
+  CondensedPart part(archive, 0, false);
   part.expect_patches(1);
   VectorXd inertia(3 * static_cast<Eigen::Index>(part.connection().size())), drawn(inertia.size());
   for (Eigen::Index k = 0; k < inertia.size(); ++k) inertia[k] = 1e-3 * (1 + 0.1 * static_cast<double>(k % 7));

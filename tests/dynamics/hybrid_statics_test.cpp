@@ -54,7 +54,7 @@ Coupled couple(const Archive& archive, const Vector3d& gravity) {
         if (const int c = place[3 * t[j / 3] + j % 3]; c >= 0) system.stiffness(r, c) += element(i, j);
     }
   }
-  const HybridTensors& hybrid = *archive.hybrid;
+  const CondensedTensors& hybrid = *archive.condensed;
   for (std::size_t i = 0; i < hybrid.dofs.size(); ++i) {
     const int r = place[3 * hybrid.dofs[i].node + hybrid.dofs[i].axis];
     const auto k =
@@ -69,7 +69,7 @@ Coupled couple(const Archive& archive, const Vector3d& gravity) {
   return system;
 }
 
-TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
+TEST(CondensedTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto body = hybrid_body(random_part(mesh, seed), kLoad);
@@ -83,7 +83,7 @@ TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
       ASSERT_NEAR(u[i], direct.displacement[archive.surface.node_number[system.dofs[i].node]][system.dofs[i].axis],
                   1e-9 * size)
           << "border " << seed;
-    const HybridTensors& hybrid = *archive.hybrid;
+    const CondensedTensors& hybrid = *archive.condensed;
     auto rows = archive.touchable_dofs;
     rows.insert(rows.end(), archive.other_dofs.begin(), archive.other_dofs.end());
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -97,7 +97,7 @@ TEST(HybridTensors, StaticStateIsThatOfTheWholeMeshWhereverTheBorderIs) {
 }
 
 /// The reaction alone: with the connection nodes held at zero, they feel the weight of the quasi-static part.
-TEST(HybridTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
+TEST(CondensedTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   std::vector<int> upper;
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
@@ -115,13 +115,13 @@ TEST(HybridTensors, WeightOnConnectionNodesAndFixedNodesSumsToThatOfThePart) {
     moving += part.material(static_cast<int>(e)).density *
               tet_gradients({part.rest[t[0]], part.rest[t[1]], part.rest[t[2]], part.rest[t[3]]}).volume * kLoad;
   }
-  for (std::size_t i = 0; i < archive.hybrid->dofs.size(); ++i)
-    reaction[archive.hybrid->dofs[i].axis] += archive.hybrid->reaction[i];
+  for (std::size_t i = 0; i < archive.condensed->dofs.size(); ++i)
+    reaction[archive.condensed->dofs[i].axis] += archive.condensed->reaction[i];
   EXPECT_LT((reaction - (whole - moving)).norm(), 1e-9 * whole.norm());
-  EXPECT_TRUE(archive.hybrid->held_by_connection);
+  EXPECT_TRUE(archive.condensed->held_by_connection);
 }
 
-TEST(HybridTensors, FrequencyBoundIsRigorousWhereverTheBorderIs) {
+TEST(CondensedTensors, FrequencyBoundIsRigorousWhereverTheBorderIs) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   double tightest = 0, loosest = 1;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -140,10 +140,10 @@ TEST(HybridTensors, FrequencyBoundIsRigorousWhereverTheBorderIs) {
   EXPECT_GT(loosest, 0.1);
 }
 
-TEST(HybridTensors, CouplingIsSymmetricAndTakesNoEnergyOut) {
+TEST(CondensedTensors, CouplingIsSymmetricAndTakesNoEnergyOut) {
   const auto mesh = make_hybrid_block({4, 3, 4}, 0.01);
   const auto archive = precompute(hybrid_body(random_part(mesh, 5)), mesh);
-  HybridPart part(archive, 0, false);
+  CondensedPart part(archive, 0, false);
   const auto size = static_cast<Eigen::Index>(3 * part.connection().size());
   MatrixXd matrix = MatrixXd::Zero(size, size);
   for (Eigen::Index c = 0; c < size; ++c) {

@@ -98,24 +98,24 @@ TEST(ArchiveFaults, PartsThatDoNotFitTogetherAreRefused) {
       [](Archive& a) { a.tetrahedra.clear(); },
       [](Archive& a) { a.tetrahedra.pop_back(); },  // materials are left over
       [](Archive& a) { a.density.pop_back(); },
-      [](Archive& a) { a.parts.hybrid = false; },
+      [](Archive& a) { a.parts.condensed = false; },
       [](Archive& a) {
         a.presses = {{{0, 0, 0}, 0.001, {}, {}}};
       },
       [](Archive& a) {
         a.presses = {{{0, 0, 0}, 0.001, {{2, 2}, {1, 3}}, {}}};
       },
-      [](Archive& a) { a.hybrid.reset(); },
-      [](Archive& a) { a.hybrid->connection[0] = -1; },
-      [](Archive& a) { a.hybrid->mass.pop_back(); },
-      [](Archive& a) { a.hybrid->dofs[0].node = 3; },  // no connection node
-      [](Archive& a) { a.hybrid->stiffness.pop_back(); },
-      [](Archive& a) { a.hybrid->reaction.pop_back(); },
-      [](Archive& a) { a.hybrid->follow.resize(a.hybrid->follow.size() - a.hybrid->dofs.size()); },
-      [](Archive& a) { a.hybrid->sag.pop_back(); },
-      [](Archive& a) { a.hybrid->interface[0][3] = 16; },
-      [](Archive& a) { a.hybrid->gap[1].triangle[2] = 99; },
-      [](Archive& a) { a.hybrid->quasi_static_triangles = 100; },
+      [](Archive& a) { a.condensed.reset(); },
+      [](Archive& a) { a.condensed->connection[0] = -1; },
+      [](Archive& a) { a.condensed->mass.pop_back(); },
+      [](Archive& a) { a.condensed->dofs[0].node = 3; },  // no connection node
+      [](Archive& a) { a.condensed->stiffness.pop_back(); },
+      [](Archive& a) { a.condensed->reaction.pop_back(); },
+      [](Archive& a) { a.condensed->follow.resize(a.condensed->follow.size() - a.condensed->dofs.size()); },
+      [](Archive& a) { a.condensed->sag.pop_back(); },
+      [](Archive& a) { a.condensed->interface[0][3] = 16; },
+      [](Archive& a) { a.condensed->gap[1].triangle[2] = 99; },
+      [](Archive& a) { a.condensed->quasi_static_triangles = 100; },
       [](Archive& a) { a.surface.triangles[3][1] = a.surface.size(); },
       [](Archive& a) { a.surface.triangles[3][1] = -1; },
       [](Archive& a) { a.surface.triangles[3][1] = a.surface.triangles[3][0]; },
@@ -160,9 +160,9 @@ TEST(ArchiveFaults, NumbersThatCannotBeAreNamed) {
   expect_named("'material/young' has", [](Archive& a) { a.young[1] = 0; });
   expect_named("'material/poisson' has", [](Archive& a) { a.poisson[0] = 0.5; });
   expect_named("'material/of_element' names", [](Archive& a) { a.material_of_element[0] = 2; });
-  expect_named("'hybrid/stiffness' has", [&](Archive& a) { a.hybrid->stiffness[0] = kNone; });
-  expect_named("'hybrid/mass' has", [](Archive& a) { a.hybrid->mass[0] = -1; });
-  expect_named("attribute 'hybrid_bound' is no number", [&](Archive& a) { a.hybrid->bound = kNone; });
+  expect_named("'hybrid/stiffness' has", [&](Archive& a) { a.condensed->stiffness[0] = kNone; });
+  expect_named("'hybrid/mass' has", [](Archive& a) { a.condensed->mass[0] = -1; });
+  expect_named("attribute 'hybrid_bound' is no number", [&](Archive& a) { a.condensed->bound = kNone; });
   expect_named("attribute 'mesh_nodes' is no count", [](Archive& a) { a.mesh_nodes = -1; });
 }
 

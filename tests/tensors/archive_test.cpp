@@ -50,8 +50,8 @@ TEST(Archive, ReadsBackWhatMovesWithInertia) {
   write_archive(archive, folder / "a.h5");
   EXPECT_TRUE(testing::same(read_archive(folder / "a.h5", ArchivePart::surface, {}), archive));
   archive.model = "tensor_mass";
-  archive.parts.hybrid = false;
-  archive.hybrid.reset();
+  archive.parts.condensed = false;
+  archive.condensed.reset();
   archive.touchable_dofs.clear();
   archive.other_dofs.clear();
   archive.touchable_compliance.clear();
@@ -66,10 +66,10 @@ TEST(Archive, HeaderHasTheTopologyOfAHybridBodyWithoutItsTensors) {
   write_archive(archive, folder / "a.h5");
   const auto header = read_archive(folder / "a.h5", ArchivePart::header, {});
   EXPECT_EQ(header.tetrahedra, archive.tetrahedra);
-  EXPECT_EQ(header.hybrid->connection, archive.hybrid->connection);
-  EXPECT_EQ(header.hybrid->interface, archive.hybrid->interface);
-  EXPECT_TRUE(header.hybrid->stiffness.empty());
-  EXPECT_TRUE(header.hybrid->follow.empty());
+  EXPECT_EQ(header.condensed->connection, archive.condensed->connection);
+  EXPECT_EQ(header.condensed->interface, archive.condensed->interface);
+  EXPECT_TRUE(header.condensed->stiffness.empty());
+  EXPECT_TRUE(header.condensed->follow.empty());
 }
 
 TEST(Archive, ReplacesTheFileThatWasThere) {

@@ -155,7 +155,7 @@ TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
   EXPECT_TRUE(ensure_archive(scene, body()).up_to_date);
   const auto archive = find_archive(scene, body(), ArchivePart::surface);
   EXPECT_EQ(archive.tetrahedra.size(), 6u);
-  EXPECT_GT(archive.hybrid->connection.size(), 3u);
+  EXPECT_GT(archive.condensed->connection.size(), 3u);
   EXPECT_GT(archive.touchable_compliance.size(), 0u);
 
   write_mesh(make_block({0, 0, 0}, {0.04, 0.04, 0.02}, {2, 2, 1}), folder / "organ.msh");
@@ -165,8 +165,8 @@ TEST_F(EnsureArchive, BuildsHybridBodiesFromRegionsAndFromASecondMesh) {
   hybrid.mesh = folder / "coarse.msh";
   const auto joined = load_or_precompute(scene, ArchivePart::surface)[0];
   EXPECT_EQ(joined.tetrahedra.size(), 6u);
-  EXPECT_EQ(joined.hybrid->connection.size(), 4u);
-  EXPECT_GT(joined.hybrid->gap.size(), 0u);
+  EXPECT_EQ(joined.condensed->connection.size(), 4u);
+  EXPECT_GT(joined.condensed->gap.size(), 0u);
 }
 
 TEST_F(EnsureArchive, StaticSolveByTensorsIsRefusedForBodiesThatMoveWithInertia) {

@@ -86,10 +86,10 @@ inline Archive make_hybrid_archive(int touchable, int others, unsigned seed = 1)
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   archive.model = "hybrid";
-  archive.parts = {.dynamic = true, .hybrid = true};
+  archive.parts = {.dynamic = true, .condensed = true};
   archive.density = {1000, 1200};
   archive.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}};
-  auto& hybrid = archive.hybrid.emplace();
+  auto& hybrid = archive.condensed.emplace();
   hybrid.connection = {1, 2, 4};
   hybrid.mass = {0.001, 0.002, 0.003};
   hybrid.bound = 1.5e6;
@@ -134,13 +134,14 @@ inline bool same_dofs(const std::vector<Dof>& a, const std::vector<Dof>& b) {
 
 inline bool same(const Archive& a, const Archive& b) {
   return a.body == b.body && a.model == b.model && a.density == b.density && a.tetrahedra == b.tetrahedra &&
-         a.hybrid == b.hybrid && a.modal == b.modal && a.presses == b.presses && a.content_hash == b.content_hash &&
-         a.software == b.software && a.mesh_nodes == b.mesh_nodes && a.young == b.young && a.poisson == b.poisson &&
-         a.material_of_element == b.material_of_element && a.surface.position == b.surface.position &&
-         a.surface.node_number == b.surface.node_number && a.surface.fixed == b.surface.fixed &&
-         a.surface.triangles == b.surface.triangles && a.surface.touchable == b.surface.touchable &&
-         same_dofs(a.touchable_dofs, b.touchable_dofs) && same_dofs(a.other_dofs, b.other_dofs) &&
-         !a.compressed == !b.compressed && (!a.compressed || a.compressed->tensors() == b.compressed->tensors()) &&
+         a.condensed == b.condensed && a.modal == b.modal && a.presses == b.presses &&
+         a.content_hash == b.content_hash && a.software == b.software && a.mesh_nodes == b.mesh_nodes &&
+         a.young == b.young && a.poisson == b.poisson && a.material_of_element == b.material_of_element &&
+         a.surface.position == b.surface.position && a.surface.node_number == b.surface.node_number &&
+         a.surface.fixed == b.surface.fixed && a.surface.triangles == b.surface.triangles &&
+         a.surface.touchable == b.surface.touchable && same_dofs(a.touchable_dofs, b.touchable_dofs) &&
+         same_dofs(a.other_dofs, b.other_dofs) && !a.compressed == !b.compressed &&
+         (!a.compressed || a.compressed->tensors() == b.compressed->tensors()) &&
          a.touchable_compliance == b.touchable_compliance && a.other_compliance == b.other_compliance &&
          a.specimen_force_slope == b.specimen_force_slope && a.specimen_radial_slope == b.specimen_radial_slope;
 }

@@ -60,14 +60,14 @@ void expect_scales(const Spec& soft, const std::function<Archive(const Spec&)>& 
   expect_close({&a.specimen_force_slope, 1}, {&b.specimen_force_slope, 1}, "force slope");
   expect_close({&a.specimen_radial_slope, 1}, {&b.specimen_radial_slope, 1}, "radial slope");
   expect_close(a.presses, b.presses);
-  ASSERT_EQ(a.hybrid.has_value(), b.hybrid.has_value());
-  if (a.hybrid) {
-    expect_close({&a.hybrid->bound, 1}, {&b.hybrid->bound, 1}, "bound");
-    expect_close(a.hybrid->mass, b.hybrid->mass, "mass");
-    expect_close(a.hybrid->stiffness, b.hybrid->stiffness, "stiffness");
-    expect_close(a.hybrid->reaction, b.hybrid->reaction, "reaction");
-    expect_close(a.hybrid->follow, b.hybrid->follow, "follow");
-    expect_close(a.hybrid->sag, b.hybrid->sag, "sag");
+  ASSERT_EQ(a.condensed.has_value(), b.condensed.has_value());
+  if (a.condensed) {
+    expect_close({&a.condensed->bound, 1}, {&b.condensed->bound, 1}, "bound");
+    expect_close(a.condensed->mass, b.condensed->mass, "mass");
+    expect_close(a.condensed->stiffness, b.condensed->stiffness, "stiffness");
+    expect_close(a.condensed->reaction, b.condensed->reaction, "reaction");
+    expect_close(a.condensed->follow, b.condensed->follow, "follow");
+    expect_close(a.condensed->sag, b.condensed->sag, "sag");
   }
   ASSERT_EQ(a.modal.has_value(), b.modal.has_value());
   if (a.modal) {

@@ -21,7 +21,7 @@ Pieces pieces_of(const DynamicOrgan& organ) {
     if (!hangs[part]) off.push_back(size[part]);
   std::ranges::sort(off, std::greater());
   // The quasi-static part is the piece that has not come off; of a body without one it is the largest.
-  const std::size_t whole = organ.still_part() ? 0 : 1;
+  const std::size_t whole = organ.condensed_part() ? 0 : 1;
   return {static_cast<int>(off.size() + 1 - whole), off.size() > whole ? off[whole] : 0};
 }
 

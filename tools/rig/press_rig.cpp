@@ -38,7 +38,7 @@ Eigen::Vector3d force_on_moving_part(const DynamicOrgan& organ) {
 
 Eigen::Vector3d force_on(const DynamicOrgan& organ) {
   Eigen::Vector3d sum = force_on_moving_part(organ);
-  if (const HybridTouch* still = organ.still_part())
+  if (const CondensedTouch* still = organ.condensed_part())
     for (std::size_t c = 0; c < still->contacts().size(); ++c) sum += still->force(static_cast<int>(c));
   return sum;
 }

@@ -75,7 +75,7 @@ double work_on(const DynamicWorld& tissue, int organ) {
     work += force.dot(c.at - before);
   };
   for (const TouchContact& c : tissue.organ(organ).contacts()) add(c, c.force);
-  if (const HybridTouch* still = tissue.organ(organ).still_part())
+  if (const CondensedTouch* still = tissue.organ(organ).condensed_part())
     for (std::size_t c = 0; c < still->contacts().size(); ++c)
       add(still->contacts()[c], still->force(static_cast<int>(c)));
   return work;

@@ -234,7 +234,7 @@ class Dynamic : public Method {
     auto& motion = motion_of(scene.bodies[body()]);
     const std::string key =
         fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, kind_of(of),
-                    ready.archive.hybrid ? ready.archive.hybrid->connection.size() : 0);
+                    ready.archive.condensed ? ready.archive.condensed->connection.size() : 0);
     if (!small_step_.contains(key)) {
       motion.integrator = Integrator::rk4;
       motion.precision = Precision::float64;

@@ -13,7 +13,7 @@ std::optional<OneMesh> on_one_mesh(const HybridSpec& body) {
   TetMesh mesh = load_tet_mesh(body.mesh, body.scale);
   if (body.hybrid.mesh.empty()) return OneMesh{body, body, std::move(mesh)};
   const TetMesh moving = load_tet_mesh(body.hybrid.mesh, body.hybrid.scale);
-  if (!precompute(body, mesh, &moving).hybrid->gap.empty()) return {};
+  if (!precompute(body, mesh, &moving).condensed->gap.empty()) return {};
   std::vector<int> part(moving.tetrahedra.size());
   std::iota(part.begin(), part.end(), static_cast<int>(mesh.tetrahedra.size()));
   HybridSpec whole = body;

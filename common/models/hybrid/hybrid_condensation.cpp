@@ -90,7 +90,7 @@ double largest_eigenvalue(const MatrixXd& connection, const std::vector<Dof>& co
 
 void condense_on_connection(const HybridSplit& split, const MaterialField& materials, const std::vector<Dof>& rows,
                             const std::vector<Dof>& columns, const std::vector<double>& mass,
-                            const Eigen::Vector3d& gravity, HybridTensors& tensors) {
+                            const Eigen::Vector3d& gravity, CondensedTensors& tensors) {
   const auto count = static_cast<Index>(columns.size());
   auto blocks = take_apart(split, materials, columns);
   const auto row_index = inner_indices(split, rows);

@@ -26,7 +26,7 @@ std::vector<int> dynamic_elements(const HybridSpec& body, const TetMesh& mesh);
 /// stiffness is regular.
 HybridSplit split_hybrid(const HybridSpec& body, const TetMesh& mesh, const DofMap& dofs, std::vector<int> dynamic);
 
-/// HybridTensors::interface: faces between the parts. `index`: archive node per mesh node.
+/// CondensedTensors::interface: faces between the parts. `index`: archive node per mesh node.
 std::vector<std::array<int, 4>> interface_faces(const TetMesh& mesh, const HybridSplit& split,
                                                 const std::vector<int>& index);
 

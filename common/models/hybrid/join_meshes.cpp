@@ -90,7 +90,7 @@ double box_distance(const Vector3d& p, const Triangle& t) {
 
 /// The pairs of one side's nodes with the other side's triangles.
 void add_pairs(const TetMesh& mesh, const std::vector<char>& connection, const Side& from, const Side& to, double reach,
-               const std::vector<int>& index, HybridTensors& tensors) {
+               const std::vector<int>& index, CondensedTensors& tensors) {
   for (int node : from.surface.nodes) {
     if (connection[node]) continue;
     const Vector3d& p = mesh.nodes[node];
@@ -142,7 +142,8 @@ TetMesh join_meshes(const TetMesh& fine, const TetMesh& coarse, const std::strin
   return joined;
 }
 
-void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index, HybridTensors& tensors) {
+void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index,
+             CondensedTensors& tensors) {
   TetMesh moving;
   moving.nodes = joined.nodes;
   for (int e : split.dynamic) moving.tetrahedra.push_back(joined.tetrahedra[e]);

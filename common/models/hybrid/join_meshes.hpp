@@ -12,8 +12,8 @@ namespace palpate {
 /// coincide or a tetrahedron collapses.
 TetMesh join_meshes(const TetMesh& fine, const TetMesh& coarse, const std::string& where);
 
-/// Fills in HybridTensors::gap: every node of one part's boundary that faces the other part's boundary within
+/// Fills in CondensedTensors::gap: every node of one part's boundary that faces the other part's boundary within
 /// half a mean edge of the tensor-mass mesh and is no connection node, with the point opposite to it.
-void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index, HybridTensors& tensors);
+void add_gap(const TetMesh& joined, const HybridSplit& split, const std::vector<int>& index, CondensedTensors& tensors);
 
 }  // namespace palpate

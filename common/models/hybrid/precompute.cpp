@@ -72,7 +72,7 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
   Stopwatch watch(progress);
   const auto materials = materials_of(whole, split.quasi_static);
   SurfaceMap& surface = archive.surface;
-  HybridTensors tensors;
+  CondensedTensors tensors;
   tensors.held_by_connection = split.held_by_connection;
   tensors.quasi_static_triangles = quasi_static_first(mesh, split, surface);
   tensors.interface = interface_faces(mesh, split, index);
@@ -95,8 +95,8 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
                          body.dynamic.gravity, tensors);
   watch.lap("condensation on the connection nodes");
   add_compliance(split, materials, progress, archive);
-  archive.hybrid = std::move(tensors);
-  archive.parts.hybrid = true;
+  archive.condensed = std::move(tensors);
+  archive.parts.condensed = true;
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* c
   add_hybrid(body, parts.mesh, split, materials, index, progress, archive);
   add_compliance_at_rest(parts.mesh, dofs, with_elements(body, parts.dynamic, parts.mesh, materials), progress,
                          archive);
-  if (coarse) add_gap(parts.mesh, split, index, *archive.hybrid);
+  if (coarse) add_gap(parts.mesh, split, index, *archive.condensed);
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
@@ -137,7 +137,7 @@ ArchiveJob archive_job(const HybridSpec& body, const Progress& progress) {
 
 std::vector<std::string> archive_lines(const HybridSpec& body, const Archive& archive) {
   std::vector<std::string> lines = archive_lines(static_cast<const MovingSpec&>(body), archive);
-  const HybridTensors& hybrid = *archive.hybrid;
+  const CondensedTensors& hybrid = *archive.condensed;
   lines.push_back(fmt::format("{} connection nodes to the quasi-static part", hybrid.connection.size()));
   if (hybrid.held_by_connection)
     lines.emplace_back("a piece of the quasi-static part has too few fixed nodes: the connection nodes hold it");

@@ -17,9 +17,9 @@ struct HybridParts {
 HybridParts find_parts(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse);
 
 /// The archive of a hybrid body: rest shape, tetrahedra, materials and boundary conditions of the tensor-mass part, and
-/// the tensors of the quasi-static part (HybridTensors). `coarse`: the mesh of Hybrid::mesh, null without one. Throws
-/// std::runtime_error on an unfixed body, empty selections, a region that leaves no part, parts that share no node, a
-/// quasi-static part that would float, or too little memory.
+/// the tensors of the quasi-static part (CondensedTensors). `coarse`: the mesh of Hybrid::mesh, null without one.
+/// Throws std::runtime_error on an unfixed body, empty selections, a region that leaves no part, parts that share no
+/// node, a quasi-static part that would float, or too little memory.
 Archive precompute(const HybridSpec& body, const TetMesh& mesh, const TetMesh* coarse = nullptr,
                    const Progress& progress = {});
 

@@ -9,7 +9,7 @@
 
 #include "common/contact/cut_surface.hpp"
 #include "common/contact/tool_contacts.hpp"
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
 #include "common/models/moving/predict.hpp"
 #include "common/models/moving/static_problem.hpp"
@@ -36,18 +36,18 @@ void say_extent(const MovingKind& kind, const TetMesh& mesh, const Archive& arch
   const std::size_t moving = archive.tetrahedra.size();
   std::string extent =
       fmt::format("  moving: {} nodes, {} tetrahedra, {} edges", moving_nodes(archive), moving, edge_count(archive));
-  if (archive.hybrid) {
+  if (archive.condensed) {
     const double whole = static_cast<double>(mesh.tetrahedra.size() + (kind.own_mesh ? moving : 0));
     extent += fmt::format(", {:.1f} % of the tetrahedra; joined to the quasi-static part at {} nodes",
-                          100 * static_cast<double>(moving) / whole, archive.hybrid->connection.size());
-    if (kind.own_mesh) extent += fmt::format(", gap at rest {:.3g} m", archive.hybrid->max_gap);
+                          100 * static_cast<double>(moving) / whole, archive.condensed->connection.size());
+    if (kind.own_mesh) extent += fmt::format(", gap at rest {:.3g} m", archive.condensed->max_gap);
   }
   report.say(extent);
 }
 
-std::unique_ptr<HybridPart> make_rest(const MovingSpec& body, const Archive& archive, double friction) {
-  if (!archive.hybrid) return nullptr;
-  return std::make_unique<HybridPart>(archive, friction, body.dynamic.precision == Precision::float32);
+std::unique_ptr<CondensedPart> make_rest(const MovingSpec& body, const Archive& archive, double friction) {
+  if (!archive.condensed) return nullptr;
+  return std::make_unique<CondensedPart>(archive, friction, body.dynamic.precision == Precision::float32);
 }
 
 void predict(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, const CheckedSolid& solid,
@@ -57,7 +57,7 @@ void predict(const MovingSpec& body, const MovingKind& kind, const CheckSettings
   const int steps = organ->steps_in(settings.dt, true);
   if (!settings.tools.empty()) say_tried_contact(body, kind.name, settings, mean_edge(archive.surface), steps, report);
   if (kind.own_mesh) return;
-  if (archive.hybrid)
+  if (archive.condensed)
     say_sag(body, {solid.mesh, solid.materials, solid.dofs}, report);
   else
     say_sag(body, moving_problem(body, solid.mesh), report);
@@ -82,8 +82,8 @@ std::vector<MemoryPart> memory(const MovingSpec& body, const MovingKind& kind, c
       nodes * (3 * sizeof(double) + 4 * sizeof(int)) + 3 * triangles * sizeof(int) + 4 * tetrahedra * sizeof(int));
   if (!archive.moving_compliance.empty())
     add("disk", "archive: compliance at rest", sizeof(double) * archive.moving_compliance.size());
-  if (archive.hybrid) {
-    const HybridTensors& h = *archive.hybrid;
+  if (archive.condensed) {
+    const CondensedTensors& h = *archive.condensed;
     add("disk", "archive: tensors of the connection nodes",
         sizeof(double) * (h.stiffness.size() + h.follow.size() + h.reaction.size() + h.sag.size()));
     add("disk", "archive: compliance of the quasi-static part",

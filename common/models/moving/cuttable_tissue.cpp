@@ -24,7 +24,7 @@ CuttableTissue::CuttableTissue(const Archive& archive, const MovingSpec& body, c
       fading_(settings.dt),
       joined_(mesh.nodes(), 0),
       damping_(body.dynamic.damping) {
-  if (archive.hybrid) topology_.join(shown_.joints());
+  if (archive.condensed) topology_.join(shown_.joints());
   surface_.hide(shown_.joints());
   for (int node = 0; node < mesh.nodes(); ++node)
     if (std::ranges::all_of(mesh.fixed[node], std::identity{})) surface_.fix(node);

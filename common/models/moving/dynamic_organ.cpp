@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kCalmed = 0.6;  // [s] for which tissue is calmed into which a tool was put: it is led out
 
-std::span<const int> joined_nodes(const HybridTouch* still) {
+std::span<const int> joined_nodes(const CondensedTouch* still) {
   return still ? still->part().connection() : std::span<const int>{};
 }
 
@@ -29,9 +29,9 @@ DynamicOrgan::DynamicOrgan(const Archive& archive, const MovingSpec& body, const
                            const MakeModel& make)
     : mesh_(elastic_mesh(archive, body.dynamic.element)),
       model_(make(mesh_)),
-      still_(archive.hybrid ? std::make_unique<HybridTouch>(archive, settings,
-                                                            body.dynamic.precision == Precision::float32, *model_)
-                            : nullptr),
+      still_(archive.condensed ? std::make_unique<CondensedTouch>(archive, settings,
+                                                                  body.dynamic.precision == Precision::float32, *model_)
+                               : nullptr),
       tissue_(archive, body, settings, mesh_, *model_, joined_nodes(still_.get())),
       contacts_(archive, mesh_, tissue_.topology(), tissue_.surface(), *model_, still_.get(), settings),
       passing_(tissue_.surface(), settings.tools.size()),

@@ -13,8 +13,8 @@
 #include "common/dynamics/elastic_mesh.hpp"
 #include "common/dynamics/make_model.hpp"
 #include "common/dynamics/spec.hpp"
+#include "common/models/moving/condensed_touch.hpp"
 #include "common/models/moving/cuttable_tissue.hpp"
-#include "common/models/moving/hybrid_touch.hpp"
 #include "common/models/moving/passing_tools.hpp"
 #include "common/models/moving/tissue_touch.hpp"
 #include "common/models/moving/tool_in_tick.hpp"
@@ -62,7 +62,7 @@ class DynamicOrgan {
   const ElasticMesh& mesh() const { return mesh_; }
   std::span<const TouchContact> contacts() const { return contacts_.contacts(); }
   /// The quasi-static part of a hybrid organ; null for others.
-  const HybridTouch* still_part() const { return still_.get(); }
+  const CondensedTouch* condensed_part() const { return still_.get(); }
   /// [m] of a surface node of either part.
   Eigen::Vector3d position(int node) const;
   Eigen::Vector3d displacement(int node) const;  ///< [m] of a node of either part
@@ -110,7 +110,7 @@ class DynamicOrgan {
   std::vector<Hand> hands_;  ///< per tool
   ElasticMesh mesh_;
   std::unique_ptr<DynamicModel> model_;
-  std::unique_ptr<HybridTouch> still_;
+  std::unique_ptr<CondensedTouch> still_;
   CuttableTissue tissue_;
   TissueTouch contacts_;
   PassingTools passing_;

@@ -6,7 +6,7 @@
 #include "common/contact/patch/local_motion.hpp"
 #include "common/contact/patch/patch_parts.hpp"
 #include "common/geometry/segment.hpp"
-#include "common/models/moving/hybrid_nodes.hpp"
+#include "common/models/moving/condensed_nodes.hpp"
 
 namespace palpate {
 namespace {
@@ -47,7 +47,7 @@ Segment seen_from(const Eigen::Isometry3d& motion, const Segment& segment) {
 }  // namespace
 
 TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology,
-                             const CutSurface& surface, DynamicModel& model, HybridTouch* still,
+                             const CutSurface& surface, DynamicModel& model, CondensedTouch* still,
                              const InertialResponse& response, const StepSettings& settings)
     : mesh_(mesh),
       friction_(settings.contact.friction),
@@ -88,7 +88,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   went_.reserve(Patch::kMaxNodes);
   forces_.reserve(Patch::kMaxNodes);
   if (still) {
-    nodes_ = std::make_unique<HybridNodes>(model, response, still->part(), static_cast<int>(parts_.size()));
+    nodes_ = std::make_unique<CondensedNodes>(model, response, still->part(), static_cast<int>(parts_.size()));
     grounds_.push_back({still->surface(), {}});
     for (int t = 0; t < still->surface().triangle_count(); ++t) grounds_.back().triangle.push_back(t);
     for (int node = 0; node < mesh.nodes(); ++node) ground_of_node_[node] = still->part().owns(node);

@@ -11,7 +11,7 @@
 #include "common/contact/patch/patch.hpp"
 #include "common/contact/step_settings.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
-#include "common/models/moving/hybrid_touch.hpp"
+#include "common/models/moving/condensed_touch.hpp"
 #include "common/models/moving/inertial_response.hpp"
 #include "common/models/moving/tissue_nodes.hpp"
 #include "common/tool/moving_tool.hpp"
@@ -35,7 +35,7 @@ class TissuePatches {
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
   /// null for others. All else outlives this object.
   TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, const CutSurface& surface,
-                DynamicModel& model, HybridTouch* still, const InertialResponse& response,
+                DynamicModel& model, CondensedTouch* still, const InertialResponse& response,
                 const StepSettings& settings);
 
   /// What presses no more though it was not lifted: what it did to nodes is added to `forces`, and `leave` is told of a

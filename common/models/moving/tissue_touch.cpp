@@ -28,7 +28,7 @@ void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
 }  // namespace
 
 TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
-                         DynamicModel& model, HybridTouch* still, const StepSettings& settings)
+                         DynamicModel& model, CondensedTouch* still, const StepSettings& settings)
     : mesh_(mesh),
       still_(still),
       model_(model),

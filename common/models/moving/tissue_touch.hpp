@@ -26,7 +26,7 @@ class TissueTouch {
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
   /// null for others. All else outlives this object.
   TissueTouch(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, CutSurface& surface,
-              DynamicModel& model, HybridTouch* still, const StepSettings& settings);
+              DynamicModel& model, CondensedTouch* still, const StepSettings& settings);
 
   /// Of the last tick: all that pressed in it, those that have let go as well, with the tick's mean normal.
   std::span<const TouchContact> contacts() const { return all_; }
@@ -81,7 +81,7 @@ class TissueTouch {
   void put_right(double dt);
 
   const ElasticMesh& mesh_;
-  const HybridTouch* still_;
+  const CondensedTouch* still_;
   DynamicModel& model_;
   CutSurface& surface_;
   std::vector<Eigen::Vector3d> free_;   ///< [m] per node: where it is at a step's end without contacts

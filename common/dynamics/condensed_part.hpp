@@ -11,10 +11,10 @@
 
 namespace palpate {
 
-/// The quasi-static part of a hybrid body at run time (RR3510 sec. 6; see HybridTensors for the symbols). It
-/// answers the tensor-mass part with forces on the connection nodes in every stage of the integrator, and
-/// moves with them at once, without inertia of its own beyond the mass that the connection nodes carry for
-/// it.
+/// The quasi-static part of a hybrid body at run time, condensed on its connection nodes (RR3510 sec. 6; see
+/// CondensedTensors for the symbols). It answers the tensor-mass part with forces on the connection nodes in every
+/// stage of the integrator, and moves with them at once, without inertia of its own beyond the mass that the connection
+/// nodes carry for it.
 ///
 /// Tools touch it through a ContactLaw on its own compliance. Points held there are held together with the
 /// connection nodes: with J their rows, the forces f = G (d - J x), G = (J C J^T)^-1, follow the connection
@@ -29,19 +29,19 @@ namespace palpate {
 ///   model.step(dt) ...   calls apply()
 ///   take(model)          contact_force() and the nodes' displacements, at the new state
 /// Nodes are those of the archive. Nothing is allocated after construction.
-class HybridPart final : public Coupling {
+class CondensedPart final : public Coupling {
  public:
   static constexpr int kMaxContacts = 32;
 
   /// The archive read with ArchivePart::surface. `single`: S u in single precision, for a model in single
-  /// precision. Throws std::runtime_error if the archive is not that of a hybrid body or was read in part.
-  HybridPart(const Archive& archive, double friction, bool single);
-  HybridPart(const HybridPart&) = delete;
-  HybridPart& operator=(const HybridPart&) = delete;
+  /// precision. Throws std::runtime_error if the archive has no condensed part or was read in part.
+  CondensedPart(const Archive& archive, double friction, bool single);
+  CondensedPart(const CondensedPart&) = delete;
+  CondensedPart& operator=(const CondensedPart&) = delete;
 
   /// Puts this part's mass, forces and frequency bound on the model's connection nodes. The bound covers S,
   /// points held, and the stiffness of contacts that rest on connection nodes; that may be what is free below
-  /// the model's own bound, or as much as `bound` of HybridTensors.
+  /// the model's own bound, or as much as `bound` of CondensedTensors.
   void couple(DynamicModel& model);
   std::span<const int> connection() const { return connection_; }
 
@@ -115,7 +115,7 @@ class HybridPart final : public Coupling {
   };
   using NodeForce = PatchForce;
 
-  void fill_stiffness(const HybridTensors& hybrid);
+  void fill_stiffness(const CondensedTensors& condensed);
   void fill_follow(const Archive& archive);
   Eigen::Vector3d followed(int node) const;
   Eigen::Matrix3d compliance(const Anchor& a, const Anchor& b) const;

@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 #include "common/kernels/kernels.hpp"
 
-/// Contacts of a HybridPart, condensed on its connection nodes.
+/// Contacts of a CondensedPart, condensed on its connection nodes.
 namespace palpate {
 namespace {
 
@@ -12,12 +12,12 @@ using Eigen::Vector3d;
 using Vector = Eigen::Map<Eigen::VectorXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-constexpr std::ptrdiff_t kStride = kernels::leading_dimension(3 * HybridPart::kMaxContacts);
+constexpr std::ptrdiff_t kStride = kernels::leading_dimension(3 * CondensedPart::kMaxContacts);
 
 }  // namespace
 
 /// Where an anchor would be with the connection nodes at rest and nothing touching.
-Vector3d HybridPart::still_position(const Anchor& anchor) const {
+Vector3d CondensedPart::still_position(const Anchor& anchor) const {
   Vector3d position = Vector3d::Zero();
   for (int v = 0; v < 3; ++v) {
     const int node = anchor.nodes[v];
@@ -27,7 +27,7 @@ Vector3d HybridPart::still_position(const Anchor& anchor) const {
   return position;
 }
 
-void HybridPart::count_shares() {
+void CondensedPart::count_shares() {
   std::fill(shares_.begin(), shares_.end(), 0);
   for (const TouchContact& contact : law_.contacts())
     for (int v = 0; v < 3 && contact.touch != Touch::open; ++v)
@@ -39,7 +39,7 @@ void HybridPart::count_shares() {
 /// own but mass: with s_p = sum w^2 n/m over the connection nodes of point p (n: how many contacts share the
 /// node), all the contacts' stiffnesses a/s_p together add at most a = contact_bound_ to the square of any
 /// frequency, by Cauchy's inequality.
-double HybridPart::softness(const TouchContact& contact) const {
+double CondensedPart::softness(const TouchContact& contact) const {
   double sum = 0;
   for (int v = 0; v < 3; ++v) {
     const int k = place_[contact.anchor.nodes[v]];
@@ -49,7 +49,7 @@ double HybridPart::softness(const TouchContact& contact) const {
   return sum / contact_bound_;
 }
 
-void HybridPart::list_rows() {
+void CondensedPart::list_rows() {
   rows_.clear();
   row_begin_.assign(1, 0);
   const auto contacts = law_.contacts();
@@ -67,7 +67,7 @@ void HybridPart::list_rows() {
 }
 
 /// A row of J H, connection nodes of the anchor included.
-void HybridPart::fill_row(int r) {
+void CondensedPart::fill_row(int r) {
   Vector out(held_.data() + static_cast<std::size_t>(size_) * r, size_);
   out.setZero();
   const Anchor& anchor = law_.contacts()[rows_[r].contact].anchor;
@@ -83,7 +83,7 @@ void HybridPart::fill_row(int r) {
 
 /// The Cholesky factor of R (J C J^T + softness) R^T, and in constant_ the displacements R (d - J x_0) that
 /// the held rows ask for, less what friction makes of them.
-void HybridPart::factorise() {
+void CondensedPart::factorise() {
   const auto contacts = law_.contacts();
   const int count = static_cast<int>(rows_.size());
   for (int r = 0; r < count; ++r) {
@@ -108,20 +108,20 @@ void HybridPart::factorise() {
 }
 
 /// load_ += H^T J^T f, connection nodes of the anchor included.
-void HybridPart::add_follow_force(const Anchor& anchor, const Vector3d& force) {
+void CondensedPart::add_follow_force(const Anchor& anchor, const Vector3d& force) {
   for (int v = 0; v < 3; ++v)
     if (anchor.weights[v] != 0) add_follow_force(anchor.nodes[v], anchor.weights[v] * force, load_);
 }
 
 /// The same of a node, to the forces on the connection nodes.
-void HybridPart::add_follow_force(int node, const Vector3d& force, std::span<double> to) const {
+void CondensedPart::add_follow_force(int node, const Vector3d& force, std::span<double> to) const {
   Vector load(to.data(), size_);
   if (place_[node] >= 0) load.segment<3>(3 * place_[node]) += force;
   if (row_[node] < 0) return;
   for (int axis = 0; axis < 3; ++axis) load += force[axis] * ConstVector(follow(node, axis).data(), size_);
 }
 
-void HybridPart::condense() {
+void CondensedPart::condense() {
   count_shares();
   list_rows();
   const int count = static_cast<int>(rows_.size());
@@ -137,7 +137,7 @@ void HybridPart::condense() {
   for (int r = 0; r < count; ++r) Vector(load_.data(), size_) += constant_[r] * ConstVector(held_rows_[r], size_);
 }
 
-void HybridPart::apply(const double* u, double* force) {
+void CondensedPart::apply(const double* u, double* force) {
   if (size_ == 0) return;
   Vector out(force, size_);
   if (single_) {
@@ -158,7 +158,7 @@ void HybridPart::apply(const double* u, double* force) {
 
 /// Forces of the contacts at the present displacements of the connection nodes, and all forces on touchable
 /// nodes.
-void HybridPart::find_forces() {
+void CondensedPart::find_forces() {
   const auto contacts = law_.contacts();
   const int count = static_cast<int>(rows_.size());
   for (int r = 0; r < count; ++r) multiplier_[r] = ConstVector(held_rows_[r], size_).dot(ConstVector(u_.data(), size_));
@@ -168,7 +168,7 @@ void HybridPart::find_forces() {
   list_node_forces();
 }
 
-void HybridPart::adopt(const DynamicModel& model, std::span<const Vector3d> forces) {
+void CondensedPart::adopt(const DynamicModel& model, std::span<const Vector3d> forces) {
   rows_.clear();
   take(model);
   std::copy(forces.begin(), forces.end(), contact_force_.begin());
@@ -176,7 +176,7 @@ void HybridPart::adopt(const DynamicModel& model, std::span<const Vector3d> forc
 }
 
 /// What contacts and dead forces come to at the nodes of this part.
-void HybridPart::list_node_forces() {
+void CondensedPart::list_node_forces() {
   const auto contacts = law_.contacts();
   node_forces_.assign(dead_.begin(), dead_.end());
   for (std::size_t c = 0; c < contacts.size(); ++c)
@@ -188,7 +188,7 @@ void HybridPart::list_node_forces() {
     }
 }
 
-void HybridPart::add_loads(DynamicModel& model) {
+void CondensedPart::add_loads(DynamicModel& model) {
   for (std::size_t k = 0; k < connection_.size(); ++k) {
     const Vector3d before = Eigen::Map<const Vector3d>(added_.data() + 3 * k);
     model.set_load(connection_[k], model.load(connection_[k]) - before + load(static_cast<int>(k)));

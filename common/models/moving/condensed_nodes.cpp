@@ -1,4 +1,4 @@
-#include "common/models/moving/hybrid_nodes.hpp"
+#include "common/models/moving/condensed_nodes.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ using Eigen::Map;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-HybridNodes::HybridNodes(DynamicModel& model, const InertialResponse& response, HybridPart& part, int patches)
+CondensedNodes::CondensedNodes(DynamicModel& model, const InertialResponse& response, CondensedPart& part, int patches)
     : TissueNodes(model, response),
       part_(part),
       inertia_(3 * part.connection().size(), 0.0),
@@ -16,17 +16,17 @@ HybridNodes::HybridNodes(DynamicModel& model, const InertialResponse& response, 
   part.expect_patches(patches);
 }
 
-Vector3d HybridNodes::displacement(int node) const {
+Vector3d CondensedNodes::displacement(int node) const {
   return part_.owns(node) ? part_.displacement(node) : model().displacement(node);
 }
 
 // Of one that has lost its tetrahedra the mass of the quasi-static ones is left.
-Vector3d HybridNodes::inertia(int connection) const {
+Vector3d CondensedNodes::inertia(int connection) const {
   return response().of_mass(part_.connection()[connection],
                             std::max(model().mass(part_.connection()[connection]), part_.mass(connection)));
 }
 
-void HybridNodes::add_give(std::span<const int> nodes, std::vector<NodeGive>& give) const {
+void CondensedNodes::add_give(std::span<const int> nodes, std::vector<NodeGive>& give) const {
   for (std::size_t k = 0; k < part_.connection().size(); ++k)
     Map<Vector3d>(inertia_.data() + 3 * k) = inertia(static_cast<int>(k));
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
@@ -40,12 +40,12 @@ void HybridNodes::add_give(std::span<const int> nodes, std::vector<NodeGive>& gi
     }
 }
 
-void HybridNodes::release(int patch) {
+void CondensedNodes::release(int patch) {
   part_.push(patch, {});
   part_.take(model());
 }
 
-void HybridNodes::push(int patch, std::span<const PatchForce> forces, double dt) {
+void CondensedNodes::push(int patch, std::span<const PatchForce> forces, double dt) {
   part_.push(patch, forces);
   part_.draw(patch, drawn_);
   for (std::size_t k = 0; k < part_.connection().size(); ++k) {
@@ -57,7 +57,7 @@ void HybridNodes::push(int patch, std::span<const PatchForce> forces, double dt)
   part_.take(model());
 }
 
-void HybridNodes::resume(int patch, std::span<const PatchForce> forces) {
+void CondensedNodes::resume(int patch, std::span<const PatchForce> forces) {
   part_.push(patch, forces);
 }
 

@@ -25,7 +25,7 @@ struct GapPair {
 ///   u_i = H u_c + u_g + C_ii f_i                 H = -K_ii^-1 K_ic,  u_g = K_ii^-1 w_i
 ///   f_c = -S u_c + g_c + H^T f_i                 S = K_cc + K_ci H,  g_c = w_c + H^T w_i
 /// w: weight of the quasi-static elements, lumped. H and u_g are stored for the visible dofs among i.
-struct HybridTensors {
+struct CondensedTensors {
   std::vector<int> connection;  ///< connection nodes, ascending
   std::vector<double> mass;     ///< [kg] per connection node: lumped mass of its quasi-static elements
   /// [rad^2/s^2] Largest eigenvalue of K_cc against `mass`: covers S, and S with any points of i held.
@@ -43,7 +43,7 @@ struct HybridTensors {
   std::vector<GapPair> gap;  ///< empty at a full connection
   double max_gap = 0;        ///< [m] at rest, over `gap`
 
-  bool operator==(const HybridTensors&) const = default;
+  bool operator==(const CondensedTensors&) const = default;
 };
 
 }  // namespace palpate

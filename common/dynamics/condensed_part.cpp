@@ -1,4 +1,4 @@
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-constexpr int kRows = 3 * HybridPart::kMaxContacts;
+constexpr int kRows = 3 * CondensedPart::kMaxContacts;
 
 double dot(const double* a, const double* b, int size) {
   return ConstVector(a, size).dot(ConstVector(b, size));
@@ -24,10 +24,10 @@ int padded(int size) {
 }
 
 const Archive& checked(const Archive& archive) {
-  if (!archive.hybrid) throw std::runtime_error("body '" + archive.body + "' is not a hybrid one");
-  const std::size_t c = archive.hybrid->dofs.size();
-  if (archive.hybrid->stiffness.size() != c * (c + 1) / 2)
-    throw std::runtime_error("the archive of body '" + archive.body + "' was read without its hybrid part");
+  if (!archive.condensed) throw std::runtime_error("body '" + archive.body + "' has no condensed part");
+  const std::size_t c = archive.condensed->dofs.size();
+  if (archive.condensed->stiffness.size() != c * (c + 1) / 2)
+    throw std::runtime_error("the archive of body '" + archive.body + "' was read without its condensed part");
   return archive;
 }
 
@@ -40,12 +40,12 @@ double mean_diagonal(const Archive& archive) {
 
 }  // namespace
 
-HybridPart::HybridPart(const Archive& archive, double friction, bool single)
+CondensedPart::CondensedPart(const Archive& archive, double friction, bool single)
     : rest_(checked(archive).surface.position),
-      connection_(archive.hybrid->connection),
+      connection_(archive.condensed->connection),
       place_(rest_.size(), -1),
-      mass_(archive.hybrid->mass),
-      bound_(archive.hybrid->bound),
+      mass_(archive.condensed->mass),
+      bound_(archive.condensed->bound),
       contact_bound_(bound_),
       friction_(friction),
       typical_(mean_diagonal(archive)),
@@ -54,7 +54,7 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
       row_(rest_.size(), -1),
       reaction_(size_, 0.0),
       sag_(rest_.size(), Vector3d::Zero()),
-      gap_(archive.hybrid->gap),
+      gap_(archive.condensed->gap),
       compliance_(archive, Compliance<double>::Rows::touchable),
       picture_(archive, Compliance<float>::Rows::surface),
       free_(rest_),
@@ -75,7 +75,7 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
       u_f_(size_, 0.0f),
       product_f_(padded(size_), 0.0f) {
   for (std::size_t k = 0; k < connection_.size(); ++k) place_[connection_[k]] = static_cast<int>(k);
-  fill_stiffness(*archive.hybrid);
+  fill_stiffness(*archive.condensed);
   fill_follow(archive);
   load_ = reaction_;
   rows_.reserve(kRows);
@@ -89,16 +89,16 @@ HybridPart::HybridPart(const Archive& archive, double friction, bool single)
 }
 
 /// Rows and columns of fixed axes are zero, so that connection node k is always entries 3 k .. 3 k + 2.
-void HybridPart::fill_stiffness(const HybridTensors& hybrid) {
+void CondensedPart::fill_stiffness(const CondensedTensors& condensed) {
   const int stride = padded(size_);
   if (single_) stiffness_f_.assign(static_cast<std::size_t>(stride) * size_, 0);
   if (!single_) stiffness_d_.assign(static_cast<std::size_t>(stride) * size_, 0);
   const auto entry = [&](const Dof& dof) { return static_cast<std::size_t>(3) * place_[dof.node] + dof.axis; };
-  for (std::size_t i = 0; i < hybrid.dofs.size(); ++i) {
-    reaction_[entry(hybrid.dofs[i])] = hybrid.reaction[i];
+  for (std::size_t i = 0; i < condensed.dofs.size(); ++i) {
+    reaction_[entry(condensed.dofs[i])] = condensed.reaction[i];
     for (std::size_t j = 0; j <= i; ++j) {
-      const double value = hybrid.stiffness[i * (i + 1) / 2 + j];
-      const std::size_t r = entry(hybrid.dofs[i]), c = entry(hybrid.dofs[j]);
+      const double value = condensed.stiffness[i * (i + 1) / 2 + j];
+      const std::size_t r = entry(condensed.dofs[i]), c = entry(condensed.dofs[j]);
       if (single_) stiffness_f_[stride * r + c] = stiffness_f_[stride * c + r] = static_cast<float>(value);
       if (!single_) stiffness_d_[stride * r + c] = stiffness_d_[stride * c + r] = value;
     }
@@ -109,23 +109,23 @@ void HybridPart::fill_stiffness(const HybridTensors& hybrid) {
   }
 }
 
-void HybridPart::fill_follow(const Archive& archive) {
+void CondensedPart::fill_follow(const Archive& archive) {
   auto dofs = archive.touchable_dofs;
   dofs.insert(dofs.end(), archive.other_dofs.begin(), archive.other_dofs.end());
-  const HybridTensors& hybrid = *archive.hybrid;
+  const CondensedTensors& condensed = *archive.condensed;
   int rows = 0;
   for (const Dof& dof : dofs)
     if (row_[dof.node] < 0) row_[dof.node] = 3 * rows++;
   follow_.assign(static_cast<std::size_t>(size_) * 3 * rows, 0.0);
-  const std::size_t stride = padded(3 * static_cast<int>(rest_.size())), columns = hybrid.dofs.size();
+  const std::size_t stride = padded(3 * static_cast<int>(rest_.size())), columns = condensed.dofs.size();
   follow_f_.assign(stride * size_, 0.0f);
   whole_.assign(stride, 0.0f);
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     const auto& [node, axis] = dofs[i];
-    sag_[node][axis] = hybrid.sag[i];
+    sag_[node][axis] = condensed.sag[i];
     for (std::size_t j = 0; j < columns; ++j) {
-      const int c = 3 * place_[hybrid.dofs[j].node] + hybrid.dofs[j].axis;
-      const double value = hybrid.follow[i * columns + j];
+      const int c = 3 * place_[condensed.dofs[j].node] + condensed.dofs[j].axis;
+      const double value = condensed.follow[i * columns + j];
       follow_[static_cast<std::size_t>(size_) * (row_[node] + axis) + c] = value;
       follow_f_[stride * c + 3 * node + axis] = static_cast<float>(value);
     }
@@ -133,13 +133,13 @@ void HybridPart::fill_follow(const Archive& archive) {
   for (int c = 0; c < size_; ++c) follow_columns_f_.push_back(follow_f_.data() + stride * c);
 }
 
-void HybridPart::couple(DynamicModel& model) {
+void CondensedPart::couple(DynamicModel& model) {
   const double own = model.frequency_bound();
   contact_bound_ = std::max(own * own - bound_, bound_);
   model.couple(this, connection_, mass_, bound_ + contact_bound_);
 }
 
-void HybridPart::set_force(int node, const Vector3d& force) {
+void CondensedPart::set_force(int node, const Vector3d& force) {
   if (!owns(node) || node >= compliance_.column_nodes())
     throw std::runtime_error("a dead force acts on a node that is not touchable or not of the quasi-static part");
   const auto found = std::find_if(dead_.begin(), dead_.end(), [&](const NodeForce& f) { return f.node == node; });
@@ -149,20 +149,20 @@ void HybridPart::set_force(int node, const Vector3d& force) {
     dead_.push_back({node, force});
 }
 
-void HybridPart::take(const DynamicModel& model) {
+void CondensedPart::take(const DynamicModel& model) {
   for (std::size_t k = 0; k < connection_.size(); ++k)
     Eigen::Map<Vector3d>(u_.data() + 3 * k) = model.displacement(connection_[k]);
   find_forces();
 }
 
-Matrix3d HybridPart::compliance(int i, int j) const {
+Matrix3d CondensedPart::compliance(int i, int j) const {
   Matrix3d block = Matrix3d::Zero();
   if (i >= compliance_.row_nodes() || j >= compliance_.column_nodes()) return block;
   for (int c = 0; c < 3; ++c) block.col(c) = Eigen::Map<const Vector3d>(compliance_.column(j, c) + 3 * i);
   return block;
 }
 
-Matrix3d HybridPart::compliance(const Anchor& a, const Anchor& b) const {
+Matrix3d CondensedPart::compliance(const Anchor& a, const Anchor& b) const {
   Matrix3d sum = Matrix3d::Zero();
   for (int v = 0; v < 3; ++v)
     for (int w = 0; w < 3; ++w)
@@ -172,7 +172,7 @@ Matrix3d HybridPart::compliance(const Anchor& a, const Anchor& b) const {
 }
 
 /// Displacement of a node under forces on touchable nodes, the connection nodes standing still.
-Vector3d HybridPart::respond(int node, std::span<const NodeForce> forces) const {
+Vector3d CondensedPart::respond(int node, std::span<const NodeForce> forces) const {
   Vector3d u = Vector3d::Zero();
   for (const auto& [at, force] : forces)
     if (node < compliance_.row_nodes())
@@ -184,7 +184,7 @@ Vector3d HybridPart::respond(int node, std::span<const NodeForce> forces) const 
 }
 
 /// What the connection nodes alone make of a node.
-Vector3d HybridPart::followed(int node) const {
+Vector3d CondensedPart::followed(int node) const {
   if (place_[node] >= 0) return Eigen::Map<const Vector3d>(u_.data() + 3 * place_[node]);
   if (row_[node] < 0) return Vector3d::Zero();
   Vector3d u = sag_[node];
@@ -192,11 +192,11 @@ Vector3d HybridPart::followed(int node) const {
   return u;
 }
 
-Vector3d HybridPart::displacement(int node) const {
+Vector3d CondensedPart::displacement(int node) const {
   return followed(node) + respond(node, node_forces_) + pushed(node);
 }
 
-void HybridPart::update(std::span<const int> nodes) {
+void CondensedPart::update(std::span<const int> nodes) {
   for (int node : nodes) {
     const Vector3d u = followed(node) + pushed(node);
     free_[node] = rest_[node] + u + respond(node, dead_);
@@ -204,7 +204,7 @@ void HybridPart::update(std::span<const int> nodes) {
   }
 }
 
-LawOutcome HybridPart::hold() {
+LawOutcome CondensedPart::hold() {
   for (const TouchContact& contact : law_.contacts()) update(contact.anchor.nodes);
   const LawOutcome outcome = law_.solve();
   condense();
@@ -212,7 +212,7 @@ LawOutcome HybridPart::hold() {
   return outcome;
 }
 
-void HybridPart::superpose(std::span<Eigen::Vector3f> displacement) {
+void CondensedPart::superpose(std::span<Eigen::Vector3f> displacement) {
   columns_.assign(follow_columns_f_.begin(), follow_columns_f_.end());
   coefficients_.assign(u_.begin(), u_.end());
   const auto add = [&](std::span<const NodeForce> forces) {
@@ -234,13 +234,13 @@ void HybridPart::superpose(std::span<Eigen::Vector3f> displacement) {
     displacement[connection_[k]] = Eigen::Map<const Vector3d>(u_.data() + 3 * k).cast<float>();
 }
 
-Matrix3d HybridPart::stiffness(int node) const {
+Matrix3d CondensedPart::stiffness(int node) const {
   const auto [values, axes] = principal_axes(compliance(node, node));
   const Vector3d inverse = (values.array() > 1e-9 * values.maxCoeff()).select(values.cwiseInverse(), 0.0);
   return axes * inverse.asDiagonal() * axes.transpose();
 }
 
-double HybridPart::gap(const DynamicModel& model) const {
+double CondensedPart::gap(const DynamicModel& model) const {
   const auto position = [&](int node) -> Vector3d {
     return rest_[node] + (owns(node) ? displacement(node) : model.displacement(node));
   };

@@ -1,4 +1,4 @@
-#include "common/models/moving/hybrid_touch.hpp"
+#include "common/models/moving/condensed_touch.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -9,9 +9,9 @@ namespace palpate {
 namespace {
 
 SurfaceMap quasi_static_surface(const Archive& archive) {
-  if (!archive.hybrid) throw std::runtime_error("the archive holds no hybrid body");
+  if (!archive.condensed) throw std::runtime_error("the archive has no condensed part");
   SurfaceMap map = archive.surface;
-  map.triangles.resize(archive.hybrid->quasi_static_triangles);
+  map.triangles.resize(archive.condensed->quasi_static_triangles);
   return map;
 }
 
@@ -27,7 +27,7 @@ ToolContacts::Options beside_patches(const StepSettings& settings) {
 
 }  // namespace
 
-HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model)
+CondensedTouch::CondensedTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model)
     : model_(model),
       map_(quasi_static_surface(archive)),
       part_(archive, settings.contact.friction, single),
@@ -39,16 +39,16 @@ HybridTouch::HybridTouch(const Archive& archive, const StepSettings& settings, b
   take();
 }
 
-bool HybridTouch::grasping(int tool) const {
+bool CondensedTouch::grasping(int tool) const {
   return part_.law().grasps(tool);
 }
 
-void HybridTouch::drop_tool(int tool) {
+void CondensedTouch::drop_tool(int tool) {
   for (int i = static_cast<int>(contacts().size()) - 1; i >= 0; --i)
     if (contacts()[i].is_by(tool)) part_.law().remove(i);
 }
 
-void HybridTouch::find(std::span<const MovingTool> tools) {
+void CondensedTouch::find(std::span<const MovingTool> tools) {
   const std::span<const int> marked = mark(surface_, contacts_, part_.law(), tools);
   part_.update(marked);
   displacement_.clear();
@@ -60,28 +60,28 @@ void HybridTouch::find(std::span<const MovingTool> tools) {
   contacts_.collide(tools);
 }
 
-void HybridTouch::hold(std::span<const MovingTool> tools) {
+void CondensedTouch::hold(std::span<const MovingTool> tools) {
   contacts_.aim(tools);
   part_.hold();
   for (std::size_t k = 0; k < part_.connection().size(); ++k)
     model_.set_load(part_.connection()[k], part_.load(static_cast<int>(k)));
 }
 
-void HybridTouch::shape(std::span<const Eigen::Vector3d> rest, const Eigen::Vector3d& origin,
-                        std::span<Eigen::Vector3f> position) {
+void CondensedTouch::shape(std::span<const Eigen::Vector3d> rest, const Eigen::Vector3d& origin,
+                           std::span<Eigen::Vector3f> position) {
   part_.superpose(moved_);
   for (int n = 0; n < map_.size(); ++n)
     if (part_.owns(n)) position[n] = (rest[n] - origin).cast<float>() + moved_[n];
 }
 
-void HybridTouch::state(State& s, std::span<const MovingTool> tools) {
+void CondensedTouch::state(State& s, std::span<const MovingTool> tools) {
   surface_.state(s);
   contacts_.state(s, tools);
   std::vector<Eigen::Vector3d> forces;
   if (!s.restoring())
     for (std::size_t c = 0; c < contacts().size(); ++c) forces.push_back(force(static_cast<int>(c)));
   s.list(forces);
-  s.require(forces.size() == contacts().size(), "the recorded state is of another hybrid body");
+  s.require(forces.size() == contacts().size(), "the recorded state is of another body");
   if (s.restoring()) part_.adopt(model_, forces);
 }
 

@@ -6,15 +6,15 @@
 #include "common/contact/step_settings.hpp"
 #include "common/contact/tool_contacts.hpp"
 #include "common/describe/state.hpp"
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 
 namespace palpate {
 
 /// The quasi-static part of a hybrid organ and the tools that touch it.
-class HybridTouch {
+class CondensedTouch {
  public:
   /// `archive`: read with ArchivePart::surface. Couples the part to the model, which must outlive this object.
-  HybridTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model);
+  CondensedTouch(const Archive& archive, const StepSettings& settings, bool single, DynamicModel& model);
 
   /// Once a tick: brings the surface near the tools up to date and finds what they touch.
   void find(std::span<const MovingTool> tools);
@@ -31,8 +31,8 @@ class HybridTouch {
   /// After the last step of a tick.
   void end_tick(std::span<const MovingTool> tools) { contacts_.settle(tools); }
 
-  HybridPart& part() { return part_; }
-  const HybridPart& part() const { return part_; }
+  CondensedPart& part() { return part_; }
+  const CondensedPart& part() const { return part_; }
   const TouchSurface& surface() const { return surface_; }
   std::span<const TouchContact> contacts() const { return part_.law().contacts(); }
   Eigen::Vector3d force(int contact) const { return part_.contact_force(contact); }  ///< [N] on the tissue
@@ -47,7 +47,7 @@ class HybridTouch {
  private:
   DynamicModel& model_;
   SurfaceMap map_;  ///< with the triangles of this part alone
-  HybridPart part_;
+  CondensedPart part_;
   TouchSurface surface_;
   ToolContacts contacts_;
   std::vector<double> displacement_;

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "common/dynamics/hybrid_part.hpp"
+#include "common/dynamics/condensed_part.hpp"
 
-/// Patches on a HybridPart, whose forces others solve for.
+/// Patches on a CondensedPart, whose forces others solve for.
 namespace palpate {
 namespace {
 
@@ -16,7 +16,7 @@ ConstVector vector(std::span<const double> values) {
 
 }  // namespace
 
-void HybridPart::expect_patches(int patches) {
+void CondensedPart::expect_patches(int patches) {
   pushed_.resize(patches);
   for (auto& forces : pushed_) forces.reserve(Patch::kMaxNodes);
   const std::size_t columns = size_ + 3 * (node_forces_.capacity() + patches * Patch::kMaxNodes);
@@ -24,22 +24,22 @@ void HybridPart::expect_patches(int patches) {
   coefficients_.reserve(columns);
 }
 
-void HybridPart::push(int patch, std::span<const PatchForce> forces) {
+void CondensedPart::push(int patch, std::span<const PatchForce> forces) {
   pushed_[patch].assign(forces.begin(), forces.end());
 }
 
-Vector3d HybridPart::pushed(int node) const {
+Vector3d CondensedPart::pushed(int node) const {
   Vector3d u = Vector3d::Zero();
   for (const auto& forces : pushed_) u += respond(node, forces);
   return u;
 }
 
-void HybridPart::draw(int patch, std::span<double> force) const {
+void CondensedPart::draw(int patch, std::span<double> force) const {
   std::ranges::fill(force, 0.0);
   for (const PatchForce& f : pushed_[patch]) add_follow_force(f.node, f.force, force);
 }
 
-Matrix3d HybridPart::give(int node, int under, std::span<const double> inertia) const {
+Matrix3d CondensedPart::give(int node, int under, std::span<const double> inertia) const {
   if (!owns(node) && owns(under)) return give(under, node, inertia).transpose();
   Matrix3d block = compliance(node, under);
   const auto of_connection = vector(inertia);
