@@ -50,22 +50,14 @@ void Simulator::restore(std::span<const std::uint8_t> from) {
 }
 
 std::uint64_t Simulator::hash() const {
-  Hash64 digest;
-  digest.add(steps_);
-  for (int t = 0; t < tools(); ++t) {
-    const ToolView view = tool(t);
-    digest.add(std::span<const double>(view.pose.data(), 16));
-    for (const Eigen::Vector3d& v : {view.force, view.torque, view.trocar_force}) digest.add(v);
-    for (const double x : {view.opening, view.grip_torque}) digest.add(x);
-    digest.add(view.flags);
+  Hash64 hash;
+  State s = State::hash(hash);
+  const_cast<Simulator*>(this)->state(s);
+  for (int t = 0; t < tools(); ++t) {  // what it gives out and does not remember
+    hash.add(tool(t).flags);
+    hash.add(tool(t).trocar_force);
   }
-  digest.add(energy());
-  Bytes contacts;
-  for (const ContactState& m : contacts_) encode(m, contacts);
-  digest.add(std::span<const std::uint8_t>(contacts));
-  digest.add(world_.hash());
-  for (const HapticStep::Entry& entry : haptic_.entries()) digest.add(entry.part->coordinates());
-  return digest.value();
+  return hash.value();
 }
 
 }  // namespace palpate::sim
