@@ -22,10 +22,6 @@ std::string describe(const std::string& tool, const ForceState& f) {
   return words;
 }
 
-bool tells_task(const Body& body) {
-  return std::visit([](const auto& spec) { return has_task(spec); }, body);
-}
-
 }  // namespace
 
 Show::Show(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, const Presence& presence)
@@ -36,7 +32,8 @@ Show::Show(const Scene& scene, Stage stage, SurfaceSource& source, Bus& bus, con
       tools_(bus.reader(topics::tool_state)),
       forces_(bus.reader(topics::force_state)),
       latest_force_(scene.tools.size()) {
-  if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return has_task(body); }))
+    tasks_ = bus.reader(topics::task_record);
 }
 
 template <class M, class Take>
@@ -59,7 +56,7 @@ bool Show::take() {
   });
   if (!tasks_) return news;
   take_all(*tasks_, [&](const TaskRecord& task) {
-    if (task.body >= scene_.bodies.size() || !tells_task(scene_.bodies[task.body])) return false;
+    if (task.body >= scene_.bodies.size() || !has_task(scene_.bodies[task.body])) return false;
     latest_task_[task.body] = task;
     return true;
   });

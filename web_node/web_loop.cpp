@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/bus/task_figures.hpp"
 #include "common/devices/lease.hpp"
 #include "common/log/log.hpp"
 #include "common/node/handling_summary.hpp"
@@ -17,19 +18,10 @@ using nlohmann::json;
 
 constexpr unsigned kLooks = 4;  ///< at the bus, in the time of a frame
 
-bool tells_task(const Body& body) {
-  return std::visit([](const auto& spec) { return has_task(spec); }, body);
-}
-
 json of(const TaskRecord& task, const Scene& scene) {
-  return {{"body", name_of(scene.bodies[task.body])},
-          {"inserted_m", task.inserted},
-          {"deepest_m", task.deepest},
-          {"inserting_s", task.inserting_s},
-          {"max_force_n", task.max_force},
-          {"wall_contacts", task.wall_contacts},
-          {"grasps", task.grasps},
-          {"drops", task.drops}};
+  json told{{"body", name_of(scene.bodies[task.body])}};
+  for (const TaskFigure& figure : task_figures()) told[figure.key()] = figure.of(task);
+  return told;
 }
 
 }  // namespace
@@ -49,7 +41,8 @@ WebLoop::WebLoop(const Scene& scene, const Eigen::Vector3d& origin, std::vector<
       bodies_(std::move(bodies)),
       frame_tools_(scene.tools.size()) {
   presence_.set_clock(&clock_);
-  if (std::ranges::any_of(scene.bodies, tells_task)) tasks_ = bus.reader(topics::task_record);
+  if (std::ranges::any_of(scene.bodies, [](const Body& body) { return has_task(body); }))
+    tasks_ = bus.reader(topics::task_record);
   for (const Tool& tool : scene.tools) {
     const InstrumentView view = instrument_of(tool);
     instruments_.push_back({make_trocar(tool.pivot - origin, tool.axis, tool.up), view, make_instrument(view)});
@@ -70,7 +63,7 @@ void WebLoop::take() {
   }
   while (const auto task = tasks_ ? tasks_->take() : std::nullopt) {
     const bool good =
-        task->body < scene_.bodies.size() && tells_task(scene_.bodies[task->body]) && presence_.accepts(task->run);
+        task->body < scene_.bodies.size() && has_task(scene_.bodies[task->body]) && presence_.accepts(task->run);
     if (good) latest_task_[task->body] = *task;
     report_.samples_refused += !good;
   }

@@ -14,6 +14,10 @@ Owner owner_of(const Body& body) {
   return std::visit([](const auto& spec) { return owner(spec); }, body);
 }
 
+bool has_task(const Body& body) {
+  return std::visit([](const auto& spec) { return has_task(spec); }, body);
+}
+
 const ShellSpec* wall_of(const Body& body) {
   return std::visit([](const auto& spec) { return wall_of(spec); }, body);
 }

@@ -40,6 +40,8 @@ std::string_view kind_of(const Body& body);
 
 Owner owner_of(const Body& body);
 
+bool has_task(const Body& body);
+
 const ShellSpec* wall_of(const Body& body);
 const VisualSpec* visual_of(const Body& body);
 

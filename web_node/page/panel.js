@@ -15,7 +15,7 @@ function row(tag, ...children) {
   return made;
 }
 
-const strongest = (task) => forceReading(task.max_force_n, Math.max(task.max_force_n, 0.001));
+const strongest = (task) => forceReading(task.force_max_n, Math.max(task.force_max_n, 0.001));
 
 export class Panel {
   said = [];  // by the nodes
@@ -119,7 +119,7 @@ export class Panel {
     ]), ...tasks.flatMap((task) => [
       row('h2', `Task: ${task.body}`),
       row('p', `${(1e3 * task.inserted_m).toFixed(0)} mm inserted, ${(1e3 * task.deepest_m).toFixed(0)} mm at the ` +
-        `deepest in ${task.inserting_s.toFixed(1)} s`),
+        `deepest in ${task.inserting_s.toFixed(1)} s, held for ${task.held_s.toFixed(1)} s`),
       row('p', `${task.wall_contacts} wall contacts, ${task.drops} drops, at most ${strongest(task)}`)]));
   }
 
