@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/tool/dofs_of.hpp"
 #include "ros_bridge/convert.hpp"
 #include "ros_bridge/joints.hpp"
 
@@ -23,8 +24,7 @@ ToolTopics::ToolTopics(Node& node, const Tool& tool)
       frames_(node.publisher("/tf", tf2_msgs_msg_dds__TFMessage__desc)) {}
 
 void ToolTopics::tell(const ToolState& state, std::int64_t wall_ns) {
-  const Eigen::Isometry3d tip =
-      tip_pose(trocar_, {state.yaw, state.pitch, state.depth, state.roll, state.grip, state.pedal});
+  const Eigen::Isometry3d tip = tip_pose(trocar_, dofs_of(state));
   to_tip_ = tip.linear().transpose();
   geometry_msgs_msg_dds__PoseStamped_ pose{};
   pose.header = header(wall_ns, kWorld);
@@ -42,7 +42,8 @@ void ToolTopics::tell(const ToolState& state, std::int64_t wall_ns) {
 
   std::vector<char*> names(kJoints.size());
   std::ranges::transform(kJoints, names.begin(), [](const char* name) { return lend(name); });
-  std::vector<double> positions{state.yaw, state.pitch, state.depth, state.roll, state.grip};
+  const PoseValues values = pose_values(state);
+  std::vector<double> positions(values.begin(), values.end());
   sensor_msgs_msg_dds__JointState_ joints{};
   joints.header = header(wall_ns, "");
   lend(names, joints.name);

@@ -4,6 +4,7 @@
 
 #include "common/geometry/arrays.hpp"
 #include "common/geometry/segment.hpp"
+#include "common/tool/pose_values.hpp"
 
 namespace palpate {
 namespace {
@@ -90,17 +91,12 @@ void LocalModels::refresh() {
 // Of which moment the model is, and the pose that the tool had.
 void LocalModels::add_origin(int tool, LocalContactModel& model) const {
   const ToolState& s = world_.tool(tool).consumed();
-  const ToolDofs& pose = world_.in_tick(tool).dofs;
   model.tool = static_cast<std::uint32_t>(tool);
   model.tool_run = s.run;
   model.tool_step = s.step;
   model.sense_ns = s.sense_ns;
   model.tissue_ns = world_.time_ns();
-  model.yaw = pose.yaw;
-  model.pitch = pose.pitch;
-  model.depth = pose.depth;
-  model.roll = pose.roll;
-  model.grip = pose.grip;
+  set_pose(pose_values(world_.in_tick(tool).dofs), model);
 }
 
 void LocalModels::add_contacts(int tool, int i, FeltPart& part, LocalContactModel& model) {

@@ -1,12 +1,14 @@
 #pragma once
-#include "common/tool/kinematics.hpp"
+#include "common/tool/pose_values.hpp"
 #include "idl/messages.hpp"
 
 namespace palpate {
 
 /// The degrees of freedom that a tool's message holds.
 inline ToolDofs dofs_of(const ToolState& s) {
-  return {s.yaw, s.pitch, s.depth, s.roll, s.grip, s.pedal, s.silent != 0};
+  ToolDofs dofs = dofs_of(pose_values(s), s.pedal);
+  dofs.silent = s.silent != 0;
+  return dofs;
 }
 
 }  // namespace palpate

@@ -4,24 +4,16 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
-
-using Values = std::array<double, 5>;
-
-Values values(const ToolDofs& d) {
-  return {d.yaw, d.pitch, d.depth, d.roll, d.grip};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void HandMotion::stand(const ToolDofs& at) {
-  led_ = first_ = smooth_ = values(at);
+  led_ = first_ = smooth_ = pose_values(at);
   left_ = 0;
   pedal_ = at.pedal;
 }
 
 void HandMotion::aim(const ToolDofs& target) {
-  const Values to = values(target);
+  const PoseValues to = pose_values(target);
   pedal_ = target.pedal;
   const double lever = std::max(std::abs(led_[2]), std::abs(to[2]));
   const double tip = lever * (std::abs(to[0] - led_[0]) + std::abs(to[1] - led_[1])) + std::abs(to[2] - led_[2]);
@@ -39,7 +31,7 @@ ToolDofs HandMotion::step() {
     smooth_[i] += share * (first_[i] - smooth_[i]);
   }
   left_ = std::max(0, left_ - 1);
-  return {smooth_[0], smooth_[1], smooth_[2], smooth_[3], smooth_[4], pedal_};
+  return dofs_of(smooth_, pedal_);
 }
 
 }  // namespace palpate

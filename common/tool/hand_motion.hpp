@@ -1,7 +1,5 @@
 #pragma once
-#include <array>
-
-#include "common/tool/kinematics.hpp"
+#include "common/tool/pose_values.hpp"
 
 namespace palpate {
 
@@ -30,13 +28,11 @@ class HandMotion {
   ToolDofs step();
 
  private:
-  using Values = std::array<double, 5>;  ///< yaw, pitch, depth, roll, grip
-
   Bounds bounds_;
   double dt_;
-  Values led_{}, pace_{};      ///< where it is led up to, and how far in a step
-  Values first_{}, smooth_{};  ///< the filter's two stages
-  int left_ = 0;               ///< steps until it is led to the target
+  PoseValues led_{}, pace_{};      ///< where it is led up to, and how far in a step
+  PoseValues first_{}, smooth_{};  ///< the filter's two stages
+  int left_ = 0;                   ///< steps until it is led to the target
   double pedal_ = 0;
 };
 

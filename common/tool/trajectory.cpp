@@ -33,19 +33,19 @@ Trajectory::Trajectory(std::vector<double> time, const std::vector<ToolDofs>& do
   if (std::ranges::adjacent_find(time_, std::greater_equal<>{}) != time_.end())
     throw std::invalid_argument("a trajectory's times must increase");
   for (const ToolDofs& d : dofs) {
-    value_.push_back({d.yaw, d.pitch, d.depth, d.roll, d.grip});
+    value_.push_back(pose_values(d));
     pedal_.push_back(d.pedal);
   }
-  speed_.assign(n, Row{});
+  speed_.assign(n, PoseValues{});
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double h0 = time_[i] - time_[i - 1], h1 = time_[i + 1] - time_[i];
-    for (int d = 0; d < kDofs; ++d)
+    for (std::size_t d = 0; d < speed_[i].size(); ++d)
       speed_[i][d] = row_speed(h0, (value_[i][d] - value_[i - 1][d]) / h0, h1, (value_[i + 1][d] - value_[i][d]) / h1);
   }
 }
 
 ToolDofs Trajectory::at(double time) const {
-  Row now;
+  PoseValues now;
   std::size_t i = 0;
   if (!(time > time_.front())) {
     now = value_.front();
@@ -56,10 +56,10 @@ ToolDofs Trajectory::at(double time) const {
     i = std::upper_bound(time_.begin(), time_.end(), time) - time_.begin() - 1;
     const double h = time_[i + 1] - time_[i], s = (time - time_[i]) / h;
     const double b = s * s * (3 - 2 * s), c = s * (1 - s) * (1 - s) * h, d = s * s * (s - 1) * h;  // Hermite
-    for (int k = 0; k < kDofs; ++k)
+    for (std::size_t k = 0; k < now.size(); ++k)
       now[k] = value_[i][k] + b * (value_[i + 1][k] - value_[i][k]) + c * speed_[i][k] + d * speed_[i + 1][k];
   }
-  return {.yaw = now[0], .pitch = now[1], .depth = now[2], .roll = now[3], .grip = now[4], .pedal = pedal_[i]};
+  return dofs_of(now, pedal_[i]);
 }
 
 Trajectory load_trajectory(const std::filesystem::path& file) {

@@ -1,9 +1,8 @@
 #pragma once
-#include <array>
 #include <filesystem>
 #include <vector>
 
-#include "common/tool/kinematics.hpp"
+#include "common/tool/pose_values.hpp"
 
 namespace palpate {
 
@@ -24,12 +23,9 @@ class Trajectory {
   ToolDofs at(double time) const;
 
  private:
-  static constexpr int kDofs = 5;
-  using Row = std::array<double, kDofs>;
-
   std::vector<double> time_;
-  std::vector<Row> value_;
-  std::vector<Row> speed_;  ///< per second, at the rows
+  std::vector<PoseValues> value_;
+  std::vector<PoseValues> speed_;  ///< per second, at the rows
   std::vector<double> pedal_;
 };
 

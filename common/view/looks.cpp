@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "common/models/appearance.hpp"
+#include "common/tool/dofs_of.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/view/straighten.hpp"
 
@@ -55,7 +56,7 @@ Steel steel_of(const InstrumentView& instrument) {
 }
 
 void place(InstrumentView& instrument, const Trocar& trocar, const ToolState& s) {
-  instrument.tip = tip_pose(trocar, {s.yaw, s.pitch, s.depth, s.roll, s.grip});
+  instrument.tip = tip_pose(trocar, dofs_of(s));
   const bool forceps = instrument.jaw_length > 0;
   instrument.jaw_opening = std::clamp(forceps ? s.opening : s.grip, 0.0, forceps ? std::numbers::pi : 1.2);
 }

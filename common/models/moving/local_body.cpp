@@ -76,7 +76,7 @@ void LocalBody::consume(const LocalModel& model) {
   count_lost(model);
   state_.silent = 0;
   state_.model = model;
-  model_pose_ = tip_pose(trocar_, model.pose());
+  model_pose_ = tip_pose(trocar_, dofs_of(model.pose));
 }
 
 // Since the last model, evenly, as far as it is not forgotten yet. What one tick came late and the next made good is
@@ -287,7 +287,7 @@ void LocalBody::state(State& s) {
     for (const std::uint32_t n : m.triangle[t]) good = good && n < static_cast<std::uint32_t>(m.nodes);
   s.require(good, "the recorded state holds a local contact model that cannot be");
   state_ = memory;
-  model_pose_ = tip_pose(trocar_, m.pose());
+  model_pose_ = tip_pose(trocar_, dofs_of(m.pose));
 }
 
 }  // namespace palpate

@@ -12,7 +12,7 @@ bool copy_model(const LocalContactModel& from, const TissueLimits& limits, Local
   to.seq = from.seq;
   to.tool_step = from.tool_step;
   to.late_ns = from.late_ns;
-  to.dofs = {from.yaw, from.pitch, from.depth, from.roll, from.grip};
+  to.pose = pose_values(from);
   to.contacts = static_cast<std::int32_t>(from.contacts.size());
   to.nodes = static_cast<std::int32_t>(from.nodes.size());
   to.triangles = static_cast<std::int32_t>(from.triangles.size());

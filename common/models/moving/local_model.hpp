@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "common/models/moving/tissue_limits.hpp"
-#include "common/tool/kinematics.hpp"
+#include "common/tool/pose_values.hpp"
 #include "idl/limits.hpp"
 
 namespace palpate {
@@ -25,24 +25,17 @@ struct LocalModel {
     std::array<double, 3> position, velocity;  ///< [m], [m/s] world
     std::array<double, 9> stiffness;           ///< [N/m] row-major
   };
-  struct Dofs {
-    double yaw, pitch, depth, roll, grip;
-  };
 
   std::uint64_t run = 0, seq = 0;  ///< of the message; seq 0: none has come yet
   std::uint64_t tool_step = 0;     ///< haptic step whose pose is in it
   std::int64_t late_ns = 0;        ///< by which the tissue's own time is behind its node's clock
-  Dofs dofs{};                     ///< that pose
+  PoseValues pose{};               ///< that pose
   double stiffness = 0;            ///< [N/m] that the tissue in it has at most, by TissueLimits
   double modulus = 0;              ///< [Pa] E / (1 - nu^2) at its surface, likewise
   std::int32_t contacts = 0, nodes = 0, triangles = 0, unused = 0;
   std::array<Contact, kMaxContacts> contact{};
   std::array<Node, kMaxNodes> node{};
   std::array<std::array<std::uint32_t, 3>, kMaxTriangles> triangle{};
-
-  ToolDofs pose() const {
-    return {.yaw = dofs.yaw, .pitch = dofs.pitch, .depth = dofs.depth, .roll = dofs.roll, .grip = dofs.grip};
-  }
 };
 static_assert(std::is_trivially_copyable_v<LocalModel>);
 
