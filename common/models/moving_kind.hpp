@@ -21,6 +21,11 @@ constexpr bool has_own_mesh(const MovingSpec&) {
   return false;
 }
 
+/// contact_is_tried(spec): whether the stability cases press bodies of this kind (docs/stability.md).
+constexpr bool contact_is_tried(const MovingSpec&) {
+  return false;
+}
+
 /// Makes the body's model, and refers to the body.
 template <std::derived_from<MovingSpec> Spec>
 MakeModel model_maker(const Spec& body) {
@@ -46,7 +51,7 @@ struct MovingKind {
   std::string_view name;
   MakeModel make_model;
   std::function<ArchiveJob(const Progress&)> archive_job;
-  bool own_mesh;
+  bool own_mesh, contact_tried;
 };
 
 /// Says what moving tissue consists of, its model, step, tearing and connection; the deformation node's parts are built
@@ -58,7 +63,8 @@ void check(const Spec& body, const CheckSettings& settings, CheckReport& report)
   const MovingKind kind{.name = Spec::kKind,
                         .make_model = model_maker(body),
                         .archive_job = [&body](const Progress& progress) { return archive_job(body, progress); },
-                        .own_mesh = has_own_mesh(body)};
+                        .own_mesh = has_own_mesh(body),
+                        .contact_tried = contact_is_tried(body)};
   check_moving(body, kind, settings, report);
   warn_of_locking(locking_warnings(body), report);
 }

@@ -55,7 +55,7 @@ void predict(const MovingSpec& body, const MovingKind& kind, const CheckSettings
   const auto organ = make_moving_organ(body, archive, {settings.contact, settings.tools, settings.dt}, kind.make_model);
   say_steps(body, *organ, archive, settings, report);
   const int steps = organ->steps_in(settings.dt, true);
-  if (!settings.tools.empty()) say_tried_contact(body, kind.name, settings, mean_edge(archive.surface), steps, report);
+  if (!settings.tools.empty()) say_tried_contact(body, kind, settings, mean_edge(archive.surface), steps, report);
   if (kind.own_mesh) return;
   if (archive.condensed)
     say_sag(body, {solid.mesh, solid.materials, solid.dofs}, report);

@@ -114,9 +114,9 @@ double max_speed(const Tool& tool, const Trajectory& script) {
 }
 
 // How contact with a body is not that of the stability cases; empty: it is.
-std::string untried(const MovingSpec& body, std::string_view kind, const ContactSpec& contact) {
+std::string untried(const MovingSpec& body, const MovingKind& kind, const ContactSpec& contact) {
   if (contact.rule != ContactRule::patch) return fmt::format("under rule \"{}\"", word_of(contact.rule));
-  if (kind != TriedContact::kKind) return fmt::format("with a {} body", kind);
+  if (!kind.contact_tried) return fmt::format("with a {} body", kind.name);
   if (body.dynamic.corotational) return "with elements that turn with the tissue";
   return {};
 }
@@ -175,7 +175,7 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
                     body.name, share));
 }
 
-void say_tried_contact(const MovingSpec& body, std::string_view kind, const CheckSettings& settings, double edge,
+void say_tried_contact(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, double edge,
                        int steps, CheckReport& report) {
   using Tried = TriedContact;
   if (body.dynamic.element == TetElement::nodal_strain)

@@ -1,11 +1,10 @@
 #pragma once
-#include <string_view>
-
 #include "common/archive/archive.hpp"
 #include "common/dynamics/spec.hpp"
 #include "common/fem/direct.hpp"
 #include "common/models/check/check.hpp"
 #include "common/models/moving/dynamic_organ.hpp"
+#include "common/models/moving_kind.hpp"
 
 namespace palpate {
 
@@ -20,7 +19,7 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
 
 /// Says where contact with tissue like this has been tried, or that it has not, and warns of what lies beyond it.
 /// `edge` [m]: mean of the surface; `steps`: of the tissue in a tick, under tools.
-void say_tried_contact(const MovingSpec& body, std::string_view kind, const CheckSettings& settings, double edge,
+void say_tried_contact(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, double edge,
                        int steps, CheckReport& report);
 
 }  // namespace palpate

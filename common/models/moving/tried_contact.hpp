@@ -1,12 +1,9 @@
 #pragma once
-#include <string_view>
-
 namespace palpate {
 
-/// Where the contact of patches with moving tissue has been tried and found stable (docs/stability.md): what the
-/// stability cases draw from, and beyond which a check of a scene says so.
+/// Where the contact of patches with moving tissue has been tried and found stable (docs/stability.md), of linear
+/// elements that do not turn with it: what the stability cases draw from, and beyond which a check of a scene says so.
 struct TriedContact {
-  static constexpr std::string_view kKind = "tensor_mass";    ///< of linear elements that do not turn with the tissue
   static constexpr double kMinYoung = 1e2, kMaxYoung = 1e8;   ///< [Pa]
   static constexpr double kMaxPoisson = 0.45;                 ///< [1]
   static constexpr double kMinCell = 40e-6, kMaxCell = 0.05;  ///< [m] edge of the surface

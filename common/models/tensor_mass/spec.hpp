@@ -14,4 +14,8 @@ inline void describe(Description& d, TensorMassSpec& b) {
   describe(d, static_cast<MovingSpec&>(b));
 }
 
+constexpr bool contact_is_tried(const TensorMassSpec&) {
+  return true;
+}
+
 }  // namespace palpate
