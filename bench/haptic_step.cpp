@@ -129,6 +129,35 @@ void two_tools(bool quick) {
   report_steps("two_tools_tip_and_shaft", steps);
 }
 
+/// A tip on edges of an eighth of its radius, where it rests on more nodes than anywhere: it comes, and slides over
+/// others from step to step.
+void on_fine_edges(bool quick) {
+  using namespace bench;
+  const double h = kTipRadius / 8, reach = 1.3 * kTipRadius + 2 * h;
+  QuasiStaticSpec block = touch_block();
+  block.offline = Offline{};
+  block.touchable = NodeSelector{{.indices = {}, .box = Box{{-reach, -reach, -1e-6}, {reach, reach, 1}}, .group = {}}};
+  PressRig rig(touch_scene(block, 0.3), {precompute(block, block_of_edges(h))});
+  const auto tip = [&](double along, double depth) { return Eigen::Vector3d(along, 0.1 * along, kTipRadius - depth); };
+  rig.start(tip(0, -1e-3));
+  Samples first, slide;
+  const int laps = quick ? 2 : 20;
+  for (int lap = 0; lap < laps; ++lap) {
+    rig.press(tip(0, -1e-3));
+    const auto begin = std::chrono::steady_clock::now();
+    rig.press(tip(0, kTipRadius / 2));
+    first.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    for (int i = 0; i < 1000; ++i) {
+      const Eigen::Vector3d at = tip(0.25 * kTipRadius * std::sin(0.02 * i), kTipRadius / 2);
+      const auto from = std::chrono::steady_clock::now();
+      rig.press(at);
+      slide.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count());
+    }
+  }
+  report_steps("fine_edges_first", first);
+  report_steps("fine_edges_slide", slide);
+}
+
 /// What stands between the device's sample and the tool, and between the tissue's force and the hand, over the scripted
 /// motion. The step cannot be run without it, so that it is timed apart, a hundred ticks at a time.
 void guards(const Scene& scene, const std::vector<Archive>& archives, bool quick) {
@@ -187,5 +216,6 @@ int main(int argc, char** argv) {
   palpate::one_contact(palpate::by_nodes(scene), archives, "liver1400_nodes", quick);
   palpate::one_contact(palpate::by_nodes(palpate::relaxing(scene)), archives, "liver1400_nodes_relaxing", quick);
   palpate::two_tools(quick);
+  palpate::on_fine_edges(quick);
   palpate::many_contacts(scene, archives, quick);
 }

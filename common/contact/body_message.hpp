@@ -12,6 +12,7 @@ namespace palpate {
 /// has body, run, seq, step and sense_ns.
 using BodyMessage = std::variant<ModalState, CatheterState, TaskRecord, CreepState>;
 
+inline constexpr std::uint32_t kInJaws = 2;         ///< HeldContact::sticking of what is between jaws
 inline constexpr std::uint64_t kShapeInterval = 4;  ///< [steps] from one shape of a body to the next
 
 /// A message of a body and how often it is told.

@@ -63,10 +63,19 @@ void Deformer::show(std::uint64_t step, std::int64_t sense_ns) {
   sense_ns_ = sense_ns;
 }
 
+bool Deformer::names_what_is_there(const ContactState& contacts) const {
+  const auto there = [this](std::uint32_t body, std::uint32_t node) {
+    return body < bodies_.size() && node < bodies_[body].shape->map().position.size();
+  };
+  return contacts.tool < tools_ &&
+         std::ranges::all_of(contacts.forces, [&](const NodalForce& f) { return there(f.body, f.node); }) &&
+         std::ranges::all_of(contacts.contacts, [&](const HeldContact& c) {
+           return std::ranges::all_of(c.nodes, [&](std::uint32_t node) { return there(c.body, node); });
+         });
+}
+
 bool Deformer::take(const ContactState& contacts) {
-  if (contacts.tool >= tools_) return false;
-  for (const NodalForce& f : contacts.forces)
-    if (f.body >= bodies_.size() || f.node >= bodies_[f.body].shape->map().position.size()) return false;
+  if (!names_what_is_there(contacts)) return false;
   if (!follow(contacts.run, contacts.sense_ns)) return false;
   contacts_[contacts.tool] = contacts;
   for (DeformableBody& body : bodies_) {

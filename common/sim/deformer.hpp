@@ -46,6 +46,7 @@ class Deformer {
     DeformedSurface surface;
     bool fresh = true, changed = false;
   };
+  bool names_what_is_there(const ContactState& contacts) const;
   bool follow(std::uint64_t run, std::int64_t sense_ns);
   void show(std::uint64_t step, std::int64_t sense_ns);
 

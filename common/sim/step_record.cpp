@@ -41,7 +41,7 @@ void add_contact(const TouchContact& c, std::uint32_t body, StepRecord& r) {
   to.normal = plain(c.normal);
   to.force = plain(c.force);
   to.sample = static_cast<std::uint32_t>(c.tool_point().part);
-  to.sticking = c.touch == Touch::sticking;
+  to.sticking = c.grasped ? kInJaws : c.touch == Touch::sticking;
   r.contacts.push_back({c.tool_point().tool, to});
 }
 

@@ -29,11 +29,9 @@ class NodeBlocksTest : public testing::Test {
 TEST_F(NodeBlocksTest, GiveTheBitsOfTheBlocksThemselves) {
   const Vector3d normal = Vector3d::Random().normalized(), force = Vector3d::Random();
   for (int j = 0; j < kNodes; ++j) {
-    double along[kNodes], added[kNodes] = {};
-    blocks_.along(normal, j, j, kNodes, along);
-    blocks_.add_along(normal, force, j, kNodes, added);
-    for (int i = j; i < kNodes; ++i) EXPECT_EQ(along[i - j], normal.dot(plain_[i][j] * normal));
-    for (int i = 0; i < kNodes; ++i) EXPECT_EQ(added[i], normal.dot(plain_[i][j] * force));
+    double along[kNodes];
+    blocks_.along(normal, force, j, kNodes, along);
+    for (int i = 0; i < kNodes; ++i) EXPECT_EQ(along[i], normal.dot(plain_[i][j] * force));
   }
 }
 
@@ -43,20 +41,6 @@ TEST_F(NodeBlocksTest, TheOtherWayRoundItIsTheTranspose) {
       Matrix3d sum = Matrix3d::Identity();
       blocks_.add(i, j, 2, sum);
       EXPECT_EQ(sum, Matrix3d(Matrix3d::Identity() + 2 * plain_[i][j]));
-    }
-}
-
-TEST_F(NodeBlocksTest, AreTakenFromOthersAsTheyAre) {
-  const int order[] = {4, 6, 0, 3};
-  NodeBlocks some(kNodes);
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j <= i; ++j) some.take(i, j, blocks_, order[i], order[j]);
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) {
-      Matrix3d sum = Matrix3d::Zero(), whole = Matrix3d::Zero();
-      some.add(i, j, 1, sum);
-      blocks_.add(order[i], order[j], 1, whole);
-      EXPECT_EQ(sum, whole);
     }
 }
 

@@ -54,6 +54,7 @@ class Spoiler {
   }
   template <class T>
   std::string spoil_values(std::vector<T>& values, std::size_t columns) {
+    if (values.empty()) return ", of which nothing is left";
     const std::size_t at = any_place(values.size());
     switch (random_() % 8) {
       case 0:

@@ -129,6 +129,12 @@ TEST(Deformer, RefusesWhatDoesNotFitAndKeepsNothingOfIt) {
   ContactState contacts{.run = 5};
   contacts.forces.push_back({kDuctBody, surface, {1, 0, 0}});
   EXPECT_FALSE(deformer.take(contacts));
+  const auto organ = static_cast<std::uint32_t>(s.archives[kOrganBody].surface.size());
+  for (const HeldContact& held : {HeldContact{.body = 9}, HeldContact{.body = kOrganBody, .nodes = {0, 0, organ}}}) {
+    ContactState state{.run = 5};
+    state.contacts.push_back(held);
+    EXPECT_FALSE(deformer.take(state));
+  }
   for (const std::uint32_t tool : {1u, 1u << 31}) EXPECT_FALSE(deformer.take(ContactState{.tool = tool, .run = 5}));
   EXPECT_EQ(deformer.run(), 0u);
   EXPECT_FALSE(deformer.fresh());

@@ -109,6 +109,26 @@ TEST_P(CorrectedPress, NodesStayWhereAToolHoldsThem) {
   EXPECT_EQ(held, GetParam() == ContactRule::patch ? loaded - aside : loaded);
 }
 
+TEST_P(CorrectedPress, WhatIsInJawsStays) {
+  PressRig rig(corrected_, archives_);
+  press(rig, 0.021);
+  ContactState state = rig.simulator().contacts(0);
+  state.run = 1;
+  const std::uint32_t node =
+      std::ranges::max_element(state.forces, {}, [](const NodalForce& f) { return std::abs(f.force[0]); })->node;
+  const std::uint32_t part = state.contacts[0].sample;  // which has a patch, where patches are
+  state.contacts.push_back(
+      {.nodes = {node, node, node}, .weights = {1, 0, 0}, .normal = {0, 0, -1}, .sample = part, .sticking = kInJaws});
+  Deformer linear(scene_, archives_), corrected(corrected_, archives_);
+  for (Deformer* deformer : {&linear, &corrected}) {
+    ASSERT_TRUE(deformer->take(state));
+    deformer->deform();
+  }
+  const Eigen::Vector3f u = linear.surface(0).displacement[node];
+  ASSERT_GT(std::hypot(u.x(), u.y()), 2e-5f);
+  EXPECT_EQ(u, corrected.surface(0).displacement[node]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Rules, CorrectedPress, ::testing::Values(ContactRule::barycentric, ContactRule::patch),
                          [](const auto& info) { return std::string(word_of(info.param)); });
 

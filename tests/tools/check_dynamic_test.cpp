@@ -197,6 +197,10 @@ TEST_F(ToolsCheckContact, IsSaidToHaveBeenTriedOnlyWhereItWas) {
   expect_untried(with_probe(whole_ + "corotational = true\n", ""), "with elements that turn with the tissue");
   const ProgramResult averaged = testing::run_program(check(with_probe(whole_ + "element = \"nodal_strain\"\n", "")));
   expect_line(averaged, "  stable contact of tips: with strain averaged at the nodes not of all");
+  const std::string by_mesh = whole_ + "element = \"nodal_strain\"\n";
+  expect_untried(with_probe(by_mesh, "[contact]\nrule = \"barycentric\"\n"), "under rule \"barycentric\"");
+  const std::string stiff = replaced(by_mesh, "young = 1500", "young = 1e9");
+  expect_line(testing::run_program(check(with_probe(stiff, ""))), "warning: body 'cylinder': young is 1e+09 Pa");
 }
 
 TEST_F(ToolsCheckDynamic, AContrastBeyondRoundingIsRefusedAsThat) {
@@ -213,8 +217,9 @@ TEST_F(ToolsCheckDynamic, AMeshAloneIsSaidToBeWhatItIsAndTakes) {
   expect_line(said, "  793 nodes, 3456 tetrahedra; surface: ");
   expect_line(said, "  size: ");
   expect_line(said, "  dihedral angles: smallest ");
-  expect_line(said,
-              "  as a quasi-static body, all of it touchable, tensors from quadratic elements: precompute takes ");
+  expect_line(
+      said,
+      "  as a quasi-static body, touchable where it is not held, tensors from quadratic elements: precompute takes ");
   EXPECT_NE(said.out.find("archive: compliance among touchable dofs"), std::string::npos);
   const ProgramResult json = testing::run_program(program("palpate check") + " " + mesh + " --json");
   EXPECT_EQ(nlohmann::json::parse(json.out)["mesh"], mesh);

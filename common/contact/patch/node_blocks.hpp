@@ -19,22 +19,18 @@ class NodeBlocks {
     put(j, i, block.transpose());
   }
 
-  /// As set(), with the block that others have at (k, l).
-  void take(int i, int j, const NodeBlocks& from, int k, int l) {
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) {
-        entries_[place(j, row, column) + i] = from.entries(l, row, column)[k];
-        entries_[place(i, row, column) + j] = from.entries(k, row, column)[l];
-      }
-  }
-
-  /// [m/N] Along `normal`, of nodes begin ... end - 1, per force along it on node j; out[0] is that of node `begin`.
-  void along(const Eigen::Vector3d& normal, int j, int begin, int end, double* out) const {
-    along(normal, normal, j, begin, end, [out, begin](int i, double moved) { out[i - begin] = moved; });
-  }
-  /// [m] Adds what a force [N] on node j does along `normal` to nodes 0 ... end - 1.
-  void add_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& force, int j, int end, double* out) const {
-    along(normal, force, j, 0, end, [out](int i, double moved) { out[i] += moved; });
+  /// [m] What a force [N] on node j does along `normal` to nodes 0 ... end - 1.
+  void along(const Eigen::Vector3d& normal, const Eigen::Vector3d& force, int j, int end, double* out) const {
+    const double *xx = entries(j, 0, 0), *xy = entries(j, 0, 1), *xz = entries(j, 0, 2), *yx = entries(j, 1, 0),
+                 *yy = entries(j, 1, 1), *yz = entries(j, 1, 2), *zx = entries(j, 2, 0), *zy = entries(j, 2, 1),
+                 *zz = entries(j, 2, 2);
+    const double nx = normal.x(), ny = normal.y(), nz = normal.z(), fx = force.x(), fy = force.y(), fz = force.z();
+    // The sums are in the order in which Eigen has them in normal.dot(B * force), so that both give the same bits.
+    for (int i = 0; i < end; ++i) {
+      const double x = xx[i] * fx + xy[i] * fy + xz[i] * fz, y = yx[i] * fx + yy[i] * fy + yz[i] * fz,
+                   z = zx[i] * fx + (zy[i] * fy + zz[i] * fz);
+      out[i] = nx * x + ny * y + nz * z;
+    }
   }
   /// sum += scale B_ij
   void add(int i, int j, double scale, Eigen::Matrix3d& sum) const {
@@ -51,21 +47,6 @@ class NodeBlocks {
   const double* entries(int j, int row, int column) const { return &entries_[place(j, row, column)]; }
   std::size_t place(int j, int row, int column) const {
     return (9 * static_cast<std::size_t>(j) + 3 * row + column) * nodes_;
-  }
-
-  // The sums are in the order in which Eigen has them in normal.dot(B * force), so that both give the same bits.
-  template <class Take>
-  void along(const Eigen::Vector3d& normal, const Eigen::Vector3d& force, int j, int begin, int end,
-             const Take& take) const {
-    const double *xx = entries(j, 0, 0), *xy = entries(j, 0, 1), *xz = entries(j, 0, 2), *yx = entries(j, 1, 0),
-                 *yy = entries(j, 1, 1), *yz = entries(j, 1, 2), *zx = entries(j, 2, 0), *zy = entries(j, 2, 1),
-                 *zz = entries(j, 2, 2);
-    const double nx = normal.x(), ny = normal.y(), nz = normal.z(), fx = force.x(), fy = force.y(), fz = force.z();
-    for (int i = begin; i < end; ++i) {
-      const double x = xx[i] * fx + xy[i] * fy + xz[i] * fz, y = yx[i] * fx + yy[i] * fy + yz[i] * fz,
-                   z = zx[i] * fx + (zy[i] * fy + zz[i] * fz);
-      take(i, nx * x + ny * y + nz * z);
-    }
   }
 
   int nodes_;

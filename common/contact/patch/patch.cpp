@@ -17,7 +17,7 @@ constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which 
 }  // namespace
 
 Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
-    : grid_(grid), max_nodes_(3 * grid.feet()), kernel_(grid), near_field_(max_nodes_), last_near_field_(max_nodes_) {
+    : grid_(grid), max_nodes_(3 * grid.feet()), kernel_(grid), near_field_(max_nodes_) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
@@ -39,6 +39,7 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
   nodes_give_.assign(max_nodes_ * max_nodes_, 0.0);
   lifted_.reserve(max_nodes_);
   known_.reserve(max_nodes_);
+  place_.reserve(max_nodes_);
   k_.assign(max_nodes_ * max_nodes_, 0.0);
   k_feet_.assign(grid.feet() * grid.feet(), 0.0);
   foot_to_node_.assign(max_nodes_ * grid.feet(), 0.0);
@@ -126,7 +127,8 @@ void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
     if (found == nodes_.end()) continue;
     const auto j = found - nodes_.begin();
     shear[j] = f.force - f.force.dot(normal_) * normal_;
-    near_field_.add_along(normal_, shear[j], static_cast<int>(j), static_cast<int>(nodes_.size()), lifted_.data());
+    near_field_.along(normal_, shear[j], place_[j], static_cast<int>(known_.size()), at_places_.data());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) lifted_[i] += at_places_[place_[i]];
   }
   for (const auto& [i, j, block] : give) {
     lifted_[i] += normal_.dot(block * shear[j]);
@@ -263,6 +265,7 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
   sheared_.setZero();
   if (pressing_ <= 0) {
     bent_.setZero();
+    resumed_.setZero();
     force_.setZero();
     return;
   }

@@ -237,11 +237,11 @@ class Patch {
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
-  std::vector<int> known_;                  ///< nodes that near_field_ is of
-  NodeBlocks near_field_;                   ///< K between nodes_
-  NodeBlocks last_near_field_;              ///< between the nodes of before
-  std::vector<double> k_;                   ///< [m/N] K along the normal, max_nodes_ a row
-  std::array<double, kMaxNodes> at_nodes_;  ///< [m/N] along the normal, of a force on one foot
+  NodeBlocks near_field_;                    ///< K between nodes_, each at a place of its own
+  std::vector<int> known_, place_;           ///< the node at each place, -1: none; the place of each of nodes_
+  std::array<double, kMaxNodes> at_places_;  ///< along the normal, per place: [m/N] of K, [m] of a shear
+  std::vector<double> k_;                    ///< [m/N] K along the normal, max_nodes_ a row
+  std::array<double, kMaxNodes> at_nodes_;   ///< [m/N] along the normal, of a force on one foot
   std::vector<PatchForce> forces_;
   int loaded_ = 0;                    ///< how many of them
   std::vector<double> k_feet_;        ///< [m/N] K between feet, along the normal

@@ -21,23 +21,28 @@ void add_to_each(const double* from, double number, double* to) {
 
 }  // namespace
 
-// From one step to the next the nodes are mostly the same: what was known between two of them is taken along.
+// From one step to the next the nodes are mostly the same: they keep their places, and new ones come where others went.
 void Patch::fill_near_field(const NearField& near_field) {
-  if (nodes_ == known_) return;
-  const int count = static_cast<int>(nodes_.size());
-  std::array<int, kMaxNodes> was;
-  for (int i = 0; i < count; ++i) {
+  constexpr int kNone = -1;
+  const std::size_t count = nodes_.size();
+  std::array<bool, kMaxNodes> kept{};
+  place_.assign(count, kNone);
+  for (std::size_t i = 0; i < count; ++i) {
     const auto found = std::ranges::find(known_, nodes_[i]);
-    was[i] = found == known_.end() ? -1 : static_cast<int>(found - known_.begin());
+    if (found != known_.end()) kept[place_[i] = static_cast<int>(found - known_.begin())] = true;
   }
-  std::swap(near_field_, last_near_field_);
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j <= i; ++j)
-      if (was[i] >= 0 && was[j] >= 0)
-        near_field_.take(i, j, last_near_field_, was[i], was[j]);
-      else
-        near_field_.set(i, j, near_field.between(nodes_[i], nodes_[j]));
-  known_ = nodes_;
+  for (std::size_t p = 0; p < known_.size(); ++p)
+    if (!kept[p]) known_[p] = kNone;
+  while (!known_.empty() && known_.back() == kNone) known_.pop_back();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (place_[i] != kNone) continue;
+    const auto vacant = std::ranges::find(known_, kNone);
+    place_[i] = static_cast<int>(vacant - known_.begin());
+    if (vacant == known_.end()) known_.push_back(kNone);
+    known_[place_[i]] = nodes_[i];
+    for (std::size_t k = 0; k < count; ++k)
+      if (place_[k] != kNone) near_field_.set(place_[i], place_[k], near_field.between(nodes_[i], nodes_[k]));
+  }
 }
 
 // The compliance between squares along the normal [m/N].
@@ -55,8 +60,8 @@ void Patch::fill_feet() {
   const int count = static_cast<int>(nodes_.size()), feet = grid_.feet();
   for (int j = 0; j < count; ++j) {
     double* const row = &k_[j * max_nodes_];
-    near_field_.along(normal_, j, j, count, row + j);
-    for (int i = j + 1; i < count; ++i) k_[i * max_nodes_ + j] = row[i];
+    near_field_.along(normal_, normal_, place_[j], static_cast<int>(known_.size()), at_places_.data());
+    for (int i = j; i < count; ++i) k_[i * max_nodes_ + j] = row[i] = at_places_[place_[i]];
   }
   for (int a = 0; a < feet; ++a) {
     if (!feet_[a].stands()) continue;
@@ -164,7 +169,7 @@ Eigen::Matrix3d Patch::shared_near_field(std::span<const double> share) const {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < share.size(); ++i)
     for (std::size_t j = 0; share[i] != 0 && j < share.size(); ++j)
-      if (share[j] != 0) near_field_.add(static_cast<int>(i), static_cast<int>(j), share[i] * share[j], k);
+      if (share[j] != 0) near_field_.add(place_[i], place_[j], share[i] * share[j], k);
   return k;
 }
 

@@ -178,16 +178,17 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
 void say_tried_contact(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, double edge,
                        int steps, CheckReport& report) {
   using Tried = TriedContact;
-  if (body.dynamic.element == TetElement::nodal_strain)
-    return report.say("  stable contact of tips: with strain averaged at the nodes not of all (docs/stability.md)");
   if (const std::string what = untried(body, kind, settings.contact); !what.empty())
     return report.say(fmt::format("  stable contact: not tried {}: try it by palpate stability SCENE", what));
-  report.say(fmt::format(
-      "  stable contact of tips: tried from {:g} to {:g} Pa, Poisson's ratio up to {:g}, edges of {:g} to "
-      "{:g} mm, tips "
-      "of {:g} to {:g} edges, {:g} radii deep, friction up to {:g}, {:g} m/s, {:g} steps a tick",
-      Tried::kMinYoung, Tried::kMaxYoung, Tried::kMaxPoisson, 1e3 * Tried::kMinCell, 1e3 * Tried::kMaxCell,
-      Tried::kMinRadius, Tried::kMaxRadius, Tried::kMaxDepth, Tried::kMaxFriction, Tried::kMaxSpeed, Tried::kMaxSteps));
+  report.say(
+      body.dynamic.element == TetElement::nodal_strain
+          ? "  stable contact of tips: with strain averaged at the nodes not of all (docs/stability.md)"
+          : fmt::format("  stable contact of tips: tried from {:g} to {:g} Pa, Poisson's ratio up to {:g}, edges "
+                        "of {:g} to {:g} mm, tips of {:g} to {:g} edges, {:g} radii deep, friction up to {:g}, "
+                        "{:g} m/s, {:g} steps a tick",
+                        Tried::kMinYoung, Tried::kMaxYoung, Tried::kMaxPoisson, 1e3 * Tried::kMinCell,
+                        1e3 * Tried::kMaxCell, Tried::kMinRadius, Tried::kMaxRadius, Tried::kMaxDepth,
+                        Tried::kMaxFriction, Tried::kMaxSpeed, Tried::kMaxSteps));
   const auto look = [&](const std::string& whose, double value, double low, double high, const char* unit) {
     if (value >= low && value <= high) return;
     report.warnings.push_back(

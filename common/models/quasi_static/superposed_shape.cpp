@@ -86,6 +86,7 @@ SuperposedShape::Press SuperposedShape::press_of(const ContactState& tool, std::
 }
 
 bool SuperposedShape::by_patch(const ContactState& tool, const HeldContact& contact) const {
+  if (contact.sticking == kInJaws) return false;
   return std::ranges::any_of(patches_, [&](const PatchPart& part) {
     return part.tool == static_cast<int>(tool.tool) && part.part == static_cast<int>(contact.sample);
   });
