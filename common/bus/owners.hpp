@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-/// Which participant speaks under each key: the first one that did, until it has ended or has not been heard for a
-/// while. From any thread.
+/// Which participant speaks under each key: the first one that did, until it has ended. One that has not been heard for
+/// a while may only stand still: another may speak for it meanwhile, and it has its key back as soon as it is heard.
+/// From any thread.
 template <class Key>
 class Owners {
  public:
@@ -32,22 +33,35 @@ class Owners {
     if (has_another(key, participant, now_ns)) return false;
     if (participant == 0) return true;
     if (of_.size() >= kKeys && !of_.contains(key))
-      std::erase_if(of_, [&](const auto& entry) { return silent(entry.second, now_ns); });
-    if (of_.size() < kKeys || of_.contains(key)) of_[key] = {participant, now_ns};
+      std::erase_if(of_, [&](const auto& entry) {
+        return !speaks(entry.second.first, now_ns) && !speaks(entry.second.deputy, now_ns);
+      });
+    if (of_.size() < kKeys || of_.contains(key)) note(of_[key], {participant, now_ns});
     return true;
   }
 
  private:
-  struct Owner {
+  struct Speaker {
     std::uint64_t participant = 0;
     std::int64_t heard_ns = 0;
   };
+  struct Owner {
+    Speaker first, deputy;
+  };
   bool has_another(const Key& key, std::uint64_t participant, std::int64_t now_ns) const {
     const auto found = of_.find(key);
-    return found != of_.end() && found->second.participant != participant && !silent(found->second, now_ns) &&
-           peers_.has(found->second.participant);
+    if (found == of_.end()) return false;
+    const auto& [first, deputy] = found->second;
+    if (first.participant == participant && participant != 0) return false;
+    return speaks(first, now_ns) || (deputy.participant != participant && speaks(deputy, now_ns));
   }
-  static bool silent(const Owner& owner, std::int64_t now_ns) { return now_ns - owner.heard_ns >= kHeldNs; }
+  void note(Owner& owner, const Speaker& speaker) const {
+    const bool first = owner.first.participant == speaker.participant || !peers_.has(owner.first.participant);
+    (first ? owner.first : owner.deputy) = speaker;
+  }
+  bool speaks(const Speaker& speaker, std::int64_t now_ns) const {
+    return now_ns - speaker.heard_ns < kHeldNs && peers_.has(speaker.participant);
+  }
 
   const Peers& peers_;
   mutable std::mutex mutex_;

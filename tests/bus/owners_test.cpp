@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -50,12 +51,27 @@ TEST_F(OwnersTest, OfTwoThatComeToAFreeKeyAtOnceOneIsAdmitted) {
   EXPECT_TRUE(owners_.another("key", other_.handle(), kNow));
 }
 
-TEST_F(OwnersTest, AKeyIsFreeOnceItsOwnerHasBeenSilentForAWhile) {
+TEST_F(OwnersTest, WhoHasBeenSilentForAWhileHasItsKeyBackFromWhoSpokeForIt) {
   constexpr std::int64_t kHeld = Owners<std::string>::kHeldNs;
+  const Speaker third;
+  while (!peers_.has(third.handle())) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_TRUE(owners_.admit("key", one_.handle(), kNow));
   EXPECT_FALSE(owners_.admit("key", other_.handle(), kNow + kHeld - 1));
   EXPECT_TRUE(owners_.admit("key", other_.handle(), kNow + kHeld));
-  EXPECT_FALSE(owners_.admit("key", one_.handle(), kNow + kHeld + 1));
+  EXPECT_FALSE(owners_.admit("key", third.handle(), kNow + kHeld + 1)) << "one at a time speaks for it";
+  EXPECT_TRUE(owners_.admit("key", one_.handle(), kNow + kHeld + 2));
+  EXPECT_FALSE(owners_.admit("key", other_.handle(), kNow + kHeld + 3));
+}
+
+TEST_F(OwnersTest, WhatAnOwnerHadIsAnothersOnceItHasEnded) {
+  std::optional<Speaker> ends(std::in_place);
+  const std::uint64_t handle = ends->handle();
+  while (!peers_.has(handle)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(owners_.admit("key", handle, kNow));
+  ends.reset();
+  while (peers_.has(handle)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(owners_.admit("key", one_.handle(), kNow + 1));
+  EXPECT_FALSE(owners_.admit("key", other_.handle(), kNow + 2));
 }
 
 TEST_F(OwnersTest, WhoIsNotKnownComesToOwnNothing) {

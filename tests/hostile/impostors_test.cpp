@@ -54,6 +54,33 @@ TEST_P(Hostile, WhoTakesTheNamesOfTheRealNodesIsNotFollowed) {
   EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "messages are refused"); })) << "it says so";
 }
 
+// As a machine that stands may leave a node for longer than a run is held for it.
+TEST_P(Hostile, ANodeThatStoodHasItsNameAndItsRunBackFromWhoSpokeInThem) {
+  lied_to_ = true;
+  const auto status = writer(topics::node_status);
+  const auto models = writer(topics::local_contact_model);
+  NodeStatus deform = system().statuses()["deform"];
+  LocalContactModel nothing{.tool = kPressing, .run = deform_run(), .seq = 1u << 30, .tool_run = haptic_run()};
+  const auto speak = [&] {
+    ++deform.seq, status->write(deform);
+    ++nothing.seq, nothing.tool_step = hand().newest().step - 2, models->write(nothing);
+    return false;
+  };
+  system().pause("deform");
+  system().watch(4s, speak);
+  EXPECT_LT(hand().of(kPressing).newest().norm(), 0.1) << "the impostor was not heard";
+  system().go_on("deform");
+  const auto is_back = [&] {
+    const FeltForce& felt = hand().of(kPressing);
+    return speak() || (felt.newest() - felt.undisturbed()).norm() < 0.1 * felt.undisturbed().norm();
+  };
+  const std::int64_t begin = now_ns();
+  EXPECT_TRUE(system().watch(20s, is_back)) << hand().of(kPressing).newest().norm() << " N";
+  fmt::print("the hand has its force back after {:.2f} s\n", 1e-9 * static_cast<double>(now_ns() - begin));
+  system().watch(2s, speak);
+  EXPECT_TRUE(system().watch(20s, is_back)) << hand().of(kPressing).newest().norm() << " N later";
+}
+
 TEST_P(Hostile, ANodeWithoutASceneIsNoneOfThisScene) {
   const auto status = writer(topics::node_status);
   const auto models = writer(topics::local_contact_model);
