@@ -63,6 +63,7 @@ const LoopReport& HapticLoop::run(double seconds) {
   std::jthread pump;
   if (bus_devices_.needed() || local_feed_.needed())
     pump = std::jthread([this](const std::stop_token& stop) {
+      favour_thread();
       while (!stop.stop_requested()) {
         std::this_thread::sleep_for(250us);
         if (bus_devices_.needed()) bus_devices_.take();

@@ -49,12 +49,15 @@ void Publisher::publish(const StepRecord& r) {
     ForceState force = force_state(r, t);
     force.run = run_;
     force.seq = ++state.force_seq;
-    force_->write(force);
+    force_->gather(force);
     ToolState tool = tool_state(r, t);
     tool.run = run_;
     tool.seq = ++state.tool_seq;
-    tool_->write(tool);
+    tool_->gather(tool);
   }
+  contact_->send();
+  force_->send();
+  tool_->send();
   publish_news(r);
 }
 
@@ -92,7 +95,7 @@ void Publisher::publish_contacts(const StepRecord& r, int t) {
   state.quiet = 0;
   m.run = run_;
   m.seq = ++state.contact_seq;
-  contact_->write(m);
+  contact_->gather(m);
 }
 
 void Publisher::publish(const HapticKeyframe& keyframe) {

@@ -20,6 +20,9 @@ class Writer {
   virtual ~Writer() = default;
   /// Never waits for a reader. False if the sample was not sent: it is invalid or the buffers are full.
   virtual bool write(const Message& message) = 0;
+  /// The same, but it may wait for send(): what is said at once may go out at once, in one datagram.
+  virtual bool gather(const Message& message) { return write(message); }
+  virtual void send() {}
   virtual int readers() const = 0;            ///< matched readers; over DDS one that was killed counts for two minutes
   virtual std::uint64_t refused() const = 0;  ///< samples for which write() was false
   /// No reader that asks for repair still lacks something that was written; recorders with a stream of their own count

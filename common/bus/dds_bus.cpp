@@ -74,7 +74,9 @@ class DdsOutlet {
         writer_(dds_create_writer(participant, topic_, writer_qos(qos, lease_ms).get(), nullptr),
                 fmt::format("creating the writer of {}", name)) {}
 
-  bool write(const void* sample) { return dds_write(writer_, sample) == DDS_RETCODE_OK; }
+  /// Where the domain gathers, it goes out with the next send(); else at once.
+  bool gather(const void* sample) { return dds_write(writer_, sample) == DDS_RETCODE_OK; }
+  void send() { dds_write_flush(writer_); }
   bool delivered() const { return dds_wait_for_acks(writer_, 0) == DDS_RETCODE_OK; }
   int readers() const {
     dds_publication_matched_status_t status{};
@@ -98,15 +100,24 @@ class DdsWriter final : public Writer<M> {
   }
 
   bool write(const M& message) override {
+    const bool written = gather(message);
+    send();
+    return written;
+  }
+  bool gather(const M& message) override {
     typename dds::Generated<M>::Type sample{};
     if (valid(message)) {
       fields(dds::Lend{}, message, sample);
       stamp(sample);
-      const bool recorded = !for_recorders_ || for_recorders_->readers() == 0 || for_recorders_->write(&sample);
-      if (outlet_.write(&sample) && recorded) return true;
+      const bool recorded = !for_recorders_ || for_recorders_->readers() == 0 || for_recorders_->gather(&sample);
+      if (outlet_.gather(&sample) && recorded) return true;
     }
     ++refused_;
     return false;
+  }
+  void send() override {
+    outlet_.send();
+    if (for_recorders_) for_recorders_->send();
   }
 
   int readers() const override { return outlet_.readers() + (for_recorders_ ? for_recorders_->readers() : 0); }

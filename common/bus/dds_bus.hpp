@@ -16,6 +16,8 @@ struct BusSettings {
   int lease_ms = 200;                ///< a writer that is silent for so long is dead for its readers
   std::filesystem::path keys{};  ///< folder of keys, see security.hpp; empty: open to all, and nothing of it is loaded
   std::string role{};            ///< whose keys of those: a role of roles.hpp; means nothing without keys
+  bool favoured = false;         ///< what it receives comes before all that is not realtime on this host
+  bool gathers = false;          ///< Writer::gather() waits for send(); else it is write()
 };
 
 /// The middleware's configuration for these settings, as XML text. Loopback: no multicast, large datagrams.

@@ -123,9 +123,9 @@ std::string dds_configuration(const BusSettings& settings) {
       "<MaxQueuedRexmitBytes>8 MB</MaxQueuedRexmitBytes><MaxQueuedRexmitMessages>4096</MaxQueuedRexmitMessages>"
       "<MaxSampleSize>64 MB</MaxSampleSize><DefragReliableMaxSamples>2048</DefragReliableMaxSamples>"
       "<Watermarks><WhcLow>1 MB</WhcLow><WhcHigh>128 MB</WhcHigh><WhcHighInit>128 MB</WhcHighInit>"
-      "<WhcAdaptive>false</WhcAdaptive></Watermarks></Internal>"
+      "<WhcAdaptive>false</WhcAdaptive></Watermarks><WriteBatch>{}</WriteBatch></Internal>"
       "</Domain></CycloneDDS>",
-      settings.domain, parts.general, parts.peers, parts.internal);
+      settings.domain, parts.general, parts.peers, parts.internal, settings.gathers);
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/bus/dds_entity.hpp"
+#include "common/realtime/settings.hpp"
 
 namespace palpate {
 namespace {
@@ -41,6 +42,8 @@ std::shared_ptr<const void> join_domain(const BusSettings& settings) {
                  settings.role,
                  {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
   domains[settings.domain] = domain;
+  if (settings.favoured)
+    for (const char* receives : {"recv", "tev"}) favour_threads(receives);  // data; what was missed
   return domain;
 }
 

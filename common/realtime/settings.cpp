@@ -4,12 +4,17 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 namespace palpate {
 namespace {
+
+constexpr int kFavoured = -15;  // nice value
 
 const char* reason(int error) {
   return error == EPERM ? "not permitted, grant CAP_SYS_NICE or an rtprio limit" : std::strerror(error);
@@ -56,6 +61,20 @@ RealtimeGrant request_realtime(const RealtimeSettings& settings) {
 void leave_realtime() {
   const sched_param parameter{};
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameter);
+}
+
+void favour_thread() {
+  setpriority(PRIO_PROCESS, 0, kFavoured);
+}
+
+void favour_threads(std::string_view names) {
+  std::error_code error;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
+    std::string name;
+    std::getline(std::ifstream(task.path() / "comm"), name);
+    const auto thread = static_cast<id_t>(std::stoul(task.path().filename()));
+    if (name.starts_with(names)) setpriority(PRIO_PROCESS, thread, kFavoured);
+  }
 }
 
 void use_small_stacks() {

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -22,6 +23,12 @@ RealtimeGrant request_realtime(const RealtimeSettings& settings);
 
 /// Back to the normal scheduler: for threads that a realtime thread starts, which would inherit its priority.
 void leave_realtime();
+
+/// Lets the calling thread come before what is not realtime, as far as it is permitted. For what brings the newest
+/// state, of which there may be any amount: the kernel stops all realtime threads where they leave a core nothing.
+void favour_thread();
+/// The same for those threads of this process whose names begin so: a library's own.
+void favour_threads(std::string_view names);
 
 /// Threads that the process starts from here on have stacks of 1 MiB in place of 8: where memory is locked, all of a
 /// stack is resident. Call before there are threads.

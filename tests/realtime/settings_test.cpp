@@ -4,6 +4,8 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -45,6 +47,28 @@ TEST(RealtimeSettings, NothingAskedMeansNothingDone) {
   EXPECT_TRUE(request_realtime({.priority = 0, .lock_memory = false, .core = -1}).sentences.empty());
   EXPECT_EQ(current_policy(), policy);
   prefault_stack();
+}
+
+TEST(RealtimeSettings, ThreadsAreFavouredByTheirNamesAndNoOthers) {
+  const auto nice_of = [](const char* name) {
+    int nice = 0;
+    std::thread([&] {
+      pthread_setname_np(pthread_self(), name);
+      favour_threads("receives");
+      nice = getpriority(PRIO_PROCESS, 0);
+    }).join();
+    return nice;
+  };
+  std::thread([&] {
+    const int before = getpriority(PRIO_PROCESS, 0);
+    EXPECT_EQ(nice_of("draws"), before);
+    favour_thread();
+    const int favoured = getpriority(PRIO_PROCESS, 0);  // or as before, where it is not permitted
+    if (favoured == before) EXPECT_NE(geteuid(), 0u);
+    EXPECT_EQ(setpriority(PRIO_PROCESS, 0, before), 0);
+    EXPECT_EQ(nice_of("receives 1"), favoured);
+    EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
+  }).join();
 }
 
 }  // namespace
