@@ -8,10 +8,10 @@
 namespace palpate {
 
 struct SceneWishes {
-  std::string fixed = "attachment";  ///< group by which the body is held
-  double radius = 0.006;             ///< [m] of the probe's tip
-  double press = 0;   ///< [m] that it goes in; 0: a fortieth of the body's diagonal, half the radius at most
-  VisualSpec visual;  ///< as the scene names it; no surface: the body's own is drawn
+  std::string fixed = kHeldBy;  ///< group by which the body is held
+  double radius = 0.006;        ///< [m] of the probe's tip
+  double press = 0;             ///< [m] that it goes in; 0: a fortieth of the body's diagonal, half the radius at most
+  VisualSpec visual;            ///< as the scene names it; no surface: the body's own is drawn
 };
 
 /// A scene file and the trajectory that it names.

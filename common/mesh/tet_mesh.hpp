@@ -13,6 +13,9 @@ struct MeshGroup {
   std::vector<int> tetrahedra;  ///< indices into TetMesh::tetrahedra; ascending
 };
 
+/// By which group of its nodes a mesh is held where nobody says another.
+inline constexpr const char* kHeldBy = "attachment";
+
 /// Linear tetrahedral mesh. Node numbers are 0-based positions in the mesh file's node list, nodes that no
 /// element uses included. Tetrahedra are positively oriented: det[x1-x0, x2-x0, x3-x0] > 0.
 struct TetMesh {

@@ -153,6 +153,27 @@ TEST_F(MeshCommand, WhatAFineMeshIsSaidToTakeIsWhatCheckSays) {
   EXPECT_LT(said.mesh()["archive_bytes"], 60e6);
 }
 
+// 2,402 nodes of the surface, of which 441 are held: too few for compressed tensors.
+TEST_F(MeshCommand, WhatAHeldMeshIsSaidToTakeIsWhatItsSceneTakes) {
+  MeshOptions options;
+  options.output = (folder_ / "block.msh").string();
+  options.groups = {"attachment=below:z:0.001"};
+  Output said(true);
+  said.next_mesh();
+  finish_mesh(make_block({0, 0, 0}, {0.1, 0.1, 0.1}, {20, 20, 20}), options, said);
+  const std::string scene = (folder_ / "block.toml").string();
+  const auto made = run_program(program("palpate") + " scene " + options.output + " --tissue liver -o " + scene);
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto check = run_program(program("palpate") + " check --json " + scene);
+  ASSERT_EQ(check.status, 0) << check.err;
+  const auto checked = nlohmann::json::parse(check.out)["bodies"][0];
+  const auto archive = static_cast<double>(checked_bytes(checked, "disk"));
+  EXPECT_GT(archive, 100e6);
+  EXPECT_NEAR(said.mesh()["archive_bytes"].get<double>(), archive, 0.02 * archive);
+  const auto haptic = static_cast<double>(checked_bytes(checked, "haptic_node"));
+  EXPECT_NEAR(said.mesh()["haptic_node_bytes"].get<double>(), haptic, 0.05 * haptic);
+}
+
 // In the long tests as many as a scanner gives, in docs/organ.md with its time; a hundredth of that otherwise.
 TEST_F(MeshCommand, AMillionTrianglesOfALobedBodyBecomeAMesh) {
   const bool for_long = std::getenv("PALPATE_LONG_TESTS") != nullptr;

@@ -89,7 +89,7 @@ void check_mesh(const std::filesystem::path& file, CheckOutput& out) {
   const bool compressed = form_of(surface.touchable) == TensorForm::compressed;
   const Work work = work_of(mesh, offline, surface, 3.0 * surface.size());
   out.say(fmt::format(
-      "  as a quasi-static body, all of it touchable, {}tensors from {} elements: precompute takes about "
+      "  as a quasi-static body, touchable where it is not held, {}tensors from {} elements: precompute takes about "
       "{:.2g} s on this machine ({:.3g} Gflop), and {} for its factor",
       compressed ? "compressed " : "", offline.element == FiniteElement::p1 ? "linear" : "quadratic",
       work.operations / speed(), 1e-9 * work.operations, human_bytes(static_cast<std::size_t>(work.factor))));

@@ -44,7 +44,7 @@ std::size_t bytes_of(std::string_view owner, std::span<const MemoryPart> parts) 
   return sum;
 }
 
-/// Of a quasi-static body whose every node can be touched: memory as `palpate check` has it, time as measured
+/// Of a quasi-static body that can be touched where it is not held: memory as `palpate check` has it, time as measured
 /// (docs/organ.md).
 void tell_cost(const TetMesh& mesh, Output& out) {
   const SurfaceMap surface = free_surface(mesh);
@@ -53,8 +53,8 @@ void tell_cost(const TetMesh& mesh, Output& out) {
   const double nodes = surface.size();
   const double seconds = (surface.size() > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds) * nodes * nodes;
   out.say(fmt::format(
-      "  to come, as a quasi_static body, all of it touchable: archive of {:.3g} MB{}, haptic node {:.3g} MB, "
-      "precomputation about {:.2g} s",
+      "  to come, as a quasi_static body, touchable where it is not held: archive of {:.3g} MB{}, "
+      "haptic node {:.3g} MB, precomputation about {:.2g} s",
       1e-6 * static_cast<double>(archive), form_of(surface.touchable) == TensorForm::compressed ? " (compressed)" : "",
       1e-6 * static_cast<double>(haptic), seconds));
   out.mesh().update({{"archive_bytes", archive}, {"haptic_node_bytes", haptic}, {"precomputation_s", seconds}});

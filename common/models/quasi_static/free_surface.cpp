@@ -9,6 +9,9 @@ namespace palpate {
 
 SurfaceMap free_surface(const TetMesh& mesh) {
   DofMap dofs(mesh);
+  if (const auto held = mesh.groups.find(kHeldBy); held != mesh.groups.end())
+    for (const int node : held->second.nodes)
+      for (int axis = 0; axis < 3; ++axis) dofs.fix(node, axis);
   dofs.number();
   return make_surface_map(QuasiStaticSpec{}, mesh, dofs);
 }

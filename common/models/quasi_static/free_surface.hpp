@@ -5,7 +5,8 @@
 
 namespace palpate {
 
-/// The surface of a mesh of which nothing is held and all can be touched. Throws std::runtime_error where it has none.
+/// The surface of a mesh that is held by its group kHeldBy, where it has one, and can be touched elsewhere. Throws
+/// std::runtime_error where it has none.
 SurfaceMap free_surface(const TetMesh& mesh);
 
 /// What such a surface takes as that of a quasi-static body that one tool touches.
