@@ -199,7 +199,7 @@ TEST(Ribs, FileIsSmallAndStaysClearOfTheLiver) {
 
 TEST(Ribs, BonesFaceOutwardAndTheWallInward) {
   const TriangleMesh ribs = make_ribs();
-  constexpr std::size_t kWall = 2 * 13 * 36;
+  constexpr std::size_t kWall = 2 * (8 + 6) * 36 - 36;  // the dome ends in a point
   const std::size_t bones = ribs.triangles.size() - kWall;
   const std::vector<std::array<int, 3>> tubes(ribs.triangles.begin(), ribs.triangles.begin() + bones);
   EXPECT_GT(enclosed_volume(ribs.nodes, tubes), 0);
