@@ -59,14 +59,15 @@ void Session::heard_control(websocket::frame_type kind) {
   if (flooded()) throw_out();
 }
 
-// Says the last sample again and again. What the page says itself begins the wait anew.
+// Says the last sample again and again, and asks the browser whether it is there. What the page says itself begins the
+// wait anew.
 void Session::stand() {
   again_.expires_after(std::chrono::nanoseconds(StandingHand::kApart));
   again_.async_wait([self = shared_from_this()](beast::error_code error) {
     if (error || self->over_) return;
-    const std::optional<Said> again = self->hand_.again(now_ns());
-    if (!again) return;
-    self->host_.said(*self, *again);
+    const std::int64_t now = now_ns();
+    if (!self->hand_.stands(now)) return;
+    if (const std::optional<Said> again = self->hand_.again(now)) self->host_.said(*self, *again);
     self->ping();
     self->stand();
   });

@@ -11,8 +11,8 @@ void StandingHand::heard(const Said& said, std::int64_t now) {
 }
 
 std::optional<Said> StandingHand::again(std::int64_t now) {
-  if (now - since_ > kLongest || now - answered_ > kAnswers) last_.reset();
-  if (last_) ++last_->motion.number;
+  if (!stands(now) || now - answered_ > kAnswers) return {};
+  ++last_->motion.number;
   return last_;
 }
 

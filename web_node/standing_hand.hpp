@@ -7,7 +7,8 @@
 namespace palpate::web {
 
 /// A page that draws is silent, and its hand stands meanwhile: its last sample is said again, for as long as kLongest,
-/// so that a page that hangs lets go, and only while its browser answers, so that one that is cut off does. Times [ns].
+/// so that a page that hangs lets go, and only while its browser answers, so that one that is cut off does; a browser
+/// that answers again is gone on with. Times [ns].
 class StandingHand {
  public:
   static constexpr std::int64_t kApart = 24'000'000;     ///< of a sample and its repetitions
@@ -18,8 +19,9 @@ class StandingHand {
   void heard(const Said& said, std::int64_t now);
   /// The browser has answered; it does so while its page draws.
   void answered(std::int64_t now) { answered_ = now; }
-  bool stands() const { return last_.has_value(); }
-  /// The sample to be said now, by the next number; empty once it is over.
+  /// Whether there may be something to be said again, now or later.
+  bool stands(std::int64_t now) const { return last_ && now - since_ <= kLongest; }
+  /// The sample to be said now, by the next number; empty where it does not stand or its browser is silent.
   std::optional<Said> again(std::int64_t now);
 
  private:

@@ -31,14 +31,19 @@ TEST(WebStandingHand, SaysItsLastSampleByNewNumbersForASecond) {
   EXPECT_EQ(hand.again(1124 * kMs)->motion.number, 129u);
 }
 
-TEST(WebStandingHand, EndsWithoutAnAnswerOfTheBrowser) {
+TEST(WebStandingHand, WaitsForTheBrowsersAnswer) {
   StandingHand hand;
   hand.heard(sample(64), 0);
   EXPECT_TRUE(hand.again(24 * kMs));
   EXPECT_TRUE(hand.again(96 * kMs));
   EXPECT_FALSE(hand.again(120 * kMs));
+  EXPECT_TRUE(hand.stands(120 * kMs)) << "and the browser is asked again";
   hand.answered(130 * kMs);
-  EXPECT_FALSE(hand.again(144 * kMs)) << "an answer alone is no sample";
+  EXPECT_TRUE(hand.again(144 * kMs)) << "a browser that was slow for a moment";
+  EXPECT_FALSE(hand.again(240 * kMs)) << "and is silent again";
+  hand.answered(1000 * kMs);
+  EXPECT_FALSE(hand.again(1008 * kMs)) << "the page has been silent for too long";
+  EXPECT_FALSE(hand.stands(1008 * kMs));
 }
 
 TEST(WebStandingHand, EndsWhereThePageLetsGoAndNotWhereItTakesFrames) {

@@ -14,13 +14,13 @@ import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
-const wordsApart = 50, lateSeen = 1000, mostGiven = 100;  // [ms]; frames
+const leadApart = 16, wordsApart = 50, lateSeen = 1000, mostGiven = 100;  // [ms]; frames
 
 class App {
   constructor(sources) {
     this.picture = new Picture(canvas, sources, {
-      ready: (thread) => this.ready(thread), drawn: (what) => this.drawn(what), made: (what) => this.made(what),
-      failed: (words) => this.failed(words),
+      ready: (thread) => this.ready(thread), drawn: (what) => this.drawn(what), made: () => this.made(),
+      scale: (colours) => this.panel.scale(colours), failed: (words) => this.failed(words),
     });
     this.panel = new Panel();
     this.camera = new ViewCamera();
@@ -42,7 +42,7 @@ class App {
     this.input = new Input(canvas, this);
     wireButtons(this);
     this.setMode('press');
-    setInterval(() => this.lead(), 16);  // the display's pictures may come more seldom
+    setInterval(() => this.lead(), leadApart);  // the display's pictures may come more seldom
     addEventListener('pagehide', () => this.hand.release());
     document.addEventListener('visibilitychange', () => this.hand.pause());
     this.everyPicture();
@@ -138,6 +138,7 @@ class App {
 
   // `seconds`: since the picture before it was begun. `most`: the largest displacement in it [m].
   drawn({ number, seconds, most }) {
+    if (performance.now() - this.led > 2 * leadApart) this.leadHand();  // where pictures wait, they come before timers
     const at = this.given.findIndex((frame) => frame.number === number);
     if (at >= 0) [this.frame] = this.given.splice(0, at + 1).slice(-1);
     if (!this.frame) return;
@@ -147,10 +148,8 @@ class App {
     ++this.pictures;
   }
 
-  // `scale`: the colours of the legend, with the first picture.
-  made({ scale }) {
+  made() {
     this.firstDrawn ??= performance.now();
-    if (scale) this.panel.scale(scale);
   }
 
   // What stands beside the picture; nobody reads faster.
@@ -166,6 +165,11 @@ class App {
 
   lead() {
     this.link.tellTaken();
+    this.leadHand();
+  }
+
+  leadHand() {
+    this.led = performance.now();
     if (!this.frame || document.hidden) return;
     this.hand.shape = this.scenery.tools[this.hand.tool];
     this.hand.agree(this.next, this.me);

@@ -60,7 +60,8 @@ class RenderThread {
   tellMade() {
     if (!this.making) return;
     this.making = false;
-    postMessage({ made: { scale: this.scaled ? undefined : this.renderer.scale(128) } });
+    postMessage({ made: true });
+    if (!this.scaled) postMessage({ scale: this.renderer.scale(128) });  // after the first picture: it takes a while
     this.scaled = true;
   }
 }
