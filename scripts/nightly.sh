@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# nightly.sh [STAGE ...]: long (long forms of seeded tests; logs of ten minutes, 21 GB in TMPDIR), address (with undefined
-# behaviour) and thread (what has threads; sanitizers, short forms), fuzz (spoilt files and pages' messages, over an hour, under the
-# address and undefined-behaviour sanitizers), tidy (clang-tidy over the programs), stability (every case; an error is what fails
-# beside tests/stability/known_failures.txt, and a figure that docs/stability.md lacks), mcap (exports in the reference reader,
-# which npm brings into out/mcap_reader), docs (every command of the pages), python (the module and its examples; installs
-# pybind11-dev and python3-dev), papers (docs/papers.md in full, into out/papers_docs), packages (made, and tried in a bare Debian
-# 12; needs root). All of them where none is named.
+# nightly.sh [STAGE ...]: long (programs of tests that have a long form; logs of ten minutes, 21 GB in TMPDIR), address
+# (with undefined behaviour) and thread (what has threads; sanitizers, short forms), fuzz (spoilt files and pages'
+# messages, over an hour, under the address and undefined-behaviour sanitizers), tidy (clang-tidy over the programs),
+# stability (every case; an error is what fails beside tests/stability/known_failures.txt, and a figure that
+# docs/stability.md lacks), mcap (exports in the reference reader, which npm brings into out/mcap_reader), docs (every
+# command of the pages), python (the module and its examples; installs pybind11-dev and python3-dev), papers
+# (docs/papers.md in full, into out/papers_docs), packages (made, and tried in a bare Debian 12; needs root). All of
+# them where none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=/usr/bin:$PATH  # the python3 that has Debian's modules
@@ -18,7 +19,8 @@ for stage in "$@"; do
   case "$stage" in
     long)
       ./scripts/install.sh libcgal-demo  # a real liver, for its test
-      PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 -E '^test_fuzz' ;;  # their long form is the stage fuzz
+      mapfile -t folders < <(grep -rl PALPATE_LONG_TESTS tests | cut -d/ -f2 | grep -vx fuzz | sort -u)  # fuzz is a stage
+      PALPATE_LONG_TESTS=1 ./scripts/test.sh --timeout 1800 -R "^test_($(IFS="|"; echo "${folders[*]}"))" ;;
     stability)
       ./scripts/install.sh plots
       ./scripts/build.sh release palpate palpate_study
@@ -66,7 +68,7 @@ for stage in "$@"; do
       ./scripts/build.sh address test_fuzz
       PALPATE_LONG_TESTS=1 ctest --preset address --timeout 1200 --parallel "$slots" -R '^test_fuzz' ;;
     tidy) ./scripts/tidy.sh ;;
-    -h|--help) sed -n '2,8p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,9p' "$0"; exit 0 ;;
     *) echo "nightly.sh: unknown stage $stage" >&2; exit 2 ;;
   esac
 done
