@@ -5,6 +5,7 @@
 
 #include "common/bus/security.hpp"
 #include "common/realtime/clock.hpp"
+#include "tests/realtime/resident.hpp"
 #include "tests/sanitized.hpp"
 #include "tools/keys/documents.hpp"
 #include "tools/keys/key_folder.hpp"
@@ -21,13 +22,6 @@ constexpr double kYoung = 20e3;          // [Pa] of both blocks
 constexpr double kFelt = 1;              // [N] where a tool presses
 constexpr double kSettled = 0.01;        // [N] by which a force that is at rest may be off
 constexpr std::uint64_t kSoon = 60'000;  // [steps] that a picture told of in time may be ahead of what is known here
-
-double resident_mb(pid_t pid) {
-  std::ifstream in(fmt::format("/proc/{}/statm", pid));
-  double total = 0, resident = 0;
-  in >> total >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
 
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file);

@@ -141,7 +141,7 @@ TEST_F(ToolsCheckDynamic, SaysHowFarTheBodySinksUnderItsGravity) {
 // Tissue a million times as stiff takes a thousand times the steps.
 TEST_F(ToolsCheckDynamic, ATickThatTakesLongerThanItLastsIsPointedOut) {
   const std::string warning =
-      "where 0.85 of 1 ms are the tissue's: time in the tissue falls behind; what would fit is tissue ";
+      "where 0.8 of 1 ms are the tissue's: time in the tissue falls behind; what would fit is tissue ";
   const ProgramResult soft = testing::run_program(check(scene_));
   expect_line(soft, "  cost: 1 steps a tick, ");
   EXPECT_NE(soft.out.find("  fits a tick: up to "), std::string::npos) << soft.out;

@@ -7,7 +7,7 @@ namespace palpate {
 
 /// Of a core, what moving tissue takes at the most: the rest is the haptic node's, where they have one core
 /// (CoreShare).
-inline constexpr double kTissueShare = 0.85;
+inline constexpr double kTissueShare = 0.8;
 
 /// The steps in which the tissue of a moving body goes on.
 struct TissueSteps {
