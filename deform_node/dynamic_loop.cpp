@@ -14,8 +14,9 @@ namespace palpate {
 namespace {
 
 constexpr std::uint64_t kReminderTicks = 64;
-constexpr double kSettlingShare = 0.8;  // of a tick's time
-constexpr int kLoopPriority = 50;       // below the haptic loop and what it publishes, above the picture
+constexpr double kSettlingShare = 0.8;   // of a tick's time
+constexpr int kLoopPriority = 50;        // below the haptic loop and what it publishes, above the picture
+constexpr std::size_t kHeap = 16 << 20;  // [bytes] for messages as they are written
 
 std::size_t tetrahedra_of(const DynamicWorld& world) {
   std::size_t sum = 0;
@@ -234,6 +235,7 @@ void DynamicLoop::keep_house(std::int64_t now) {
 }
 
 const DynamicReport& DynamicLoop::run(double seconds) {
+  keep_heap(kHeap);
   for (const std::string& said : request_realtime({.priority = kLoopPriority}).sentences) log_info(said);
   const std::int64_t begin = now_ns();
   const auto frame_ns = static_cast<std::int64_t>(1e9 / visual_hz_);

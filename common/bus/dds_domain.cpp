@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <thread>
 
 #include "common/bus/dds_entity.hpp"
 #include "common/realtime/settings.hpp"
@@ -19,6 +20,16 @@ struct Domain {
   std::string keys, role;  ///< the middleware gives all participants of a process and domain the rights of the first
   Entity entity;
 };
+
+/// What dds_create_domain() returns. The middleware's threads have the nice value of who starts them.
+dds_entity_t create_domain(const BusSettings& settings, const std::string& configuration) {
+  dds_entity_t created = 0;
+  std::thread([&] {
+    if (settings.favoured) favour_thread();
+    created = dds_create_domain(static_cast<dds_domainid_t>(settings.domain), configuration.c_str());
+  }).join();
+  return created;
+}
 
 }  // namespace
 
@@ -35,15 +46,12 @@ std::shared_ptr<const void> join_domain(const BusSettings& settings) {
     throw std::runtime_error(
         fmt::format("network: this process is already in domain {} with other settings", settings.domain));
   }
-  const auto id = static_cast<dds_domainid_t>(settings.domain);
   auto domain = std::shared_ptr<Domain>(
       new Domain{configuration,
                  settings.keys,
                  settings.role,
-                 {dds_create_domain(id, configuration.c_str()), fmt::format("joining domain {}", settings.domain)}});
+                 {create_domain(settings, configuration), fmt::format("joining domain {}", settings.domain)}});
   domains[settings.domain] = domain;
-  if (settings.favoured)
-    for (const char* receives : {"recv", "tev"}) favour_threads(receives);  // data; what was missed
   return domain;
 }
 

@@ -1,20 +1,21 @@
 #include "common/realtime/settings.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 namespace palpate {
 namespace {
 
-constexpr int kFavoured = -15;  // nice value
+constexpr int kFavoured = -15;            // nice value
+constexpr int kLargestInHeap = 32 << 20;  // [bytes] the most that glibc permits; larger blocks are mapped
 
 const char* reason(int error) {
   return error == EPERM ? "not permitted, grant CAP_SYS_NICE or an rtprio limit" : std::strerror(error);
@@ -67,22 +68,19 @@ void favour_thread() {
   setpriority(PRIO_PROCESS, 0, kFavoured);
 }
 
-void favour_threads(std::string_view names) {
-  std::error_code error;
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
-    std::string name;
-    std::getline(std::ifstream(task.path() / "comm"), name);
-    const auto thread = static_cast<id_t>(std::stoul(task.path().filename()));
-    if (name.starts_with(names)) setpriority(PRIO_PROCESS, thread, kFavoured);
-  }
-}
-
 void use_small_stacks() {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, 1 << 20);
   pthread_setattr_default_np(&attributes);
   pthread_attr_destroy(&attributes);
+}
+
+void keep_heap(std::size_t bytes) {
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_THRESHOLD, kLargestInHeap);
+  void* volatile room = std::malloc(bytes);
+  std::free(room);
 }
 
 void prefault_stack() {

@@ -1,6 +1,6 @@
 #pragma once
+#include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace palpate {
@@ -24,15 +24,18 @@ RealtimeGrant request_realtime(const RealtimeSettings& settings);
 /// Back to the normal scheduler: for threads that a realtime thread starts, which would inherit its priority.
 void leave_realtime();
 
-/// Lets the calling thread come before what is not realtime, as far as it is permitted. For what brings the newest
-/// state, of which there may be any amount: the kernel stops all realtime threads where they leave a core nothing.
+/// Lets the calling thread, and those that it starts from then on, come before what is not realtime, as far as it is
+/// permitted. For what brings the newest state, of which there may be any amount: the kernel stops all realtime threads
+/// where they leave a core nothing.
 void favour_thread();
-/// The same for those threads of this process whose names begin so: a library's own.
-void favour_threads(std::string_view names);
 
 /// Threads that the process starts from here on have stacks of 1 MiB in place of 8: where memory is locked, all of a
 /// stack is resident. Call before there are threads.
 void use_small_stacks();
+
+/// Takes so much heap and gives none back: a loop that allocates within it makes no system call, in which it would wait
+/// for whatever thread has the kernel change the process's memory. Call before memory is locked, in the main thread.
+void keep_heap(std::size_t bytes);
 
 /// Touches 256 KiB of the calling thread's stack, so that the first steps meet no page fault. Call before the
 /// loop.
