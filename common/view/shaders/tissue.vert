@@ -20,7 +20,8 @@ void main() {
   vec4 middle = noise_slope(rest / 0.0083 + 2.0 * broad.w);
   relief.xyz = middle.xyz / 0.0083 + (middle.x + middle.y + middle.z) * 2.0 / 0.033 * broad.xyz;
   relief.w = middle.w - 0.5;
-  float vessel = noise(rest / 0.021 + 3.0 * noise(rest / 0.013));
+  // Winds over as much as vertices are apart, so that lines of one value have no corners.
+  float vessel = noise(rest / 0.024 + 1.3 * noise(rest / 0.026));
 #ifdef TEXTURED
   place = image_place;
 #endif
