@@ -47,7 +47,6 @@ nlohmann::json superpose(const NodeOptions& o, const LoadedScene& loaded, Deform
 }
 
 nlohmann::json advance(const NodeOptions& o, const LoadedScene& loaded, Deformer& deformer) {
-  map_blas_memory();  // stiffness near the tools is solved for beside the loop
   DynamicWorld world(loaded.scene, loaded.archives);
   LocalModels local_models(world, loaded.archives);
   const std::uint64_t run = new_run();

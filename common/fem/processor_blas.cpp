@@ -44,10 +44,4 @@ void use_one_blas_thread(char** argv) {
   if (!std::getenv(kThreads)) start_anew(argv, kThreads, "1");
 }
 
-void map_blas_memory() {
-  const double one = 1;
-  double product = 0;
-  cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, 1, 1, 1.0, &one, 1, &one, 1, 0.0, &product, 1);
-}
-
 }  // namespace palpate

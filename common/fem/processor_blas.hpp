@@ -12,9 +12,4 @@ void use_blas_of_this_processor(char** argv);
 /// first in main().
 void use_one_blas_thread(char** argv);
 
-/// OpenBLAS maps 128 MB to work in when it is first asked for a product. Where memory is locked that takes up to 0.1 s,
-/// in which every other thread waits that maps memory itself. Has it done: to be called before a loop begins beside
-/// which something is factorised.
-void map_blas_memory();
-
 }  // namespace palpate

@@ -31,7 +31,8 @@ std::string ask_scheduler(int priority, bool& granted) {
 }
 
 std::string ask_memory(bool& granted) {
-  granted = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  // What is mapped later is locked page by page as it is touched: at once, that holds up all who have memory mapped.
+  granted = mlockall(MCL_CURRENT) == 0 && mlockall(MCL_FUTURE | MCL_ONFAULT) == 0;
   if (granted) return "memory: locked";
   const int error = errno;
   const bool limit = error == ENOMEM || error == EPERM;
