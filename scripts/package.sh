@@ -2,7 +2,7 @@
 # package.sh: builds the programs and makes Debian packages of them, with manual pages, into build/packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-./scripts/install.sh images spacemouse help2man dpkg-dev
+./scripts/install.sh images spacemouse help2man dpkg-dev file
 ./scripts/build.sh release programs palpate_study palpate_organ palpate_spacemouse
 rm -rf build/release/man build/packages
 ./scripts/manual_pages.sh build/release/bin build/release/man
