@@ -6,9 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "common/bus/memory_bus.hpp"
 #include "common/sim/haptic_step.hpp"
-#include "haptic_node/local_feed.hpp"
 #include "tests/haptic/local_models_for_tests.hpp"
 
 namespace palpate {
@@ -363,46 +361,6 @@ TEST_F(LocalBodyTest, AQuasiStaticBodyInTheSameSceneIsFeltAsBefore) {
     b.step(std::array{tip_at(t, {0, 0, 0})});
   }
   EXPECT_NEAR((b.force(0) - a.force(0)).z(), 1, 1e-12);
-}
-
-TEST_F(LocalBodyTest, TheFeedBringsTheNewestModelOfThisRunToTheStep) {
-  auto network = make_memory_network();
-  auto here = make_memory_bus(network), there = make_memory_bus(network);
-  LocalFeed feed(*here, *haptic_, 5);
-  ASSERT_TRUE(feed.needed());
-  feed.follow(77);  // as empty_model() names it
-  const auto writer = there->writer(topics::local_contact_model);
-  EXPECT_EQ(writer->readers(), 1);
-  const auto send = [&](std::uint64_t tool_run, std::uint64_t seq) {
-    LocalContactModel m = empty_model(tool(), {0, 0, 0}, 0, seq);
-    m.tool_run = tool_run;
-    add_contact(m, {0, 0, -kBallRadius}, {0, 0, -static_cast<double>(seq)}, 0);
-    ASSERT_TRUE(writer->write(m));
-    feed.take();
-    feed.give(*haptic_);
-  };
-  feed.give(*haptic_);
-  EXPECT_EQ(haptic_->local(0).model().seq, 0u);
-  feel({0, 0, 0});  // step 0, whose pose the models have
-  send(5, 1);
-  send(5, 2);
-  EXPECT_EQ(haptic_->local(0).model().seq, 2u);
-  send(6, 3);
-  EXPECT_EQ(haptic_->local(0).model().seq, 2u) << "a model for another haptic run";
-  send(5, 4);
-  EXPECT_EQ(haptic_->local(0).model().seq, 4u);
-  for (int i = 0; i < 60; ++i) feel({0, 0, 0});
-  EXPECT_NEAR(haptic_->force(0).z(), 4, 1e-12);
-}
-
-TEST_F(LocalBodyTest, ASceneWithoutMovingTissueSubscribesToNothing) {
-  const testing::BlockScene still;
-  HapticStep haptic(still.scene, still.archives);
-  auto bus = make_memory_bus(make_memory_network());
-  LocalFeed feed(*bus, haptic, 5);
-  EXPECT_FALSE(feed.needed());
-  EXPECT_EQ(bus->writer(topics::local_contact_model)->readers(), 0);
-  feed.give(haptic);
 }
 
 }  // namespace

@@ -49,6 +49,40 @@ class ToldOverTheBus : public ::testing::Test {
   std::unique_ptr<Writer<LocalContactModel>> models_;
 };
 
+TEST_F(ToldOverTheBus, TheNewestModelOfThisRunComesToTheStep) {
+  ASSERT_TRUE(feed_.needed());
+  EXPECT_EQ(models_->readers(), 1);
+  const auto send = [&](std::uint64_t tool_run, std::uint64_t seq) {
+    LocalContactModel m = press(0, seq);
+    m.tool_run = tool_run;
+    m.contacts[0].force = {0, 0, -static_cast<double>(seq)};
+    ASSERT_TRUE(models_->write(m));
+    feed_.take();
+    feed_.give(haptic_);
+  };
+  feel(1);  // step 0, whose pose the models have
+  EXPECT_EQ(haptic_.local(0).model().seq, 0u);
+  send(kRun, 1);
+  send(kRun, 2);
+  EXPECT_EQ(haptic_.local(0).model().seq, 2u);
+  send(kRun + 1, 3);
+  EXPECT_EQ(haptic_.local(0).model().seq, 2u) << "a model for another haptic run";
+  send(kRun, 4);
+  EXPECT_EQ(haptic_.local(0).model().seq, 4u);
+  feel(60);
+  EXPECT_NEAR(haptic_.force(0).z(), 4, 1e-12);
+}
+
+TEST(LocalFeed, OfASceneWithoutMovingTissueSubscribesToNothing) {
+  const testing::BlockScene still;
+  HapticStep haptic(still.scene, still.archives);
+  const auto bus = make_memory_bus(make_memory_network());
+  LocalFeed feed(*bus, haptic, kRun);
+  EXPECT_FALSE(feed.needed());
+  EXPECT_EQ(bus->writer(topics::local_contact_model)->readers(), 0);
+  feed.give(haptic);
+}
+
 TEST_F(ToldOverTheBus, AModelOfADoneStepIsFeltAndAgesWhenNoOtherComes) {
   feel(10);
   models_->write(press(9, 1));
