@@ -16,11 +16,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kHover = 0.186;  // [m] of depth: the tip's ball ends 6 mm above the tissue
-// [s] over the tissue, where the case in free air ends after 6, on a busy machine 7; and then until it presses
-constexpr double kWaits = kSanitized ? 15 : 10, kComesDown = 2;
-constexpr double kYoung = 20e3;          // [Pa] of both blocks
-constexpr double kFelt = 1;              // [N] where a tool presses
-constexpr double kSettled = 0.01;        // [N] by which a force that is at rest may be off
+// [s] over the tissue, where the case in free air ends after 8, on a busy machine 13; and then until it presses
+constexpr double kWaits = kSanitized ? 20 : 15, kComesDown = 2;
+constexpr double kYoung = 20e3;               // [Pa] of both blocks
+constexpr double kFelt = 1;                   // [N] where a tool presses
+constexpr double kSettled = 0.01;             // [N] by which a force that is at rest may be off
+constexpr std::uintmax_t kHears = 1'000'000;  // [bytes] of a log whose recorder has met all
 constexpr std::uint64_t kSoon = 60'000;  // [steps] that a picture told of in time may be ahead of what is known here
 
 std::string text_of(const std::filesystem::path& file) {
@@ -99,6 +100,7 @@ BusSettings HostileScene::insider(int domain) const {
 
 AttackedSystem::AttackedSystem(int domain, bool with_keys)
     : scene_(with_keys),
+      domain_(std::to_string(domain)),
       attacker_(scene_.insider(domain)),
       hand_(scene_.insider(domain), 3),
       status_(attacker_.bus().reader(topics::node_status)),
@@ -107,8 +109,8 @@ AttackedSystem::AttackedSystem(int domain, bool with_keys)
   if (run_command(program("palpate") + " precompute " + scene_.scene(), &said) != 0) throw std::runtime_error(said);
   driver_ = std::thread([this] { drive(); });
   for (const char* name : {"deform", "render", "web", "haptic"})
-    nodes_.emplace(name, ChildProcess(name, {program(std::string(name) + "_node"), scene_.scene(), "--domain",
-                                             std::to_string(domain), "--supervised"}));
+    nodes_.emplace(name, ChildProcess(name, {program(std::string(name) + "_node"), scene_.scene(), "--domain", domain_,
+                                             "--supervised"}));
   const bool there = watch(30s, [&] { return hand_.newest().step > 800 && statuses_.size() == 4 && pictures_ > 20; });
   if (!there) throw std::runtime_error("the attacked system does not come up");
 }
@@ -117,14 +119,28 @@ bool AttackedSystem::in_free_air() const {
   return hand_.newest().step < static_cast<std::uint64_t>(1000 * kWaits);
 }
 
-void AttackedSystem::press() {
-  if (presses_.exchange(true)) return;
+bool AttackedSystem::press() {
+  if (presses_.exchange(true)) return false;
   const auto down = static_cast<std::uint64_t>(1000 * (kWaits + kComesDown));
   const auto felt = [this](int tool) { return hand_.of(tool).newest().norm() > kFelt; };
   if (!watch(60s, [&] { return hand_.newest().step > down && felt(kDriven) && felt(kPressing); }))
     throw std::runtime_error("the tools do not come down");
   watch(2s);
   for (int tool = 0; tool < hand_.tools(); ++tool) hand_.of(tool).keep_undisturbed();
+  return true;
+}
+
+void AttackedSystem::fill_histories() {
+  const std::filesystem::path log = scene_.folder() / "recorder.lcmlog";
+  ChildProcess recorder("record", {program("palpate"), "record", "--scene", scene_.scene(), "--domain", domain_,
+                                   "--keep", "everything", "--force", "-o", log});
+  const bool records = watch(20s, [&] { return std::filesystem::exists(log) && file_size(log) > kHears; });
+  if (!records) throw std::runtime_error("the recorder hears nothing");
+  kill(recorder.pid(), SIGSTOP);
+  watch(std::chrono::milliseconds(step_depth + 500));
+  kill(recorder.pid(), SIGCONT);
+  recorder.interrupt();
+  if (!recorder.wait(10s)) throw std::runtime_error("the recorder does not end");
 }
 
 void AttackedSystem::press_again() {

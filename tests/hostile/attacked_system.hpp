@@ -39,8 +39,10 @@ class AttackedSystem {
   Attacker& attacker() { return attacker_; }
   HandWatch& hand() { return hand_; }
   bool in_free_air() const;  ///< the script has not begun to lead its tool down
-  /// Returns once the tools that press have come down and rest. Until then all are in free air.
-  void press();
+  /// Returns once the tools that press have come down and rest: true the first time. Until then all are in free air.
+  bool press();
+  /// Lets a recorder stand until all writers keep as much for it as they ever do: that is no attack's cost.
+  void fill_histories();
   /// The driver elsewhere lifts its tool and comes down again as it did at first: what it has cost is paid.
   void press_again();
   /// Waits until each force is what it was before the first attack.
@@ -85,6 +87,7 @@ class AttackedSystem {
   void drive();
 
   HostileScene scene_;
+  std::string domain_;
   Attacker attacker_;
   HandWatch hand_;
   std::unique_ptr<Reader<NodeStatus>> status_;

@@ -69,6 +69,7 @@ class Hostile : public ::testing::TestWithParam<bool> {
 
  private:
   static bool is_in_free_air();
+  static void warm_up();
   void expect_guarded(int tool) const;
 
   static std::unique_ptr<HostWatch> host_;
