@@ -16,6 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
+constexpr std::size_t kHeap = 16 << 20;  // [bytes] for messages that are kept until all have had them
 constexpr int kLoopPriority = 80, kPublisherPriority = 60;
 constexpr std::uint32_t kOfLeaving = silent_device | stale_model;  // no interventions while other nodes end too
 constexpr double kMaxLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
@@ -166,6 +167,7 @@ void HapticLoop::checkpoint() {
 }
 
 void HapticLoop::publish_loop() {
+  keep_heap(kHeap);
   request_realtime({.priority = kPublisherPriority, .lock_memory = false});
   while (!over_.load()) {
     (void)wake_.try_acquire_for(20ms);

@@ -33,8 +33,8 @@ void favour_thread();
 /// stack is resident. Call before there are threads.
 void use_small_stacks();
 
-/// Takes so much heap and gives none back: a loop that allocates within it makes no system call, in which it would wait
-/// for whatever thread has the kernel change the process's memory. Call before memory is locked, in the main thread.
+/// Takes so much heap for the calling thread and gives none back: a loop that allocates within it makes no system call,
+/// in which it would wait for whatever thread has the kernel change the process's memory. Call before memory is locked.
 void keep_heap(std::size_t bytes);
 
 /// Touches 256 KiB of the calling thread's stack, so that the first steps meet no page fault. Call before the

@@ -130,19 +130,6 @@ bool AttackedSystem::press() {
   return true;
 }
 
-void AttackedSystem::fill_histories() {
-  const std::filesystem::path log = scene_.folder() / "recorder.lcmlog";
-  ChildProcess recorder("record", {program("palpate"), "record", "--scene", scene_.scene(), "--domain", domain_,
-                                   "--keep", "everything", "--force", "-o", log});
-  const bool records = watch(20s, [&] { return std::filesystem::exists(log) && file_size(log) > kHears; });
-  if (!records) throw std::runtime_error("the recorder hears nothing");
-  kill(recorder.pid(), SIGSTOP);
-  watch(std::chrono::milliseconds(step_depth + 500));
-  kill(recorder.pid(), SIGCONT);
-  recorder.interrupt();
-  if (!recorder.wait(10s)) throw std::runtime_error("the recorder does not end");
-}
-
 void AttackedSystem::press_again() {
   presses_ = false;
   watch(10s, [this] { return driven_depth_ == kHover; });
@@ -187,6 +174,21 @@ bool AttackedSystem::all_run() {
 std::map<std::string, double> AttackedSystem::memory_mb() const {
   std::map<std::string, double> memory;
   for (const auto& [name, process] : nodes_) memory[name] = resident_mb(process.pid());
+  return memory;
+}
+
+std::map<std::string, double> AttackedSystem::memory_at_most() {
+  const std::filesystem::path log = scene_.folder() / "recorder.lcmlog";
+  ChildProcess recorder("record", {program("palpate"), "record", "--scene", scene_.scene(), "--domain", domain_,
+                                   "--keep", "everything", "--force", "-o", log});
+  const bool records = watch(20s, [&] { return std::filesystem::exists(log) && file_size(log) > kHears; });
+  if (!records) throw std::runtime_error("the recorder hears nothing");
+  kill(recorder.pid(), SIGSTOP);
+  watch(std::chrono::milliseconds(step_depth + 500));
+  const auto memory = memory_mb();
+  kill(recorder.pid(), SIGCONT);
+  recorder.interrupt();
+  if (!recorder.wait(10s)) throw std::runtime_error("the recorder does not end");
   return memory;
 }
 

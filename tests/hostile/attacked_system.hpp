@@ -41,8 +41,6 @@ class AttackedSystem {
   bool in_free_air() const;  ///< the script has not begun to lead its tool down
   /// Returns once the tools that press have come down and rest: true the first time. Until then all are in free air.
   bool press();
-  /// Lets a recorder stand until all writers keep as much for it as they ever do: that is no attack's cost.
-  void fill_histories();
   /// The driver elsewhere lifts its tool and comes down again as it did at first: what it has cost is paid.
   void press_again();
   /// Waits until each force is what it was before the first attack.
@@ -50,6 +48,8 @@ class AttackedSystem {
   const std::map<std::string, ChildProcess>& nodes() const { return nodes_; }
   bool all_run();
   std::map<std::string, double> memory_mb() const;  ///< resident, by node
+  /// The same without an attack, while a recorder stands and all writers keep for it as much as they ever do.
+  std::map<std::string, double> memory_at_most();
   /// The newest status of the node of a role, as it told itself.
   std::map<std::string, NodeStatus>& statuses() { return statuses_; }
   /// All texts of the statuses of a role's node since begin_anew().

@@ -114,7 +114,7 @@ TEST_P(Hostile, CutsLargerThanTheTissueCostNoMemory) {
   const auto end = static_cast<std::uint64_t>(flood_of(600, GetParam()));
   for (change.seq = 2; change.seq < end; ++change.seq) {
     sent_mb += changes->write(change);
-    if (change.seq % 10 == 0) grown = std::max(grown, grown_since(before));
+    if (change.seq % 10 == 0) grown = std::max(grown, grown_since(before).mb);
   }
   fmt::print("{:.0f} MB sent, {:.0f} MB more\n", sent_mb, grown);
   EXPECT_TRUE(grown < kLargest || kSanitized) << grown << " MB";

@@ -30,13 +30,7 @@ void Hostile::SetUpTestSuite() {
   const std::string suite = ::testing::UnitTest::GetInstance()->current_test_suite()->name();
   host_ = std::make_unique<HostWatch>();
   system_ = std::make_unique<AttackedSystem>(own_domain(), suite.starts_with("WithKeys/"));
-  warm_up();
-}
-
-void Hostile::warm_up() {
-  system_->fill_histories();
-  system_->watch(1s);
-  memory_ = system_->memory_mb();
+  memory_ = system_->memory_at_most();
 }
 
 void Hostile::TearDownTestSuite() {
@@ -46,7 +40,7 @@ void Hostile::TearDownTestSuite() {
 
 void Hostile::SetUp() {
   if (!is_in_free_air() && system().press()) {
-    warm_up();
+    memory_ = system_->memory_at_most();
     ASSERT_TRUE(system().is_undisturbed(20s));
   }
   system().begin_anew();
@@ -65,9 +59,9 @@ void Hostile::TearDown() {
   for (int tool = 0; tool < hand().tools(); ++tool) expect_guarded(tool);
   const double rate_hz = hand().rate_hz(*host_);
   EXPECT_GE(rate_hz, kMinHz);
-  const double in_all = grown_since(memory_);
-  EXPECT_TRUE(in_all < kFlatMb || kSanitized) << in_all << " MB";
-  fmt::print("{:.0f} Hz; memory: {:.1f} MB more\n", rate_hz, in_all);
+  const Growth in_all = grown_since(memory_);
+  EXPECT_TRUE(in_all.mb < kFlatMb || kSanitized) << in_all.mb << " MB, of " << in_all.node;
+  fmt::print("{:.0f} Hz; memory: {:.1f} MB more, of {}\n", rate_hz, in_all.mb, in_all.node);
   if (misled_) system_->press_again();
   EXPECT_TRUE(is_in_free_air() || system_->is_undisturbed(20s)) << "what was done lasts";
 }
@@ -93,10 +87,11 @@ void Hostile::expect_guarded(int tool) const {
   }
 }
 
-double Hostile::grown_since(const Memory& before) {
-  double grown = 0;
-  for (const auto& [name, mb] : system_->memory_mb()) grown = std::max(grown, mb - before.at(name));
-  return grown;
+Hostile::Growth Hostile::grown_since(const Memory& before) {
+  Memory grown = system_->memory_mb();
+  for (auto& [name, mb] : grown) mb -= before.at(name);
+  const auto& [name, most] = *std::ranges::max_element(grown, {}, &Memory::value_type::second);
+  return {most, name};
 }
 
 double Hostile::rate_hz(const nlohmann::json& said) {

@@ -28,10 +28,14 @@ class Hostile : public ::testing::TestWithParam<bool> {
   void TearDown() override;
 
   using Memory = std::map<std::string, double>;
-  /// [MB] by which the node that grew most has grown.
-  static double grown_since(const Memory& before);
-  /// [MB] by which the node grows that grows most in a flood, send(k) for each k, behind a first one a third as long:
-  /// what the allocator takes once for all floods is not what a name costs.
+  /// The node that grew most, and by how much.
+  struct Growth {
+    double mb;
+    std::string node;
+  };
+  static Growth grown_since(const Memory& before);
+  /// [MB] by which that node grows in a flood, send(k) for each k, behind a first one a third as long: what the
+  /// allocator takes once for all floods is not what a name costs.
   template <class Send>
   static double grown_in_flood(int many, Send&& send) {
     const auto flood = [&](int from, int to) {
@@ -44,7 +48,9 @@ class Hostile : public ::testing::TestWithParam<bool> {
     flood(0, many / 3);
     const Memory before = system().memory_mb();
     flood(many / 3, many / 3 + many);
-    return kSanitized ? 0 : grown_since(before);
+    const Growth grown = grown_since(before);
+    fmt::print("{} grew by {:.1f} MB\n", grown.node, grown.mb);
+    return kSanitized ? 0 : grown.mb;
   }
 
   static AttackedSystem& system() { return *system_; }
@@ -69,7 +75,6 @@ class Hostile : public ::testing::TestWithParam<bool> {
 
  private:
   static bool is_in_free_air();
-  static void warm_up();
   void expect_guarded(int tool) const;
 
   static std::unique_ptr<HostWatch> host_;
