@@ -92,9 +92,7 @@ class Bus {
   /// time; for what comes during it another follows. Where it returns false, wait() returns, as it does once for what
   /// had come before, and for nothing else. Empty: wait() as ever, once a call under way is over; not from within it.
   /// False, and nothing is done, where the bus has no thread that brings anything.
-  virtual bool serve(std::function<bool()> /*news*/) {
-    return false;
-  }
+  virtual bool serve(std::function<bool()> news) = 0;
 };
 
 /// Takes everything that waits and returns the last sample. Meant for topics with one key.

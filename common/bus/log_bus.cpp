@@ -71,6 +71,9 @@ class LogBus final : public Bus {
   bool wait(std::chrono::nanoseconds) override {
     return false;
   }
+  bool serve(std::function<bool()>) override {
+    return false;
+  }
 
  private:
   LogWriter& log_;

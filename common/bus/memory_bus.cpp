@@ -234,6 +234,9 @@ class MemoryBus final : public Bus {
     std::unique_lock lock(network_->mutex);
     return bell_->rung.wait_for(lock, timeout, [&] { return bell_->waiting > 0; });
   }
+  bool serve(std::function<bool()>) override {
+    return false;
+  }
 
  private:
   std::shared_ptr<MemoryNetwork> network_;
