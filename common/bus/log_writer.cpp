@@ -6,6 +6,7 @@
 #include <stdio_ext.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -26,6 +27,7 @@ constexpr std::chrono::milliseconds kFlushPeriod{100};
 constexpr std::int64_t kRetryPeriodNs = kNsPerS;
 constexpr std::size_t kFlushBytes = 1u << 20;
 constexpr long kHandBytes = 8 << 20;
+constexpr std::chrono::seconds kPatience{3};  // with a disk that stands
 
 std::string reason_for(int error) {
   if (error == ENOSPC || error == EDQUOT) return "no space left";
@@ -44,7 +46,10 @@ struct Event {
 class LogWriter::Impl {
  public:
   Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header, WhenFull when_full)
-      : queue_limit_(queue_bytes), when_full_(when_full), wall_offset_(wall_ns() - now_ns()) {
+      : queue_limit_(queue_bytes),
+        enough_(std::min(queue_bytes / 2, kFlushBytes)),
+        when_full_(when_full),
+        wall_offset_(wall_ns() - now_ns()) {
     const bool named_later = header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file));
     std::optional<AtomicFile> whole;
     if (named_later) whole.emplace(file);
@@ -61,14 +66,17 @@ class LogWriter::Impl {
   void push(Event event) {
     std::unique_lock lock(mutex_);
     const std::size_t size = event.data.size() + event.channel.size();
-    if (when_full_ == WhenFull::wait) room_.wait(lock, [&] { return queued_bytes_ + size <= queue_limit_; });
-    if (queued_bytes_ + size > queue_limit_) {
+    const auto fits = [&] { return queued_bytes_ == 0 || queued_bytes_ + size <= queue_limit_; };
+    if (when_full_ == WhenFull::wait) room_.wait(lock, fits);
+    if (!fits() && !stands_) stands_ = !room_.wait_for(lock, kPatience, fits);
+    if (!fits()) {
       lose(1, "the disk is too slow");
       return;
     }
+    stands_ = false;
     queued_bytes_ += size;
     queue_.push_back(std::move(event));
-    if (queued_bytes_ > kFlushBytes) work_.notify_one();
+    if (queued_bytes_ > enough_) work_.notify_one();
   }
 
   void want_footer() {
@@ -116,7 +124,7 @@ class LogWriter::Impl {
       std::deque<Event> batch;
       {
         std::unique_lock lock(mutex_);
-        work_.wait_for(lock, kFlushPeriod, [&] { return stop_ || queued_bytes_ > kFlushBytes; });
+        work_.wait_for(lock, kFlushPeriod, [&] { return stop_ || queued_bytes_ > enough_; });
         batch.swap(queue_);
         queued_bytes_ = 0;
         more = !stop_;
@@ -206,7 +214,7 @@ class LogWriter::Impl {
   }
 
   lcm_eventlog_t* log_ = nullptr;
-  std::size_t queue_limit_;
+  std::size_t queue_limit_, enough_;  ///< [bytes] that may wait, and at which the thread is woken
   WhenFull when_full_;
   std::int64_t wall_offset_;
 
@@ -215,6 +223,7 @@ class LogWriter::Impl {
   std::deque<Event> queue_;
   std::size_t queued_bytes_ = 0;
   bool stop_ = false, footer_ = false;
+  bool stands_ = false;  ///< the disk: no room was made for as long as is waited
   LogStatus status_;
 
   // Of the writing thread alone:

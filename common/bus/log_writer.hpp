@@ -15,12 +15,13 @@ struct LogStatus {
   std::string error;          ///< last reason for a loss: "no space left", …; empty if none
 };
 
-/// What a log writer does with an event while too many wait for the disk.
+/// What a log writer does with an event while too many wait for the disk: after three seconds without room it is lost,
+/// and so are all that follow until there is room; or it waits for as long as it takes.
 enum class WhenFull { lose, wait };
 
-/// Writes an LCM event log from a thread of its own: write() never waits for the disk, unless it is told to. When the
-/// disk is full or slow, events are counted as lost and writing is tried again each second; what was written stays
-/// readable.
+/// Writes an LCM event log from a thread of its own: write() waits for the disk only where as much as may wait does.
+/// When the disk is full or stands, events are counted as lost and writing is tried again each second; what was written
+/// stays readable.
 class LogWriter {
  public:
   static constexpr std::size_t kQueueLimit = 64u << 20;  ///< [bytes] that wait for the disk at most
