@@ -31,13 +31,18 @@ std::uint64_t PeriodicTimer::wait() {
   std::int64_t next = tick_time_ns_ + period_ns_;
   statistics_.slack.record(next - now);
 
-  const std::int64_t missed = now > next ? (now - next) / period_ns_ : 0;
+  const auto missed_by = [&] { return now > next ? (now - next) / period_ns_ : 0; };
+  std::int64_t missed = missed_by();
   next += missed * period_ns_;
   while (next - now > spin_ns_) {  // a signal may end the sleep early
     sleep_until_ns(next - spin_ns_);
     now = now_ns();
   }
   while (now < next) now = now_ns();
+  // Who is woken too late begins with the period in which that is.
+  const std::int64_t slept = missed_by();
+  missed += slept;
+  next += slept * period_ns_;
 
   tick_ += static_cast<std::uint64_t>(missed) + 1;
   tick_time_ns_ = next;

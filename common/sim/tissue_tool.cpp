@@ -1,6 +1,7 @@
 #include "common/sim/tissue_tool.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/tool/dofs_of.hpp"
@@ -12,6 +13,14 @@ namespace {
 constexpr double kGoneAfter = 120;   // [s] of silence, as the network forgets a participant
 constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its states may be behind them
 
+/// Steps that the haptic loop left out between two of its states, as their times say: it stood still, the hand did not.
+std::uint64_t left_out(const ToolState& before, const ToolState& after, double period) {
+  constexpr double most = 1e6;  // a quarter of an hour: what was missed for as long is where the tool is
+  const double periods = 1e-9 * (static_cast<double>(after.sense_ns) - static_cast<double>(before.sense_ns)) / period;
+  const double more = std::floor(periods) - static_cast<double>(after.step - before.step);
+  return static_cast<std::uint64_t>(std::clamp(more, 0.0, most));
+}
+
 }  // namespace
 
 TissueTool::TissueTool(const Tool& tool, double tick)
@@ -19,6 +28,7 @@ TissueTool::TissueTool(const Tool& tool, double tick)
       parts_(tool_parts(tool)),
       parts_before_(parts_),
       jaws_(abilities_of(tool).turning),
+      period_(tick),
       patience_(static_cast<std::uint64_t>(kGoneAfter / tick)) {}
 
 bool TissueTool::take(const ToolState& state) {
@@ -46,7 +56,7 @@ void TissueTool::tick(std::uint64_t number) {
   if (begins_)
     playback_.begin(newest_);
   else if (present_)
-    playback_.tick(anew_ ? &newest_ : nullptr);
+    playback_.tick(anew_ ? &newest_ : nullptr, anew_ ? left_out(consumed_, newest_, period_) : 0);
   else
     return stand();
   if (anew_) {

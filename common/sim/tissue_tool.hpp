@@ -50,6 +50,7 @@ class TissueTool {
   Trocar trocar_;
   std::vector<ToolPart> parts_, parts_before_;  ///< of jaws they turn
   std::optional<TurningJaws> jaws_;             ///< where they turn
+  double period_;                               ///< [s] of a tick, and of a haptic step
   ToolPlayback playback_;
   ToolState newest_, consumed_;
   Eigen::Isometry3d before_ = Eigen::Isometry3d::Identity(), now_ = Eigen::Isometry3d::Identity();

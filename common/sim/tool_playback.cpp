@@ -36,14 +36,15 @@ double ToolPlayback::steps_in_tick(std::uint64_t arrived) {
   return steps_per_tick_ > kTooSlow ? steps_per_tick_ : 1;
 }
 
-void ToolPlayback::tick(const ToolState* arrived) {
-  const double steps_now = steps_in_tick(arrived && arrived->step > step_ ? arrived->step - step_ : 0);
+void ToolPlayback::tick(const ToolState* arrived, std::uint64_t left_out) {
+  const std::uint64_t came = arrived && arrived->step > step_ ? arrived->step - step_ : 0;
+  const double steps_now = steps_in_tick(came);
   const double ahead = std::max<double>(kAhead, steps_now);
   along_ = std::min(along_ + steps_now, ahead);
   for (double& m : missed_) m = std::abs(m) < kNothing ? 0 : (1 - 1 / kMakeUpTicks) * m;
-  if (arrived && arrived->step > step_) {
+  if (came > 0) {
     const Values expected = place(along_), next = values(*arrived);
-    const auto steps = static_cast<double>(arrived->step - step_);
+    const auto steps = static_cast<double>(came + left_out);
     for (std::size_t i = 0; i < next.size(); ++i) pace_[i] = (next[i] - newest_[i]) / steps;
     newest_ = next;
     step_ = arrived->step;

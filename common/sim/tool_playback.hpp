@@ -20,8 +20,9 @@ class ToolPlayback {
 
   /// The tool stands where this state says.
   void begin(const ToolState& state);
-  /// A tick in which a newer state of the same run came, or none did (null).
-  void tick(const ToolState* arrived);
+  /// A tick in which a newer state of the same run came, before which its loop had left out some steps, or none did
+  /// (null).
+  void tick(const ToolState* arrived, std::uint64_t left_out = 0);
 
   ToolDofs dofs() const;
   double opening() const { return now_[5]; }  ///< [rad] of a forceps' jaws

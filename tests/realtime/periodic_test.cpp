@@ -1,6 +1,9 @@
 #include "common/realtime/periodic.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -25,6 +28,27 @@ TEST(PeriodicTimer, TicksLieOnAGridOfItsRate) {
   // The machine may be busy: the median alone is asserted.
   EXPECT_LT(timer.statistics().wake.percentile(0.5), 1'000'000);
   EXPECT_NEAR(static_cast<double>(timer.statistics().period.percentile(0.5)), 2e6, 0.5e6);
+}
+
+// A process that stands in its sleep, and is let go on after two periods and a half more.
+TEST(PeriodicTimer, WhoWakesTooLateBeginsWithTheTickInWhichThatIs) {
+  constexpr std::int64_t ms = 1'000'000;
+  PeriodicTimer timer(10, 0);
+  timer.start();
+  const pid_t other = fork();
+  if (other == 0) {
+    sleep_until_ns(now_ns() + 50 * ms);
+    kill(getppid(), SIGSTOP);
+    sleep_until_ns(now_ns() + 300 * ms);
+    kill(getppid(), SIGCONT);
+    _exit(0);
+  }
+  ASSERT_GT(other, 0);
+  const std::uint64_t tick = timer.wait();
+  EXPECT_GE(tick, 3u);
+  EXPECT_EQ(timer.statistics().skipped, tick - 1);
+  EXPECT_LT(now_ns() - timer.tick_time_ns(), timer.period_ns());
+  waitpid(other, nullptr, 0);
 }
 
 TEST(PeriodicTimer, MissedTicksAreSkippedAndNotMadeUpFor) {

@@ -1,0 +1,77 @@
+#include "common/sim/tissue_tool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr double kTick = 1e-3;          // [s]
+constexpr double kLengthOfStep = 5e-5;  // [m] of depth a step
+
+/// Of a loop that began at time 0 and has left out some steps since; its hand has not.
+ToolState told_at(std::uint64_t step, std::uint64_t left_out) {
+  const std::uint64_t time = step + left_out;
+  return {.tool = 0,
+          .run = 1,
+          .step = step,
+          .sense_ns = static_cast<std::int64_t>(1'000'000 * time),
+          .depth = kLengthOfStep * static_cast<double>(time)};
+}
+
+struct Moved {
+  double least = std::numeric_limits<double>::max(), most = 0, last = 0;  // [m] a tick; [m] depth in the end
+};
+
+// A loop that stands is not heard, and says afterwards where its hand has come to meanwhile.
+Moved after_a_stand_of(std::uint64_t ticks) {
+  constexpr std::uint64_t stands = 50, end = 600;
+  TissueTool tool(Tool{}, kTick);
+  Moved moved;
+  double before = 0;
+  for (std::uint64_t k = 0; k < end; ++k) {
+    if (k <= stands) tool.take(told_at(k, 0));
+    if (k > stands + ticks) tool.take(told_at(k - ticks, ticks));
+    tool.tick(k);
+    moved.last = tool.in_tick().dofs.depth;
+    const double by = moved.last - std::exchange(before, moved.last);
+    if (k > stands) moved.least = std::min(moved.least, by), moved.most = std::max(moved.most, by);
+  }
+  EXPECT_NEAR(moved.last, kLengthOfStep * (end - 1), kLengthOfStep);
+  return moved;
+}
+
+TEST(TissueTool, GoesOnEvenlyWhereTheHapticLoopLeftOutAStepOrTwo) {
+  for (const int ticks : {1, 2, 3}) {
+    SCOPED_TRACE(ticks);
+    const Moved moved = after_a_stand_of(ticks);
+    EXPECT_GT(moved.least, 0.9 * kLengthOfStep);
+    EXPECT_LT(moved.most, 1.1 * kLengthOfStep);
+  }
+}
+
+TEST(TissueTool, MakesUpGraduallyForWhatAHapticLoopThatStoodLeftOut) {
+  for (const int ticks : {5, 20, 100}) {
+    SCOPED_TRACE(ticks);
+    const Moved moved = after_a_stand_of(ticks);
+    EXPECT_GT(moved.least, -1e-3 * kLengthOfStep) << "it turns back";
+    EXPECT_LT(moved.most, (1.1 + ticks / ToolPlayback::kMakeUpTicks) * kLengthOfStep);
+  }
+}
+
+TEST(TissueTool, TimesThatCannotBeMoveNothingBeyondWhereItsStatesSay) {
+  TissueTool tool(Tool{}, kTick);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    ToolState state = told_at(k, 0);
+    state.sense_ns = k % 2 ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
+    ASSERT_TRUE(tool.take(state));
+    tool.tick(k);
+    EXPECT_GE(tool.in_tick().dofs.depth, 0);
+    EXPECT_LE(tool.in_tick().dofs.depth, kLengthOfStep * (static_cast<double>(k) + ToolPlayback::kAhead));
+  }
+}
+
+}  // namespace
+}  // namespace palpate
