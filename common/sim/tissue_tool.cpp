@@ -16,8 +16,11 @@ constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its sta
 /// Steps that the haptic loop left out between two of its states, as their times say: it stood still, the hand did not.
 std::uint64_t left_out(const ToolState& before, const ToolState& after, double period) {
   constexpr double most = 1e6;  // a quarter of an hour: what was missed for as long is where the tool is
+  // [periods] by which a step that is in time may follow earlier on one that was late: by three quarters it may be
+  // late.
+  constexpr double early = 0.25;
   const double periods = 1e-9 * (static_cast<double>(after.sense_ns) - static_cast<double>(before.sense_ns)) / period;
-  const double more = std::floor(periods) - static_cast<double>(after.step - before.step);
+  const double more = std::floor(periods + early) - static_cast<double>(after.step - before.step);
   return static_cast<std::uint64_t>(std::clamp(more, 0.0, most));
 }
 

@@ -17,7 +17,7 @@ ToolState told_at(std::uint64_t step, std::uint64_t left_out) {
   return {.tool = 0,
           .run = 1,
           .step = step,
-          .sense_ns = static_cast<std::int64_t>(1'000'000 * time),
+          .sense_ns = static_cast<std::int64_t>(1'000'000 * time - step % 2),
           .depth = kLengthOfStep * static_cast<double>(time)};
 }
 
@@ -49,6 +49,27 @@ TEST(TissueTool, GoesOnEvenlyWhereTheHapticLoopLeftOutAStepOrTwo) {
     const Moved moved = after_a_stand_of(ticks);
     EXPECT_GT(moved.least, 0.9 * kLengthOfStep);
     EXPECT_LT(moved.most, 1.1 * kLengthOfStep);
+  }
+}
+
+// The first step after the stand begins late by as much of a period, the next one in time; both come in one tick.
+TEST(TissueTool, GoesOnEvenlyWhereStepsAfterAStandBeganLate) {
+  for (const double late : {0.05, 0.3, 0.7}) {
+    SCOPED_TRACE(late);
+    TissueTool tool(Tool{}, kTick);
+    double before = 0;
+    for (std::uint64_t k = 0; k < 200; ++k) {
+      if (k <= 50) tool.take(told_at(k, 0));
+      ToolState first = told_at(51, 1);
+      first.sense_ns += static_cast<std::int64_t>(1e6 * late);
+      if (k == 53) tool.take(first), tool.take(told_at(52, 1));
+      if (k > 53) tool.take(told_at(k - 1, 1));
+      tool.tick(k);
+      const double now = tool.in_tick().dofs.depth, by = now - std::exchange(before, now);
+      if (k > 1) {
+        EXPECT_NEAR(by, kLengthOfStep, 0.1 * kLengthOfStep) << k;
+      }
+    }
   }
 }
 
