@@ -1,4 +1,5 @@
 # Writes to LIST a test for every suite of PROGRAM, with PROPERTIES; those in ON_TIME, ALONE or WAITS, or ALL, as such. CACHE: the user's, for them.
+# JUDGES_TIME: what runs those of the three kinds, if anything.
 cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 get_filename_component(name ${PROGRAM} NAME)
@@ -23,18 +24,19 @@ foreach(line IN LISTS lines)
   if(line MATCHES "^([^ ]+)\\.( |$)")  # cases are indented
     set(suite ${CMAKE_MATCH_1})
     set(properties ${PROPERTIES})
-    set(launcher "")
+    set(launcher ${JUDGES_TIME})
     if("${suite}" IN_LIST ALONE OR ALONE STREQUAL "ALL")
       list(APPEND properties RUN_SERIAL TRUE)
     elseif("${suite}" IN_LIST ON_TIME OR ON_TIME STREQUAL "ALL")
       list(APPEND properties ${on_time})
     else()
-      set(launcher "nice -n 10")  # what judges no time yields to what does
       if("${suite}" IN_LIST WAITS OR WAITS STREQUAL "ALL")
         list(APPEND properties ${waits})
       else()
         list(APPEND properties ${computes})
+        set(launcher "")
       endif()
+      set(launcher "nice -n 10 ${launcher}")  # what judges no time yields to what does
     endif()
     string(APPEND tests "add_test([=[${name}.${suite}]=] ${launcher} [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n")
     list(JOIN properties " " properties)

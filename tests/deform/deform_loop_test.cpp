@@ -72,7 +72,7 @@ TEST(DeformLoop, PublishesRestShapesAtTheVisualRateUntilItHearsOfAHapticNode) {
 
 TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
   Loop l;
-  const std::vector<SurfaceState> all = l.run(1.5, [&] {
+  const std::vector<SurfaceState> all = l.run(5, [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(120));
     for (int i = 1; i <= 20; ++i) {
       ModalState state = l.s.modal_state();
@@ -94,7 +94,7 @@ TEST(DeformLoop, PublishesAtOnceWhatHasChangedAndNothingElse) {
 
 TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
   Loop l;
-  l.run(0.6, [&] {
+  l.run(2, [&] {
     l.modes->write(l.s.modal_state());
     l.catheters->write(l.s.catheter_state(0.01));
   });
@@ -103,7 +103,7 @@ TEST(DeformLoop, ShowsTheShapesOfAHapticNodeThatCameBack) {
   CatheterState state = l.s.catheter_state(0.02);
   state.run = 6;
   state.sense_ns = 5000;
-  const std::vector<SurfaceState> all = l.run(0.9, [&] {
+  const std::vector<SurfaceState> all = l.run(3, [&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     l.catheters->write(state);
   });

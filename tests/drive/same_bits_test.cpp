@@ -46,19 +46,31 @@ double expect_same_bits(const std::map<std::uint64_t, ForceState>& nodes,
   return largest;
 }
 
+/// Runs a scene's nodes for what they recorded of it. A recorder that was kept from running while the haptic node
+/// looked for its peers lacks the first steps, without which the others do not come again: then it is run again, twice
+/// at most.
+std::map<std::uint64_t, ForceState> record_from_the_first_step(const std::string& scene, const std::string& log) {
+  std::map<std::uint64_t, ForceState> forces;
+  for (int i = 0; i < 3 && !forces.contains(0); ++i) {
+    const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"),
+                                             scene, testing::own_domain(), log));
+    EXPECT_EQ(run.status, 0) << run.err;
+    forces = forces_in(log);
+  }
+  return forces;
+}
+
 /// Runs a scene's nodes, and lock step from what they recorded.
 void expect_lock_step_repeats(const std::string& scene, const std::filesystem::path& folder) {
   const std::string recorded = folder / "nodes.lcmlog", again = folder / "drive.lcmlog";
-  const auto run = run_program(fmt::format("{} run {} --seconds 2.3 --domain {} --record {}", program("palpate"), scene,
-                                           testing::own_domain(), recorded));
-  ASSERT_EQ(run.status, 0) << run.err;
+  const auto nodes = record_from_the_first_step(scene, recorded);
+  ASSERT_GT(nodes.size(), 2000u);
+  ASSERT_EQ(nodes.begin()->first, 0u);
   const auto drive = run_program(fmt::format("{} drive {} --set tool.device=log --set tool.trajectory={} --log {}",
                                              program("palpate"), scene, recorded, again));
   ASSERT_EQ(drive.status, 0) << drive.err;
 
-  const auto nodes = forces_in(recorded), lock_step = forces_in(again);
-  ASSERT_GT(nodes.size(), 2000u);
-  EXPECT_GT(expect_same_bits(nodes, lock_step), 0.05);
+  EXPECT_GT(expect_same_bits(nodes, forces_in(again)), 0.05);
 }
 
 TEST(DriveSameBits, TheForcesAreThoseOfTheNodesFromTheSameInputs) {

@@ -64,7 +64,9 @@ TEST_F(PatchRule, ADeepPressAndItsReleaseHaveNoJump) {
     change = std::max(change, (rig.force() - force).norm());
     force = rig.force();
     most = std::max(most, force.norm());
-    if (i == kTicks) EXPECT_GT(force.norm(), 0.9 * most) << "the deeper, the harder it pushes";
+    if (i == kTicks) {
+      EXPECT_GT(force.norm(), 0.9 * most) << "the deeper, the harder it pushes";
+    }
   }
   EXPECT_LT(change, 0.02 * most);
   EXPECT_LT(force.norm(), 1e-3 * most);

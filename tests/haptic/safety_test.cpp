@@ -77,7 +77,9 @@ TEST(Safety, WhatIsHeldOnToPutsNoMoreIntoAHandThatMovesAwayThanItMay) {
       const double now = pressed.give(Vector3d::Zero(), {0, 0, 1e-3 * speed}).z();
       EXPECT_GE(now, 0) << "none comes from the other side";
       EXPECT_GE(last - now, std::min(last, 0.25) - 1e-12) << "it goes as fast as it may";
-      if (speed < 0.02) EXPECT_LE(last - now, 0.25 + 1e-12) << "a hand that is slow does not gain much";
+      if (speed < 0.02) {
+        EXPECT_LE(last - now, 0.25 + 1e-12) << "a hand that is slow does not gain much";
+      }
       energy += now * 1e-3 * speed;
       last = now;
     }

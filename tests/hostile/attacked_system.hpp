@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -25,6 +26,7 @@ class HostileScene : public LoopbackScene {
   /// With keys: among them those of an insider, who may write and read all, more than any role.
   explicit HostileScene(bool with_keys);
   BusSettings insider(int domain) const;
+  double waits() const;  ///< [s] in which the script does not lead its tool down
 
  private:
   bool with_keys_;
@@ -75,8 +77,8 @@ class AttackedSystem {
   }
   void pause(const std::string& node) { kill(nodes_.at(node).pid(), SIGSTOP); }
   void go_on(const std::string& node) { kill(nodes_.at(node).pid(), SIGCONT); }
-  /// Pictures of newer steps of the real haptic run come, and newer surfaces.
-  bool pictures_go_on(std::chrono::milliseconds limit);
+  /// Pictures of newer steps of the real haptic run come, and newer surfaces. `meanwhile` is called all the time.
+  bool pictures_go_on(std::chrono::milliseconds limit, const std::function<void()>& meanwhile = {});
   /// Ends the nodes and returns what each says at its end.
   std::map<std::string, nlohmann::json> end();
 

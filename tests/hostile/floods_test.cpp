@@ -74,7 +74,7 @@ TEST_P(Hostile, AFloodOfSamplesAsFastAsTheyGoCostsNoStep) {
       sent += models->write(model) + tools->write(tool) + devices->write(device);
     }
   });
-  const bool pictures = system().pictures_go_on(10s);
+  const bool pictures = system().pictures_go_on(kAfterFlood);
   system().watch(long_form() ? 60s : 2s);
   over = true;
   flood.join();
@@ -102,7 +102,7 @@ TEST_P(Hostile, CutsWithoutEndCostNoMemory) {
     system().watch(1ms);
   }
   for (change.seq = 1'000'000'000; change.seq < 1'000'000'300; ++change.seq) changes->write(change);
-  EXPECT_TRUE(system().pictures_go_on(3s));
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, CutsLargerThanTheTissueCostNoMemory) {

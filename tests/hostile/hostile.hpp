@@ -14,7 +14,8 @@
 namespace palpate::testing {
 
 inline constexpr double kOnce = 5;  ///< [MB] by which a node may grow in a flood before another one is looked at
-inline constexpr std::chrono::seconds kAfterFlood{15};  ///< for pictures: on a busy machine they yield first
+/// For pictures, and what nodes say: on a busy machine these yield first.
+inline constexpr std::chrono::seconds kAfterFlood{15};
 
 /// A press of 10 N on the hovering tool, as the deform node would tell of it.
 LocalContactModel press(std::uint64_t tool_run, std::uint64_t deform_run, std::uint64_t step, std::uint64_t seq);

@@ -25,7 +25,7 @@ TEST_P(Hostile, ASecondHapticAndASecondDeformNodeAreNotFollowedNorWhenTheOwnerSt
     system().watch(1ms);
   }
   EXPECT_LT(hand().of(kHovering).max_force(), 0.1);
-  EXPECT_TRUE(system().pictures_go_on(3s));
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, WhoTakesTheNamesOfTheRealNodesIsNotFollowed) {
@@ -45,13 +45,14 @@ TEST_P(Hostile, WhoTakesTheNamesOfTheRealNodesIsNotFollowed) {
       std::this_thread::sleep_for(2ms);
     }
   });
-  system().watch(2s, [&] { return step = hand().newest().step, false; });
-  const bool pictures = system().pictures_go_on(500ms);
+  const auto follow = [&] { step = hand().newest().step; };
+  system().watch(2s, [&] { return follow(), false; });
+  const bool pictures = system().pictures_go_on(kAfterFlood, follow);
   over = true;
   pretender.join();
   EXPECT_TRUE(pictures);
   EXPECT_LT(hand().of(kHovering).max_force(), 0.1);
-  EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "messages are refused"); })) << "it says so";
+  EXPECT_TRUE(system().watch(kAfterFlood, [] { return says("haptic", "messages are refused"); })) << "it says so";
 }
 
 // As a machine that stands may leave a node for longer than a run is held for it.

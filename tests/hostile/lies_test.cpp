@@ -39,7 +39,7 @@ TEST_P(Hostile, ATissueThatPressesAToolInFreeAirIsNotFelt) {
     system().watch(1ms);
   }
   system().go_on("deform");
-  EXPECT_TRUE(system().watch(3s, [] { return says("haptic", "local contact model"); })) << "it says so";
+  EXPECT_TRUE(system().watch(kAfterFlood, [] { return says("haptic", "local contact model"); })) << "it says so";
 }
 
 TEST_P(Hostile, EveryFieldAtItsExtremes) {
@@ -62,8 +62,8 @@ TEST_P(Hostile, EveryFieldAtItsExtremes) {
   });
   fmt::print("{} kinds, {} of them sent\n", kinds, sent);
   EXPECT_GE(sent, 200);
-  EXPECT_TRUE(
-      system().watch(3s, [] { return says("render", "messages are refused") || says("web", "messages are refused"); }));
+  EXPECT_TRUE(system().watch(
+      kAfterFlood, [] { return says("render", "messages are refused") || says("web", "messages are refused"); }));
   EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
@@ -158,7 +158,7 @@ TEST_P(Hostile, AContactOfAToolThatIsNotThereDoesNotStopTheSurfaces) {
   const auto contacts = writer(topics::contact_state);
   for (std::uint32_t tool = 3; tool < 100; ++tool)
     contacts->write({.tool = tool, .run = haptic_run(), .seq = 1, .step = hand().newest().step, .sense_ns = now_ns()});
-  EXPECT_TRUE(system().pictures_go_on(3s));
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, ATimeToComeAndAStepToComeDoNotShutTheRealNodeOut) {
@@ -171,7 +171,7 @@ TEST_P(Hostile, ATimeToComeAndAStepToComeDoNotShutTheRealNodeOut) {
   surface.normal.resize(3 * 405);
   surfaces->write(surface);
   system().watch(100ms);
-  EXPECT_TRUE(system().pictures_go_on(3s));
+  EXPECT_TRUE(system().pictures_go_on(kAfterFlood));
 }
 
 TEST_P(Hostile, WhatWasRecordedAndIsPlayedAgainIsNotFelt) {

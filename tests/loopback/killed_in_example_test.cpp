@@ -16,6 +16,7 @@
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/realtime/resident.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/tools/comes_within.hpp"
 #include "tools/shared/child_process.hpp"
 
 namespace palpate {
@@ -37,20 +38,21 @@ constexpr int kCarried = 12800;  // step: what was cut is carried away
 constexpr int kHapticStops = 8;
 constexpr auto kHapticStop = 20ms, kBetween = 150ms;
 constexpr auto kToEnd = std::numeric_limits<std::uint64_t>::max();
-// Of the largest force of forceps and scalpel, by which a run in real time may be off lock step. Measured: the forceps'
-// within 0.1 %; the scalpel's 1.4 % more where the tissue lost 0.002 to 0.008 s in all, up to 6 % more where it lost
-// 0.09 s.
+// Of the largest force of forceps and scalpel, by which a run in real time may be off lock step where its tissue has
+// lost kLittle or less; twice that at kLate, in proportion between. Measured: the forceps' within 0.2 %; the scalpel's
+// 1.4 % more where the tissue lost 0.002 to 0.008 s in all, 4.5 % where it lost 0.07 s, up to 6 % at 0.09 s, 11 % at
+// 0.15 s.
 constexpr std::array kAlike{0.05, 0.1};
-constexpr double kLate = 0.2;          // [s] that the tissue may lose in such a run
-constexpr std::uint64_t kInAir = 500;  // step: the scalpel comes down
-constexpr auto kUntilTouched = 3s;     // after it, tissue is touched and what is near the tools has been solved for
-constexpr double kMapped = 32;         // [MB] that may come to be resident meanwhile; what is mapped holds up the loop
+constexpr double kLittle = 0.1, kLate = 0.2;  // [s] that the tissue may lose in such a run
+constexpr std::uint64_t kInAir = 500;         // step: the scalpel comes down
+constexpr auto kUntilTouched = 3s;  // after it, tissue is touched and what is near the tools has been solved for
+constexpr double kMapped = 32;      // [MB] that may come to be resident meanwhile; what is mapped holds up the loop
 
 /// The largest force of each tool until a step, the largest of all, and the largest change of one in a step [N].
 struct FeltByTools {
   std::array<double, kTools> force{};
   double later = 0, change = 0;
-  double late = 0;  ///< [s] the tissue, in the end
+  double late = 0;  ///< [s] the tissue at most, by the reckoning of each deformation node that was there
   std::uint64_t steps = 0;
 };
 
@@ -61,7 +63,8 @@ FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t un
   ForceState now;
   DeformStep tick;
   for (LogEvent event; log.next(event);) {
-    if (event.read(topics::deform_step, tick)) felt.late = 1e-9 * static_cast<double>(tick.late_ns);
+    if (event.read(topics::deform_step, tick))
+      felt.late = std::max(felt.late, 1e-9 * static_cast<double>(tick.late_ns));
     if (!event.read(topics::force_state, now)) continue;
     ForceState& before = last.at(now.tool);
     double& largest = now.step < until ? felt.force[now.tool] : felt.later;
@@ -73,6 +76,11 @@ FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t un
     felt.steps = std::max(felt.steps, now.step);
   }
   return felt;
+}
+
+/// A share by which a run in real time may be off lock step, for how late its tissue was.
+double alike(double share, const FeltByTools& felt) {
+  return share * std::max(1., felt.late / kLittle);
 }
 
 class InAnExample : public ::testing::Test {
@@ -91,20 +99,29 @@ class InAnExample : public ::testing::Test {
     EXPECT_EQ(run_command(program("palpate") + " drive " + scene_ + " --log " + file, &said), 0) << said;
     return felt_by_tools_in(file, until);
   }
-  /// Runs the example in real time; `meanwhile` is called once the haptic node is there, with the deformation node and
-  /// with it.
+  /// Runs the example in real time, from when the deformation node has loaded it; `meanwhile` is called once the haptic
+  /// node is there, with the deformation node and with it.
   template <class Meanwhile>
   FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = kToEnd) {
     const std::string file = folder_ / "run.lcmlog";
     ChildProcess recorder("palpate", {program("palpate"), "record", "--keep", "everything", "--force", "-o", file,
                                       "--domain", std::to_string(own_domain())});
     auto deform = std::make_unique<ChildProcess>(node("deform_node"));
+    EXPECT_TRUE(comes_within(30s, [&] { return !deform->take_lines().empty(); })) << "it is ready";
     ChildProcess haptic = node("haptic_node");
     meanwhile(deform, haptic);
     EXPECT_TRUE(haptic.wait(60s)) << "its script ends";
     recorder.interrupt();
     EXPECT_TRUE(recorder.wait(10s));
     return felt_by_tools_in(file, until);
+  }
+  /// The same, where the tissue fell behind the least late of three runs.
+  template <class Meanwhile>
+  FeltByTools least_late_run(Meanwhile&& meanwhile, std::uint64_t until = kToEnd) {
+    FeltByTools felt = run(meanwhile, until);
+    for (int again = 0; again < 2 && felt.late > kLittle; ++again)
+      felt = std::min(felt, run(meanwhile, until), [](auto& a, auto& b) { return a.late < b.late; });
+    return felt;
   }
   ChildProcess node(const std::string& name) const {
     return {name, {program(name), scene_, "--domain", std::to_string(own_domain()), "--supervised"}};
@@ -133,8 +150,11 @@ class StoppedInAnExample : public InAnExample {
 };
 
 TEST_F(KilledInAnExample, WithoutThatATouchMapsNothingLarge) {
+  const std::unique_ptr<Bus> bus = make_dds_bus({.domain = own_domain()});
+  const auto ticks = bus->reader(topics::deform_step);
   double grown = 0;
   run([&](const std::unique_ptr<ChildProcess>& deform, auto&) {
+    ASSERT_TRUE(comes_within(30s, [&] { return ticks->take().has_value(); })) << "its heap is there";
     ASSERT_TRUE(reaches(kInAir));
     const double before = resident_mb(deform->pid());
     std::this_thread::sleep_for(kUntilTouched);
@@ -144,18 +164,17 @@ TEST_F(KilledInAnExample, WithoutThatATouchMapsNothingLarge) {
   EXPECT_TRUE(grown < kMapped || kSanitized);
 }
 
-// A run in which the tissue fell behind is played anew, three times at most.
 TEST_F(KilledInAnExample, WithoutThatItIsFeltAsInLockStepEachTime) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: MissedTicks.* are of that";
   for (int time = 0; time < (std::getenv("PALPATE_LONG_TESTS") ? 5 : 2); ++time) {
-    FeltByTools felt = run([](auto&, auto&) {});
-    for (int again = 0; again < 2 && felt.late > kLate; ++again) felt = run([](auto&, auto&) {});
+    const FeltByTools felt = least_late_run([](auto&, auto&) {});
     if (felt.late > kLate) GTEST_SKIP() << "no core here for the tissue, which is " << felt.late << " s late";
     EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kLast)) << time;
     for (int tool = 0; tool < kTools; ++tool) {
       fmt::print("tool {}: {:.4f} N in lock step, {:.4f} N with tissue {:.3f} s late\n", tool,
                  undisturbed().force[tool], felt.force[tool], felt.late);
-      EXPECT_NEAR(felt.force[tool], undisturbed().force[tool], kAlike[tool] * undisturbed().force[tool]) << time;
+      const double off = alike(kAlike[tool], felt) * undisturbed().force[tool];
+      EXPECT_NEAR(felt.force[tool], undisturbed().force[tool], off) << time;
     }
   }
 }
@@ -167,7 +186,7 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
     std::mt19937 random(round);
     const std::uint64_t step = std::uniform_int_distribution<>(kFirst, kLast)(random);
     const auto away = std::chrono::milliseconds(std::uniform_int_distribution<>(10, 2000)(random));
-    const FeltByTools felt = run(
+    const FeltByTools felt = least_late_run(
         [&](std::unique_ptr<ChildProcess>& deform, auto&) {
           ASSERT_TRUE(reaches(step));
           kill(deform->pid(), SIGKILL);
@@ -176,15 +195,17 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
           deform = std::make_unique<ChildProcess>(node("deform_node"));
         },
         step + away.count() + kAfter);
-    for (int tool = 0; tool < kTools; ++tool) {
-      fmt::print(
-          "round {}, at step {}, away {} ms, tool {}: {:.3f} N undisturbed, {:.3f} N, {:.3f} N later, by {:.3f} N a "
-          "step\n",
-          round, step, away.count(), tool, undisturbed().force[tool], felt.force[tool], felt.later, felt.change);
-      EXPECT_LE(felt.force[tool], 1.1 * undisturbed().force[tool]) << round;
-    }
     EXPECT_GT(felt.steps, step) << round;
     EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
+    if (felt.late > kLate) GTEST_SKIP() << "no core here for the tissue, which is " << felt.late << " s late";
+    for (int tool = 0; tool < kTools; ++tool) {
+      fmt::print(
+          "round {}, at step {}, away {} ms, tool {}: {:.3f} N undisturbed, {:.3f} N with tissue {:.3f} s late, {:.3f} "
+          "N later, by {:.3f} N a step\n",
+          round, step, away.count(), tool, undisturbed().force[tool], felt.force[tool], felt.late, felt.later,
+          felt.change);
+      EXPECT_LE(felt.force[tool], (1 + alike(0.1, felt)) * undisturbed().force[tool]) << round;
+    }
   });
 }
 

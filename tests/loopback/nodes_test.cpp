@@ -116,6 +116,7 @@ TEST_F(NodesTest, TheSurfaceThatARenderNodeReceivesIsTheDirectSolversForTheSameC
   Ear ear;
   Heard heard;
   ChildProcess deform("deform_node", node("deform_node", *scene_));
+  ASSERT_TRUE(ear.listen(heard, 20s, [&] { return !heard.surfaces.empty(); }));
   ChildProcess render("render_node", node("render_node", *scene_, {"--seconds", "4"}));
   ChildProcess haptic("haptic_node", node("haptic_node", *scene_, {"--seconds", "2.3"}));
   ear.listen(heard, 20s, [&] { return !haptic.running(); });
@@ -196,11 +197,13 @@ TEST_F(NodesTest, AnyNodeMayStartFirstDieAndComeBack) {
 
 TEST_F(NodesTest, AnotherScenesContactsAreRefusedInWords) {
   LoopbackScene other("other", kLinear, 9000);
+  other.write("motion.csv", "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n1,0,0,0.198,0,0\n300,0,0,0.198,0,0\n");
   std::string said;
   ASSERT_EQ(run_command(program("palpate") + " precompute " + other.scene(), &said), 0) << said;
   Ear ear;
   Heard heard;
-  ChildProcess haptic("haptic_node", node("haptic_node", other, {"--seconds", "3"}));
+  ChildProcess haptic("haptic_node", node("haptic_node", other));
+  ASSERT_TRUE(ear.listen(heard, 20s, [&] { return !heard.tools.empty(); }));
   const std::string command =
       fmt::format("{} {} --domain {} --seconds 3", program("deform_node"), scene_->scene(), own_domain());
   EXPECT_EQ(run_command(command, &said), 0);

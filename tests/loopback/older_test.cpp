@@ -7,6 +7,7 @@
 #include "common/bus/version_watch.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/loopback/loopback_scene.hpp"
+#include "tests/tools/comes_within.hpp"
 #include "tools/shared/child_process.hpp"
 
 namespace palpate {
@@ -26,10 +27,11 @@ TEST(OlderMessages, AreToldInWordsAndNeverTakenForOurs) {
   ASSERT_EQ(run_command(program("palpate") + " precompute " + scene.scene(), &output), 0) << output;
   const int domain = own_domain();
   const std::string said = scene.folder() / "said";
-  ChildProcess peer("older_peer", {program("older_peer"), std::to_string(domain), "4"});
   ChildProcess deform("deform_node", {"/bin/sh", "-c",
                                       fmt::format("exec {} {} --supervised --domain {} 2>{}", program("deform_node"),
                                                   scene.scene(), domain, said)});
+  ASSERT_TRUE(comes_within(20s, [&] { return !deform.take_lines().empty(); })) << "it is ready";
+  ChildProcess peer("older_peer", {program("older_peer"), std::to_string(domain), "4"});
   ChildProcess haptic("haptic_node",
                       {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--seconds", "2"});
   const pid_t older = peer.pid();

@@ -6,7 +6,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kReserve = 0.01;  ///< [J] of the scene's passivity section
+constexpr double kReserve = 0.01;   ///< [J] of the scene's passivity section
+constexpr double kHapticHz = 1000;  ///< of the scene
 
 struct Condition {
   const char* line;
@@ -45,6 +46,9 @@ class OverRelay : public NodesTest<NetworkScene, TwoHosts::Link::relay> {
     double haptic_hz;
     std::vector<double> surfaces, pictures;  ///< ages [s], sorted
   };
+  /// [Hz] that the haptic loop keeps in all conditions. Measured, it may be more than it has, where what stood still
+  /// was another core than its own.
+  static double least_hz(const Measured& undisturbed) { return 0.9 * std::min(kHapticHz, undisturbed.haptic_hz); }
   /// What comes under a condition, once it is established.
   Measured measure(const Condition& c) {
     hosts_->impair("both clear");
@@ -72,7 +76,7 @@ TEST_F(OverRelay, TheForceStaysAndTheNewestStateIsShownThroughAllThatItDoes) {
   const double load = 0.1 + at_share(undisturbed.surfaces, 0.99) + at_share(undisturbed.pictures, 0.99);
   for (const Condition& c : kConditions) {
     const Measured s = measure(c);
-    EXPECT_GE(s.haptic_hz, 0.9 * undisturbed.haptic_hz) << c.line;
+    EXPECT_GE(s.haptic_hz, least_hz(undisturbed)) << c.line;
     EXPECT_GE(s.surfaces.size(), c.surfaces) << c.line;
     EXPECT_LT(at_share(s.surfaces, 0.5), c.there_and_back + load) << c.line;
     EXPECT_GE(s.pictures.size(), std::min<std::size_t>(c.surfaces, 5)) << c.line;
@@ -90,8 +94,7 @@ TEST_F(OverRelay, SurfaceAndPictureAreBackAtOnceAfterACut) {
     hosts_->impair("both cut 1");
     const std::int64_t begin = now_ns();
     observer_->listen(cut);
-    EXPECT_GE(host_.rate_hz(static_cast<double>(observer_->tool.step - step), begin, now_ns()),
-              0.9 * undisturbed.haptic_hz);
+    EXPECT_GE(host_.rate_hz(static_cast<double>(observer_->tool.step - step), begin, now_ns()), least_hz(undisturbed));
     const std::int64_t back = now_ns();
     EXPECT_EQ(first_since(observer_->surfaces, begin + 100'000'000), 0) << "nothing crosses the cut";
     hosts_->impair("both cut 0");

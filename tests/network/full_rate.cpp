@@ -1,5 +1,6 @@
-/// Writes every topic, for a recorder to keep up with: full_rate HZ SECONDS DOMAIN [INTERFACE [PEER]]. It waits until
-/// every topic has a reader, and at the end until all is delivered; then it prints what it wrote, as JSON.
+/// Writes every topic, for a recorder to keep up with: full_rate HZ SECONDS READERS DOMAIN [INTERFACE [PEER]]. It
+/// waits until every topic has so many readers, and at the end until all is delivered; then it prints what it wrote, as
+/// JSON.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -52,14 +53,14 @@ bool wait_for(const Condition& condition) {
   return condition();
 }
 
-int run(double rate_hz, double seconds, const BusSettings& settings) {
+int run(double rate_hz, double seconds, int readers, const BusSettings& settings) {
   const auto bus = make_dds_bus(settings);
   auto streams = make_streams(*bus, topics::all);
   const auto each = [&](const auto& f) { std::apply([&](auto&... stream) { (f(stream), ...); }, streams); };
   const auto every = [&](const auto& f) {
     return std::apply([&](auto&... stream) { return (f(stream) && ...); }, streams);
   };
-  const bool heard = wait_for([&] { return every([](const auto& s) { return s.writer->readers() > 0; }); });
+  const bool heard = wait_for([&] { return every([&](const auto& s) { return s.writer->readers() >= readers; }); });
 
   sleep_until_ns(now_ns() + kNsPerS);  // the readers find their writers a moment later than these find them
   request_realtime({.priority = 40, .lock_memory = false});
@@ -91,10 +92,10 @@ int run(double rate_hz, double seconds, const BusSettings& settings) {
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  if (argc < 4 || argc > 6) return 2;
+  if (argc < 5 || argc > 7) return 2;
   catch_shutdown_signals();
-  BusSettings settings{.domain = std::atoi(argv[3])};
-  if (argc > 4) settings.interface = argv[4];
-  if (argc > 5) settings.peers = {argv[5]};
-  return palpate::testing::run(std::atof(argv[1]), std::atof(argv[2]), settings);
+  BusSettings settings{.domain = std::atoi(argv[4])};
+  if (argc > 5) settings.interface = argv[5];
+  if (argc > 6) settings.peers = {argv[6]};
+  return palpate::testing::run(std::atof(argv[1]), std::atof(argv[2]), std::atoi(argv[3]), settings);
 }

@@ -13,6 +13,7 @@
 #include "tests/network/program_lines.hpp"
 #include "tests/realtime/host_watch.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/tools/comes_within.hpp"
 
 namespace palpate::testing {
 namespace {
@@ -83,7 +84,7 @@ class FullRate : public ::testing::TestWithParam<Way> {
   ChildProcess publisher(double seconds, double rate = kRateHz) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->a()) : nullptr;
     return start("full_rate",
-                 fmt::format("{} {} {} {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
+                 fmt::format("{} {} {} 1 {}", program("full_rate"), rate, seconds, network(TwoHosts::address_b)));
   }
   ChildProcess recorder(const fs::path& file) const {
     const auto here = hosts_ ? std::make_unique<Inside>(hosts_->b()) : nullptr;
@@ -239,8 +240,7 @@ TEST_P(KilledRecorder, HadWrittenAllButTheLastTenthOfASecond) {
     fs::remove(log());
     ChildProcess listening = recorder(log());
     ASSERT_TRUE(says_ready(listening));
-    for (int i = 0; i < 1000 && fs::file_size(log()) < 100'000; ++i)
-      std::this_thread::sleep_for(5ms);  // the writer is heard
+    ASSERT_TRUE(comes_within(20s, [&] { return fs::file_size(log()) > 100'000; })) << "the writer is heard";
     std::this_thread::sleep_for(span);
     kill(listening.pid(), SIGKILL);
     const std::int64_t killed = now_ns();

@@ -26,7 +26,7 @@ TEST_F(OverVeth, AllNodesJoinAndTheSurfaceFollowsTheTool) {
   RecordProperty("age_p99_ms", fmt::format("{:.2f}", 1e3 * at_share(shown, 0.99)));
   RecordProperty("frames", std::to_string(shown.size()));
   EXPECT_LT(at_share(shown, 0.5), 0.1);
-  EXPECT_TRUE(observer_->listen(3s, [&] { return first_since(observer_->pictures, begin) != 0; }))
+  EXPECT_TRUE(observer_->listen(20s, [&] { return first_since(observer_->pictures, begin) != 0; }))
       << "the picture follows";
 
   haptic.interrupt();

@@ -47,6 +47,7 @@ void run(const BusSettings& settings) {
     bus->wait(std::chrono::milliseconds(50));
     each([](auto& ear) { ear.listen(); });
   }
+  each([](auto& ear) { ear.listen(); });  // what came while it was told to end
   std::uint64_t messages = 0, missing = 0;
   nlohmann::json of_topics = nlohmann::json::object();
   each([&](const auto& ear) {

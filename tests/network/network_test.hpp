@@ -41,6 +41,13 @@ class NodesTest : public ::testing::Test {
     });
   }
 
+  /// Listens until for a second and a half nothing more is removed.
+  void wait_until_whole_cut() {
+    std::size_t count = 0;
+    while (observer_->listen(std::chrono::milliseconds(1500), [&] { return observer_->changes.size() > count; }))
+      count = observer_->changes.size();
+  }
+
   Scene scene_{::testing::UnitTest::GetInstance()->current_test_info()->name()};
   std::unique_ptr<TwoHosts> hosts_;
   std::unique_ptr<Nodes> nodes_;

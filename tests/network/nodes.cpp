@@ -26,6 +26,13 @@ CutScene::CutScene(const std::string& name) : LoopbackScene("network-" + name, "
         "3.3,-0.3,0,0.17,0,0,0\n60,0,0,0.17,0,0,0\n");
 }
 
+LongCutScene::LongCutScene(const std::string& name) : CutScene(name) {
+  std::string motion = "time,yaw,pitch,depth,roll,grip,pedal\n0,0.3,0,0.17,0,0,0\n0.7,0.3,0,0.17,0,0,0\n";
+  for (int pass = 0; pass <= 20; ++pass)
+    motion += fmt::format("{},{},0,0.21,0,0,1\n", 1 + 2 * pass, pass % 2 == 0 ? 0.3 : -0.3);
+  write("motion.csv", motion + "41.3,0.3,0,0.17,0,0,0\n300,0.3,0,0.17,0,0,0\n");
+}
+
 void precompute(const LoopbackScene& scene) {
   std::string said;
   if (run_command(program("palpate") + " precompute " + scene.scene(), &said) != 0) throw std::runtime_error(said);

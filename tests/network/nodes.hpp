@@ -20,6 +20,12 @@ class CutScene : public LoopbackScene {
   explicit CutScene(const std::string& name);
 };
 
+/// The same, cut to and fro for forty seconds: by then a node has come that was late or died.
+class LongCutScene : public CutScene {
+ public:
+  explicit LongCutScene(const std::string& name);
+};
+
 /// Computes a scene's tensors.
 void precompute(const LoopbackScene& scene);
 

@@ -96,7 +96,7 @@ class Listened : public ::testing::Test {
     {
       const Inside here(hosts_->a());
       ChildProcess writing =
-          start("full_rate", fmt::format("{} {} 1 {} {} {}", program("full_rate"), kRateHz, own_domain(),
+          start("full_rate", fmt::format("{} {} 1 {} {} {} {}", program("full_rate"), kRateHz, listeners, own_domain(),
                                          TwoHosts::device, multicast ? "" : TwoHosts::address_b));
       EXPECT_TRUE(writing.wait(40s));
       EXPECT_EQ(writing.status(), 0) << last_line(writing);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class Return : public NodesTest<CutScene, TwoHosts::Link::veth> {
+class Return : public NodesTest<LongCutScene, TwoHosts::Link::veth> {
  protected:
   using Gone = std::set<std::uint32_t>;
 
@@ -33,12 +33,6 @@ class Return : public NodesTest<CutScene, TwoHosts::Link::veth> {
   /// Another deformation node than that of this run has begun.
   bool begins_after(std::uint64_t run) {
     return observer_->listen(20s, [&] { return last_run() != run; });
-  }
-  /// For a second and a half nothing more is removed.
-  void wait_until_whole_cut() {
-    std::size_t count = 0;
-    while (observer_->listen(1500ms, [&] { return observer_->changes.size() > count; }))
-      count = observer_->changes.size();
   }
 };
 
@@ -62,9 +56,10 @@ TEST_F(Return, OfADeformationNodeThatDiedWhileItCutKeepsWhatWasCut) {
     EXPECT_TRUE(contains(gone(), before))
         << "death " << i << ": " << before.size() << " were gone, " << gone().size() << " are";
   }
+  EXPECT_TRUE(observer_->listen(20s, [&] { return gone().size() > (kSanitized ? 5u : 20u); }))
+      << "a slow tissue is cut less: " << gone().size();
   wait_until_whole_cut();
   const Gone end = gone();
-  EXPECT_GT(end.size(), kSanitized ? 5u : 20u) << "a slow tissue is cut less";
 
   // Both hosts' other nodes die as well, one after the other: somebody always remembers.
   ChildProcess render = nodes_->on_a("render_node");
@@ -75,8 +70,12 @@ TEST_F(Return, OfADeformationNodeThatDiedWhileItCutKeepsWhatWasCut) {
   ASSERT_TRUE(haptic.wait(5s));
   ASSERT_TRUE(deform->wait(5s));
   const std::uint64_t run = last_run();
-  ChildProcess haptic_again = nodes_->on_a("haptic_node");
+  const std::size_t said = nodes_->said("deform_node").size();
   deform = std::make_unique<ChildProcess>(nodes_->on_b("deform_node"));
+  // It asks those that it knows when it hears of a tool: on a busy machine the render node may be met later.
+  ASSERT_TRUE(observer_->listen(
+      20s, [&] { return nodes_->said("deform_node").find("met render", said) != std::string::npos; }));
+  ChildProcess haptic_again = nodes_->on_a("haptic_node");
   ASSERT_TRUE(begins_after(run));
   EXPECT_TRUE(contains(gone(), end));
   EXPECT_NE(nodes_->said("deform_node").find("tetrahedra had gone before, by"), std::string::npos);

@@ -3,11 +3,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {
 
+using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using testing::LoopbackScene;
 using testing::OwnFolder;
@@ -125,14 +128,23 @@ TEST_F(ToolsFilm, AReportHasTheSessionsSideBySide) {
 }
 
 TEST_F(ToolsFilm, StoppedByCtrlCThereIsNoFilm) {
-  const std::string command =
-      fmt::format("timeout --preserve-status -s INT 2 {} film {} -o {} --speed 0.01 --width 640 --height 480",
-                  program("palpate"), (*folder_ / "a.lcmlog").string(), film("stopped").string());
-  const auto stopped = run_program(command);
-  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
-  EXPECT_NE(stopped.err.find("stopped.mp4: stopped before its end"), std::string::npos) << stopped.err;
-  for (const auto& file : fs::directory_iterator(film("stopped").parent_path()))
-    EXPECT_FALSE(file.path().filename().string().starts_with("stopped")) << file.path();
+  const fs::path said = *folder_ / "said";
+  ChildProcess drawing(
+      "palpate", {"/bin/sh", "-c",
+                  fmt::format("exec {} film {} -o {} --speed 0.01 --width 640 --height 480 2>{}", program("palpate"),
+                              (*folder_ / "a.lcmlog").string(), film("stopped").string(), said.string())});
+  const auto part = [&] {
+    for (const auto& file : fs::directory_iterator(film("stopped").parent_path()))
+      if (file.path().filename().string().starts_with("stopped")) return file.path();
+    return fs::path();
+  };
+  ASSERT_TRUE(testing::comes_within(30s, [&] { return !part().empty() && fs::file_size(part()) > 0; }));
+  drawing.interrupt();
+  ASSERT_TRUE(drawing.wait(30s));
+  EXPECT_EQ(drawing.status(), 1);
+  EXPECT_NE(testing::text_of(said).find("stopped.mp4: stopped before its end"), std::string::npos)
+      << testing::text_of(said);
+  EXPECT_EQ(part(), fs::path()) << "nothing is left of it";
 }
 
 }  // namespace

@@ -42,12 +42,12 @@ struct ProgramResult {
   std::string out, err;
 };
 
-/// Runs a command line, given up after a minute (status 124).
+/// Runs a command line, given up after four minutes (status 124): it hangs.
 inline ProgramResult run_program(const std::string& command) {
   const OwnFolder streams("streams");
   const std::string out = streams / "out", err = streams / "err";
   ProgramResult result;
-  result.status = run_command(fmt::format("timeout -k 5 60 sh -c '{} >{} 2>{}'", command, out, err));
+  result.status = run_command(fmt::format("timeout -k 5 240 sh -c '{} >{} 2>{}'", command, out, err));
   result.out = text_of(out);
   result.err = text_of(err);
   return result;

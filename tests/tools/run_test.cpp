@@ -8,7 +8,7 @@
 
 #include "tests/bus/domain.hpp"
 #include "tests/tools/comes_within.hpp"
-#include "tests/tools/program_result.hpp"
+#include "tests/tools/session.hpp"
 #include "tools/shared/child_process.hpp"
 
 namespace palpate {
@@ -79,8 +79,9 @@ TEST(ToolsRun, WhatCannotBeKeptIsSaidBeforeTheRun) {
 
 TEST(ToolsRun, ASoundRunEndsWithoutAnAlarmAndPassesAsStrict) {
   const LoopbackScene scene("calm", kLinear);
+  scene.write("motion.csv", kSlowPress);
   for (const int processes : {2, 3}) {
-    const auto run = run_program(fmt::format("{} run {} --domain {} --processes {} --seconds 2 --strict",
+    const auto run = run_program(fmt::format("{} run {} --domain {} --processes {} --seconds 3.6 --strict",
                                              program("palpate"), scene.scene(), testing::own_domain(), processes));
     EXPECT_EQ(run.status, 0) << run.err;
     for (const char* alarm : {"gone", "lost", "network is cut", "guarded", "refus"})

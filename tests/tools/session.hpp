@@ -42,6 +42,12 @@ inline std::string joined(const std::vector<std::string>& words) {
   return line;
 }
 
+/// A tool that presses the tissue 5 mm deep, slides and lets go, all at 5 mm/s: a host that stands for a third of a
+/// second does not make a jump of it.
+inline constexpr const char* kSlowPress =
+    "time,yaw,pitch,depth,roll,grip\n0,0,0,0.191,0,0\n1.2,0,0,0.197,0,0\n2.4,0.03,0,0.197,0.1,0\n3.6,0.03,0,0.191,0.1,"
+    "0\n";
+
 /// A tool that stands above the tissue for a minute.
 inline constexpr const char* kLongRest = "time,yaw,pitch,depth,roll,grip\n0,0,0,0.17,0,0\n60,0,0,0.17,0,0\n";
 

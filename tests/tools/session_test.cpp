@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "common/bus/dds_bus.hpp"
 #include "common/bus/log_reader.hpp"
 #include "idl/topics.hpp"
 #include "tests/tools/comes_within.hpp"
@@ -195,8 +196,10 @@ TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
   // Beyond those that tests have of their own: the second run takes the next one.
   const std::string domain = std::to_string(100 + testing::own_domain()),
                     run = program("palpate") + " run " + scene.scene();
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
   ChildProcess first("palpate", {program("palpate"), "run", scene.scene(), "--domain", domain});
-  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(comes_within(30s, [&] { return process_of(scene.folder(), "haptic_node") > 0; }))
+      << "it has the domain before it starts nodes";
   const auto same = run_program(run + " --domain " + domain);
   EXPECT_EQ(same.status, 1);
   EXPECT_NE(same.err.find("domain " + domain + " is another run's"), std::string::npos) << same.err;
@@ -221,11 +224,15 @@ TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
   const std::vector<std::string> command{program("haptic_node"), scene.scene(), "--domain",
                                          std::to_string(testing::own_domain())};
   ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
-  std::vector<std::string> supervised = command;
-  supervised.push_back("--supervised");
-  ChildProcess owner("haptic_node", supervised);
-  ASSERT_TRUE(comes_within(20s, [&] { return !owner.take_lines().empty(); })) << "it is ready, and looks for others";
-  std::this_thread::sleep_for(1500ms);
+  ChildProcess owner("haptic_node", command);
+  const auto bus = make_dds_bus({.domain = testing::own_domain()});
+  const auto statuses = bus->reader(topics::node_status, Keep::all);
+  ASSERT_TRUE(comes_within(30s, [&] {
+    bool began = false;
+    while (const auto status = statuses->take()) began |= status->role == "haptic" && status->ticks > 0;
+    return began;
+  }));
+  std::this_thread::sleep_for(3s);  // in which it would still give way to one that began when it did
   const auto second = run_program(joined(command));
   EXPECT_EQ(second.status, 1);
   EXPECT_NE(second.err.find("a second owner would fight with it"), std::string::npos) << second.err;
@@ -244,6 +251,7 @@ TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {
 
 TEST(SessionTest, ARunThatEndsUnderAForceLetsItGoAndIsComputedAgain) {
   const LoopbackScene scene("pressed", kLinear);
+  scene.write("motion.csv", kSlowPress);
   const fs::path log = scene.folder() / "run.lcmlog";
   const auto run = run_program(fmt::format("{} run {} --strict --seconds 1.2 --domain {} --record {}",
                                            program("palpate"), scene.scene(), testing::own_domain(), log.string()));

@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import re
+import select
 import socket
 import struct
 import subprocess
@@ -239,7 +240,8 @@ def share(options):
             there.wait(f"palpate.next.tools[0].holder !== {mine}", 5)
             took, of_it = 1e3 * (watch.since - asked), 1e3 * (let_go - asked)
             print(f"a closed page's hand was off the tool after {took:.0f} ms, its link gone after {of_it:.0f} ms")
-            expect(watch.holder != mine and took < 200, (watch.holder, took, of_it))
+            # The page says so itself as it is closed: before its link is gone, however long a busy browser takes.
+            expect(watch.holder != mine and took < max(200, of_it), (watch.holder, took, of_it))
             there.wait("palpate.next.tools[0].holder === palpate.me", 5)  # it had asked
             second.execute_script(NOTES + SILENCE_TOLD)
             there.get("palpate.hand.release()")
@@ -460,6 +462,31 @@ def cut(options):
     expect(told == [resection["cut_inside"], resection["cut_outside"]] and min(told) > 0, (told, resection))
 
 
+class EndWatch(threading.Thread):
+    """Notes when a node that the process starts has ended: `ns`, of the monotonic clock."""
+
+    def __init__(self, process, node):
+        super().__init__(daemon=True)
+        self.process, self.node, self.ns = process, node, None
+        self.start()
+
+    def _pid(self):
+        for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            try:
+                pid, name, _, parent = stat.read_text().split()[:4]
+            except OSError:  # ended meanwhile
+                continue
+            if name == f"({self.node})" and int(parent) == self.process.pid:
+                return int(pid)
+        return None
+
+    def run(self):
+        while (pid := self._pid()) is None:
+            time.sleep(0.05)
+        select.select([os.pidfd_open(pid)], [], [])
+        self.ns = time.monotonic_ns()
+
+
 def hostile(options):
     """What pages should not send is dropped and counted, and the haptic loop keeps its rate."""
     with tempfile.TemporaryDirectory() as folder:
@@ -467,15 +494,17 @@ def hostile(options):
         with Nodes(options, "liver.toml", 0, ["--seconds", "5", "--summary", str(summary)]) as nodes:
             good = Watcher(nodes.port)
             good.start()
+            end = EndWatch(nodes.process, "haptic_node")
             idle = [socket.create_connection(("127.0.0.1", nodes.port)) for _ in range(200)]
             while nodes.process.poll() is None:
                 attack(nodes.port)
+        end.join(10)
         said = json.loads(summary.read_text())
     web, haptic = said["web_node"], said["haptic_node"]
     print(f"{web['thrown_out']} pages thrown out, {web['refused_requests']} requests refused, haptic loop at "
           f"{haptic['rate_hz']:.1f} Hz, {good.frames} frames to the one that behaves")
     expect(web["thrown_out"] > 10 and web["refused_requests"] > 10, web)
-    pathlib.Path(options.ticks).write_text(f"{haptic['rate_hz'] * haptic['seconds']} {haptic['seconds']}")
+    pathlib.Path(options.ticks).write_text(f"{haptic['rate_hz'] * haptic['seconds']} {haptic['seconds']} {end.ns}")
     expect(good.frames > 100, good.frames)
 
 
@@ -505,7 +534,7 @@ def main():
     parser.add_argument("case", choices=CASES)
     for name in ("bin", "source", "domain", "cache"):
         parser.add_argument(f"--{name}", required=True)
-    parser.add_argument("--ticks", help="file for the haptic loop's ticks and seconds")
+    parser.add_argument("--ticks", help="file for the haptic loop's ticks, its seconds and when its node ended [ns]")
     options = parser.parse_args()
     if options.case not in ("cut_off", "hostile"):
         need_browser()

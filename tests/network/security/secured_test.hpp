@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "tests/loopback/loopback_scene.hpp"
@@ -21,10 +22,14 @@ inline keys::Period this_month() {
 /// What a secured_peer did.
 struct Outcome {
   std::uint64_t wrote = 0;
-  int readers = 0;                          ///< that matched at the same time, at most
-  std::map<unsigned, std::uint64_t> heard;  ///< samples by tool
-  std::string refusal;                      ///< the sentence by which it was refused, if it was
-  std::uint64_t of(unsigned tool) const { return heard.contains(tool) ? heard.at(tool) : 0; }
+  int readers = 0;  ///< that matched at the same time, at most
+  struct Heard {
+    std::uint64_t samples = 0, last = 0;  ///< the last one's number
+  };
+  std::map<unsigned, Heard> heard;  ///< by tool
+  std::string refusal;              ///< the sentence by which it was refused, if it was
+  std::uint64_t of(unsigned tool) const { return heard.contains(tool) ? heard.at(tool).samples : 0; }
+  std::uint64_t last_of(unsigned tool) const { return heard.contains(tool) ? heard.at(tool).last : 0; }
 };
 
 /// What one secured_peer is to do.
@@ -44,10 +49,10 @@ class Peer {
                   fmt::format("{} exec {} {} {} {} {} {} {} {} {}", task.environment, program("secured_peer"), domain,
                               device, other, task.keys.string(), task.role, task.writes, task.reads, task.tool)}) {}
 
-  /// Whether it has heard anybody a hundred times.
-  bool heard() {
+  /// Whether it has heard a tool more than a hundred times.
+  bool heard(unsigned tool) {
     take();
-    return heard_;
+    return heard_.contains(tool);
   }
   /// Ends it if it does not by itself.
   Outcome outcome() {
@@ -67,21 +72,21 @@ class Peer {
   }
   void take(const std::string& line) {
     unsigned tool = 0;
-    unsigned long long samples = 0, wrote = 0;
+    unsigned long long samples = 0, last = 0, wrote = 0;
     int readers = 0;
-    if (line == "heard")
-      heard_ = true;
+    if (std::sscanf(line.c_str(), "heard %u", &tool) == 1)
+      heard_.insert(tool);
     else if (std::sscanf(line.c_str(), "wrote %llu to %d readers", &wrote, &readers) == 2)
       outcome_.wrote = wrote, outcome_.readers = readers;
-    else if (std::sscanf(line.c_str(), "tool %u: %llu samples", &tool, &samples) == 2)
-      outcome_.heard[tool] = samples;
+    else if (std::sscanf(line.c_str(), "tool %u: %llu samples, the last %llu", &tool, &samples, &last) == 3)
+      outcome_.heard[tool] = {samples, last};
     else
       outcome_.refusal = line;
   }
 
   ChildProcess process_;
   Outcome outcome_;
-  bool heard_ = false;
+  std::set<unsigned> heard_;  ///< tools
 };
 
 /// A copy of the middleware in a folder of its own, with the plugins that a test wants.
