@@ -13,15 +13,12 @@ namespace {
 constexpr double kGoneAfter = 120;   // [s] of silence, as the network forgets a participant
 constexpr double kMaxBehind = 5e-4;  // [m] by which a tool that follows its states may be behind them
 
-/// Steps that the haptic loop left out between two of its states, as their times say: it stood still, the hand did not.
-std::uint64_t left_out(const ToolState& before, const ToolState& after, double period) {
+/// [periods] of the haptic loop between two of its states, as their times say: where it stood still or was late, the
+/// hand was not. 0 where they say nothing.
+double periods_between(const ToolState& before, const ToolState& after, double period) {
   constexpr double most = 1e6;  // a quarter of an hour: what was missed for as long is where the tool is
-  // [periods] by which a step that is in time may follow earlier on one that was late: by three quarters it may be
-  // late.
-  constexpr double early = 0.25;
   const double periods = 1e-9 * (static_cast<double>(after.sense_ns) - static_cast<double>(before.sense_ns)) / period;
-  const double more = std::floor(periods + early) - static_cast<double>(after.step - before.step);
-  return static_cast<std::uint64_t>(std::clamp(more, 0.0, most));
+  return std::clamp(periods, 0.0, most);
 }
 
 }  // namespace
@@ -59,7 +56,7 @@ void TissueTool::tick(std::uint64_t number) {
   if (begins_)
     playback_.begin(newest_);
   else if (present_)
-    playback_.tick(anew_ ? &newest_ : nullptr, anew_ ? left_out(consumed_, newest_, period_) : 0);
+    playback_.tick(anew_ ? &newest_ : nullptr, anew_ ? periods_between(consumed_, newest_, period_) : 0);
   else
     return stand();
   if (anew_) {

@@ -6,9 +6,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kNothing = 1e-9;   // [m] or [rad]
-constexpr double kPaceTicks = 100;  // over which the steps of a tick are averaged
-constexpr double kTooSlow = 1.1;    // steps a tick from which on a tissue is too slow, as its warning says
+constexpr double kNothing = 1e-9;                              // [m] or [rad]
+constexpr double kPaceTicks = 100;                             // over which the steps of a tick are averaged
+constexpr double kDecay = 2.146 / ToolPlayback::kMakeUpTicks;  // of critical damping: (1 + 2.146) exp(-2.146) = 1/e
+constexpr double kTooSlow = 1.1;  // steps a tick from which on a tissue is too slow, as its warning says
 
 }  // namespace
 
@@ -36,31 +37,49 @@ double ToolPlayback::steps_in_tick(std::uint64_t arrived) {
   return steps_per_tick_ > kTooSlow ? steps_per_tick_ : 1;
 }
 
-void ToolPlayback::tick(const ToolState* arrived, std::uint64_t left_out) {
+// As a critically damped spring would, so that the speed has no jump.
+void ToolPlayback::make_up() {
+  for (std::size_t i = 0; i < missed_.size(); ++i) {
+    drift_[i] -= 2 * kDecay * drift_[i] + kDecay * kDecay * missed_[i];
+    missed_[i] += drift_[i];
+    if (std::abs(missed_[i]) < kNothing && std::abs(drift_[i]) < kNothing) missed_[i] = drift_[i] = 0;
+  }
+}
+
+// A loop that stood or was late says where its hand is then, and not how fast it was. Where more has been missed than
+// is played back, or that, the tool goes on from where it is and as fast as it is.
+void ToolPlayback::take(const ToolState& arrived, double came, double periods, double steps_now) {
+  const Values expected = place(along_), next = values(arrived);
+  const bool even = periods <= 0 || std::abs(periods - came) <= kUneven;
+  for (std::size_t i = 0; even && i < next.size(); ++i) pace_[i] = (next[i] - newest_[i]) / came;
+  newest_ = next;
+  along_ -= even ? came : periods;
+  const bool too_far = along_ < -std::max<double>(kAhead, steps_now);
+  if (too_far) along_ = 0;
+  const Values told = place(along_);
+  for (std::size_t i = 0; (too_far || !even) && i < next.size(); ++i) {
+    drift_[i] = expected[i] + missed_[i] - now_[i] - steps_now * pace_[i];
+    missed_[i] += expected[i] - told[i];
+  }
+  along_ -= along_ / kMakeUpTicks;
+}
+
+void ToolPlayback::tick(const ToolState* arrived, double periods) {
   const std::uint64_t came = arrived && arrived->step > step_ ? arrived->step - step_ : 0;
   const double steps_now = steps_in_tick(came);
-  const double ahead = std::max<double>(kAhead, steps_now);
-  along_ = std::min(along_ + steps_now, ahead);
-  for (double& m : missed_) m = std::abs(m) < kNothing ? 0 : (1 - 1 / kMakeUpTicks) * m;
+  const double beyond = along_ + steps_now - std::max<double>(kAhead, steps_now);
+  along_ += steps_now * std::clamp(1 - beyond / (kFade * std::max(1.0, steps_now)), 0.0, 1.0);
+  make_up();
   if (came > 0) {
-    const Values expected = place(along_), next = values(*arrived);
-    const auto steps = static_cast<double>(came + left_out);
-    for (std::size_t i = 0; i < next.size(); ++i) pace_[i] = (next[i] - newest_[i]) / steps;
-    newest_ = next;
+    take(*arrived, static_cast<double>(came), periods, steps_now);
     step_ = arrived->step;
     pedal_ = arrived->pedal;
-    along_ -= steps;
-    if (along_ < -ahead) {
-      along_ = 0;
-      for (std::size_t i = 0; i < next.size(); ++i) missed_[i] += expected[i] - next[i];
-    }
-    along_ -= along_ / kMakeUpTicks;
   }
   now_ = place(along_);
   for (std::size_t i = 0; i < now_.size(); ++i)
     if (missed_[i] != 0) now_[i] += missed_[i];
   if (std::ranges::all_of(now_, [](double v) { return std::isfinite(v); })) return;
-  pace_ = missed_ = {};
+  pace_ = missed_ = drift_ = {};
   along_ = 0;
   now_ = newest_;
 }
@@ -78,6 +97,7 @@ void ToolPlayback::state(State& s) {
   s.value(newest_);
   s.value(pace_);
   s.value(missed_);
+  s.value(drift_);
   s.value(now_);
   s.value(step_);
   s.value(along_);

@@ -56,16 +56,20 @@ TEST(ToolPlayback, UnevenArrivalLeavesAnEvenMotion) {
   }
 }
 
-TEST(ToolPlayback, ASilentToolGoesOnForAFewStepsAndStands) {
+TEST(ToolPlayback, ASilentToolGoesOnForAFewStepsAndComesToAStand) {
   ToolPlayback playback = begun();
   for (std::uint64_t k = 1; k <= 10; ++k) {
     const ToolState state = on_the_way(k);
     playback.tick(&state);
   }
-  for (int k = 0; k < 100; ++k) {
+  double before = 10 * kPace, moved = kPace;
+  for (int k = 1; k <= 200; ++k) {
     playback.tick(nullptr);
-    EXPECT_NEAR(playback.dofs().depth, kPace * (10 + std::min(k + 1, ToolPlayback::kAhead)), 1e-12);
+    const double moves = playback.dofs().depth - std::exchange(before, playback.dofs().depth);
+    EXPECT_NEAR(moves, k <= ToolPlayback::kAhead ? kPace : (1 - 1. / ToolPlayback::kFade) * moved, 1e-12) << k;
+    moved = moves;
   }
+  EXPECT_NEAR(before, kPace * (10 + ToolPlayback::kAhead + ToolPlayback::kFade - 1), 1e-3 * kPace);
 }
 
 TEST(ToolPlayback, WhatWasMissedIsMadeUpForGradually) {
