@@ -1,6 +1,7 @@
 #include "tools/rig/press_rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/tool/instrument.hpp"
 
@@ -8,12 +9,12 @@ namespace palpate {
 namespace {
 
 // As its node would tell of it; jaws that turn stand here as the handle wants them and hold nothing.
-ToolState state_of(const Tool& of, std::size_t tool, const ToolDofs& dofs, std::uint64_t tick) {
+ToolState state_of(const Tool& of, std::size_t tool, const ToolDofs& dofs, std::uint64_t tick, double dt) {
   const EndAbilities can = abilities_of(of);
   return {.tool = static_cast<std::uint32_t>(tool),
           .run = 1,
           .step = tick,
-          .sense_ns = static_cast<std::int64_t>(tick),
+          .sense_ns = std::llround(1e9 * static_cast<double>(tick) * dt),
           .yaw = dofs.yaw,
           .pitch = dofs.pitch,
           .depth = dofs.depth,
@@ -64,7 +65,8 @@ void PressRig::step(std::span<const ToolDofs> dofs) {
 
 void PressRig::press(std::span<const ToolDofs> dofs) {
   if (tissue().organs() == 0) return haptic().step(dofs);
-  for (std::size_t t = 0; t < dofs.size(); ++t) tissue().take(state_of(scene().tools[t], t, dofs[t], tissue().ticks()));
+  for (std::size_t t = 0; t < dofs.size(); ++t)
+    tissue().take(state_of(scene().tools[t], t, dofs[t], tissue().ticks(), tissue().dt()));
   tissue().tick();
 }
 
