@@ -1,7 +1,6 @@
 #include "common/sim/tissue_tool.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "common/tool/dofs_of.hpp"

@@ -12,13 +12,13 @@ namespace palpate {
 /// Tissue that is stopped and pushed on by turns strikes back, and by one tick's stop already. While none comes the
 /// tool goes on as it moved last, for a few steps, and then slower from tick to tick; what was missed for longer is
 /// made up for gradually, from the speed that it has then. Of a tissue too slow for its ticks each is worth as many
-/// steps as come in one. If one state comes each tick it is where that state says, in all bits.
+/// steps as come in one. If one state comes each tick, of a loop in time, it is where that state says, in all bits.
 class ToolPlayback {
  public:
   static constexpr int kAhead = 4;  ///< steps for which the motion goes on as it was, or is taken back, without a state
   static constexpr int kFade = 10;  ///< steps that it goes on beyond, in as many ticks to 1/e of its speed
-  static constexpr double kMakeUpTicks = 50;     ///< in which all but 1/e of what was missed is made up for
-  static constexpr double kUneven = 0.25;        ///< periods by which states may be off their steps and tell the pace
+  static constexpr double kMakeUpTicks = 50;  ///< in which all but 1/e of what was missed is made up for
+  static constexpr double kUneven = 0.25;  ///< periods by which states may be off their steps and still tell the pace
   static constexpr double kMaxStepsPerTick = 8;  ///< at which a tissue too slow for its ticks follows
 
   /// The tool stands where this state says.
