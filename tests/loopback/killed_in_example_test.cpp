@@ -2,6 +2,7 @@
 // and when its deformation node is killed, or stands still, in the midst of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -81,7 +82,7 @@ FeltByTools felt_by_tools_in(const std::filesystem::path& file, std::uint64_t un
 
 /// A share by which a run in real time may be off lock step, for how late its tissue was.
 double alike(double share, const FeltByTools& felt) {
-  return share * std::max(1., felt.late / kLittle);
+  return share * std::clamp(felt.late / kLittle, 1., kLate / kLittle);
 }
 
 class InAnExample : public ::testing::Test {
@@ -198,7 +199,6 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
         step + away.count() + kAfter);
     EXPECT_GT(felt.steps, step) << round;
     EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
-    if (felt.late > kLate) GTEST_SKIP() << "no core here for the tissue, which is " << felt.late << " s late";
     for (int tool = 0; tool < kTools; ++tool) {
       fmt::print(
           "round {}, at step {}, away {} ms, tool {}: {:.3f} N undisturbed, {:.3f} N with tissue {:.3f} s late, {:.3f} "
