@@ -47,7 +47,7 @@ DynamicLoop::DynamicLoop(DynamicWorld& world, LocalModels& local_models, Deforme
       keyframes_(bus.writer(topics::deform_keyframe)),
       change_seq_(scene.bodies.size(), 0),
       model_(scene.tools.size()),
-      earlier_(bus, {world.bodies().begin(), world.bodies().end()}, tetrahedra_of(world)) {
+      earlier_(bus, {world.bodies().begin(), world.bodies().end()}, tetrahedra_of(world), now_ns()) {
   presence_.set_clock(&clock_);
   keyframe_.code_path = std::move(code_path);
   for (const Body& body : scene.bodies)

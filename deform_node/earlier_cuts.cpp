@@ -27,7 +27,7 @@ bool EarlierCuts::complete(const Presence& presence, std::int64_t now_ns) {
     if (held->removed.size() > most.removed.size()) most = std::move(*held);
   }
   in_time_ = now_ns - *asked_ns_ < kPatienceNs;
-  if (in_time_ && !told_by_all(presence)) return false;
+  if (now_ns - joined_ns_ < kMeetingNs || (in_time_ && !told_by_all(presence))) return false;
   reader_.reset();  // nobody takes from it any more: what came would fill it
   return true;
 }

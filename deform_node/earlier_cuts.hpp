@@ -17,14 +17,16 @@ namespace palpate {
 class EarlierCuts {
  public:
   static constexpr std::int64_t kPatienceNs = 2'000'000'000;
+  static constexpr std::int64_t kMeetingNs = 500'000'000;  ///< in which nodes hear of each other
 
-  /// `bodies`: those that can be cut. `tetrahedra`: of all of them.
-  EarlierCuts(Bus& bus, std::vector<int> bodies, std::size_t tetrahedra)
+  /// `bodies`: those that can be cut. `tetrahedra`: of all of them. `joined_ns`: when this node came into the network.
+  EarlierCuts(Bus& bus, std::vector<int> bodies, std::size_t tetrahedra, std::int64_t joined_ns)
       : reader_(bus.reader(topics::held_topology, Keep::all, 2 * sizeof(std::uint32_t) * tetrahedra)),
-        bodies_(std::move(bodies)) {}
+        bodies_(std::move(bodies)),
+        joined_ns_(joined_ns) {}
 
-  /// True once every known haptic and render node of the same scene has told of all bodies, or the patience is over.
-  /// Call again until then.
+  /// True once this node has had the time to meet the others and every known haptic and render node of the same scene
+  /// has told of all bodies, or the patience is over. Call again until then.
   bool complete(const Presence& presence, std::int64_t now_ns);
 
   bool in_time() const { return in_time_; }           ///< nobody kept it waiting for too long
@@ -36,6 +38,7 @@ class EarlierCuts {
 
   std::unique_ptr<Reader<HeldTopology>> reader_;
   std::vector<int> bodies_;
+  std::int64_t joined_ns_;
   std::set<std::pair<std::string, int>> told_;  ///< node and body
   std::map<int, HeldTopology> most_;
   std::optional<std::int64_t> asked_ns_;

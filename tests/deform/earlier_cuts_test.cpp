@@ -27,7 +27,7 @@ class EarlierCutsTest : public ::testing::Test {
   Presence haptic_{*there_, "haptic", 1, "same", ""}, render_{*there_, "render", 0, "same", ""},
       recorder_{*there_, "recorder", 0, "", ""};
   Presence presence_{*here_, "deform", 9, "same", ""};
-  EarlierCuts cuts_{*here_, {0, 2}, 100};
+  EarlierCuts cuts_{*here_, {0, 2}, 100, -EarlierCuts::kMeetingNs};
 };
 
 TEST_F(EarlierCutsTest, AreCompleteOnceEveryNodeOfTheSceneHasToldOfAllBodies) {
@@ -52,6 +52,25 @@ TEST_F(EarlierCutsTest, AreNotWaitedForLongerThanTwoSeconds) {
   EXPECT_TRUE(complete(2100 * kMs));
   EXPECT_FALSE(cuts_.in_time());
   EXPECT_EQ(cuts_.of(0)->removed, std::vector<std::uint32_t>{5});
+}
+
+// A render node alone remembers, and is met after the haptic node.
+TEST_F(EarlierCutsTest, AreNotCompleteBeforeAllHadTheTimeToMeet) {
+  auto network = make_memory_network();
+  auto there = make_memory_bus(network), here = make_memory_bus(network);
+  Presence haptic(*there, "haptic", 1, "same", ""), own(*here, "deform", 9, "same", "");
+  const auto held = there->writer(topics::held_topology);
+  EarlierCuts cuts(*here, {0}, 100, 0);
+  ASSERT_TRUE(held->write({.node = haptic.node(), .body = 0, .run = 1, .seq = 1, .removed = {}}));
+  own.watch();
+  ASSERT_FALSE(cuts.complete(own, 200 * kMs)) << "all that it knows have told";
+  Presence render(*there, "render", 0, "same", "");
+  own.watch();
+  ASSERT_TRUE(held->write({.node = render.node(), .body = 0, .run = 1, .seq = 1, .removed = {5}}));
+  EXPECT_FALSE(cuts.complete(own, 499 * kMs));
+  ASSERT_TRUE(cuts.complete(own, 500 * kMs));
+  ASSERT_TRUE(cuts.of(0));
+  EXPECT_EQ(cuts.of(0)->removed, std::vector<std::uint32_t>{5});
 }
 
 TEST(DynamicOrganThatBeginsCut, IsWhatTheOneThatWasCutIsAndGoesOnLikeIt) {
