@@ -14,8 +14,10 @@ namespace {
 constexpr int kCombinations = 500, kQuickCombinations = 30;
 constexpr int kAveraged = 100, kQuickAveraged = 4;  // combinations of elements of averaged strain
 constexpr int kShafts = 100, kQuickShafts = 12;     // combinations of level shafts; quickly those narrower than an edge
+constexpr int kRims = 100, kQuickRims = 8;          // combinations of balls within a radius and a half of a rim
 constexpr std::array kLongPoints{6, 14};            // seconds each
-constexpr int kTelling = 106;  // fails if the patch follows each swing of the tissue; no quick one does
+constexpr int kTelling = 106;     // fails if the patch follows each swing of the tissue; no quick one does
+constexpr double kFromRim = 1.5;  // [1] of the radius
 using Tried = TriedContact;
 
 std::string words_of(const MovingPress& p) {
@@ -132,6 +134,13 @@ std::vector<Point> moving_points(const Extent& extent) {
     p.shaft = true;
     if (extent.quick && p.radius > p.cell.x()) continue;
     add("moving contact, shafts", "combination", fmt::format("{}: {}", i, words_of(p)), p);
+  }
+  std::mt19937 of_rims(8);
+  for (int i = 0; i < (extent.quick ? kQuickRims : kRims); ++i) {
+    MovingPress p = any_press(of_rims);
+    p.from_rim = std::uniform_real_distribution<double>(0, kFromRim)(of_rims);
+    add("moving contact, at a rim", "combination", fmt::format("{}: {:.2g} R from it, {}", i, *p.from_rim, words_of(p)),
+        p);
   }
   return points;
 }

@@ -1,6 +1,7 @@
 #include "tools/stability/moving_press.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/mesh/generators.hpp"
 #include "common/models/moving/tried_contact.hpp"
@@ -38,11 +39,17 @@ double length_of(const MovingPress& p) {
   return p.cells.x() * p.cell.x();
 }
 
+/// [m] From the middle, along x.
+double place_along(const MovingPress& p) {
+  if (p.shaft) return kBeyond * length_of(p);
+  if (p.from_rim) return 0.5 * length_of(p) - *p.from_rim * p.radius;
+  return p.beside.x() * p.cell.x();
+}
+
 /// The tip's centre, as the gesture leads it.
 Stroke stroke_of(const MovingPress& p) {
-  const double x = p.shaft ? kBeyond * length_of(p) : p.beside.x() * p.cell.x();
-  const Vector3d place = p.origin + Vector3d(x, p.beside.y() * p.cell.y(), p.radius);
-  const double above = 0.1 * p.depth, way = p.depth + above, slide = 0.5 * p.cell.x();
+  const Vector3d place = p.origin + Vector3d(place_along(p), p.beside.y() * p.cell.y(), p.radius);
+  const double above = 0.1 * p.depth, way = p.depth + above, slide = (p.from_rim ? -0.5 : 0.5) * p.cell.x();
   const auto at = [=](double share, double along = 0) -> Vector3d {
     return place + Vector3d(p.shaft ? 0 : along, p.shaft ? along : 0, above - share * way);
   };
@@ -58,7 +65,7 @@ Stroke stroke_of(const MovingPress& p) {
             },
             kTaps * kTap + 200};
   }
-  const int down = 200, across = p.gesture == "slid" ? static_cast<int>(slide / kSlideSpeed / kTick) + 1 : 0;
+  const int down = 200, across = p.gesture == "slid" ? static_cast<int>(std::abs(slide) / kSlideSpeed / kTick) + 1 : 0;
   return {[=](int i) {
             return at(smooth(i / static_cast<double>(down)),
                       across ? slide * smooth((i - down) / static_cast<double>(across)) : 0);

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "tools/stability/case.hpp"
@@ -18,6 +19,7 @@ struct MovingPress {
   bool shaft = false;                    ///< over all of the block along x, and slid across
   double radius = 0.005, depth = 0.002;  ///< [m]
   Eigen::Vector2d beside{0.12, -0.23};   ///< [1] of a cell, from the node nearest to the middle
+  std::optional<double> from_rim;        ///< [1] of the radius: how far within the top's rim, along x; slid inwards
   double friction = 0;
   ContactRule rule = ContactRule::patch;
   bool corotational = false;

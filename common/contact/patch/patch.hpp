@@ -198,8 +198,11 @@ class Patch {
   void fill_at_foot(const Foot& foot, const std::vector<double>& between_nodes);
   double at_foot(const Foot& foot) const;
   void settle_pressures();
+  void factor_active();
   bool solve_active();
   void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
+  void bound_lift();
+  double lift_at(const Foot& foot) const;
   void sum_pressures();
   Eigen::Matrix3d shared_near_field(std::span<const double> share) const;
   Eigen::Matrix2d compliance_to_shear(const Eigen::Matrix<double, 3, 2>& plane, std::span<const double> share) const;
