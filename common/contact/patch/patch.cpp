@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 constexpr int kPasses = 24;               // at most, of the active set
 constexpr double kTouchTolerance = 1e-9;  // [m]
 using PerCell = Eigen::Array<double, Eigen::Dynamic, 1, 0, Patch::kMaxCells, 1>;
-constexpr double kMaxLift = 0.25;     // within a face it is 0.14 at most; twice that buzzes at a rim
+constexpr double kMaxLift = 0.25;     // within a face it is 0.12 at most; a half more buzzes at a rim
 constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which pivots are raised: G leaves more
 
 }  // namespace
@@ -138,24 +138,22 @@ void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
 }
 
 // Near a rim, and under a wide strip, elements that move may say that a shear lifts the tissue by more than the same
-// force presses it in. Pressures see the shear, the shear does not see them: such a contact would put out work. The
-// energy that it takes to press the lifted tissue back is held to a share of that of the same force along the normal.
+// force presses it in. Pressures see the shear, the shear does not see them: such a contact would put out work. What is
+// lifted, in the mean over the pressures, is held to a share of what the same force gives way by along the normal.
 void Patch::bound_lift() {
   const double shear = (force_ - force_.dot(normal_) * normal_).norm();
   if (!(pressing_ > 0) || shear == 0) return;
-  const int m = static_cast<int>(rows_.size());
-  std::array<double, kMaxCells> lift;  // [m]
-  double give = 0, work = 0;           // [N m]
-  for (int c = 0; c < m; ++c) {
-    const int p = rows_[c];
-    lift[c] = right_[c] = lift_at(foot(p));
-    for (const int q : rows_) give += pressure_force_[p] * pressure_force_[q] * compliance_[p * grid_.size() + q];
+  double give = 0, squares = 0;  // [m N], [N m^2]
+  for (int p = 0; p < grid_.size(); ++p) {
+    const double f = laid(p) ? pressure_force_[p] : 0.0;
+    if (!(f > 0)) continue;
+    squares += f * std::pow(lift_at(foot(p)), 2);
+    for (int q = 0; q < grid_.size(); ++q)
+      if (laid(q)) give += f * pressure_force_[q] * compliance_[p * grid_.size() + q];
   }
-  kernels::active().cholesky_solve(factor_.data(), m, kernels::leading_dimension(grid_.size()), right_.data());
-  for (int c = 0; c < m; ++c) work += lift[c] * right_[c];
-  const double most = std::pow(kMaxLift * shear / pressing_, 2) * give;
-  if (work <= most) return;
-  for (double& l : lifted_) l *= std::sqrt(most / work);
+  const double lift = std::sqrt(squares / pressing_), most = kMaxLift * give * shear / (pressing_ * pressing_);
+  if (lift <= most) return;
+  for (double& l : lifted_) l *= most / lift;
 }
 
 void Patch::sum_pressures() {
@@ -169,7 +167,6 @@ void Patch::meet(const Ground& ground, std::span<const NodeGive> give) {
   keep_positive();
   add_nodes_give(give);
   lifted_.assign(nodes_.size(), 0.0);
-  factor_active();
 }
 
 Patch::Rise Patch::rise_of_nodes(std::span<const Vector3d> moved) const {
@@ -267,28 +264,21 @@ void Patch::settle_pressures() {
   for (double& f : pressure_force_) f = std::max(f, 0.0);
 }
 
-// Of the squares that press.
-void Patch::factor_active() {
+bool Patch::solve_active() {
   const int n = grid_.size();
   const std::ptrdiff_t ld = kernels::leading_dimension(n);
   rows_.clear();
+  std::ranges::fill(pressure_force_, 0.0);
   for (int p = 0; p < n; ++p)
-    if (active_[p] && laid(p)) rows_.push_back(p);
+    if (active_[p]) rows_.push_back(p);
   const int m = static_cast<int>(rows_.size());
+  if (m == 0) return true;
   for (int c = 0; c < m; ++c) {
     for (int r = c; r < m; ++r) factor_[ld * c + r] = compliance_[rows_[r] * n + rows_[c]];
     floor_[c] = kPivotShare * kernel_.own();
+    right_[c] = wanted_[rows_[c]];
   }
   kernels::active().cholesky(factor_.data(), m, ld, floor_.data());
-}
-
-bool Patch::solve_active() {
-  factor_active();
-  std::ranges::fill(pressure_force_, 0.0);
-  const std::ptrdiff_t ld = kernels::leading_dimension(grid_.size());
-  const int m = static_cast<int>(rows_.size());
-  if (m == 0) return true;
-  for (int c = 0; c < m; ++c) right_[c] = wanted_[rows_[c]];
   kernels::active().cholesky_solve(factor_.data(), m, ld, right_.data());
   for (int c = 0; c < m; ++c) pressure_force_[rows_[c]] = right_[c];
   return std::isfinite(right_[0]);

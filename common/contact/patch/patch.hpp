@@ -198,7 +198,6 @@ class Patch {
   void fill_at_foot(const Foot& foot, const std::vector<double>& between_nodes);
   double at_foot(const Foot& foot) const;
   void settle_pressures();
-  void factor_active();
   bool solve_active();
   void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
   void bound_lift();
