@@ -143,13 +143,16 @@ void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
 void Patch::bound_lift() {
   const double shear = (force_ - force_.dot(normal_) * normal_).norm();
   if (!(pressing_ > 0) || shear == 0) return;
+  std::array<int, kMaxCells> pressed;
+  int count = 0;
+  for (int p = 0; p < grid_.size(); ++p)
+    if (laid(p) && pressure_force_[p] > 0) pressed[count++] = p;
   double give = 0, squares = 0;  // [m N], [N m^2]
-  for (int p = 0; p < grid_.size(); ++p) {
-    const double f = laid(p) ? pressure_force_[p] : 0.0;
-    if (!(f > 0)) continue;
+  for (const int p : std::span(pressed).first(count)) {
+    const double f = pressure_force_[p];
     squares += f * std::pow(lift_at(foot(p)), 2);
-    for (int q = 0; q < grid_.size(); ++q)
-      if (laid(q)) give += f * pressure_force_[q] * compliance_[p * grid_.size() + q];
+    for (const int q : std::span(pressed).first(count))
+      give += f * pressure_force_[q] * compliance_[p * grid_.size() + q];
   }
   const double lift = std::sqrt(squares / pressing_), most = kMaxLift * give * shear / (pressing_ * pressing_);
   if (lift <= most) return;
