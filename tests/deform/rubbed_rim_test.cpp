@@ -1,5 +1,5 @@
 // A rough tip that rubs to and fro over the rim of a body, where the elements under it are far softer than a
-// half-space, throws nothing.
+// half-space, throws nothing: what sticks goes along from one end of its way to the other, and no farther.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using testing::Bench;
 using testing::block_scene;
 
-constexpr double kHalf = 0.015, kHeight = 0.025, kTip = 0.005;  // [m]
+constexpr double kHalf = 0.015, kHeight = 0.025, kTip = 0.005, kWay = 0.004;  // [m]
 
 /// How far the tissue went anywhere [m], and the largest change of the force in a tick, of its largest.
 struct Rubbed {
@@ -36,7 +36,7 @@ Rubbed rub(double young, double friction, double depth) {
   double before = 0, largest = 0;
   for (int i = 0; i < 3000; ++i) {
     const double turn = 2 * std::numbers::pi * std::max(0, i - 300) / 800;
-    bench.tick(testing::from_above(i, 300, kHeight + kTip, kHeight + kTip - depth), kHalf + 0.004 * std::sin(turn));
+    bench.tick(testing::from_above(i, 300, kHeight + kTip, kHeight + kTip - depth), kHalf + kWay * std::sin(turn));
     const double force = bench.force().norm();
     rubbed.change = std::max(rubbed.change, std::abs(force - before));
     largest = std::max(largest, force);
@@ -54,14 +54,14 @@ TEST(RubbedRim, ThrowsNothingAndDoesNotBuzz) {
     const double smooth = rub(1e5, 0, depth).far;
     for (const double friction : {0.3, 1.0}) {
       const Rubbed rough = rub(1e5, friction, depth);
-      EXPECT_LT(rough.far, 2 * smooth) << depth << " m deep, friction " << friction;
-      EXPECT_LT(rough.change, 0.25) << depth << " m deep, friction " << friction;
+      EXPECT_LT(rough.far, smooth + 2 * kWay) << depth << " m deep, friction " << friction;
+      EXPECT_LT(rough.change, 0.1) << depth << " m deep, friction " << friction;
     }
   }
 }
 
 TEST(RubbedRim, OfStiffTissueThrowsNothing) {
-  EXPECT_LT(rub(1e6, 1, 0.003).far, 2 * rub(1e6, 0, 0.003).far);
+  EXPECT_LT(rub(1e6, 1, 0.003).far, rub(1e6, 0, 0.003).far + 2 * kWay);
 }
 
 }  // namespace

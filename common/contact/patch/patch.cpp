@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 constexpr int kPasses = 24;               // at most, of the active set
 constexpr double kTouchTolerance = 1e-9;  // [m]
 using PerCell = Eigen::Array<double, Eigen::Dynamic, 1, 0, Patch::kMaxCells, 1>;
-constexpr double kMaxLift = 0.25;     // within a face it is 0.12 at most; a half more buzzes at a rim
+constexpr double kMaxLift = 0.15;     // within a face it is 0.12 at most; with 0.25 a rough tip buzzes at a rim
 constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which pivots are raised: G leaves more
 
 }  // namespace
@@ -58,13 +58,13 @@ void Patch::lift() {
   if (memory_) memory_->forget();
 }
 
-void Patch::press(const Ground& ground, std::span<const Vector3d> moved) {
+void Patch::press(const Ground& ground, std::span<const Vector3d> moved, double less) {
   fill_near_field(ground.near_field);
   fill_normal();
   lift_nodes(ground, {});
   const Rise of_nodes = rise_of_nodes(moved);
   for (int p = 0; p < grid_.size(); ++p) {
-    wanted_[p] = cells_[p].gap - cells_[p].dent;
+    wanted_[p] = cells_[p].gap - cells_[p].dent - less;
     if (!laid(p)) {
       active_[p] = 0;
       continue;

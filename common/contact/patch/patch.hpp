@@ -51,6 +51,9 @@ class Patch {
   static constexpr int kMaxCells = 80;             ///< of any grid
   static constexpr int kMaxNodes = 3 * kMaxCells;  ///< that any patch may rest on
 
+  /// [m/s] At which tissue that is found deep within a tool is led out of it.
+  static constexpr double kWayOut = 0.02;
+
   /// `creep`: of tissue that relaxes; G and K are softer by its instant() then.
   explicit Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep = {});
   int max_nodes() const { return max_nodes_; }  ///< that it may rest on: three corners below each foot
@@ -78,8 +81,8 @@ class Patch {
   /// they do beyond it comes with `moved`.
   void lie_beside(const Patch& other);
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
-  /// the past.
-  void press(const Ground& ground, std::span<const Eigen::Vector3d> moved);
+  /// the past. `less` [m]: by which the part presses less deep than it stands.
+  void press(const Ground& ground, std::span<const Eigen::Vector3d> moved, double less = 0);
   /// Begins a tick of tissue that moves, after lay() for the tool as it is at the tick's end: what the
   /// nodes do under forces comes from its steps, and K is what the body's compliance has beyond both the half-space's
   /// and the nodes' own. `give`: as in Step; the same in all steps of the tick.
@@ -104,6 +107,7 @@ class Patch {
   bool settled() const { return settled_; }
 
   bool touches() const { return pressing_ > 0; }
+  double depth() const { return depth_; }                    ///< [m] after lay(): the largest, at least 0
   double pressing() const { return pressing_; }              ///< [N]
   const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
   const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
@@ -119,7 +123,9 @@ class Patch {
   bool fits(int nodes) const;  ///< whether what was restored can be of a surface of so many nodes
 
  private:
-  static constexpr int kTurns = 6;  ///< at most, of the normal towards that of what lies below
+  static constexpr int kTurns = 6;        ///< at most, of the normal towards that of what lies below
+  static constexpr double kFacing = 0.2;  ///< cosine between a facet's normal and the patch's: below it, it lies aside
+  static constexpr double kMinCover = 1e-3;  ///< of a cell, below which it is not there
 
   struct Foot {
     int triangle = -1;           ///< that it stands on; -1: none
@@ -176,11 +182,17 @@ class Patch {
   void lay_strip(const Ground& ground);
   void keep_below(const Ground& ground);
   void lay_row(int row, const std::array<Eigen::Vector3d, 3>& triangle);
-  void lay_squares();
+  void lay_middles();
+  bool lay_rims(const Ground& ground);
+  int find_parted(const Ground& ground, std::array<int, kMaxCells>& parted) const;
+  bool may_lie_below(const Ground& ground, int triangle, double more) const;
+  std::array<Eigen::Vector3d, 3> seen_in_plane(const Ground& ground, int triangle) const;
+  void lay_squares(const Ground& ground);
   void stand_on_nearest(const Ground& ground, int foot);
-  void lay_feet(const Ground& ground);
+  void lay_feet(const Ground& ground, double aside = 0);
   void stand_on(const SurfaceMap& map, Foot& foot);
   void stand_on_triangles(const SurfaceMap& map);
+  double facing(const Ground& ground, int triangle) const;
   bool presses(const Ground& ground, int triangle) const;
   Eigen::Vector3d in_plane(const Eigen::Vector3d& p) const;
   Eigen::Vector2d foot_middle(int foot) const;
@@ -234,7 +246,7 @@ class Patch {
   double above_ = 0;                          ///< [m] of lay()
   std::vector<Cell> cells_;                   ///< per cell of the grid
   std::vector<Foot> feet_;                    ///< per foot of the grid
-  std::vector<Eigen::Vector2d> foot_middle_;  ///< [m] about the patch's middle, likewise
+  std::vector<Eigen::Vector2d> foot_middle_;  ///< [m] about the patch's middle, likewise: of what lies over tissue
   std::vector<int> nodes_;                    ///< under the patch
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;

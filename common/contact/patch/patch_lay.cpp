@@ -1,6 +1,7 @@
 // How a patch is laid on the surface under its sphere.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contact/patch/overlap_normal.hpp"
 #include "common/contact/patch/patch.hpp"
@@ -15,8 +16,8 @@ using Eigen::Vector3d;
 
 constexpr double kLookAround = 1.5;  // radii about the sphere's middle, and as much more as it is deep,
 constexpr double kDeepest = 4;       // up to so many radii; about a deeper one, along all its way out
+constexpr int kTurnsToPassed = 40;   // at most, of the normal towards what the sphere has passed, where it comes anew
 constexpr double kOnEdge = 1e-6;     // radii, by which a foot may lie outside of a triangle's box
-constexpr double kFacing = 0.2;      // cosine between a facet's normal and the patch's, below which it lies aside
 
 // A direction across `normal` that goes along with the tool: the tool's own x axis, brought over by the least turn that
 // takes its z axis into the tissue.
@@ -46,8 +47,9 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   } else if (find_below(ground, axis.start, above)) {
     across_ = across_of(now, normal_);
     up_ = normal_.cross(across_);
-    lay_feet(ground);
-    lay_squares();
+    lay_middles();
+    lay_feet(ground, lay_rims(ground) ? 0.5 * grid_.edge() : 0.0);
+    lay_squares(ground);
   }
   double depth = -std::numeric_limits<double>::infinity();
   for (const Cell& cell : cells_) depth = std::max(depth, cell.gap);
@@ -88,9 +90,14 @@ bool Patch::find_below(const Ground& ground, const Vector3d& middle, double abov
     anchor_ = {surface.map().triangles[nearest], weights};
     out = surface.normal(nearest, weights);
   }
-  const Vector3d passed = overlap_normal(surface, near_, middle, grid_.radius(), out, kFacing);
-  const bool overlaps = passed.squaredNorm() > 0;
-  if (overlaps) out = passed.normalized();
+  bool overlaps = false;
+  for (int turn = 0; turn < (touches() ? 1 : kTurnsToPassed); ++turn) {
+    const Vector3d passed = overlap_normal(surface, near_, middle, grid_.radius(), out, kFacing);
+    if (passed.squaredNorm() == 0) break;
+    const Vector3d before = std::exchange(out, passed.normalized());
+    overlaps = true;
+    if ((out - before).squaredNorm() < 1e-12) break;
+  }
   for (int turn = 0; turn < kTurns; ++turn) {
     const auto below = highest_along(surface, near_, middle, out, kFacing);
     if (!below) break;
@@ -110,21 +117,29 @@ Vector3d Patch::in_plane(const Vector3d& p) const {
   return {across_.dot(d), up_.dot(d), normal_.dot(d)};
 }
 
+std::array<Vector3d, 3> Patch::seen_in_plane(const Ground& ground, int t) const {
+  const Triangle c = ground.surface.corners(t);
+  return {in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+}
+
 Vector2d Patch::foot_middle(int foot) const {
   if (!grid_.strip()) return grid_.middle(foot);
   if (grid_.column_feet()) return {cell_middle(foot), 0};
   return {cell_middle(grid_.column(foot)), grid_.across(grid_.row(foot))};
 }
 
-// Where the lines through the feet along the normal meet the surface; the outermost place counts.
-void Patch::lay_feet(const Ground& ground) {
+void Patch::lay_middles() {
+  for (int i = 0; i < grid_.feet(); ++i) foot_middle_[i] = foot_middle(i);
+}
+
+// Where the lines through the feet along the normal meet the surface; the outermost place counts. `aside` [m]: by which
+// a sphere's foot may stand from the middle of its column.
+void Patch::lay_feet(const Ground& ground, double aside) {
   const SmoothSurface& surface = ground.surface;
   for (Foot& f : feet_) f = {.depth = std::numeric_limits<double>::infinity()};
-  for (int i = 0; i < grid_.feet(); ++i) foot_middle_[i] = foot_middle(i);
   for (const int t : near_) {
-    if (!presses(ground, t) || (!grid_.strip() && !surface.may_meet(t, laid_at_, normal_, grid_.radius()))) continue;
-    const Triangle c = surface.corners(t);
-    const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+    if (grid_.strip() ? !presses(ground, t) : !may_lie_below(ground, t, aside)) continue;
+    const std::array<Vector3d, 3> flat = seen_in_plane(ground, t);
     if (grid_.column_feet() && (flat[0].y() < 0) == (flat[1].y() < 0) && (flat[1].y() < 0) == (flat[2].y() < 0))
       continue;
     const Vector2d low = flat[0].cwiseMin(flat[1]).cwiseMin(flat[2]).head<2>().array() - kOnEdge * grid_.radius();
@@ -133,11 +148,12 @@ void Patch::lay_feet(const Ground& ground) {
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
     for (int column = 0; column < grid_.columns(); ++column) {
       const int first = grid_.first_foot(column), last = grid_.first_foot(column + 1) - 1;
-      if (foot_middle_[first].x() < low.x()) continue;
-      if (foot_middle_[first].x() > high.x()) break;
+      const double x = foot_middle(first).x();
+      if (x + aside < low.x()) continue;
+      if (x - aside > high.x()) break;
       for (int i = first; i <= last; ++i) {
         const Vector2d& middle = foot_middle_[i];
-        if (middle.y() < low.y() || middle.y() > high.y()) continue;
+        if ((middle - low).minCoeff() < 0 || (high - middle).minCoeff() < 0) continue;
         const Vector2d d = middle - flat[0].head<2>();
         const double w1 = (d.x() * e2.y() - d.y() * e2.x()) / twice, w2 = (e1.x() * d.y() - e1.y() * d.x()) / twice;
         if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
@@ -166,17 +182,32 @@ void Patch::stand_on_triangles(const SurfaceMap& map) {
   for (const int i : std::span(order).first(standing)) stand_on(map, feet_[i]);
 }
 
+double Patch::facing(const Ground& ground, int t) const {
+  return -ground.surface.facet_normal(t).dot(normal_);
+}
+
 bool Patch::presses(const Ground& ground, int t) const {
-  return -ground.surface.facet_normal(t).dot(normal_) >= kFacing && (!grid_.strip() || ground.surface.touchable(t));
+  return facing(ground, t) >= kFacing && (!grid_.strip() || ground.surface.touchable(t));
+}
+
+// Of the triangles that are near a sphere, one that a square of it may lie over: within its radius and so much more.
+bool Patch::may_lie_below(const Ground& ground, int t, double more) const {
+  return presses(ground, t) && ground.surface.may_meet(t, laid_at_, normal_, grid_.radius() + more);
 }
 
 // A sphere's squares stand on their own feet.
-void Patch::lay_squares() {
+void Patch::lay_squares(const Ground& ground) {
   for (int p = 0; p < grid_.size(); ++p) {
+    Cell& cell = cells_[p];
+    if (cell.cover < kMinCover) continue;
+    if (!feet_[p].stands() && cell.cover < 1) stand_on_nearest(ground, p);  // in the middle of parts
     const double depth = feet_[p].depth;
     if (!std::isfinite(depth)) continue;
-    const Vector2d at = grid_.middle(p);
-    cells_[p] = {.gap = grid_.rise(p) - depth, .at = laid_at_ + at.x() * across_ + at.y() * up_ + depth * normal_};
+    const Vector2d& at = foot_middle_[p];
+    const double rise =
+        cell.cover < 1 ? std::sqrt(std::max(0.0, std::pow(grid_.radius(), 2) - at.squaredNorm())) : grid_.rise(p);
+    cell.gap = rise - depth;
+    cell.at = laid_at_ + at.x() * across_ + at.y() * up_ + depth * normal_;
   }
 }
 

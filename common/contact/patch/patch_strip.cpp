@@ -16,7 +16,6 @@ constexpr double kWindow = 1.5;    // half a window, over that of an even overla
 constexpr double kBeside = 0.25;   // radii above the surface from which a cell is not there
 constexpr double kMaxDepth = 10;   // radii below the surface, likewise
 constexpr double kLines[] = {0, -0.35, 0.35, -0.65, 0.65, -0.85, 0.85};  // radii aside, along which it overlaps
-constexpr double kMinCover = 1e-3;                                       // of a cell, likewise
 constexpr double kHair = 1e-9;  // radii, by which what rounding may have moved is looked at all the same
 
 /// By the line at `y` along the first axis; false if it does not meet the triangle. The ends go along the axis.
@@ -180,8 +179,7 @@ void Patch::lay_strip(const Ground& ground) {
   for (Cell& cell : cells_) cell = {.gap = 0, .cover = 0};
   keep_below(ground);
   for (const int t : near_) {
-    const Triangle c = ground.surface.corners(t);
-    const std::array<Vector3d, 3> flat{in_plane(c[0]), in_plane(c[1]), in_plane(c[2])};
+    const std::array<Vector3d, 3> flat = seen_in_plane(ground, t);
     const auto [low, high] = std::minmax({flat[0].y(), flat[1].y(), flat[2].y()});
     for (int row = 0; row < grid_.rows(); ++row)
       if (reaches(low, high, grid_.across(row))) lay_row(row, flat);
@@ -200,6 +198,7 @@ void Patch::lay_strip(const Ground& ground) {
   }
   if (!any || near_.empty()) return;
   lay_anchor(ground);
+  lay_middles();
   lay_feet(ground);
   for (int i = 0; i < grid_.feet(); ++i)
     if (!std::isfinite(feet_[i].depth) && (grid_.column_feet() || laid(i))) stand_on_nearest(ground, i);
@@ -252,7 +251,8 @@ void Patch::stand_on_nearest(const Ground& ground, int foot) {
   const Vector3d under = laid_at_ + x * across_ + foot_middle_[foot].y() * up_ +
                          (flank_.slope * x + grid_.radius() * flank_.steep) * normal_;
   const TrianglePoint nearest = nearest_point(ground.surface, under, near_);
-  feet_[foot] = {.triangle = nearest.triangle, .weights = nearest.weights};
+  const Vector3d place = place_at(ground.surface, nearest.triangle, nearest.weights).point;
+  feet_[foot] = {.triangle = nearest.triangle, .weights = nearest.weights, .depth = normal_.dot(place - laid_at_)};
   stand_on(ground.surface.map(), feet_[foot]);
 }
 

@@ -20,7 +20,11 @@ Vector3d moved_by(const Compliance<double>& c, int node, int from, const Vector3
 
 PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& compliance, const HalfSpace& half_space,
                        const StepSettings& settings, double resolved, const std::optional<CreepStep>& creep)
-    : compliance_(compliance), friction_(settings.contact.friction), surface_(map), grids_(half_space) {
+    : compliance_(compliance),
+      friction_(settings.contact.friction),
+      way_out_(Patch::kWayOut * settings.dt),
+      surface_(map),
+      grids_(half_space) {
   double largest = 0;
   for (const PatchPart& part : patch_parts(settings.tools, !creep)) {
     parts_.push_back({part.tool, part.part, Patch(grids_.of(part.radius, part.length), creep)});
@@ -63,15 +67,25 @@ bool PatchTouch::touch(std::span<const MovingTool> tools, const Beside& beside) 
   return settled;
 }
 
+// A part that goes over a rim may leave one side of the body and stand deep in the other: it comes in from no depth on.
+std::span<const int> PatchTouch::lay(Part& own, const Patch::Ground& ground, const MovingTool& tool) const {
+  const bool touched = own.patch.touches(), left = own.left;
+  const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
+  own.left = touched && nodes.empty();
+  if (!touched && left && !nodes.empty()) own.ease = own.patch.depth();
+  own.ease = nodes.empty() ? 0 : std::max(own.ease - way_out_, 0.0);
+  return nodes;
+}
+
 std::span<const int> PatchTouch::press(Part& own, const MovingTool& tool, const Beside& beside) {
   const Patch::Ground ground{surface_, *near_field_, friction_};
-  const std::span<const int> nodes = own.patch.lay(ground, tool.before, tool.now, tool.axis(own.part));
+  const std::span<const int> nodes = lay(own, ground, tool);
   if (nodes.empty()) return nodes;
   moved_.assign(nodes.size(), Vector3d::Zero());
   if (beside.past) beside.past(nodes, {moved_.data()->data(), 3 * nodes.size()});
   beside.others([&](int, int node, const Vector3d& force) { add_displacement(node, force, nodes); });
   meet_others(own, nodes, static_cast<bool>(beside.past));
-  own.patch.press(ground, moved_);
+  own.patch.press(ground, moved_, own.ease);
   own.offset = tool.to_part(own.part, own.patch.at());
   return nodes;
 }
@@ -145,6 +159,8 @@ void PatchTouch::state(State& s) {
   for (Part& p : parts_) {
     p.patch.state(s);
     s.value(p.offset);
+    s.value(p.left);
+    s.value(p.ease);
     s.require(p.patch.fits(surface_.map().size()), "the state holds a patch that this body cannot have");
     if (s.restoring()) load_body(p);
   }

@@ -60,8 +60,11 @@ class PatchTouch {
     Patch patch;
     std::vector<PatchForce> forces;  ///< on the body
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    bool left = false;  ///< in the last step, what it touched before
+    double ease = 0;    ///< [m] that it stands too deep, and is led out of
   };
 
+  std::span<const int> lay(Part& own, const Patch::Ground& ground, const MovingTool& tool) const;
   std::span<const int> press(Part& own, const MovingTool& tool, const Beside& beside);
   void load_body(Part& part);
   void add_displacement(int from, const Eigen::Vector3d& force, std::span<const int> nodes);
@@ -70,6 +73,7 @@ class PatchTouch {
 
   const Compliance<double>& compliance_;
   double friction_;
+  double way_out_;  ///< [m] within a step
   SmoothSurface surface_;
   std::unique_ptr<NearField> near_field_;
   PatchGrids grids_;

@@ -31,7 +31,7 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const Triangle c = corners(static_cast<int>(t));
     const Vector3d doubled_area = (c[1] - c[0]).cross(c[2] - c[0]);
-    facet_.push_back({doubled_area.normalized(), (c[0] + c[1] + c[2]) / 3, 0});
+    facet_.push_back({doubled_area.normalized(), (c[0] + c[1] + c[2]) / 3, 0, 0});
     area_.push_back(0.5 * doubled_area.norm());
     box_.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
     Facet& f = facet_.back();
@@ -43,6 +43,38 @@ SmoothSurface::SmoothSurface(const SurfaceMap& map)
     }
   }
   for (Vector3d& n : node_normal_) n.normalize();
+  find_across();
+}
+
+void SmoothSurface::find_across() {
+  struct Side {
+    std::array<int, 2> nodes;  // ascending
+    int triangle, corner;
+  };
+  std::vector<Side> sides;
+  across_.assign(map_.triangles.size(), {kNone, kNone, kNone});
+  for (int t = 0; t < static_cast<int>(map_.triangles.size()); ++t)
+    for (int v = 0; v < 3; ++v) {
+      const auto [low, high] = std::minmax(map_.triangles[t][v], map_.triangles[t][(v + 1) % 3]);
+      sides.push_back({{low, high}, t, v});
+    }
+  std::ranges::stable_sort(sides, {}, &Side::nodes);
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].nodes == sides[i].nodes) ++end;
+    if (end - i != 2) continue;
+    across_[sides[i].triangle][sides[i].corner] = sides[i + 1].triangle;
+    across_[sides[i + 1].triangle][sides[i + 1].corner] = sides[i].triangle;
+  }
+  for (std::size_t t = 0; t < across_.size(); ++t)
+    for (const int beyond : across_[t])
+      facet_[t].bend =
+          std::max(facet_[t].bend, beyond == kNone ? kEnds : (facet_[t].normal - facet_[beyond].normal).norm());
+}
+
+void SmoothSurface::leave_out(int t) {
+  left_out_[t] = 1;
+  for (const int beyond : across_[t])
+    if (beyond != kNone) facet_[beyond].bend = kEnds;
 }
 
 Vector3d SmoothSurface::normal(int t, const Vector3d& weights) const {

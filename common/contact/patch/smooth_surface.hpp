@@ -43,22 +43,32 @@ class SmoothSurface {
     const double far = kRounding * (f.reach + radius);
     return way.cross(f.middle - point).squaredNorm() <= far * far;
   }
+  /// The triangle beyond the edge from a corner to the next; -1: none, or several.
+  int across(int t, int corner) const { return across_[t][corner]; }
+  /// Whether a triangle faces `way`, a unit, and those beyond its edges too; false where it is not known without them.
+  bool faces_with_all_about(int t, const Eigen::Vector3d& way, double facing) const {
+    return facet_[t].normal.dot(way) - facet_[t].bend > facing;
+  }
   /// A triangle that is no longer there: near() leaves it out.
-  void leave_out(int t) { left_out_[t] = 1; }
+  void leave_out(int t);
   bool is_left_out(int t) const { return left_out_[t] != 0; }
 
  private:
-  static constexpr double kRounding = 1 + 1e-6;
+  static constexpr int kNone = -1;
+  static constexpr double kRounding = 1 + 1e-6, kEnds = 2;
+  void find_across();
   /// What is asked of a triangle first.
   struct Facet {
     Eigen::Vector3d normal, middle;  ///< [m]
     double reach;                    ///< [m] of its corners from the middle
+    double bend;  ///< largest difference from the normals beyond its edges; 2: the surface ends there
   };
 
   const SurfaceMap& map_;
   std::vector<Facet> facet_;  ///< per triangle
   std::vector<Eigen::Vector3d> node_normal_;
   std::vector<std::array<Eigen::Vector3d, 2>> box_;  ///< [m] per triangle: its lowest and its highest corner
+  std::vector<std::array<int, 3>> across_;           ///< per triangle and corner
   std::vector<double> area_, weight_;
   std::vector<char> left_out_;  ///< per triangle
   Buckets buckets_;

@@ -287,7 +287,7 @@ void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
   for (std::size_t p = 0; p < depth.size(); ++p) {
     own.depth[p] = depth[p];
     depth[p] -= own.ease[p];
-    own.ease[p] = std::max(own.ease[p] - kWayOut * dt, 0.0);
+    own.ease[p] = std::max(own.ease[p] - Patch::kWayOut * dt, 0.0);
   }
   own.patch.step(ground, step);
   nodes_->push(number(own), seen_from_world(own), dt);

@@ -29,9 +29,6 @@ namespace palpate {
 /// cut open, and jaws, are left to contacts by points.
 class TissuePatches {
  public:
-  /// [m/s] At which tissue that is found deep within a tool is led out of it.
-  static constexpr double kWayOut = 0.02;
-
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
   /// null for others. All else outlives this object.
   TissuePatches(const Archive& archive, const ElasticMesh& mesh, const CutMesh& topology, const CutSurface& surface,

@@ -167,7 +167,7 @@ void TissueTouch::lead_out(TouchContact& c, const MovingTool& tool) const {
   if (c.grasped) return;
   const Eigen::Vector3d motion = c.at - tool.before * (tool.now.inverse() * c.at);
   const Eigen::Vector3d carried = anchor_position(c.anchor, surface_.positions()) + c.softness() * c.force + motion;
-  const double depth = c.plane - c.normal.dot(carried), led = TissuePatches::kWayOut * dt_;
+  const double depth = c.plane - c.normal.dot(carried), led = Patch::kWayOut * dt_;
   if (depth <= led) return;
   const double share = led / depth;
   c.plane -= (1 - share) * depth;
