@@ -1,5 +1,6 @@
 #include "common/node/node_setup.hpp"
 
+#include <chrono>
 #include <cstdio>
 #include <random>
 
@@ -55,8 +56,11 @@ LoadedScene load_for_node(const NodeOptions& options, ArchivePart part, ArchiveP
 }
 
 std::uint64_t new_run() {
-  std::random_device random;
-  return (std::uint64_t{random()} << 32 | random()) | 1;
+  constexpr int kRandomBits = 22;
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  const auto ms =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch).count());
+  return ms << kRandomBits | std::random_device()() >> (32 - kRandomBits);
 }
 
 void say_ready(const NodeOptions& options) {

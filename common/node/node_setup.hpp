@@ -38,7 +38,8 @@ inline LoadedScene load_for_node(const NodeOptions& options, ArchivePart part) {
   return load_for_node(options, part, part);
 }
 
-/// A random number, not 0, that identifies one start of a loop.
+/// A number, not 0, that identifies one start of a loop: of the time in milliseconds, so that an earlier one is
+/// smaller, and random below that.
 std::uint64_t new_run();
 
 /// Tells `palpate run` that this node listens.
