@@ -67,12 +67,13 @@ def off(row):
 def counts(table):
     any_tip, named = table.of("moving contact, any"), table.of("moving contact")
     points = sum(len(table.of(c)) for c in ("moving contact", "moving contact, by nodes", "moving contact, any",
-                                            "moving contact, averaged strain", "moving contact, shafts"))
+                                            "moving contact, averaged strain", "moving contact, shafts",
+                                            "moving contact, at a rim"))
     yield f"{points} points"
     yield f"{table.stable('moving contact, any') + table.stable('moving contact')} of {len(any_tip) + len(named)} are stable"
     yield f"off the static answer by {100 * max(map(off, any_tip + named)):.2f} % at most"
     yield f"by more than 0.1 % in {sum(off(r) > 1e-3 for r in any_tip)} of them"
-    for case in ("averaged strain", "shafts"):
+    for case in ("averaged strain", "shafts", "at a rim"):
         yield f"{table.stable('moving contact, ' + case)} of {len(table.of('moving contact, ' + case))} are stable"
 
 
