@@ -344,6 +344,7 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
   constexpr double kStretched = 0.1;                           // [J]
   int stretched = 0;                                           // [ticks]
   int looks = 0, inside_checks = 0, outside = 0, strayed = 0;  // led in and outside the wall; not led in and within it
+  std::vector<char> wrong(t.catheter().size(), false);         // at the last look
   for (int i = 0; i < steps; ++i) {
     hands.step(t);
     ASSERT_TRUE(t.haptic->force(0).allFinite() && t.haptic->force(1).allFinite()) << "step " << i;
@@ -352,17 +353,26 @@ TEST(DuctManipulation, RandomManipulationEndsFiniteBoundedAndInsideTheWall) {
     max_energy = std::max(max_energy, energy);
     stretched += energy > kStretched;
     max_force = std::max({max_force, t.haptic->force(0).norm(), t.haptic->force(1).norm()});
-    if (i % 50 != 0) continue;
+    // A particle is led by the wall as it was when the tick began, and shown beside the wall as it is at the end: one
+    // that passes a mouth at 0.7 m/s is a tick apart. It is on the wrong side when it still is a tick later.
+    if (i % 50 > 1) continue;
     const std::vector<Vector3d>& nodes = wall.of(t.wall());
     for (int p = 0; p < t.catheter().size(); ++p) {
-      if (from_mouths(t.wall(), nodes, t.catheter().positions()[p]) < t.catheter().radius())
-        continue;  // half in, half out
+      if (i % 50 == 1 && !wrong[p]) continue;
+      if (from_mouths(t.wall(), nodes, t.catheter().positions()[p]) < t.catheter().radius()) {
+        wrong[p] = false;  // half in, half out
+        continue;
+      }
       const bool inside = winding(t.wall(), nodes, t.catheter().positions()[p]) > 0.5;
       const bool led_in = t.catheter().inside()[p] != 0;
+      if (i % 50 == 1) {
+        outside += led_in && !inside;
+        strayed += inside && !led_in;
+        continue;
+      }
       ++looks;
       inside_checks += inside;
-      outside += led_in && !inside;
-      strayed += inside && !led_in;
+      wrong[p] = inside != led_in;
     }
   }
   RecordProperty("max_energy_J", std::to_string(max_energy));
