@@ -171,7 +171,9 @@ Option& Option::output_file(const std::string& ending, const std::vector<std::st
 
 template <class T>
 Option Command::add_option(const std::string& name, T& value, const std::string& meaning) {
-  return Option(app_->add_option(name, value, meaning), app_);
+  CLI::Option* const option = app_->add_option(name, value, meaning);
+  if constexpr (requires { std::tuple_size<T>::value; }) option->delimiter(',');  // between spaces or commas
+  return Option(option, app_);
 }
 template Option Command::add_option(const std::string&, std::string&, const std::string&);
 template Option Command::add_option(const std::string&, int&, const std::string&);

@@ -92,6 +92,17 @@ TEST(ToolsHelp, EveryMistakeHasTheSameStatus) {
   }
 }
 
+// Help writes three numbers with commas.
+TEST(ToolsHelp, ThreeNumbersAreTakenBetweenSpacesOrCommas) {
+  const testing::OwnFolder folder("help");
+  const std::string with_spaces = folder / "spaces.msh", with_commas = folder / "commas.msh";
+  const std::string block = program("palpate_generate") + " block --cells 2,3,4 ";
+  ASSERT_EQ(run_program(block + "--min -0.03 -0.03 -0.02 --max 0.03 0.03 0 -o " + with_spaces).status, 0);
+  const auto result = run_program(block + "--min=-0.03,-0.03,-0.02 --max 0.03,0.03,0 -o " + with_commas);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(testing::text_of(with_spaces), testing::text_of(with_commas));
+}
+
 TEST(ToolsHelp, HelpThatCannotBeWrittenIsTold) {
   EXPECT_EQ(run_program("{ " + program("palpate") + " --help > /dev/full; }").status, 1);
 }
