@@ -120,7 +120,7 @@ void HapticLoop::tick(double time) {
     record->pushed_ns = push_begin;
     ring_.commit_push();
   } else {
-    ++report_.dropped;
+    shown_dropped_.store(++report_.dropped, std::memory_order_relaxed);
   }
   ++step_;
   const std::int64_t end = now_ns();
@@ -218,6 +218,9 @@ void HapticLoop::say_interventions() {
               .refused_models = local_feed_.refused(),
               .implausible_models = local_feed_.implausible()});
   for (const std::string& said : told_.news()) log_warning(said);
+  if (told_of_dropped_ || shown_dropped_.load(std::memory_order_relaxed) == 0) return;
+  told_of_dropped_ = true;
+  log_warning("steps are told to nobody, and a log lacks them: the thread that publishes them has no processor");
 }
 
 std::uint64_t HapticLoop::refused_samples() const {

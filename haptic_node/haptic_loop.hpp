@@ -97,10 +97,11 @@ class HapticLoop {
   std::atomic<bool> over_{false};
   std::atomic<bool> gives_way_{false};
   std::string lost_claim_;  ///< why; the publisher's until over_
-  std::atomic<std::uint64_t> shown_ticks_{0}, shown_missed_{0};
+  std::atomic<std::uint64_t> shown_ticks_{0}, shown_missed_{0}, shown_dropped_{0};
   std::atomic<std::uint32_t> shown_flags_{0};  ///< of all steps since they were told
   std::atomic<std::uint64_t> shown_refused_{0}, shown_followed_{0};
   Interventions told_;
+  bool told_of_dropped_ = false;
   PaceWatch pace_{"the force", "its steps are late"};
   std::int64_t last_status_ns_ = 0;
   std::uint64_t last_status_ticks_ = 0;

@@ -154,7 +154,7 @@ void say_left_out(const Scene& scene, std::span<const CheckReport> bodies, Check
   for (const std::string_view sentence : absences<Body>(scene.bodies)) out.left_out(sentence);
   const auto works = [](const Tool& tool) { return abilities_of(tool).works(); };
   if (std::ranges::none_of(scene.tools, works)) out.left_out("no cautery and no jaws");
-  if (scene.tools.empty()) out.left_out("no tool: no haptic node");
+  if (scene.tools.empty()) out.left_out("no tool: nothing is felt; `palpate drive --seconds` lets its tissue move");
   for (const std::string_view sentence : absences<DeviceSpec>(devices_of(scene))) out.left_out(sentence);
   if (!scene.record) out.left_out("no [record]: no recorder and no log file");
   if (!scene.network.security)

@@ -6,6 +6,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/print.hpp"
+#include "common/bus/topic_named.hpp"
 #include "idl/topics.hpp"
 #include "tools/mcap/export_mcap.hpp"
 #include "tools/shared/commands.hpp"
@@ -67,14 +68,10 @@ void write_mcap(const ExportOptions& o, const std::string& topic) {
 void run(const ExportOptions& o) {
   if (o.mcap && o.topic.empty()) return write_mcap(o, "");
   if (o.topic.empty()) throw std::runtime_error("export: CSV and JSON lines are of one topic: give --topic");
-  const std::string name = o.topic.find('/') == std::string::npos ? "palpate/" + o.topic : o.topic;
+  const std::string name = topic_named(o.topic);
   LogReader reader(o.log);
-  bool known = false;
-  std::string names;
   topics::for_each([&](const auto& topic) {
-    names += fmt::format(" {}", std::string(topic.name).substr(8));
-    if (known || name != topic.name) return;
-    known = true;
+    if (name != topic.name) return;
     if (o.mcap) return write_mcap(o, name);
     Output out(o.file);
     const std::uint64_t count = export_topic(o, topic, reader, out);
@@ -82,7 +79,6 @@ void run(const ExportOptions& o) {
     if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
     if (count == 0) throw std::runtime_error(fmt::format("{}: holds no sample of {}", o.log, name));
   });
-  if (!known) throw std::runtime_error(fmt::format("export: there is no topic '{}'; the topics are{}", o.topic, names));
 }
 
 }  // namespace

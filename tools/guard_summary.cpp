@@ -54,6 +54,14 @@ std::string interventions_in(const nlohmann::json& summary) {
   return said.empty() ? said : "the hand was guarded: " + said;
 }
 
+std::string untold_steps_in(const nlohmann::json& summary) {
+  const nlohmann::json haptic = summary.value("haptic_node", nlohmann::json());
+  const std::uint64_t count = haptic.is_object() ? haptic.value("dropped", std::uint64_t{0}) : 0;
+  if (count == 0) return "";
+  return fmt::format(
+      "the haptic node told nobody of {} steps, and a log lacks them: its publishing thread had no processor", count);
+}
+
 std::string limits_met_in(const nlohmann::json& summary) {
   return told(kLimits, summary);
 }

@@ -41,6 +41,7 @@ Json json_of(const LogSummary& s, const std::string& file) {
             {"lost", s.footer ? Json(s.footer->lost) : Json(nullptr)},
             {"loss_reason", s.footer ? s.footer->error : ""},
             {"thinned_steps", s.thinned_steps},
+            {"untold_steps", s.untold_steps},
             {"unknown_events", s.unknown}};
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
@@ -115,6 +116,9 @@ void print_text(const LogSummary& s, const std::string& file) {
   if (s.thinned_steps > 0)
     fmt::print("keeps enough: one in {} steps of what can be computed again, and no surface that can\n",
                s.thinned_steps);
+  if (s.untold_steps > 0)
+    fmt::print("lacks {} steps that its haptic node told nobody of: its publishing thread had no processor\n",
+               s.untold_steps);
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
   print_table(s);
   print_hops(s);

@@ -80,12 +80,25 @@ class Summariser {
   template <class M>
   void learn(const M& message) {
     if constexpr (std::same_as<M, TaskRecord>) keep(message);
+    if constexpr (std::same_as<M, ToolState>) look_for_untold(message);
     if constexpr (requires { message.code_path; }) {
       if (summary_.code_path.empty()) summary_.code_path = message.code_path;
     }
   }
 
+  // What is lost on the way lacks its sequence number; a step that was never told has none.
+  void look_for_untold(const ToolState& state) {
+    if (state.tool != 0) return;
+    const auto [known, is_new] = last_.try_emplace(state.run, state);
+    ToolState& last = known->second;
+    if (is_new || state.seq <= last.seq || state.step <= last.step) return;
+    const std::uint64_t steps = state.step - last.step, told = state.seq - last.seq;
+    if (steps > told) summary_.untold_steps += steps - told;
+    last = state;
+  }
+
   LogSummary& summary_;
+  std::map<std::uint64_t, ToolState> last_;  ///< of each run's first tool
   std::map<std::string, SequenceCheck> sequences_;
   std::set<std::string> may_be_thin_;  ///< topics of which a log may leave out messages
 };

@@ -32,6 +32,7 @@ struct LogSummary {
   double seconds = 0;     ///< from the first sample to the last
   std::uint64_t bytes = 0;
   std::uint64_t thinned_steps = 0;             ///< see LogReader::thinned_steps()
+  std::uint64_t untold_steps = 0;              ///< of the haptic node, which never came to the bus
   std::uint64_t unknown = 0;                   ///< events of topics that this program does not know
   std::map<std::string, TopicSummary> topics;  ///< those with samples
   HopTimes hops;

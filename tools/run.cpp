@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "common/cli/progress.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
@@ -104,6 +105,7 @@ bool start_nodes(RunNodes& nodes, const Scene& scene, int domain_id, const RunOp
     return arguments;
   };
   const auto node = [&](std::vector<std::string> arguments) {
+    if (cli::telling() == cli::Telling::nothing) arguments.push_back("--quiet");
     for (const std::string& change : o.set) arguments.insert(arguments.end(), {"--set", change});
     return with(std::move(arguments));
   };
@@ -146,6 +148,10 @@ void check_port(const std::string& port) {
 void run(const RunOptions& o) {
   check_port(o.web);
   const Scene scene = load_scene(o.scene, parse_changes(o.set));
+  if (scene.tools.empty())
+    throw std::runtime_error(fmt::format(
+        "{}: the scene has no tool, so nothing is felt; `palpate drive {} --seconds S` lets its tissue move", o.scene,
+        o.scene));
   if (!o.keep.empty() && log_of(scene, o).empty())
     throw std::runtime_error("--keep: there is no log; --record names one, or `file` in the scene's [record]");
   keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
@@ -181,7 +187,8 @@ void run(const RunOptions& o) {
     summary_file->commit();
   }
   nodes.check();
-  if (const std::string said = interventions_in(summary); !said.empty()) {
+  for (const std::string& said : {interventions_in(summary), untold_steps_in(summary)}) {
+    if (said.empty()) continue;
     if (o.strict) throw std::runtime_error(said);
     fmt::print(stderr, "{}\n", said);
   }
@@ -227,9 +234,10 @@ void add_run_command(cli::Command& app) {
                   "node of its own, which moving tissue always has (default: what --film, --still and --web need)")
       .one_of({2, 3});
   run_command.add_flag("--json", o->json, "Print rates, latencies and forces as one line of JSON");
-  run_command.add_flag("--strict", o->strict,
-                       "Fail if the guards before the hand had to step in, or a node refused a message");
-  run_command.tells_progress();
+  run_command.add_flag(
+      "--strict", o->strict,
+      "Fail if the guards before the hand had to step in, a node refused a message, or a log lacks steps");
+  run_command.may_be_quiet();
   run_command.examples({"palpate run scenes/liver.toml --web",
                         "palpate run scenes/liver.toml --set body.young=8000 --film out/stiff.mp4",
                         "palpate run scenes/hepatectomy.toml --record out/cut.lcmlog --film out/cut.mp4"});

@@ -47,9 +47,8 @@ void run(const TopOptions& o) {
       fmt::print("{}domain {}   Ctrl-C ends\n\n{}", terminal ? "\x1b[H\x1b[2J" : "", o.network.domain,
                  board.text(seconds));
     board.begin_anew();
-    std::fflush(stdout);
     last = now;
-    if (o.once) break;
+    if (std::fflush(stdout) != 0 || o.once) break;  // nobody reads it any more
   }
 }
 

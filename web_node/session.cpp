@@ -29,7 +29,8 @@ void Session::run(const beast::http::request<beast::http::empty_body>& upgrade) 
 
 void Session::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
-    if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow)
+    if (error == websocket::condition::protocol_violation || error == websocket::error::message_too_big ||
+        error == websocket::error::buffer_overflow)
       ++self->host_.counts().malformed;
     if (error || self->over_) return self->end();
     self->heard(bytes);

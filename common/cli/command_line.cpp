@@ -75,6 +75,17 @@ void keep_other_kinds(const CLI::App& app) {
   }
 }
 
+/// Of files that need not be there yet.
+bool same_place(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::weakly_canonical(fs::absolute(a, error), error) == fs::weakly_canonical(fs::absolute(b, error), error);
+}
+
+/// For people, who may have gone: a pipe without a reader is no error of its own.
+void tell_user(const std::string& sentence) {
+  std::fputs(sentence.c_str(), stderr);
+}
+
 /// Whatever else is given on the command line is not written over.
 void keep_inputs(const CLI::App& app) {
   for (const CLI::Option* output : app.get_options()) {
@@ -84,7 +95,7 @@ void keep_inputs(const CLI::App& app) {
         if (other == output) continue;
         for (const std::string& from : other->results()) {
           std::error_code error;
-          const bool both_written = other->get_type_name() == kOutput && from == to;
+          const bool both_written = other->get_type_name() == kOutput && same_place(from, to);
           if (both_written || fs::equivalent(from, to, error))
             throw CLI::ValidationError(output->get_name(), to + " is named by " + other->get_name() + " too");
         }
@@ -103,7 +114,7 @@ Option& Option::positive() {
   const auto refuse = [](const std::string& text) {
     double number = 0;
     const bool good = CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number);
-    return good ? std::string() : fmt::format("give a number above 0, not {}", text);
+    return good ? std::string() : fmt::format("give a finite number above 0, not {}", text);
   };
   option_->check(refuse, "POSITIVE");
   return *this;
@@ -191,9 +202,13 @@ Command Command::add_command(const std::string& name, const std::string& meaning
   return Command(app_->add_subcommand(name, meaning));
 }
 
-void Command::tells_progress() {
+void Command::may_be_quiet() {
   app_->add_flag_callback(
       "-q,--quiet", [] { set_telling(Telling::nothing); }, "Say nothing of how the work goes");
+}
+
+void Command::tells_progress() {
+  may_be_quiet();
   app_->add_flag_callback(
           "-v,--verbose", [] { set_telling(Telling::everything); }, "Say more of how the work goes")
       ->excludes("--quiet");
@@ -242,7 +257,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
                                                         [&](CLI::App* command) { return command->get_name() == word; });
   };
   if (has_commands_ && !is_command(words[0])) {
-    fmt::print(stderr, "there is no command '{}'; `{} help` names all\n", words[0], name);
+    tell_user(fmt::format("there is no command '{}'; `{} help` names all\n", words[0], name));
     return 1;
   }
   app_->name(name);
@@ -253,7 +268,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     keep_other_kinds(*app_);
   } catch (const CLI::RequiredError& error) {
     if (const std::string unknown = unknown_option(*app_); !unknown.empty()) {
-      fmt::print(stderr, "there is no option {}; --help names all\n", printable(unknown));
+      tell_user(fmt::format("there is no option {}; --help names all\n", printable(unknown)));
       return 1;
     }
     return tell(*app_, error);
@@ -268,11 +283,11 @@ int CommandLine::run(int argc, char** argv, const std::function<void()>& first) 
     if (first) first();
     if (const int status = read(argc, argv).value_or(0); status != 0) return status;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "palpate: {}\n", printable(error.what()));
+    tell_user(fmt::format("palpate: {}\n", printable(error.what())));
     return 1;
   }
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return 0;
-  fmt::print(stderr, "palpate: not all that was to be printed could be written\n");
+  tell_user("palpate: not all that was to be printed could be written\n");
   return 1;
 }
 

@@ -54,7 +54,8 @@ class Command {
   Option add_option(const std::string& name, T& value, const std::string& meaning);
   Option add_flag(const std::string& name, bool& value, const std::string& meaning = "");
   Command add_command(const std::string& name, const std::string& meaning);
-  void tells_progress();                                    ///< -q and -v say how much (common/cli/progress.hpp)
+  void may_be_quiet();    ///< -q says no more than results, warnings and faults (common/cli/progress.hpp)
+  void tells_progress();  ///< -v says more as well
   bool given(const std::string& name) const;                ///< whether the command line, once read, has this option
   void examples(std::initializer_list<std::string> lines);  ///< command lines, at the end of its help
   /// What it does; run while the command line is read.

@@ -10,6 +10,10 @@ void open_log(const std::string& program) {
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
 }
 
+void log_warnings_alone() {
+  spdlog::set_level(spdlog::level::warn);
+}
+
 void log_info(std::string_view message) {
   spdlog::info(message);
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <random>
 
+#include "common/cli/progress.hpp"
 #include "common/describe/printable.hpp"
 #include "common/log/log.hpp"
 #include "common/realtime/settings.hpp"
@@ -24,6 +25,7 @@ void add_node_options(cli::CommandLine& app, NodeOptions& o) {
   app.add_option("--interface", o.interface, "Network interface in place of the scene's");
   app.add_option("--peer", o.peers, "Host to look for peers on, in place of the scene's; may be repeated");
   app.add_option("--keys", o.keys, "Folder of keys in place of the scene's");
+  app.may_be_quiet();
   app.add_flag("--supervised", o.supervised, "For `palpate run`: print 'ready' and a JSON summary on standard output");
 }
 
@@ -74,6 +76,7 @@ int node_main(const char* name, int argc, char** argv, cli::CommandLine& app,
   if (const auto status = app.read(argc, argv)) return *status;
   use_small_stacks();
   open_log(name);
+  if (cli::telling() == cli::Telling::nothing) log_warnings_alone();
   try {
     body(options);
   } catch (const std::exception& error) {

@@ -2,13 +2,13 @@
 
 namespace palpate {
 
-/// Turns SIGINT and SIGTERM into a flag that loops look at; a second Ctrl-C ends the process at once with
-/// status 130. Signals from the parent process do not count for that: a launcher passes Ctrl-C on, which its
-/// children have had from the terminal already. Call once at the start of main. SIGPIPE is ignored, so that a
-/// closed pipe is an error and not a death.
+/// Turns SIGINT, SIGTERM and, unless it is ignored, SIGHUP into a flag that loops look at; a second Ctrl-C ends the
+/// process at process at once with status 130. Signals from the parent process do not count for that: a launcher passes
+/// Ctrl-C on, which its children have had from the terminal already. Call once at the start of main. SIGPIPE is
+/// ignored, so that a closed pipe is an error and not a death.
 void catch_shutdown_signals();
 
-/// True after SIGINT, SIGTERM or request_shutdown().
+/// True after one of them or request_shutdown().
 bool shutdown_requested();
 
 /// Asks all loops of this process to end; safe in any thread.

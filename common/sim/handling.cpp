@@ -9,6 +9,7 @@ namespace {
 constexpr double kPlaceInterval = 0.02;  // [s] shorter ones measure the device's resolution
 constexpr double kGap = 1;               // [s] after which the places begin anew
 constexpr double kSameTouch = 0.05;      // [s]
+constexpr double kRounding = 1e-6;       // [s] of times in nanoseconds since long ago: logs come to what runs came to
 
 }  // namespace
 
@@ -34,7 +35,7 @@ void Handling::look(double time, const Eigen::Vector3d& tip, const Eigen::Vector
 // Between steps, so that the places are as far apart in time as they are said to be.
 void Handling::take_places(double time, const Eigen::Vector3d& tip) {
   if (time - next_place_ > kGap) places_ = 0, next_place_ = time;
-  for (; next_place_ <= time; next_place_ += kPlaceInterval)
+  for (; next_place_ <= time + kRounding; next_place_ += kPlaceInterval)
     take_place(time > time_ ? tip_ + (next_place_ - time_) / (time - time_) * (tip - tip_) : tip);
 }
 
@@ -57,7 +58,7 @@ void Handling::note_touch(double time, const Eigen::Vector3d& tip, bool touches)
     ++sum_.touches;
     straight_ += (tip - set_out_).norm();
   }
-  if (!touches_ || time - last_touch_ < kSameTouch) return;
+  if (!touches_ || time - last_touch_ < kSameTouch - kRounding) return;
   touches_ = false;
   set_out_ = tip;
 }

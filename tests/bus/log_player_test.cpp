@@ -8,6 +8,7 @@
 #include "common/realtime/clock.hpp"
 #include "tests/bus/messages_for_tests.hpp"
 #include "tools/log_summary.hpp"
+#include "tools/logs/log_sender.hpp"
 
 namespace palpate {
 namespace {
@@ -96,6 +97,18 @@ TEST_F(PlayedLog, PlaysTheChosenTopicsAlone) {
   EXPECT_THROW(
       play_log(file_, *bus_, {.speed = 1, .topics = {"palpate/nothing"}, .patience = {}}, [](double) { return true; }),
       std::runtime_error);
+}
+
+TEST_F(PlayedLog, ATopicMayBeNamedWithoutWhoseItIs) {
+  EXPECT_EQ(topics_in(file_, {"tool_state"}), topics_in(file_, {topics::tool_state.name}));
+  EXPECT_EQ(topics_in(file_, {"tool_state"}).size(), 1u);
+  try {
+    topics_in(file_, {"tool_stat"});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no topic 'tool_stat'; the topics are "), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find(" force_state"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(PlayedLog, IsSummarisedWithRatesGapsAndLatencies) {

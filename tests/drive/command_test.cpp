@@ -109,6 +109,12 @@ TEST_F(DriveCommand, WritesALogThatReadsAsOneOfTheNodes) {
   EXPECT_EQ(info["topics"]["palpate/force_state"]["missing"], 0);
 }
 
+TEST_F(DriveCommand, WithoutAToolRunsForAsLongAsItIsTold) {
+  const auto run = run_program(drive("--set tool=[] --seconds 0.2 --json"));
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NEAR(json::parse(run.out)["figures"]["seconds"].get<double>(), 0.2, 1e-9) << run.out;
+}
+
 TEST_F(DriveCommand, RefusesInWordsWhatItCannotDo) {
   expect_refusal(program("palpate") + " drive", {"give a scene"});
   expect_refusal(drive("--set body.young=-1"),
@@ -123,9 +129,10 @@ TEST_F(DriveCommand, RefusesInWordsWhatItCannotDo) {
   scene_->write("driven.toml",
                 testing::replaced(text.substr(0, text.find("device =")), "[[tool]]", "[[tool]]\ndevice = \"bus\""));
   expect_refusal(program("palpate") + " drive " + file("driven.toml").string(), {"tool 'probe'", "driver elsewhere"});
+  expect_refusal(drive("--set tool=[]"), {"no tool whose motion ends the run", "--seconds"});
   const auto none = run_program(drive("--seconds 0"));
   EXPECT_NE(none.status, 0);
-  EXPECT_NE(none.err.find("--seconds: give a number above 0, not 0"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("--seconds: give a finite number above 0, not 0"), std::string::npos) << none.err;
 }
 
 TEST(PalpateHelp, IsPrintedWithoutACommandAndNamesAllOfThem) {

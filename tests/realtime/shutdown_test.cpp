@@ -9,14 +9,24 @@ namespace palpate {
 namespace {
 
 TEST(Shutdown, ASignalSetsTheFlag) {
-  for (int signal : {SIGINT, SIGTERM}) {
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     clear_shutdown();
+    ::signal(signal, SIG_DFL);
     catch_shutdown_signals();
     EXPECT_FALSE(shutdown_requested());
     raise(signal);
     EXPECT_TRUE(shutdown_requested());
   }
   clear_shutdown();
+}
+
+TEST(Shutdown, AHangUpThatIsIgnoredStaysSo) {
+  clear_shutdown();
+  signal(SIGHUP, SIG_IGN);  // as nohup does
+  catch_shutdown_signals();
+  raise(SIGHUP);
+  EXPECT_FALSE(shutdown_requested());
+  signal(SIGHUP, SIG_DFL);
 }
 
 TEST(Shutdown, ATerminationAfterAnInterruptIsNoSecondInterrupt) {

@@ -14,11 +14,11 @@ constexpr double kStep = 1e-3;
 
 /// Leads a tip by place(t) [m] for so long, with force(t) [N] along z.
 template <class Place, class Force>
-HandlingFigures figures_of(double seconds, const Place& place, const Force& force) {
+HandlingFigures figures_of(double seconds, const Place& place, const Force& force, double begin = 0) {
   Handling handling;
   for (int i = 0; i <= std::lround(seconds / kStep); ++i) {
     const double t = i * kStep;
-    handling.look(t, place(t), Vector3d(0, 0, force(t)));
+    handling.look(begin + t, place(t), Vector3d(0, 0, force(t)));
   }
   return handling.figures();
 }
@@ -52,6 +52,16 @@ TEST(Handling, WhatATouchAsksForIsNoDetour) {
   const auto pressed = [](double t) { return std::abs(t - 1) < 0.2 ? 0.5 : 0.0; };
   EXPECT_LT(figures_of(2, down_and_up, no_force).economy, 0.02);
   EXPECT_GT(figures_of(2, down_and_up, pressed).economy, 0.9);
+}
+
+// As a log has it, whose clock has run for long.
+TEST(Handling, TheTimeAtWhichItBeginsDoesNotCount) {
+  const auto down_and_up = [](double t) { return Vector3d(0.05 * t * t, 0, -0.1 * (t < 1 ? t : 2 - t)); };
+  for (int touched = 100; touched < 140; ++touched) {  // until which step, since rounding is chance
+    const auto pressed = [&](double t) { return std::lround(t / kStep) < touched ? 0.5 : 0.0; };
+    EXPECT_NEAR(figures_of(2, down_and_up, pressed, 54321.123456789).economy,
+                figures_of(2, down_and_up, pressed).economy, 1e-9);
+  }
 }
 
 TEST(Handling, ForcesAreCountedWhereThereAreAny) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/sanitized.hpp"
 #include "tests/tools/program_result.hpp"
 
 namespace palpate {
@@ -144,8 +145,10 @@ TEST_F(ToolsCheckDynamic, ATickThatTakesLongerThanItLastsIsPointedOut) {
       "where 0.8 of 1 ms are the tissue's: time in the tissue falls behind; what would fit is tissue ";
   const ProgramResult soft = testing::run_program(check(scene_));
   expect_line(soft, "  cost: 1 steps a tick, ");
-  EXPECT_NE(soft.out.find("  fits a tick: up to "), std::string::npos) << soft.out;
-  EXPECT_EQ(soft.out.find(warning), std::string::npos) << soft.out;
+  if (!testing::kSanitized) {  // a sanitizer's tissue may not fit
+    EXPECT_NE(soft.out.find("  fits a tick: up to "), std::string::npos) << soft.out;
+    EXPECT_EQ(soft.out.find(warning), std::string::npos) << soft.out;
+  }
   const ProgramResult stiff = testing::run_program(check(replaced(scene_, "young = 1500", "young = 1.5e9")));
   EXPECT_NE(stiff.out.find(warning), std::string::npos) << stiff.out;
   EXPECT_EQ(stiff.out.find("  fits a tick: "), std::string::npos) << stiff.out;

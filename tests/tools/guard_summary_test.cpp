@@ -26,6 +26,13 @@ TEST(GuardSummary, WhatASoundRunDoesNotNeedIsAnInterventionAndItsLimitsAreNot) {
     EXPECT_TRUE(interventions_in({{"haptic_node", {{key, 7}}}}).starts_with("the hand was guarded: 7 ")) << key;
 }
 
+TEST(GuardSummary, StepsThatWereToldToNobodyAreNamed) {
+  EXPECT_EQ(untold_steps_in({{"haptic_node", {{"dropped", 0}}}}), "");
+  EXPECT_EQ(untold_steps_in({{"haptic_node", nullptr}}), "");
+  EXPECT_TRUE(
+      untold_steps_in({{"haptic_node", {{"dropped", 7}}}}).starts_with("the haptic node told nobody of 7 steps"));
+}
+
 TEST(GuardSummary, WhatAnyNodeRefusesIsAnIntervention) {
   for (const auto& [node, key] : {std::pair{"deform_node", "refused"},
                                   {"render_node", "refused"},

@@ -47,6 +47,31 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
   EXPECT_EQ(tasks[0]["deepest"], 0.022);
 }
 
+// What is lost on the way lacks its sequence number, and is counted as missing.
+TEST(Info, StepsThatTheHapticNodeToldNobodyAreNamed) {
+  const OwnFolder folder("info-untold");
+  const std::string log = folder / "untold.lcmlog";
+  {
+    LogWriter writer(log);
+    LogHeader header;
+    header.schema = schema_text();
+    writer.write(kHeaderChannel, 1, header);
+    for (std::uint64_t step = 0, seq = 1; step < 100; ++step) {
+      if (step >= 40 && step < 65) continue;  // no message was made
+      if (seq != 20)                          // one was lost
+        writer.write(topics::tool_state.name, static_cast<std::int64_t>(1'000'000 * step),
+                     ToolState{.run = 5, .seq = seq, .step = step});
+      ++seq;
+    }
+    writer.finish();
+  }
+  const auto json = nlohmann::json::parse(run_program(program("palpate") + " info --json " + log).out);
+  EXPECT_EQ(json["untold_steps"], 25);
+  EXPECT_EQ(json["topics"]["palpate/tool_state"]["missing"], 1);
+  const ProgramResult text = run_program(program("palpate") + " info " + log);
+  EXPECT_NE(text.out.find("lacks 25 steps that its haptic node told nobody"), std::string::npos) << text.out;
+}
+
 TEST(Info, ALogsWordsReachNoTerminalAsCommands) {
   const OwnFolder folder("info-words");
   const std::string log = folder / "words.lcmlog";

@@ -59,6 +59,27 @@ TEST_F(Figures, EachRunOfTheHapticNodeBeginsWhereTheLogHasIt) {
   EXPECT_NEAR(last_time(), 0.33, 1e-9);
 }
 
+// As recorders write them: a batch of one topic, then one of another, and the last steps without a force.
+TEST_F(Figures, EachStepHasItsOwnForceWhereverTheLogHasIt) {
+  const auto newton = [](std::uint64_t step) { return step < 30 ? 0.01 * static_cast<double>(step) : 0.3; };
+  const auto tools = [&](std::uint64_t from, std::uint64_t to) {
+    for (std::uint64_t k = from; k < to; ++k)
+      tell(to * kMs, topics::tool_state,
+           ToolState{.run = 1, .step = k, .sense_ns = static_cast<std::int64_t>(k) * kMs, .depth = 0.1});
+  };
+  const auto forces = [&](std::uint64_t from, std::uint64_t to) {
+    for (std::uint64_t k = from; k < to; ++k)
+      tell(to * kMs, topics::force_state, ForceState{.run = 1, .step = k, .force = {newton(k), 0, 0}});
+  };
+  tools(0, 10), forces(0, 17), tools(10, 25), forces(17, 40), tools(25, 45);
+  figures_.finish();
+  const auto all = figures_.json()["tools"][0];
+  EXPECT_NEAR(all["force_change_max_n"], 0.01, 1e-12);
+  EXPECT_NEAR(all["impulse_n_s"], 1e-3 * (0.01 * 29 * 30 / 2 + 0.3 * 15), 1e-9);
+  ASSERT_EQ(figures_.course().size(), 5u);
+  EXPECT_NEAR(figures_.course()[1].force, newton(19), 1e-12);
+}
+
 TEST_F(Figures, ALogOfFewForcesSaysOfHowManyStepsEachIs) {
   for (int ms = 0; ms < 320; ++ms) step(ms * kMs, 1, ms * kMs, 0.5);
   EXPECT_FALSE(figures_.json()["tools"][0].contains("steps_per_force"));

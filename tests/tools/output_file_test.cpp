@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "tests/bus/domain.hpp"
 #include "tests/tools/program_result.hpp"
 
 /// What a command writes never takes the place of what is not its own.
@@ -55,6 +56,16 @@ TEST_F(ToolsOutputFile, AFullDeviceForWhatIsPrintedIsNoticed) {
   EXPECT_EQ(testing::run_command("( " + program("palpate") + " check " + scene_.scene() + " > /dev/full )"), 1);
 }
 
+TEST_F(ToolsOutputFile, APipeWhoseReaderHasGoneEndsInOrder) {
+  const auto into_nothing = [](const std::string& command) {
+    return testing::run_command("timeout 60 bash -c '" + command + " 2>&1 | true; exit ${PIPESTATUS[0]}'");
+  };
+  EXPECT_EQ(into_nothing(drive("--json", "")), 1);
+  EXPECT_EQ(
+      into_nothing(program("palpate") + fmt::format(" top --json --interval 0.1 --domain {}", testing::own_domain())),
+      1);
+}
+
 TEST_F(ToolsOutputFile, AFolderIsNoFile) {
   refused_at_once(run("--record", scene_.folder()), {"is a folder"});
 }
@@ -66,6 +77,10 @@ TEST_F(ToolsOutputFile, AnInputIsNotWrittenOver) {
                       scene_.folder().filename().string() + "/log",
                   {"log is named by"});
   refused_at_once(run("--record", scene_.scene()), {"is named by"});
+}
+
+TEST_F(ToolsOutputFile, TwoOutputsAreNotOneFileUnderTwoNames) {
+  refused_at_once(drive("-o " + file("new.csv") + " --course", file("./new.csv")), {"new.csv is named by"});
 }
 
 TEST_F(ToolsOutputFile, ALinkUnderAForeseeableNameIsNotWrittenThrough) {

@@ -77,6 +77,20 @@ TEST(ToolsRun, WhatCannotBeKeptIsSaidBeforeTheRun) {
   EXPECT_EQ(below_a_file.out.find("haptic"), std::string::npos) << below_a_file.out;
 }
 
+TEST(ToolsRun, AQuietRunSaysItsResultsAlone) {
+  const LoopbackScene scene("quiet", kLinear);
+  const ProgramResult said = run_program(program("palpate") + " run " + scene.scene() + " --seconds 0.3 --quiet");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(said.err.find("haptic loop at"), std::string::npos) << said.err;
+  EXPECT_TRUE(said.out.starts_with("haptic ")) << said.out;
+}
+
+TEST(ToolsRun, ASceneWithoutAToolIsForLockStep) {
+  const LoopbackScene scene("toolless", kLinear);
+  expect_refusal(program("palpate") + " run " + scene.scene() + " --set tool=[]",
+                 {"has no tool", "drive", "--seconds"});
+}
+
 TEST(ToolsRun, ASoundRunEndsWithoutAnAlarmAndPassesAsStrict) {
   const LoopbackScene scene("calm", kLinear);
   scene.write("motion.csv", kSlowPress);

@@ -36,6 +36,7 @@ class Client {
     http::response<http::string_body> response;
     http::read(socket_.next_layer(), buffer, response);
     body = response.body();
+    type = std::string(response[http::field::content_type]);
     return response.result_int();
   }
 
@@ -87,6 +88,7 @@ class Client {
   }
 
   std::string body;
+  std::string type;  ///< of that
 
  private:
   int port_;

@@ -184,6 +184,30 @@ TEST_F(WebServer, WhatIsNoMessageThrowsThePageOut) {
   EXPECT_EQ(said_, 0);
 }
 
+TEST_F(WebServer, AFrameThatIsNoneThrowsThePageOut) {
+  using namespace std::string_literals;
+  const std::array bad{"\x82\x05hello"s,                               // not masked
+                       "\x82\xff\x80\0\0\0\0\0\0\0mask"s,              // of 2^63 bytes
+                       "\xf2\x81mask1"s,                               // with reserved bits
+                       "\x89\xfe\0\x82mask"s + std::string(130, 'x'),  // a ping that is too long
+                       "\x83\x81mask1"s};                              // of a kind that is none
+  for (const std::string& frame : bad) {
+    Client client(server_.port());
+    ASSERT_TRUE(client.enter());
+    client.read();
+    boost::asio::write(client.line(), boost::asio::buffer(frame));
+    EXPECT_FALSE(client.read()) << frame.size() << " bytes";
+  }
+  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == bad.size() && server_.seen().viewers == 0; }))
+      << server_.seen().malformed;
+}
+
+TEST_F(WebServer, ThePageIsOfItsKind) {
+  Client client(server_.port());
+  EXPECT_EQ(client.get("/", client.host()), 200u);
+  EXPECT_EQ(client.type, "text/html; charset=utf-8");
+}
+
 TEST_F(WebServer, AFloodThrowsThePageOutAndOthersGoOn) {
   Client good(server_.port()), bad(server_.port());
   ASSERT_TRUE(good.enter() && bad.enter());

@@ -24,7 +24,8 @@ LockStep::LockStep(const Scene& scene, const std::vector<Archive>& archives)
 }
 
 bool LockStep::motions_over() const {
-  return std::ranges::all_of(devices_, [&](const auto& device) { return device->finished(time()); });
+  return !devices_.empty() &&
+         std::ranges::all_of(devices_, [&](const auto& device) { return device->finished(time()); });
 }
 
 void LockStep::step() {

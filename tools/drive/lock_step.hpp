@@ -20,7 +20,7 @@ class LockStep {
   sim::Simulator& simulator() { return simulator_; }
   const sim::Simulator& simulator() const { return simulator_; }
   double time() const { return static_cast<double>(simulator_.steps()) * simulator_.dt(); }  ///< [s] of the next step
-  bool motions_over() const;  ///< every tool's motion has ended before the next step
+  bool motions_over() const;  ///< every tool's motion has ended before the next step; without tools never
   void step();                ///< by the devices' inputs; they get its forces
   /// A step with other inputs than the devices', one per tool, which pass the same guard; the devices get nothing.
   void step(std::span<const sim::ToolInput> inputs);

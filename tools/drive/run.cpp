@@ -90,6 +90,8 @@ class Run {
 }  // namespace
 
 PointResult run_scene(const Scene& scene, const RunSettings& settings) {
+  if (scene.tools.empty() && settings.seconds == 0)
+    throw std::runtime_error("the scene has no tool whose motion ends the run: say how long it is by --seconds");
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
   return Run(scene, settings, archives).to_its_end();
 }

@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr double kCourseInterval = 0.01;  // [s]
+constexpr std::size_t kMayWait = 1000;    // steps for a force: a second
 
 /// Of ForceFlag's bits, those that tell of something that a trainer should know.
 constexpr std::array<const char*, 9> kFlags{"force_limited", "slew_limited",      "fault",
@@ -32,21 +33,52 @@ double LogFigures::time_of(const ToolState& state) {
   return own + shift_;
 }
 
+// A log has the messages as they came, those of one topic in batches: each step is counted with its own force.
 void LogFigures::look(const ToolState& state) {
   if (state.tool >= tools_.size()) return;
-  const double time = time_of(state);
   OfTool& tool = tools_[state.tool];
-  const Eigen::Vector3d tip = tip_pose(tool.trocar, dofs_of(state)).translation();
+  if (!tool.waiting.empty() && tool.waiting.back().state.run != state.run) settle(tool, 0);
+  std::erase_if(tool.forces_ahead, [&](const ForceState& f) { return f.run != state.run; });
+  tool.waiting.push_back({state, time_of(state)});
+  settle(tool, kMayWait);
+}
+
+void LogFigures::look(const ForceState& force) {
+  if (force.tool >= tools_.size()) return;
+  OfTool& tool = tools_[force.tool];
+  ++tool.forces;
+  tool.forces_ahead.push_back(force);
+  settle(tool, kMayWait);
+}
+
+void LogFigures::settle(OfTool& tool, std::size_t may_wait) {
+  for (; !tool.waiting.empty(); tool.waiting.pop_front()) {
+    const ToolState& state = tool.waiting.front().state;
+    std::deque<ForceState>& ahead = tool.forces_ahead;
+    for (; !ahead.empty() && ahead.front().run == state.run && ahead.front().step <= state.step; ahead.pop_front())
+      tool.force = ahead.front();
+    const bool may_come = ahead.empty() && (tool.force.run != state.run || tool.force.step < state.step);
+    if (may_come && tool.waiting.size() <= may_wait) return;
+    count(tool, tool.waiting.front());
+  }
+}
+
+void LogFigures::count(OfTool& tool, const Waiting& step) {
+  const Eigen::Vector3d tip = tip_pose(tool.trocar, dofs_of(step.state)).translation();
   const Eigen::Vector3d force = Eigen::Map<const Eigen::Vector3d>(tool.force.force.data());
-  tool.handling.look(time, tip, force);
+  tool.handling.look(step.time, tip, force);
   ++tool.steps;
   for (std::size_t bit = 0; bit < tool.flagged.size(); ++bit) tool.flagged[bit] += tool.force.flags >> bit & 1;
-  if (tool.latest == 0 || time - course_[tool.latest - 1].time >= kCourseInterval) {
-    course_.push_back({time, state.tool, tip, 0});
+  if (tool.latest == 0 || step.time - course_[tool.latest - 1].time >= kCourseInterval) {
+    course_.push_back({step.time, step.state.tool, tip, 0});
     tool.latest = course_.size();
   }
   double& largest = course_[tool.latest - 1].force;
   largest = std::max(largest, force.norm());
+}
+
+void LogFigures::finish() {
+  for (OfTool& tool : tools_) settle(tool, 0);
 }
 
 void LogFigures::look(const TopologyChange& change) {
@@ -63,10 +95,7 @@ void LogFigures::look(const LogEvent& event) {
   TopologyChange change;
   TaskRecord task;
   if (event.read(topics::tool_state, tool)) return look(tool);
-  if (event.read(topics::force_state, force) && force.tool < tools_.size()) {
-    tools_[force.tool].force = force;
-    ++tools_[force.tool].forces;
-  }
+  if (event.read(topics::force_state, force)) return look(force);
   if (event.read(topics::topology_change, change)) look(change);
   if (event.read(topics::task_record, task)) tasks_[task.body] = task;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -24,6 +25,7 @@ class LogFigures {
   explicit LogFigures(const Scene& scene, std::map<std::uint32_t, Resection> resections = {});
 
   void look(const LogEvent& event);  ///< in the log's order
+  void finish();                     ///< there are no more
   nlohmann::ordered_json json() const;
 
   /// Where and how hard a tool was, at most every 10 ms: the largest force of that time [N], the tip's place [m].
@@ -36,18 +38,28 @@ class LogFigures {
   const std::vector<Place>& course() const { return course_; }
 
  private:
-  void look(const ToolState& state);
-  void look(const TopologyChange& change);
-  double time_of(const ToolState& state);
-
+  /// A step whose force the log may have later.
+  struct Waiting {
+    ToolState state;
+    double time;
+  };
   struct OfTool {
     Trocar trocar;
-    ForceState force;
+    std::deque<Waiting> waiting;
+    std::deque<ForceState> forces_ahead;  ///< of steps that the log has not told yet
+    ForceState force;                     ///< of the last step that had one
     Handling handling;
     std::uint64_t steps = 0, forces = 0;     ///< that the log has
     std::array<std::uint64_t, 9> flagged{};  ///< steps with each bit of ForceFlag
     std::size_t latest = 0;                  ///< of its places, from 1; 0: none yet
   };
+
+  void look(const ToolState& state);
+  void look(const ForceState& force);
+  void look(const TopologyChange& change);
+  double time_of(const ToolState& state);
+  void settle(OfTool& tool, std::size_t may_wait);
+  void count(OfTool& tool, const Waiting& step);
 
   const Scene& scene_;
   std::vector<OfTool> tools_;

@@ -84,6 +84,7 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session) {
   LogFigures figures(scene, resections_of(logged));
   LogReader reader(s.logs[session]);
   for (LogEvent event; !shutdown_requested() && reader.next(event);) figures.look(event);
+  figures.finish();
   const std::string course = fmt::format("course_{}.csv", session);
   write_course(s.folder / course, figures, scene);
   ordered_json report{{"log", s.logs[session]},

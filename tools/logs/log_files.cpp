@@ -134,7 +134,7 @@ LoggedScene::LoggedScene(const fs::path& log, const fs::path& data) : log_(log),
   }
   if (reader.header().scene.empty())
     throw std::runtime_error(
-        fmt::format("{}: the log holds no scene, so its steps cannot be computed again", log.string()));
+        fmt::format("{}: the log holds no scene, so nothing of it can be drawn or computed again", log.string()));
   MovedFiles moved;
   find_files(moved);
   scene_ = parse_scene(reader.header().scene, log, moved);

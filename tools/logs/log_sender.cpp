@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <tuple>
 
+#include "common/bus/topic_named.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -46,16 +46,13 @@ bool send_to(Outlet<M>& outlet, const LogEvent& event, std::int64_t now) {
 }  // namespace
 
 std::set<std::string> topics_in(const std::filesystem::path& log, const std::vector<std::string>& wanted) {
-  std::set<std::string> known, found;
-  topics::for_each([&](const auto& topic) { known.insert(topic.name); });
-  for (const std::string& name : wanted)
-    if (!known.contains(name)) throw std::runtime_error(fmt::format("there is no topic '{}'", name));
+  std::set<std::string> chosen, found;
+  for (const std::string& name : wanted) chosen.insert(topic_named(name));
+  if (wanted.empty()) topics::for_each([&](const auto& topic) { chosen.insert(topic.name); });
   LogReader reader(log);
   LogEvent event;
-  while (reader.next(event)) {
-    const bool chosen = wanted.empty() || std::ranges::find(wanted, event.channel) != wanted.end();
-    if (chosen && known.contains(event.channel)) found.insert(event.channel);
-  }
+  while (reader.next(event))
+    if (chosen.contains(event.channel)) found.insert(event.channel);
   return found;
 }
 
