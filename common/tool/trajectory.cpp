@@ -10,12 +10,11 @@
 #include "common/describe/csv.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/motion_guard.hpp"
+#include "common/tool/row_times.hpp"
 
 namespace palpate {
 
 namespace {
-
-constexpr double kLatest = 1e6, kShortest = 1e-6;  // [s]
 
 /// Slope at a row from the slopes of the two intervals beside it, h0 and h1 long: a weighted harmonic mean,
 /// zero at an extremum, so that neither interval overshoots.
@@ -70,9 +69,9 @@ Trajectory load_trajectory(const std::filesystem::path& file) {
     const std::vector<double>& v = row.values;
     if (!time.empty() && !(v[0] > time.back()))
       table.fail(row.line, fmt::format("time {} does not come after {}", v[0], time.back()));
-    if (std::abs(v[0]) > kLatest || (!time.empty() && v[0] - time.back() < kShortest))
+    if (std::abs(v[0]) > kLatestRow || (!time.empty() && v[0] - time.back() < kRowsApart))
       table.fail(row.line,
-                 fmt::format("time {} s: rows are {} s apart at least, and within {} s", v[0], kShortest, kLatest));
+                 fmt::format("time {} s: rows are {} s apart at least, and within {} s", v[0], kRowsApart, kLatestRow));
     time.push_back(v[0]);
     const double pedal = v.size() > 6 ? v[6] : 0;
     if (pedal != 0 && pedal != 1) table.fail(row.line, fmt::format("pedal must be 0 or 1, and is {}", pedal));

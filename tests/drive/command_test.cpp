@@ -76,6 +76,42 @@ TEST_F(DriveCommand, SweepsIntoOneTableAndTasksMergeIntoTheSame) {
   EXPECT_EQ(without_times(table), without_times(text_of(file("merged.csv"))));
 }
 
+TEST_F(DriveCommand, AMergeHoldsItsRowsToWhatIsExpectedAndNamesWhatIsMissing) {
+  const std::string tasks = file("few.sh"), results = file("few.jsonl");
+  ASSERT_EQ(run_program(drive("--sweep body.young=4000,5000,50000 --seconds 1.1 --tasks -o " + tasks)).status, 0);
+  std::string out;
+  ASSERT_EQ(testing::run_command(fmt::format("sh {} >{}", tasks, results), &out), 0) << out;
+  const std::string merge = program("palpate") + " drive --merge " + results;
+
+  const auto held = run_program(merge + " --expect \"tool.force.max<0.5\"");
+  EXPECT_EQ(held.status, 1);
+  EXPECT_NE(held.err.find("1 of 3 points are not as expected, such as point 2: tool.probe.force.max is"),
+            std::string::npos)
+      << held.err;
+  EXPECT_NE(held.out.find("\n2,50000,unexpected,"), std::string::npos) << held.out;
+  expect_refusal(merge + " --expect nonsense", {"--expect", "such as"});
+  expect_refusal(merge + " --expect \"tool.force.mex<1\"", {"did you mean", "tool.force.max"});
+
+  ASSERT_EQ(testing::run_command(fmt::format("sed -i -e 2d -e 1p {}", results), &out), 0) << out;
+  const auto lacking = run_program(merge);
+  EXPECT_EQ(lacking.status, 1);
+  EXPECT_NE(lacking.err.find("point 0 has two results, which are equal: one is kept"), std::string::npos)
+      << lacking.err;
+  EXPECT_NE(lacking.err.find("1 of 3 points are missing: 1"), std::string::npos) << lacking.err;
+  EXPECT_EQ(std::count(lacking.out.begin(), lacking.out.end(), '\n'), 3) << lacking.out;
+}
+
+TEST_F(DriveCommand, AMergeRefusesWhatIsOfARun) {
+  std::ofstream(file("one.jsonl")) << run_program(drive("--seconds 0.1 --json")).out;
+  const std::string merge = " --merge " + file("one.jsonl").string();
+  EXPECT_EQ(run_program(program("palpate") + " drive" + merge).status, 0);
+  expect_refusal(drive(merge), {"--merge", "leave SCENE out"});
+  for (const std::string more : {"--seconds 1", "--set body.young=1", "--sweep body.young=1,2", "--course x.csv",
+                                 "--log x.lcmlog", "--tasks", "--jobs 2"})
+    expect_refusal(program("palpate") + " drive " + more + merge,
+                   {"--merge", "leave " + more.substr(0, more.find(' ')) + " out"});
+}
+
 TEST_F(DriveCommand, ASweepWithAPointThatIsNotAsExpectedFailsAndKeepsItsTable) {
   const auto sweep =
       run_program(drive("--sweep body.young=5000,50000 --seconds 1.1 --expect \"tool.force.max<0.5\" --csv"));

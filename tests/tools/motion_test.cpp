@@ -119,6 +119,42 @@ TEST_F(ToolsMotion, ForcesAndDepthsAreWhatTheStepsSay) {
   EXPECT_NEAR(slid.end, 0.1, 0.03);
 }
 
+TEST_F(ToolsMotion, WhereMoreIsFeltThanAskedForThePressGoesBack) {
+  const auto made =
+      run_program(motion("\"to 0,0,1\" \"press 5mm\" \"press 0.05N\" \"hold 0.1s\" \"press 0.1N\" withdraw"));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.err, "");
+  EXPECT_GT(felt_in(made.out, "press 5mm").end, 0.12) << made.out;
+  EXPECT_NEAR(felt_in(made.out, "press 0.05N").end, 0.05, 0.001) << made.out;
+  EXPECT_NEAR(felt_in(made.out, "hold 0.1s").end, 0.05, 0.001) << made.out;
+  EXPECT_NEAR(felt_in(made.out, "press 0.1N").end, 0.1, 0.002) << made.out;
+}
+
+// On its quick way the tool feels the tissue's inertia and damping too: when it stands, about half as much is left.
+TEST(ToolsMotionMoving, AForceIsMetWhereItStands) {
+  const LoopbackScene scene("motion_moving", "[body.dynamic]\ndamping = 20\n", 1000);
+  scene.replace("quasi_static", "tensor_mass");
+  scene.replace("radius = 0.008", "radius = 0.016");
+  const auto made = run_program(fmt::format("{} motion {} --speed 0.2 \"to 0,0,1\" \"press 0.05N\" \"hold 0.5s\" -o {}",
+                                            program("palpate"), scene.scene(), (scene.folder() / "made.csv").string()));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.err.find("the force at its end"), std::string::npos) << made.err;
+  EXPECT_NEAR(felt_in(made.out, "press 0.05N").end, 0.05, 0.0025) << made.out;
+  EXPECT_NEAR(felt_in(made.out, "hold 0.5s").end, 0.05, 0.0025) << made.out;
+}
+
+// Let go at first, the tissue sinks under its weight and swings back to the tip, which it does not reach at rest.
+TEST(ToolsMotionMoving, AForceThatIsMissedIsToldOf) {
+  const LoopbackScene scene("motion_missed", "[body.dynamic]\ndamping = 2\ngravity = [0, 0, -9.81]\n", 2000);
+  scene.replace("quasi_static", "tensor_mass");
+  scene.replace("radius = 0.008", "radius = 0.001");
+  const auto made = run_program(fmt::format("{} motion {} --speed 0.1 \"to 0,0,1\" \"press 0.008N\" -o {}",
+                                            program("palpate"), scene.scene(), (scene.folder() / "made.csv").string()));
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.err.find("palpate: 'press 0.008N': the force at its end is "), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find(" % too small\n"), std::string::npos) << made.err;
+}
+
 TEST_F(ToolsMotion, InJsonItsStepsAreThoseOfItsTable) {
   const std::string steps = "\"to 0,0,1\" \"press 3mm\" \"hold 0.2s\" withdraw";
   const auto as_table = run_program(motion(steps)), as_json = run_program(motion(steps) + " --json");
@@ -146,7 +182,21 @@ TEST_F(ToolsMotion, WhatCannotBeDoneIsToldWithItsStep) {
   expect_refusal(motion("\"press 3mm\""), {"press 3mm", "begins with a place"});
   expect_refusal(motion("\"to 0,0,1\" \"press 1e6N\""), {"press 1e6N", "the force is at most"});
   expect_refusal(motion("\"to 0,0,1\" jump"), {"jump", "a step is to"});
-  expect_refusal(motion("\"to 0,0,1\" withdraw --tool nobody"), {"which tool? It has probe"});
+  // Before the force of an earlier step is looked for.
+  for (const char* deep : {"press 5", "press 1e5"})
+    expect_refusal(motion(fmt::format("\"to 0,0,1\" \"press 1e6N\" \"{}\"", deep)),
+                   {deep, "a depth of", "0.15 m", "in mm?"});
+}
+
+TEST_F(ToolsMotion, WhatNoMotionFileMayHoldIsToldWithItsStep) {
+  scene_.replace("[0.0, 0.0, 0.2]", "[0.0, 0.0, 2.5]");
+  expect_refusal(motion("\"to 0,0,1\" \"press 3mm\""), {"'to 0,0,1'", "no tool can be there", "the depth 2 m"});
+}
+
+TEST_F(ToolsMotion, JawsOpenNoFurtherThanTheyCan) {
+  scene_.replace("radius = 0.008", "kind = \"forceps\"");
+  scene_.replace("[render]", "[tool.jaws]\nmax_open = 1.0\n[render]");
+  expect_refusal(motion("\"to 0,0,1\" \"grip 3\""), {"'grip 3'", "the jaws of this tool open from 0 to"});
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct DriveOptions {
   std::string scene, log, course, output;
   std::vector<std::string> set, sweep, expect, merge;
   double seconds = 0;
-  int jobs = 1, point = -1;
+  int jobs = 1, point = -1, points = 0;
   bool csv = false, json = false, tasks = false;
 };
 
@@ -83,22 +83,24 @@ void run_one(const DriveOptions& o) {
   PointResult result = result_of(o, changes);
   cli::say_in_place("");
   result.point = std::max(0, o.point);
+  result.points = o.points;
   result.changes = changes;
   if (o.csv || o.json)
     put_out(o, std::vector{result});
   else
     put_out(o, text_of(result));
   std::fflush(stdout);
-  require_good({result}, 1);
+  require_good({result}, 0);
 }
 
 /// The command that computes one point of the sweep.
-std::vector<std::string> command_of(const DriveOptions& o, const std::vector<SceneChange>& changes, std::size_t point) {
+std::vector<std::string> command_of(const DriveOptions& o, const std::vector<SceneChange>& changes, std::size_t point,
+                                    std::size_t points) {
   std::vector<std::string> words{sibling_program("palpate"), "drive", std::filesystem::absolute(o.scene).string()};
   for (const SceneChange& change : changes) words.insert(words.end(), {"--set", change.argument()});
   for (const std::string& expected : o.expect) words.insert(words.end(), {"--expect", expected});
   if (o.seconds > 0) words.insert(words.end(), {"--seconds", fmt::format("{}", o.seconds)});
-  words.insert(words.end(), {"--json", "--point", std::to_string(point)});
+  words.insert(words.end(), {"--json", "--point", std::to_string(point), "--points", std::to_string(points)});
   return words;
 }
 
@@ -130,7 +132,7 @@ void run_sweep(const DriveOptions& o) {
   prepare(o, points);
   catch_shutdown_signals();  // until here Ctrl-C ends it at once
   std::vector<std::vector<std::string>> commands;
-  for (std::size_t i = 0; i < points.size(); ++i) commands.push_back(command_of(o, points[i], i));
+  for (std::size_t i = 0; i < points.size(); ++i) commands.push_back(command_of(o, points[i], i, points.size()));
   if (o.tasks) return print_tasks(o, commands);
   setenv("OMP_NUM_THREADS", "1", 0);  // each run keeps to one core
   std::size_t done = 0;
@@ -139,21 +141,39 @@ void run_sweep(const DriveOptions& o) {
     for (const SceneChange& change : points[result.point]) set.append(" ").append(change.argument());
     cli::say(fmt::format("[{}/{}]{}: {} {}", ++done, points.size(), set, result.outcome, result.reason));
   });
-  for (PointResult& result : results) result.changes = points[result.point];
+  for (PointResult& result : results) {
+    result.changes = points[result.point];
+    result.points = static_cast<int>(points.size());
+  }
   put_out(o, results);
   std::fflush(stdout);
   require_good(results, points.size());
 }
 
-void merge(const DriveOptions& o) {
-  const std::vector<PointResult> results = read_results({o.merge.begin(), o.merge.end()});
-  put_out(o, results);
-  std::fflush(stdout);
-  require_good(results, 0);
+/// What has run already is no more changed by options of a run.
+void refuse_beside_merge(const cli::Command& command) {
+  for (const char* name :
+       {"SCENE", "--set", "--sweep", "--seconds", "--log", "--course", "--jobs", "--tasks", "--point", "--points"})
+    if (command.given(name))
+      throw std::runtime_error(fmt::format("--merge makes a table of runs that have been made: leave {} out", name));
 }
 
-void run(const DriveOptions& o) {
-  if (!o.merge.empty()) return merge(o);
+void merge(const DriveOptions& o) {
+  const std::vector<Expectation> expected = expectations_of(o.expect);
+  std::vector<PointResult> results = read_results({o.merge.begin(), o.merge.end()});
+  const std::size_t points = points_of(results);
+  for (const std::string& said : drop_repeated(results)) fmt::print(stderr, "palpate: {}\n", said);
+  expect_of(results, expected);
+  put_out(o, results);
+  std::fflush(stdout);
+  require_good(results, points);
+}
+
+void run(const DriveOptions& o, const cli::Command& command) {
+  if (!o.merge.empty()) {
+    refuse_beside_merge(command);
+    return merge(o);
+  }
   if (o.scene.empty()) throw std::runtime_error("drive: give a scene, or results with --merge");
   if (o.sweep.empty() && !o.tasks) return run_one(o);
   if (!o.log.empty() || !o.course.empty())
@@ -188,9 +208,9 @@ void add_drive_command(cli::Command& app) {
   command.add_option("--course", o->course, "Write each step's tips and forces").output_file(".csv");
   add_jobs_option(command, o->jobs, "Runs");
   command.add_flag("--tasks", o->tasks, "Print the command of each run, one a line, and run none");
-  command.add_option("--merge", o->merge, "Files with what such commands printed, for one table")
-      .excludes({"--set", "--sweep", "--tasks"});
+  command.add_option("--merge", o->merge, "Files with what such commands printed, for one table");
   command.add_option("--point", o->point, "").hidden();
+  command.add_option("--points", o->points, "").hidden();
   command.tells_progress();
   command.examples(
       {"palpate drive scenes/liver.toml --expect \"tool.force.max<3\" --expect finite==1",
@@ -198,7 +218,7 @@ void add_drive_command(cli::Command& app) {
        "palpate drive scenes/liver.toml --sweep body.young=4000,8000 --sweep contact.friction=0.1,0.5 -o out/table.csv",
        "palpate drive scenes/liver.toml --sweep body.young=4000,8000 --tasks | parallel > out/results.jsonl",
        "palpate drive --merge out/results.jsonl -o out/table.csv"});
-  command.does([o] { run(*o); });
+  command.does([o, command] { run(*o, command); });
 }
 
 }  // namespace palpate

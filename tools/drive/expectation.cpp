@@ -68,9 +68,16 @@ std::string disappointment(const Expectation& expected, const Figures& figures) 
   const std::optional<Figure> figure = find(figures, expected.figure);
   if (!figure) refuse_unknown(expected.figure, figures);
   if (holds(figure->value, expected.sign, expected.bound)) return {};
-  const std::string unit = figure->unit == "1" ? "" : " " + figure->unit;
+  const std::string unit = figure->unit.empty() || figure->unit == "1" ? "" : " " + figure->unit;
   return fmt::format("{} is {:.6g}{}, expected {}{:.10g}", figure->name, figure->value, unit, expected.sign,
                      expected.bound);
+}
+
+std::string disappointments(const std::vector<Expectation>& expected, const Figures& figures) {
+  std::string all;
+  for (const Expectation& e : expected)
+    if (const std::string why = disappointment(e, figures); !why.empty()) all += (all.empty() ? "" : "; ") + why;
+  return all;
 }
 
 }  // namespace palpate::drive

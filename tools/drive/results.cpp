@@ -1,11 +1,13 @@
 #include "tools/drive/results.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -43,6 +45,98 @@ std::string figure_of(const PointResult& result, const std::string& name) {
   return found == result.figures.end() ? std::string() : fmt::format("{:.9g}", found->value);
 }
 
+/// A sweep has so many points that its missing ones can be looked for.
+bool numbered_well(const PointResult& result) {
+  if (result.points == 0) return true;
+  return result.points > 0 && static_cast<std::size_t>(result.points) <= kMaxPoints && result.point >= 0 &&
+         result.point < result.points;
+}
+
+bool failed(const PointResult& result) {
+  return result.outcome == PointResult::kFailed;
+}
+
+/// Of the same point, apart from what each run measures anew.
+bool tell_the_same(const PointResult& a, const PointResult& b) {
+  const auto lasting = [](PointResult result) {
+    std::erase_if(result.figures, [](const Figure& f) { return f.name == "wall" || f.name == "realtime_factor"; });
+    return json_line(result);  // what is no number is equal to itself there
+  };
+  return lasting(a) == lasting(b);
+}
+
+bool same_changes(const PointResult& a, const PointResult& b) {
+  return std::ranges::equal(a.changes, b.changes,
+                            [](const SceneChange& x, const SceneChange& y) { return x.argument() == y.argument(); });
+}
+
+/// Whether of two results of a point one has all that is known: they are equal, or a run that failed was made again.
+bool one_is_enough(const PointResult& a, const PointResult& b) {
+  return tell_the_same(a, b) || (same_changes(a, b) && failed(a) != failed(b));
+}
+
+std::vector<int> twice_told(const std::vector<PointResult>& results) {
+  std::map<int, int> times;
+  for (const PointResult& result : results)
+    if (result.points > 0) ++times[result.point];
+  std::vector<int> twice;
+  for (const auto& [point, n] : times)
+    if (n > 1) twice.push_back(point);
+  return twice;
+}
+
+std::vector<int> missing_points(const std::vector<PointResult>& results, std::size_t points) {
+  std::vector<bool> there(points);
+  for (const PointResult& result : results)
+    if (result.points > 0 && static_cast<std::size_t>(result.point) < points) there[result.point] = true;
+  std::vector<int> missing;
+  for (std::size_t i = 0; i < points; ++i)
+    if (!there[i]) missing.push_back(static_cast<int>(i));
+  return missing;
+}
+
+/// The first ones by their numbers.
+std::string list_of(const std::vector<int>& points) {
+  constexpr std::size_t kListed = 20;
+  const std::size_t listed = std::min(points.size(), kListed);
+  return fmt::format("{}{}", fmt::join(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(listed), ", "),
+                     listed < points.size() ? ", ..." : "");
+}
+
+/// Throws, with the nearest there is, if no result has the figure.
+void refuse_if_nobody_has(const Expectation& expected, const std::vector<PointResult>& results) {
+  const auto has = [&](const PointResult& r) { return find(r.figures, expected.figure).has_value(); };
+  if (std::ranges::any_of(results, has)) return;
+  const auto ran = std::ranges::find_if_not(results, failed);
+  if (ran != results.end()) disappointment(expected, ran->figures);
+}
+
+void hold_to(const std::vector<Expectation>& expected, PointResult& result) try {
+  const std::string why = disappointments(expected, result.figures);
+  if (why.empty()) return;
+  result.outcome = PointResult::kUnexpected;
+  result.reason += (result.reason.empty() ? "" : "; ") + why;
+} catch (const std::runtime_error& error) {  // as the run itself would have said that it lacks the figure
+  result.outcome = PointResult::kFailed;
+  result.reason = error.what();
+}
+
+/// Why the results are not all that a sweep should come to; empty where they are.
+std::string shortcomings(const std::vector<PointResult>& results, std::size_t points) {
+  std::vector<std::string> all;
+  if (const auto missing = missing_points(results, points); !missing.empty())
+    all.push_back(fmt::format("{} of {} points are missing: {}", missing.size(), points, list_of(missing)));
+  if (const auto twice = twice_told(results); !twice.empty())
+    all.push_back(fmt::format("points with several results that differ, a row for each: {}", list_of(twice)));
+  const auto bad = std::ranges::count_if(results, [](const PointResult& r) { return !r.good(); });
+  if (bad == 0) return fmt::format("{}", fmt::join(all, "; "));
+  const auto first = std::ranges::find_if(results, [](const PointResult& r) { return !r.good(); });
+  all.push_back(results.size() == 1 ? first->reason
+                                    : fmt::format("{} of {} points are not as expected, such as point {}: {}", bad,
+                                                  results.size(), first->point, first->reason));
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
 }  // namespace
 
 std::string json_line(const PointResult& result) {
@@ -50,12 +144,10 @@ std::string json_line(const PointResult& result) {
   for (const SceneChange& change : result.changes) set[change.key] = change.value;
   for (const Figure& figure : result.figures)
     figures[figure.name] = std::isfinite(figure.value) ? Json(figure.value) : Json(nullptr);
-  return Json{{"point", result.point},
-              {"set", set},
-              {"outcome", result.outcome},
-              {"reason", result.reason},
-              {"figures", figures}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json line{{"point", result.point}};
+  if (result.points > 0) line["points"] = result.points;
+  line.update(Json{{"set", set}, {"outcome", result.outcome}, {"reason", result.reason}, {"figures", figures}});
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 PointResult parse_result(const std::string& line) {
@@ -63,6 +155,7 @@ PointResult parse_result(const std::string& line) {
   try {
     const Json json = Json::parse(line);
     result.point = json.at("point").get<int>();
+    result.points = json.value("points", 0);
     result.outcome = json.at("outcome").get<std::string>();
     result.reason = json.at("reason").get<std::string>();
     for (const auto& [key, value] : json.at("set").items()) result.changes.push_back({key, value.get<std::string>()});
@@ -72,6 +165,7 @@ PointResult parse_result(const std::string& line) {
   } catch (const Json::exception&) {
     throw std::runtime_error("no result of a run");
   }
+  if (!numbered_well(result)) throw std::runtime_error("no result of a run");
   return result;
 }
 
@@ -95,6 +189,46 @@ std::vector<PointResult> read_results(const std::vector<std::filesystem::path>& 
   }
   if (results.empty()) throw std::runtime_error("the files hold no result");
   return results;
+}
+
+std::vector<std::string> drop_repeated(std::vector<PointResult>& results) {
+  std::vector<PointResult> kept;
+  std::vector<std::string> said;
+  std::map<int, std::vector<std::size_t>> of_point;  // where they are kept
+  for (const PointResult& result : results) {
+    std::vector<std::size_t> alone;
+    std::vector<std::size_t>& others = result.points > 0 ? of_point[result.point] : alone;
+    const auto same = std::ranges::find_if(others, [&](std::size_t i) { return one_is_enough(result, kept[i]); });
+    if (same == others.end()) {
+      others.push_back(kept.size());
+      kept.push_back(result);
+      continue;
+    }
+    const bool one_failed = failed(result) != failed(kept[*same]);
+    said.push_back(fmt::format("point {} has two results, {}: one is kept", result.point,
+                               one_failed ? "of which one failed" : "which are equal"));
+    if (failed(kept[*same])) kept[*same] = result;
+  }
+  results = std::move(kept);
+  return said;
+}
+
+void expect_of(std::vector<PointResult>& results, const std::vector<Expectation>& expected) {
+  for (const Expectation& e : expected) refuse_if_nobody_has(e, results);
+  for (PointResult& result : results)
+    if (!failed(result)) hold_to(expected, result);
+}
+
+std::size_t points_of(const std::vector<PointResult>& results) {
+  int points = 0;
+  for (const PointResult& result : results) {
+    if (result.points > 0 && points > 0 && result.points != points)
+      throw std::runtime_error(
+          fmt::format("the results are of a sweep of {} points and of one of {}: merge those of one sweep at a time",
+                      points, result.points));
+    points = std::max(points, result.points);
+  }
+  return static_cast<std::size_t>(points);
 }
 
 std::string csv_table(std::vector<PointResult> results) {
@@ -131,15 +265,7 @@ std::string text_of(const PointResult& result) {
 }
 
 void require_good(const std::vector<PointResult>& results, std::size_t points) {
-  const auto bad = std::ranges::count_if(results, [](const PointResult& r) { return !r.good(); });
-  if (results.size() < points)
-    throw std::runtime_error(fmt::format("{} of {} points are missing", points - results.size(), points));
-  if (bad == 0) return;
-  const auto first = std::ranges::find_if(results, [](const PointResult& r) { return !r.good(); });
-  throw std::runtime_error(results.size() == 1
-                               ? first->reason
-                               : fmt::format("{} of {} points are not as expected, such as point {}: {}", bad,
-                                             results.size(), first->point, first->reason));
+  if (const std::string why = shortcomings(results, points); !why.empty()) throw std::runtime_error(why);
 }
 
 }  // namespace palpate::drive

@@ -18,20 +18,12 @@ namespace {
 
 constexpr std::int64_t kProgressNs = kNsPerS / 4;
 
-/// Names all that is wrong.
-std::string reason_of(const std::vector<Expectation>& expected, const Figures& figures) {
-  std::string reason;
-  for (const Expectation& e : expected)
-    if (const std::string why = disappointment(e, figures); !why.empty()) reason += (reason.empty() ? "" : "; ") + why;
-  return reason;
-}
-
 /// One run with what looks on.
 class Run {
  public:
   Run(const Scene& scene, const RunSettings& settings, const std::vector<Archive>& archives)
       : settings_(settings), lock_step_(scene, archives), watch_(lock_step_.simulator(), archives) {
-    reason_of(settings.expected, figures(0));  // before anything is computed: is there what is expected
+    disappointments(settings.expected, figures(0));  // before anything is computed: is there what is expected
     if (!settings.log.empty()) log_.emplace(settings.log, lock_step_.simulator());
     if (!settings.course.empty()) course_.emplace(settings.course, scene);
   }
@@ -50,7 +42,7 @@ class Run {
     if (log_) log_->finish();
     if (course_) course_->finish();
     PointResult result{.figures = figures(1e-9 * static_cast<double>(now_ns() - begin))};
-    result.reason = reason_of(settings_.expected, result.figures);
+    result.reason = disappointments(settings_.expected, result.figures);
     if (!result.reason.empty()) result.outcome = PointResult::kUnexpected;
     return result;
   }

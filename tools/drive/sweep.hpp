@@ -20,7 +20,6 @@ Axis parse_axis(const std::string& text);
 
 /// Every combination of the axes' values, the last axis turning fastest, each behind `always`. Throws
 /// std::runtime_error for more than kMaxPoints.
-inline constexpr std::size_t kMaxPoints = 100'000;
 std::vector<std::vector<SceneChange>> grid(const std::vector<SceneChange>& always, const std::vector<Axis>& axes);
 
 /// A command line in words, as a shell reads it.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -47,13 +48,25 @@ std::vector<PartFelt> felt_in_parts(const MotionMaker& maker, const Rehearsal& r
 void print_parts(const std::vector<PartFelt>& parts) {
   fmt::print("   from [s]    to [s]   largest force [N]   at the end [N]   step\n");
   for (const PartFelt& p : parts)
-    fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", p.part.begin, p.part.end, p.largest, p.end, p.part.text);
+    fmt::print("{:11.2f}{:10.2f}{:20.3f}{:17.3f}   {}\n", p.part.begin, p.part.end, p.largest, p.end, p.part.step.text);
+}
+
+/// A force that could not be met is told of: tissue that does not come to rest, is cut, or is pressed by another tool.
+void tell_of_missed_forces(const std::vector<PartFelt>& parts) {
+  constexpr double kMissed = 0.05;
+  for (const PartFelt& p : parts) {
+    if (p.part.step.kind != MotionStep::Kind::press_with) continue;
+    const double share = p.end / p.part.step.value - 1;
+    if (std::abs(share) <= kMissed) continue;
+    fmt::print(stderr, "palpate: '{}': the force at its end is {:.3g} N, {:.0f} % too {}\n", p.part.step.text, p.end,
+               100 * std::abs(share), share < 0 ? "small" : "large");
+  }
 }
 
 void print_json(const std::vector<PartFelt>& parts, const std::string& file, double seconds) {
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
   for (const PartFelt& p : parts)
-    steps.push_back({{"step", p.part.text},
+    steps.push_back({{"step", p.part.step.text},
                      {"from_s", p.part.begin},
                      {"to_s", p.part.end},
                      {"max_force_n", p.largest},
@@ -81,7 +94,7 @@ void make_motion(const MotionOptions& o) {
   const auto touched = std::ranges::find(scene.bodies, body, [](const Body& b) { return name_of(b); });
   const Rehearsal rehearsal(scene, archives, tool);
   MotionMaker maker(scene.tools[tool], archives[touched - scene.bodies.begin()].surface, rehearsal, o.manner);
-  for (const MotionStep& step : steps) maker.add(step);
+  maker.add(steps);
 
   std::string comment = fmt::format("{} on {}:", scene.tools[tool].name, body);
   for (const MotionStep& step : steps) comment += fmt::format(" {};", step.text);
@@ -89,6 +102,7 @@ void make_motion(const MotionOptions& o) {
   const std::vector<PartFelt> parts = felt_in_parts(maker, rehearsal);
   if (std::ranges::none_of(parts, [](const PartFelt& p) { return p.largest > 0; }))
     fmt::print(stderr, "palpate: {}: the tool touches nothing on all of its way\n", o.out);
+  tell_of_missed_forces(parts);
   if (!o.picture.empty()) draw(o, scene.tools[tool].name);
   if (o.json) return print_json(parts, o.out, maker.rows().time());
   print_parts(parts);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -14,6 +15,20 @@ namespace {
 constexpr double kAlong = 0.002;  // [m] from place to place of a slide
 constexpr double kDeepest = 4;    // radii to which a force is looked for
 constexpr double kJaws = 0.3;     // [s] to open or shut
+constexpr double kSettles = 1;    // [s] in which a force comes to stand
+constexpr double kMet = 0.01;     // of a force, by which it may be missed
+constexpr int kTries = 8;         // of a depth
+
+double diagonal_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  return box.diagonal().norm();
+}
+
+std::optional<double> widest_jaws_of(const Tool& tool) {
+  const auto jaws = abilities_of(tool).turning;
+  return jaws ? std::optional(jaws->max_open) : std::nullopt;
+}
 
 }  // namespace
 
@@ -23,7 +38,9 @@ MotionMaker::MotionMaker(const Tool& tool, const SurfaceMap& map, const Rehearsa
       rehearsal_(rehearsal),
       manner_(manner),
       trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
-      radius_(abilities_of(tool).radius) {
+      radius_(abilities_of(tool).radius),
+      deepest_press_(diagonal_of(map.position)),
+      widest_jaws_(widest_jaws_of(tool)) {
   for (std::size_t t = 0; t < map.triangles.size(); ++t)
     if (std::ranges::all_of(map.triangles[t], [&](int n) { return n < map.touchable; }))
       triangles_.push_back(static_cast<int>(t));
@@ -60,26 +77,93 @@ void MotionMaker::slide(const Eigen::Vector3d& point) {
   rows_->go(way, manner_.speed);
 }
 
-// Pressed on and on, as slowly as the rest is done, until the force is there.
-double MotionMaker::depth_for(double force) const {
+MotionMaker::Pass MotionMaker::pass_to(double depth) const {
   MotionRows trial = *rows_;
-  const double begin = trial.time();
-  const Eigen::Vector3d from = place_->point - radius_ * place_->inward;
-  trial.go({tip_at(*place_, kDeepest * radius_)}, manner_.speed);
+  trial.go({tip_at(*place_, depth)}, manner_.speed);
   const Trajectory motion = trial.trajectory();
   const std::vector<double> felt = rehearsal_.forces(motion);
-  double most = 0;
-  for (auto i = static_cast<std::size_t>(begin / rehearsal_.dt()); i < felt.size(); ++i) {
-    most = std::max(most, felt[i]);
-    if (felt[i] < force) continue;
+  const auto first = std::min(static_cast<std::size_t>(rows_->time() / rehearsal_.dt()), felt.size() - 1);
+  const Eigen::Vector3d touching = tip_at(*place_, 0);
+  Pass pass;
+  for (std::size_t i = first; i < felt.size(); ++i) {
     const ToolDofs dofs = motion.at(static_cast<double>(i) * rehearsal_.dt());
-    return (tip_pose(trocar_, dofs).translation() - from).dot(place_->inward);
+    pass.depth.push_back((tip_pose(trocar_, dofs).translation() - touching).dot(place_->inward));
+    pass.force.push_back(felt[i]);
   }
-  throw std::runtime_error(
-      fmt::format("there the force is at most {:.3g} N, {:.0f} mm deep", most, 1e3 * kDeepest * radius_));
+  return pass;
 }
 
-void MotionMaker::add(const MotionStep& step) try {
+MotionMaker::Press MotionMaker::press_at(double depth) const {
+  MotionRows trial = *rows_;
+  trial.go({tip_at(*place_, depth)}, manner_.speed);
+  const auto arrives = static_cast<std::size_t>(trial.time() / rehearsal_.dt());
+  trial.stand(kSettles);
+  const std::vector<double> felt = rehearsal_.forces(trial.trajectory());
+  return {felt[std::min(arrives, felt.size() - 1)], felt.back()};
+}
+
+// Pressed on and on, as slowly as the rest is done, until the force is there; where more is felt already, let go.
+MotionMaker::Guess MotionMaker::guess_for(double force) const {
+  Pass pass = pass_to(kDeepest * radius_);
+  const bool back = pass.force.front() > force;
+  if (back) pass = pass_to(-manner_.clear);
+  const auto met = std::ranges::find_if(pass.force, [&](double f) { return back ? f <= force : f >= force; });
+  if (met == pass.force.end() && back)
+    throw std::runtime_error(
+        fmt::format("there the force is at least {:.3g} N, clear of the surface too", std::ranges::min(pass.force)));
+  if (met == pass.force.end())
+    throw std::runtime_error(fmt::format("there the force is at most {:.3g} N, {:.0f} mm deep",
+                                         std::ranges::max(pass.force), 1e3 * kDeepest * radius_));
+  const double depth = pass.depth[met - pass.force.begin()];
+  double touches = depth;  // the shallowest depth with a force
+  for (std::size_t i = 0; i < pass.force.size(); ++i)
+    if (pass.force[i] > 0) touches = std::min(touches, pass.depth[i]);
+  return {depth, force / std::max(depth - touches, 1e-3 * radius_)};
+}
+
+// On its way the tool also feels the tissue's inertia and damping, and the force changes until both are at rest. So
+// depths are tried until the force that stands is the one asked for: along the last two, or halfway between the
+// nearest ones with less and with more.
+void MotionMaker::press_with(double force) {
+  auto [depth, slope] = guess_for(force);
+  double shallow = -manner_.clear, deep = std::max(kDeepest * radius_, depth_), best = depth;
+  Press felt = press_at(depth), best_felt = felt;
+  for (int tries = 1; tries < kTries && std::abs(best_felt.standing - force) > kMet * force; ++tries) {
+    (felt.standing < force ? shallow : deep) = depth;
+    const double along = depth + (force - felt.standing) / slope;
+    const double next = along > shallow && along < deep ? along : (shallow + deep) / 2;
+    const Press now = press_at(next);
+    const double steeper = (now.standing - felt.standing) / (next - depth);
+    if (steeper > 0) slope = steeper;
+    depth = next;
+    felt = now;
+    if (std::abs(felt.standing - force) >= std::abs(best_felt.standing - force)) continue;
+    best = depth;
+    best_felt = felt;
+  }
+  press(best);
+  if (std::abs(best_felt.arriving - best_felt.standing) > kMet * force) rows_->stand(kSettles);
+}
+
+// What needs no trial to be refused.
+void MotionMaker::look_at(const MotionStep& step) const {
+  using Kind = MotionStep::Kind;
+  if (step.kind == Kind::press && step.value > deepest_press_)
+    throw std::runtime_error(
+        fmt::format("'{}': a depth of {:.4g} m is more than the body's box has from corner to corner, {:.3g} m; was "
+                    "it meant in mm?",
+                    step.text, step.value, deepest_press_));
+  if (step.kind == Kind::grip && widest_jaws_ && step.value > *widest_jaws_)
+    throw std::runtime_error(
+        fmt::format("'{}': the jaws of this tool open from 0 to {} rad", step.text, *widest_jaws_));
+}
+
+void MotionMaker::add(const std::vector<MotionStep>& steps) {
+  for (const MotionStep& step : steps) look_at(step);
+  for (const MotionStep& step : steps) try_and_add(step);
+}
+
+void MotionMaker::try_and_add(const MotionStep& step) try {
   using Kind = MotionStep::Kind;
   if (step.kind != Kind::to && !rows_) throw std::runtime_error("a motion begins with a place: to X,Y,Z");
   const double begin = rows_ ? rows_->time() : 0;
@@ -91,7 +175,7 @@ void MotionMaker::add(const MotionStep& step) try {
       press(step.value);
       break;
     case Kind::press_with:
-      press(depth_for(step.value));
+      press_with(step.value);
       break;
     case Kind::hold:
       rows_->stand(step.value);
@@ -109,7 +193,7 @@ void MotionMaker::add(const MotionStep& step) try {
       rows_->pedal(step.value);
       break;
   }
-  parts_.push_back({step.text, begin, rows_->time()});
+  parts_.push_back({step, begin, rows_->time()});
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("'{}': {}", step.text, error.what()));
 }

@@ -21,22 +21,39 @@ class MotionMaker {
   /// `map`: of the body that is touched; it and `rehearsal` outlive this object.
   MotionMaker(const Tool& tool, const SurfaceMap& map, const Rehearsal& rehearsal, const MotionManner& manner);
 
-  /// Throws std::runtime_error where a step is not possible there, such as a press before a place, or a force that is
-  /// not reached.
-  void add(const MotionStep& step);
+  /// Adds steps, of which none is tried before all have been looked at. Throws std::runtime_error where one is not
+  /// possible there, such as a press before a place, or a force that is not reached.
+  void add(const std::vector<MotionStep>& steps);
 
   struct Part {
-    std::string text;
+    MotionStep step;
     double begin, end;  ///< [s]
   };
   const std::vector<Part>& parts() const { return parts_; }
   const MotionRows& rows() const { return *rows_; }
 
  private:
+  /// What a tool feels at every step of the scene's time on a way.
+  struct Pass {
+    std::vector<double> depth, force;  ///< [m], [N]
+  };
+  /// What it feels when it arrives at a depth, and after it has stood there.
+  struct Press {
+    double arriving, standing;  ///< [N]
+  };
+  struct Guess {
+    double depth, slope;  ///< [m]; [N/m] of the force there
+  };
+
+  void look_at(const MotionStep& step) const;
+  void try_and_add(const MotionStep& step);
   void go_to(const Eigen::Vector3d& place);
   void press(double depth);
   void slide(const Eigen::Vector3d& place);
-  double depth_for(double force) const;
+  void press_with(double force);
+  Pass pass_to(double depth) const;
+  Press press_at(double depth) const;
+  Guess guess_for(double force) const;
   SurfacePlace place_near(const Eigen::Vector3d& point) const;
   Eigen::Vector3d tip_at(const SurfacePlace& place, double depth) const { return centre_at(place, radius_, depth); }
 
@@ -46,6 +63,8 @@ class MotionMaker {
   MotionManner manner_;
   Trocar trocar_;
   double radius_;
+  double deepest_press_;               ///< [m] the body's box from corner to corner
+  std::optional<double> widest_jaws_;  ///< [rad] of jaws that turn
   std::optional<MotionRows> rows_;     ///< empty before the first place
   std::optional<SurfacePlace> place_;  ///< where it is
   double depth_ = 0;                   ///< [m] negative: clear of the surface

@@ -7,6 +7,9 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/tool/motion_limits.hpp"
+#include "common/tool/row_times.hpp"
+
 namespace palpate {
 namespace {
 
@@ -40,6 +43,10 @@ void MotionRows::row(double time, const Eigen::Vector3d& tip) {
   ToolDofs dofs = dofs_for_tip(trocar_, tip, 0);
   dofs.grip = grip_;
   dofs.pedal = pedal_;
+  if (!MotionLimits{}.allow(dofs))
+    throw std::runtime_error(fmt::format("no tool can be there: angles are at most {} rad, the depth {} m",
+                                         MotionLimits::kMaxAngle, MotionLimits::kMaxDepth));
+  if (time > kLatestRow) throw std::runtime_error(fmt::format("a motion ends within {} s", kLatestRow));
   time_.push_back(time);
   dofs_.push_back(dofs);
 }

@@ -6,7 +6,8 @@
 
 namespace palpate {
 
-/// The rows of a trajectory in the making. A way is gone with the least jerk: it sets out and arrives gently.
+/// The rows of a trajectory in the making. A way is gone with the least jerk: it sets out and arrives gently. What no
+/// file may hold (load_trajectory) throws std::runtime_error at once.
 class MotionRows {
  public:
   /// Stands at a place [m] at time 0.
