@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/organ/dicom_for_tests.hpp"
 #include "tests/organ/images_for_tests.hpp"
 #include "tests/organ/phantom_image.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tools/organ/image_checks.hpp"
 
 namespace palpate {
 namespace {
@@ -80,6 +83,75 @@ TEST_F(LabelImages, OfAFolderWithSeveralDicomSeriesOneIsChosen) {
     EXPECT_NE(said.find("of 2 pictures"), std::string::npos) << said;
   }
   EXPECT_THROW(read("9"), std::runtime_error);
+}
+
+TEST_F(LabelImages, ASeriesThatIsNotEvenlySpacedIsRefusedWithThePlace) {
+  int series = 0;
+  const auto folder_of = [&](const std::vector<double>& places) {
+    const std::filesystem::path folder = folder_ / ("even-" + std::to_string(++series));
+    std::filesystem::create_directories(folder);
+    for (int n = 0; n < static_cast<int>(places.size()); ++n)
+      write_file(folder / std::to_string(n), DicomPicture("1.2.3.4", n, places[n], 3, voxels_.substr(0, 6)).bytes());
+    return folder;
+  };
+  const auto expect_refused = [&](const std::vector<double>& places, const std::string& words) {
+    const std::filesystem::path folder = folder_of(places);
+    for (const bool grey : {false, true}) try {
+        grey ? void(read_grey_volume(folder)) : void(read_label_volume(folder));
+        ADD_FAILURE() << "read without a word where this is due: " << words;
+      } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      }
+  };
+  expect_refused({0, 3, 6, 12, 15},
+                 "1 slice is missing between (10, 20, 6) mm and (10, 20, 12) mm, where others lie 3 mm apart: put it");
+  expect_refused({0, 3, 12, 15, 18, 24, 27},
+                 "2 slices are missing between (10, 20, 3) mm and (10, 20, 12) mm, where others lie 3 mm apart, and 1 "
+                 "more elsewhere: put them");
+  expect_refused({0, 3, 6, 10, 13}, "not evenly spaced: 4 mm between (10, 20, 6) mm and (10, 20, 10) mm, and 3 mm");
+  expect_refused({0, 3, 3, 6}, "two of its 4 slices lie at (10, 20, 3) mm");
+  // Places are written with few digits.
+  const LabelVolume rounded = read_label_volume(folder_of({0, 2.9, 6, 9.1, 12}));
+  EXPECT_NEAR(rounded.shape.spacing.z(), 0.003, 1e-9);
+}
+
+TEST(SlicePlaces, SlicesOfATiltedScannerLieAslantAndAreRefused) {
+  const auto stack = [](double aside) {
+    SlicePlaces slices{{}, Eigen::Vector3d::UnitZ(), 0.8};
+    for (int k = 0; k < 20; ++k) slices.first_mm.emplace_back(0, aside * k, 2 * k);
+    return slices;
+  };
+  EXPECT_NO_THROW(check_even(stack(0.001)));
+  try {
+    check_even(stack(0.3));
+    FAIL() << "read as upright";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("the last one, at (0, 5.7, 38) mm, lies 5.7 mm beside"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(LabelImages, ValuesThatAreNoWholeNumbersAreNoLabels) {
+  const auto image = [&](const std::string& name, float last) {
+    std::vector<float> values(12, 2);
+    values[11] = last;
+    const std::string bytes(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+    const bool inr = name.ends_with(".inr");
+    const std::string header =
+        inr ? inr_header({3, 2, 2}, {1, 2, 3}, "float", 32) : replaced(meta_header(), "MET_UCHAR", "MET_FLOAT");
+    return write_file(folder_ / name, header + bytes);
+  };
+  for (const char* name : {"a.inr", "a.mha"}) {
+    EXPECT_EQ(read_label_volume(image(name, 7)).value.back(), 7) << name;
+    for (const auto& [value, told] : {std::pair{1.5f, "1.5"}, {NAN, "nan"}, {3e9f, "3e+09"}}) try {
+        read_label_volume(image(name, value));
+        ADD_FAILURE() << name << " was read, with a label of " << told;
+      } catch (const std::runtime_error& error) {
+        const std::string words = fmt::format("{}: its value at voxel 2,1,1 is {}, and labels are whole", name, told);
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      }
+    EXPECT_EQ(read_grey_volume(image(name, 1.5)).value.back(), 1.5) << name;
+  }
 }
 
 TEST_F(LabelImages, ANiftiImageLiesWhereItsSformSays) {

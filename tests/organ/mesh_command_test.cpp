@@ -96,6 +96,19 @@ TEST_F(MeshCommand, ASceneMakesItFinerWhereItsToolsGo) {
   EXPECT_NE(absent.err.find("none.toml"), std::string::npos) << absent.err;
 }
 
+TEST_F(MeshCommand, AFinePlaceThatMakesNothingFinerIsWarnedOf) {
+  const auto file = write_file(folder_ / "ball.stl", text_stl(make_sphere({0, 0, 0}, 0.05, 20))).string();
+  const std::string fine = file + " --edge 0.03 --deviation 0.004 -o " + (folder_ / "a.msh").string() + " --fine ";
+  const auto far = mesh(fine + "1,0,0,0.01:0.005");
+  EXPECT_NE(far.out.find("warning: --fine 1,0,0,0.01:0.005 reaches no part of the body"), std::string::npos) << far.out;
+  const auto coarse = mesh(fine + "0.05,0,0,0.01:0.05");
+  EXPECT_NE(coarse.out.find("warning: --fine 0.05,0,0,0.01:0.05 asks for edges of 50 mm, where they are 3"),
+            std::string::npos)
+      << coarse.out;
+  const auto good = mesh(fine + "0.05,0,0,0.01:0.01 --fine=-0.01,-0.01,-0.01,0.01,0.01,0.01:0.02");
+  EXPECT_EQ(good.out.find("warning"), std::string::npos) << good.out;
+}
+
 TEST_F(MeshCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
   TriangleMesh half = make_sphere({0, 0, 0}, 0.05, 12);
   std::erase_if(half.triangles, [&](const auto& t) { return half.nodes[t[0]].z() > 0; });
@@ -198,6 +211,9 @@ TEST_F(MeshCommand, MistakesAreToldInASentence) {
   const std::string to = " -o " + (folder_ / "a.msh").string();
   expect_refusal(program("palpate") + " mesh " + file + " --group held=near:z" + to,
                  {"--group held=near:z", "NAME=PLACE"});
+  for (const char* name : {R"(a\"b)", R"(a\\b)", "a\nb"})  // as a shell has them in quotes
+    expect_refusal(fmt::format("{} mesh {} --group \"{}=below:z\"{}", program("palpate"), file, name, to),
+                   {"--group a", "a name has no quotes, backslashes or control characters"});
   expect_refusal(program("palpate") + " mesh " + file + " --fine 1,2,3:0.1" + to,
                  {"--fine 1,2,3:0.1", "x,y,z,RADIUS:EDGE"});
   expect_refusal(program("palpate") + " mesh " + (folder_ / "none.stl").string() + to,

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/mesh/measures.hpp"
@@ -149,6 +150,50 @@ TEST_F(OrganCommand, LabelsThatDoNotTouchBecomeAMeshEach) {
   }
   for (const char* name : {"big", "small"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / name / "surface.png")) << name;
+}
+
+/// A hollow box of label 5 in the empty corner.
+std::string with_a_hollow_box(std::string voxels) {
+  for (int k = 2; k < 12; ++k)
+    for (int j = 2; j < 14; ++j)
+      for (int i = 2; i < 14; ++i) {
+        const bool rim = k % 9 == 2 || j % 11 == 2 || i % 11 == 2;
+        voxels[(static_cast<std::size_t>(k) * kY + j) * kX + i] = rim ? 5 : 0;
+      }
+  return voxels;
+}
+
+TEST_F(OrganCommand, WhereOneOfSeveralMeshesFailsItIsNamedAndNoneIsWritten) {
+  const std::string bytes = header() + with_a_hollow_box(voxels());
+  const auto made = organ(write_file(folder_ / "box.inr", bytes),
+                          "--label 9=ball --label 5=box --edge 0.006 -o " + (folder_ / "a.msh").string());
+  EXPECT_EQ(made.status, 1);
+  EXPECT_NE(made.err.find("'box': edges of 6 mm are too long"), std::string::npos) << made.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a_ball.msh"));
+}
+
+TEST_F(OrganCommand, PlacesAreToldInTheImagesWorld) {
+  // Turned half a turn about z.
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+      "TransformMatrix = -1 0 0 0 -1 0 0 0 1\nOffset = -500 -200 1000\nElementSpacing = 1 1 2\n"
+      "DimSize = 60 44 22\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+  const auto image = write_file(folder_ / "world.mha", meta + with_a_hollow_box(voxels()));
+  const std::string mesh = (folder_ / "a.msh").string();
+  const auto ball = organ(image, "--label 9 --nodes 200 -o " + mesh);
+  if (ball.err.find("without ITK") != std::string::npos) GTEST_SKIP() << ball.err;
+  const auto expect_place = [](const std::string& said, const std::string& before) {
+    const std::size_t at = said.find(before);
+    ASSERT_NE(at, std::string::npos) << said;
+    Eigen::Vector3d x;
+    ASSERT_EQ(std::sscanf(said.c_str() + at + before.size(), "%lf, %lf, %lf)", &x[0], &x[1], &x[2]), 3) << said;
+    EXPECT_TRUE(x.x() <= -500 && x.x() >= -560 && x.y() <= -200 && x.y() >= -244 && x.z() >= 1000 && x.z() <= 1044)
+        << said;
+  };
+  const std::size_t largest = ball.out.find("largest ");
+  ASSERT_NE(largest, std::string::npos) << ball.out << ball.err;
+  expect_place(ball.out.substr(largest), " at (");
+  expect_place(organ(image, "--label 5 --edge 0.012 -o " + mesh).err, "thick at (");
 }
 
 TEST_F(OrganCommand, AGapKeepsLabelsThatTouchApart) {

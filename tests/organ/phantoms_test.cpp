@@ -117,6 +117,22 @@ TEST_F(Phantom, TwoSpheresThatTouchMakeOneMeshOfTwoParts) {
   }
 }
 
+// No node of its border lies on the outer surface.
+TEST_F(Phantom, ALabelWithinAnotherHasItsVolume) {
+  std::array<int, 3> voxels{};
+  const TetMesh mesh = mesh_of({40, 40, 40}, "--label 1 --label 2 --nodes 600", [&](int i, int j, int k) {
+    const double r = (Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(20)).norm();
+    const int label = r < 6 ? 2 : r < 15 ? 1 : 0;
+    ++voxels[label];
+    return label;
+  });
+  for (const int label : {1, 2}) {
+    const double counted = 1e-9 * voxels[label];
+    const TetMesh part = part_of(mesh, fmt::format("label{}", label));
+    EXPECT_NEAR(measures_of(part).volume, counted, 1e-3 * counted) << label;
+  }
+}
+
 // Its inner surface bends the other way: both are looked at by themselves. Steps of voxels that are smoothed over a
 // third of the wall are not all gone.
 TEST_F(Phantom, AWallOfOneAndAHalfVoxelsKeepsBothItsSides) {
@@ -159,6 +175,22 @@ TEST_F(Phantom, AHollowBoxOfThickSlicesKeepsItsLids) {
       5);
   EXPECT_EQ(topology_of(mesh), (Topology{2, 0})) << said_;
   EXPECT_EQ(said_.find("warning:"), std::string::npos) << said_;
+}
+
+// Midway in a wall of an even number of voxels two are equally deep.
+TEST_F(Phantom, WallsAreToldWhetherTheirVoxelsAreEvenOrOdd) {
+  for (const int wall : {1, 2, 3}) {
+    const std::string image = folder_ / "walls.inr";
+    write_phantom(image, {26, 26, 26}, 1, [&](int i, int j, int k) {
+      const int r = std::max({std::abs(i - 13), std::abs(j - 13), std::abs(k - 13)});
+      return r <= 10 && r > 10 - wall;
+    });
+    // Edges that are refused: what is found comes before.
+    const auto result = run_program(fmt::format("{} organ {} --label 1 --edge 0.014 -o {}", program("palpate"), image,
+                                                (folder_ / "walls.msh").string()));
+    EXPECT_NE(result.out.find("found: walls "), std::string::npos) << wall << result.out;
+    EXPECT_NE(result.err.find("edges of 14 mm are too long: its walls are "), std::string::npos) << wall << result.err;
+  }
 }
 
 TEST_F(Phantom, ATunnelThatSmoothingClosesIsWarnedOf) {

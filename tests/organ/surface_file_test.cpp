@@ -116,6 +116,117 @@ TEST_F(SurfaceFile, NamesOfGroupsThatAreNotKeptAreTold) {
             "groups of triangles (2), the first 'lobe': not kept: --group names nodes by their place");
 }
 
+/// A prism of height 1 on a polygon that goes round to the left.
+struct Prism {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<std::vector<int>> faces;
+};
+
+Prism prism_on(const std::vector<Eigen::Vector2d>& polygon) {
+  Prism prism{{}, {{}, {}}};
+  const int n = static_cast<int>(polygon.size());
+  for (const int z : {0, 1})
+    for (const Eigen::Vector2d& x : polygon) prism.points.emplace_back(x.x(), x.y(), z);
+  for (int i = 0; i < n; ++i) {
+    prism.faces[0].insert(prism.faces[0].begin(), i);
+    prism.faces[1].push_back(n + i);
+    prism.faces.push_back({i, (i + 1) % n, n + (i + 1) % n, n + i});
+  }
+  return prism;
+}
+
+TEST_F(SurfaceFile, AConcavePolygonIsCutWithoutOverlap) {
+  std::vector<Eigen::Vector2d> u{{0, 0}, {6, 0}, {6, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 6}, {0, 6}};
+  for (std::size_t turn = 0; turn < u.size(); ++turn, std::ranges::rotate(u, u.begin() + 1)) {
+    const Prism prism = prism_on(u);
+    std::string obj;
+    for (const Eigen::Vector3d& x : prism.points) obj += fmt::format("v {} {} {}\n", x.x(), x.y(), x.z());
+    for (const auto& face : prism.faces) {
+      obj += "f";
+      for (const int n : face) obj += fmt::format(" {}", n + 1);
+      obj += "\n";
+    }
+    const ReadSurface read = read_surface(write_file(folder_ / "u.obj", obj), 1);
+    EXPECT_NEAR(enclosed_volume(read.mesh), 28, 1e-9);
+    EXPECT_NEAR(surface_area(read.mesh), 2 * 28 + 32, 1e-9) << "triangles overlap";
+  }
+}
+
+const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+TEST_F(SurfaceFile, LegalLinesOfAnObjFileAreReadOrPassedOver) {
+  const auto read_as = [&](const std::string& text) { return read_surface(write_file(folder_ / "a.obj", text), 1); };
+  const auto volume = [&](const std::string& text) { return enclosed_volume(read_as(text).mesh); };
+  EXPECT_NEAR(volume(replaced(kObj, "f 2 3 4", "f 2 \\\n 3 \\\r\n4")), 1.0 / 6, 1e-9);
+  EXPECT_NEAR(volume(replaced(kObj, "v 1 0 0", "v\t1\t0\t0")), 1.0 / 6, 1e-9);
+  EXPECT_NEAR(volume(replaced(kObj, "v 1 0 0", "v 1 0 0 0.5 0.5 1 # red")), 1.0 / 6, 1e-9);
+  EXPECT_NEAR(volume(replaced(kObj, "f 2 3 4", "f -3//1 -2//2 -1//3")), 1.0 / 6, 1e-9);
+  const ReadSurface lines = read_as(kObj + "l 1 2\nl 2 3\np 1\n");
+  EXPECT_EQ(lines.mesh.triangles.size(), 4u);
+  ASSERT_EQ(lines.findings.size(), 1u);
+  EXPECT_EQ(say(lines.findings[0]), "lines that say nothing of polygons (3), the first line 9, 'l': passed over");
+}
+
+TEST_F(SurfaceFile, DamageIsRefusedWithItsLineOrElement) {
+  const std::string off =
+      "OFF\n# made by hand\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n" +
+      off.substr(off.find("0 0 0"));
+  struct Damage {
+    const char* name;
+    std::string text, was, is, said;
+  };
+  for (const Damage& d :
+       std::vector<Damage>{{"z.obj", kObj, "v 0 0 1", "v 0 0 30,5", "line 4: \"30,5\" stands where a finite number"},
+                           {"y.obj", kObj, "v 0 0 1", "v 0 0,5 1", "line 4: \"0,5\" stands"},
+                           {"w.obj", kObj, "v 0 0 1", "v 0 0 1 x", "line 4: \"x\" stands"},
+                           {"few.obj", kObj, "v 0 0 1", "v 0 0", "line 4: it ends where a number should stand"},
+                           {"far.obj", kObj, "f 2 3 4", "f 2 3 99", "line 8: a face names vertex 99, of 4"},
+                           {"zero.obj", kObj, "f 2 3 4", "f 0 3 4", "line 8: a face names vertex 0, of 4"},
+                           {"cut.obj", kObj, "f 2 3 4", "f 2 3", "line 8: a face has 2 corners"},
+                           {"z.off", off, "0 0 1\n3", "0 0 0,5\n3", "line 7: \"0,5\" stands"},
+                           {"far.off", off, "3 1 2 3", "3 1 2 9", "line 11: face 3 of 4 names vertex 9, of 4"},
+                           {"cut.off", off, "3 1 2 3\n", "", "the file ends before "},
+                           {"kind.off", off, "OFF", "4OFF", "line 1: \"4OFF\" stands where OFF should"},
+                           {"z.ply", ply, "0 0 1\n3", "0 0 0,5\n3", "vertex 3 of 4: \"0,5\" stands"},
+                           {"far.ply", ply, "3 1 2 3", "3 1 2 9", "face 3 names vertex 9, of 4"},
+                           {"cut.ply", ply, "3 1 2 3", "3 1", "face 3 of 4: "},
+                           {"type.ply", ply, "float z", "half z", "line 6: \"half\" is no type"}}) {
+    EXPECT_EQ(refusal(write_file(folder_ / d.name, d.text)), "read") << d.name;
+    const std::string said = refusal(write_file(folder_ / d.name, replaced(d.text, d.was, d.is)));
+    EXPECT_NE(said.find(d.name + std::string(": ") + d.said), std::string::npos) << said;
+  }
+}
+
+template <class T>
+void put_big(std::string& bytes, T value) {
+  for (int shift = 8 * (sizeof(T) - 1); shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+}
+
+TEST_F(SurfaceFile, NumbersOfAPlyFileMayBeOfAnyTypeAndOrder) {
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement face 4\nproperty uchar quality\nproperty list ushort short "
+      "vertex_index\nelement vertex 4\nproperty short x\nproperty short y\nproperty int z\nproperty list uchar uchar "
+      "more\nend_header\n";
+  for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    bytes += '\7';
+    for (const int n : {3, a, b, c}) put_big(bytes, static_cast<std::int16_t>(n));
+  }
+  for (const auto& [x, y, z] : std::vector<std::array<int, 3>>{{0, 0, 0}, {300, 0, 0}, {0, 300, 0}, {0, 0, -300}}) {
+    put_big(bytes, static_cast<std::int16_t>(x)), put_big(bytes, static_cast<std::int16_t>(y)), put_big(bytes, z);
+    bytes += "\2ab";
+  }
+  EXPECT_NEAR(enclosed_volume(read_surface(write_file(folder_ / "a.ply", bytes), 1).mesh), -4.5e6, 1e-3);
+}
+
+TEST_F(SurfaceFile, AnStlFileMayBeInCapitals) {
+  std::string text = text_stl(ball_);
+  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  expect_ball(write_file(folder_ / "a.stl", text), 1);
+}
+
 TEST_F(SurfaceFile, AnStlFileIsWhatItHoldsAndNotWhatItSays) {
   const ReadSurface called_text =
       read_surface(write_file(folder_ / "a.stl", binary_stl(ball_, "solid liver", count_)), 1);

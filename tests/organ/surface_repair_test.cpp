@@ -120,6 +120,66 @@ TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {
   expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (9000, 0, 0) mm");
 }
 
+// By where shells lie, however they are wound.
+TEST_F(SurfaceRepair, AShellWithinACavityIsALooseIslandThatIsLeftOut) {
+  for (const bool turned : {false, true}) {
+    TriangleMesh island = ball_, cavity = make_sphere({1, 0, 0}, 0.7, 12);
+    if (turned)
+      for (auto& t : cavity.triangles) std::swap(t[0], t[1]);
+    append(island, make_sphere({1, 0, 0.1}, 0.2, 4));  // in the island
+    append(island, cavity);
+    append(island, make_sphere({1, 0, 0.1}, 0.5, 8));
+    const Repaired repaired = repaired_of(island);
+    EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_ - std::abs(enclosed_volume(cavity)), 1e-9);
+    EXPECT_EQ(repaired.mesh.triangles.size(), ball_.triangles.size() + cavity.triangles.size());
+    ASSERT_EQ(repaired.findings.size(), 3u);
+    expect_has(say(repaired.findings[0]), "a shell inside the largest of 576 triangles");
+    expect_has(say(repaired.findings[1]), "a loose island, a shell within a cavity, of 256 triangles and 4.");
+    expect_has(say(repaired.findings[1]), "at (1000, 0, 600) mm: left out");
+    expect_has(say(repaired.findings[2]), "a cavity in a loose island of 64 triangles");
+  }
+}
+
+TEST_F(SurfaceRepair, CavitiesBesideOneAnotherAreAllCavitiesAndCounted) {
+  TriangleMesh two = ball_;
+  append(two, make_sphere({1, 0.5, 0}, 0.3, 6));
+  append(two, make_sphere({1, -0.5, 0}, 0.3, 6));
+  const Repaired repaired = repaired_of(two);
+  EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_ - 2 * enclosed_volume(make_sphere({0, 0, 0}, 0.3, 6)), 1e-9);
+  ASSERT_EQ(repaired.findings.size(), 2u);
+  for (const Finding& f : repaired.findings) EXPECT_EQ(f.kind, "shells inside the largest");
+}
+
+TEST_F(SurfaceRepair, ClosedSurfacesThatTouchInAnEdgeComeApartWithoutAHole) {
+  TriangleMesh cubes = make_cubes(4, [](int x, int y, int z) {
+    return (x < 2 && y < 2 && z < 2) || (x >= 2 && x < 3 && y >= 2 && y < 3 && z < 2);
+  });
+  for (const bool inside_out : {false, true}) {
+    if (inside_out)
+      for (auto& t : cubes.triangles) std::swap(t[0], t[1]);
+    const Repaired repaired = repaired_of(cubes);
+    EXPECT_TRUE(rims_of(repaired.mesh).empty());
+    EXPECT_NEAR(enclosed_volume(repaired.mesh), 8, 1e-9);
+    EXPECT_FALSE(repaired.crosses_itself);
+    std::string told;
+    for (const Finding& f : repaired.findings) told += say(f) + "\n";
+    expect_has(told, "2 edges that more than two triangles share, the first at (2000, 2000, ");
+    expect_has(told, "a stray shell of 20 triangles");
+    EXPECT_EQ(told.find("hole"), std::string::npos) << told;
+  }
+}
+
+// Both ends of the edge hang together above and below: nodes of the ends alone do not part it.
+TEST_F(SurfaceRepair, AnEdgeWhereABodyTouchesItselfIsParted) {
+  const TriangleMesh body = make_cubes(4, [](int x, int y, int z) { return z != 1 || (x < 2) == (y < 2); });
+  const Repaired repaired = repaired_of(body);
+  EXPECT_TRUE(rims_of(repaired.mesh).empty());
+  EXPECT_NEAR(enclosed_volume(repaired.mesh), 56, 1e-9);
+  EXPECT_FALSE(repaired.crosses_itself);
+  ASSERT_EQ(repaired.findings.size(), 2u);  // the first: nodes of the grid that no triangle uses
+  expect_has(say(repaired.findings[1]), "1 edges that more than two triangles share, the first at (2000, 2000, 1500)");
+}
+
 TEST_F(SurfaceRepair, ANodeWhereTwoPartsTouchIsParted) {
   TriangleMesh touching = ball_;
   append(touching, make_sphere({1, 0, 1.2}, 0.2, 4));

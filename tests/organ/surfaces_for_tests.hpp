@@ -47,6 +47,33 @@ inline void append(TriangleMesh& mesh, const TriangleMesh& more) {
   for (const auto& [a, b, c] : more.triangles) mesh.triangles.push_back({a + shift, b + shift, c + shift});
 }
 
+/// The surface of cubes of edge 1 that stand where `is_there` says, in [0, size) along each axis; normals outward.
+template <class IsThere>
+TriangleMesh make_cubes(int size, const IsThere& is_there) {
+  TriangleMesh mesh;
+  const int along = size + 1;
+  for (int n = 0; n < along * along * along; ++n)
+    mesh.nodes.emplace_back(n % along, n / along % along, n / (along * along));
+  const auto filled = [&](const Eigen::Vector3i& c) {
+    return (c.array() >= 0).all() && (c.array() < size).all() && is_there(c.x(), c.y(), c.z());
+  };
+  const auto node = [&](const Eigen::Vector3i& c) { return c.x() + along * (c.y() + along * c.z()); };
+  for (int n = 0; n < size * size * size; ++n) {
+    const Eigen::Vector3i cube(n % size, n / size % size, n / (size * size));
+    if (!filled(cube)) continue;
+    for (int side = 0; side < 6; ++side) {
+      const int axis = side / 2, up = side % 2;
+      const Eigen::Vector3i way = Eigen::Vector3i::Unit(axis), u = Eigen::Vector3i::Unit((axis + 1) % 3),
+                            v = Eigen::Vector3i::Unit((axis + 2) % 3), at = cube + up * way;
+      if (filled(cube + (2 * up - 1) * way)) continue;
+      const int a = node(at), b = node(at + u), c = node(at + u + v), d = node(at + v);
+      mesh.triangles.push_back(up ? std::array{a, b, c} : std::array{a, c, b});
+      mesh.triangles.push_back(up ? std::array{a, c, d} : std::array{a, d, c});
+    }
+  }
+  return mesh;
+}
+
 inline std::string text_stl(const TriangleMesh& mesh) {
   std::string text = "solid liver of a facet\n";
   const auto place = [&](int n) {

@@ -155,10 +155,18 @@ void add_touched_places(MeshFineness& fineness, const MeshOptions& o, const std:
   fineness.fine.insert(fineness.fine.end(), places.begin(), places.end());
 }
 
-void finish_mesh(TetMesh mesh, const MeshOptions& o, Output& out) {
+void add_groups(TetMesh& mesh, const MeshOptions& o) {
   for (const std::string& text : o.groups) add_group(mesh, text);
+}
+
+void write_mesh(const TetMesh& mesh, const MeshOptions& o, Output& out) {
   write_whole(mesh, o.output);
   tell_mesh(mesh, o, out);
+}
+
+void finish_mesh(TetMesh mesh, const MeshOptions& o, Output& out) {
+  add_groups(mesh, o);
+  write_mesh(mesh, o, out);
 }
 
 void say_progress(const std::string& line) {

@@ -28,8 +28,14 @@ MeshFineness fineness_of(const MeshOptions& options);
 void add_touched_places(MeshFineness& fineness, const MeshOptions& options, const std::vector<Eigen::Vector3d>& surface,
                         Output& out);
 
-/// Gives the mesh its groups, writes it where it was asked for, all of it or nothing, and tells its measures and what
-/// it will take. Throws std::runtime_error.
+/// Gives the mesh the groups that are asked for. Throws std::runtime_error.
+void add_groups(TetMesh& mesh, const MeshOptions& options);
+
+/// Writes the mesh where it was asked for, all of it or nothing, and tells its measures and what it will take. Throws
+/// std::runtime_error.
+void write_mesh(const TetMesh& mesh, const MeshOptions& options, Output& out);
+
+/// Both.
 void finish_mesh(TetMesh mesh, const MeshOptions& options, Output& out);
 
 /// Progress, on standard error.

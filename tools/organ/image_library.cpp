@@ -8,6 +8,7 @@
 #include <itkNrrdImageIO.h>
 
 #include <Eigen/Geometry>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +17,7 @@
 
 #include "common/files/ending.hpp"
 #include "common/mesh/child.hpp"
+#include "tools/organ/image_checks.hpp"
 #include "tools/organ/label_volume.hpp"
 
 namespace palpate {
@@ -52,6 +54,33 @@ void check_axes(const std::string& file) {
       throw std::runtime_error(fmt::format("it has {} axes, where 2 or 3 are read", number[1].str()));
 }
 
+/// Whether ITK makes labels of such values without cutting anything off.
+bool hold_labels(itk::IOComponentEnum type) {
+  using Type = itk::IOComponentEnum;
+  return type == Type::UCHAR || type == Type::CHAR || type == Type::USHORT || type == Type::SHORT || type == Type::INT;
+}
+
+Image<std::int32_t>::Pointer labels_of(const Image<double>& stored) {
+  const auto region = stored.GetLargestPossibleRegion();
+  const auto labels = Image<std::int32_t>::New();
+  labels->CopyInformation(&stored);
+  labels->SetRegions(region);
+  labels->Allocate();
+  GridShape shape;
+  for (int a = 0; a < 3; ++a) shape.count[a] = static_cast<int>(region.GetSize()[a]);
+  for (std::size_t i = 0; i < region.GetNumberOfPixels(); ++i)
+    labels->GetBufferPointer()[i] = label_of(stored.GetBufferPointer()[i], shape, i);
+  return labels;
+}
+
+/// Calls read<what the values are asked for as>(), so that labels which are stored as fractions are looked at first.
+template <class T, class Read>
+typename Image<T>::Pointer read_exactly(itk::IOComponentEnum stored, const Read& read) {
+  if constexpr (std::is_integral_v<T>)
+    if (!hold_labels(stored)) return labels_of(*read.template operator()<double>());
+  return read.template operator()<T>();
+}
+
 template <class T, class FileFormat>
 typename Image<T>::Pointer read_image(const std::string& file) {
   const auto format = FileFormat::New();
@@ -65,11 +94,13 @@ typename Image<T>::Pointer read_image(const std::string& file) {
   }
   if (is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
     throw std::runtime_error("it ends before its last voxel");
-  const auto reader = itk::ImageFileReader<Image<T>>::New();
-  reader->SetImageIO(format);
-  reader->SetFileName(file);
-  reader->Update();
-  return reader->GetOutput();
+  return read_exactly<T>(format->GetComponentType(), [&]<class Value>() -> typename Image<Value>::Pointer {
+    const auto reader = itk::ImageFileReader<Image<Value>>::New();
+    reader->SetImageIO(format);
+    reader->SetFileName(file);
+    reader->Update();
+    return reader->GetOutput();
+  });
 }
 
 std::vector<std::string> files_of_series(const std::string& folder, const std::string& wanted) {
@@ -89,13 +120,47 @@ std::vector<std::string> files_of_series(const std::string& folder, const std::s
                      : fmt::format("no series '{}' lies in this folder, but {}", wanted, known));
 }
 
+/// Of a slice's first pixel, as its file says.
+Eigen::Vector3d place_in_mm(const itk::MetaDataDictionary& slice, const std::string& file) {
+  std::string text;
+  itk::ExposeMetaData<std::string>(slice, "0020|0032", text);
+  Eigen::Vector3d place;
+  if (std::sscanf(text.c_str(), "%lf\\%lf\\%lf", &place[0], &place[1], &place[2]) != 3)
+    throw std::runtime_error(
+        fmt::format("its slice {} does not say where it lies (Image Position), and the spacing is not known without",
+                    std::filesystem::path(file).filename().string()));
+  return place;
+}
+
+template <class Reader>
+void check_slices(const Reader& reader, const std::vector<std::string>& files) {
+  if (files.size() < 2) return;
+  const auto& image = *reader.GetOutput();
+  SlicePlaces slices{{}, {}, std::min(image.GetSpacing()[0], image.GetSpacing()[1])};
+  for (int a = 0; a < 3; ++a) slices.normal[a] = image.GetDirection()(a, 2);
+  const auto& told = *reader.GetMetaDataDictionaryArray();
+  for (std::size_t k = 0; k < files.size(); ++k) slices.first_mm.push_back(place_in_mm(*told[k], files[k]));
+  check_even(slices);
+}
+
+itk::IOComponentEnum type_of_slice(const std::string& file) {
+  const auto format = itk::GDCMImageIO::New();
+  format->SetFileName(file);
+  format->ReadImageInformation();
+  return format->GetComponentType();
+}
+
 template <class T>
 typename Image<T>::Pointer read_series(const std::string& folder, const std::string& wanted) {
-  const auto reader = itk::ImageSeriesReader<Image<T>>::New();
-  reader->SetImageIO(itk::GDCMImageIO::New());
-  reader->SetFileNames(files_of_series(folder, wanted));
-  reader->Update();
-  return reader->GetOutput();
+  const std::vector<std::string> files = files_of_series(folder, wanted);
+  return read_exactly<T>(type_of_slice(files.front()), [&]<class Value>() -> typename Image<Value>::Pointer {
+    const auto reader = itk::ImageSeriesReader<Image<Value>>::New();
+    reader->SetImageIO(itk::GDCMImageIO::New());
+    reader->SetFileNames(files);
+    reader->Update();
+    check_slices(*reader, files);
+    return reader->GetOutput();
+  });
 }
 
 template <class T>

@@ -16,6 +16,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kVolumeOff = 0.01;  // of the voxels', above which it is warned of
+
 /// The largest of distances, and where.
 struct Largest {
   double distance = 0;
@@ -36,8 +38,8 @@ void over_triangle(const std::array<Eigen::Vector3d, 3>& corners, double step, c
 }
 
 /// How far a label's border and its part's surface, where it touches another part too, are apart.
-void tell_distance(const GridShape& shape, const std::vector<char>& inside, const TetMesh& part, Output& out,
-                   Output::Json& figures) {
+void tell_distance(const Solid& solid, const GridShape& shape, const std::vector<char>& inside, const TetMesh& part,
+                   Output& out, Output::Json& figures) {
   const Surface surface = extract_surface(part);
   const SurfaceTree tree({part.nodes, surface.triangles});
   const DistanceGrid voxels = distance_to_border(shape, inside);
@@ -57,8 +59,8 @@ void tell_distance(const GridShape& shape, const std::vector<char>& inside, cons
   out.say(
       fmt::format("    from its voxels: mean {:.3g} mm, 99 % within {:.3g}, largest {:.3g} at {}; in voxel diagonals "
                   "{:.2f}, {:.2f}, {:.2f}",
-                  1e3 * mean, 1e3 * *nearly_all, 1e3 * largest.distance, place_in_mm(largest.place), mean / diagonal,
-                  *nearly_all / diagonal, largest.distance / diagonal));
+                  1e3 * mean, 1e3 * *nearly_all, 1e3 * largest.distance, place_in_mm(solid.in_world(largest.place)),
+                  mean / diagonal, *nearly_all / diagonal, largest.distance / diagonal));
   figures.update({{"mean_distance_m", mean},
                   {"distance_of_99_percent_m", *nearly_all},
                   {"largest_distance_m", largest.distance},
@@ -73,7 +75,8 @@ Output::Json json_of(const Topology& t) {
   return {{"closed_surfaces", t.surfaces}, {"genus", t.handles}};
 }
 
-void tell_part(const LabelVoxels& voxels, int label, const TetMesh& part, double wanted, Output& out) {
+void tell_part(const Solid& solid, const LabelVoxels& voxels, int label, const TetMesh& part, double wanted,
+               Output& out) {
   const std::string& name = voxels.labels[label].name;
   const std::vector<char>& inside = voxels.inside[label];
   const double volume = measures_of(part).volume;
@@ -90,7 +93,10 @@ void tell_part(const LabelVoxels& voxels, int label, const TetMesh& part, double
                                                      {"pieces", pieces},
                                                      {"topology", json_of(of_mesh)},
                                                      {"topology_of_voxels", json_of(of_voxels.apart)}});
-  tell_distance(voxels.shape, inside, part, out, figures);
+  tell_distance(solid, voxels.shape, inside, part, out, figures);
+  if (const double off = volume / wanted - 1; std::abs(off) > kVolumeOff)
+    out.warn(fmt::format("the volume of '{}' is {:.3g} % {} than that of its voxels: ask for more nodes", name,
+                         100 * std::abs(off), off > 0 ? "more" : "less"));
   if (!of_voxels.allows(of_mesh))
     out.warn(
         fmt::format("'{}' has {}, and its voxels have {}: a wall or a gap is lost, or a hole made; ask for less "
@@ -103,7 +109,7 @@ void tell_part(const LabelVoxels& voxels, int label, const TetMesh& part, double
 void tell_label_measures(const LabelVoxels& voxels, const std::vector<int>& labels, const LabelSolid& solid,
                          const FilledSolid& filled, Output& out) {
   for (std::size_t p = 0; p < labels.size(); ++p)
-    tell_part(voxels, labels[p], part_of(filled, static_cast<int>(p) + 1), solid.volumes[p], out);
+    tell_part(solid.solid, voxels, labels[p], part_of(filled, static_cast<int>(p) + 1), solid.volumes[p], out);
 }
 
 }  // namespace palpate

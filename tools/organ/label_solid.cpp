@@ -120,12 +120,34 @@ std::vector<SurfacePoint> points_of(const Field& field, const std::vector<Eigen:
   return points;
 }
 
-/// Of the voxels as they are: smoothing closes and opens thin walls.
+/// [m] From x to the nearest voxel that is not inside, or `most`; looks at all that are so near.
+double depth_in_voxels(const GridShape& grid, const std::vector<char>& inside, const Eigen::Vector3d& x, double most) {
+  const auto voxel_at = [&](const Eigen::Vector3d& place) -> Eigen::Array3i {
+    return ((place - grid.origin).array() / grid.spacing.array()).round().cast<int>();
+  };
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(most);
+  const Eigen::Array3i low = voxel_at(x - reach).max(0);
+  const Eigen::Array3i high = voxel_at(x + reach).min(Eigen::Array3i(grid.count[0], grid.count[1], grid.count[2]) - 1);
+  double depth = most;
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i) {
+        if (inside[grid.index(i, j, k)]) continue;
+        const Eigen::Vector3d away = (x - grid.place(i, j, k)).cwiseAbs() - 0.5 * grid.spacing;
+        depth = std::min(depth, away.cwiseMax(0.0).norm());
+      }
+  return depth;
+}
+
+/// Of the voxels as they are: smoothing closes and opens thin walls. Midway between two voxels that are equally deep
+/// the grid has their depth, which is half a voxel too little: of walls of a few voxels that is much.
 ThinWall wall_of(const GridShape& grid, const std::vector<char>& inside, const std::vector<SurfacePoint>& points) {
+  const double voxel = grid.spacing.minCoeff(), few = 2 * voxel;
   const DistanceGrid sharp = distance_to_border(grid, inside);
-  return thin_wall(
-      points, [&](const Eigen::Vector3d& x, double most) { return std::min(-sharp.at(x), most); },
-      0.25 * grid.spacing.minCoeff());
+  const DepthUpTo depth = [&](const Eigen::Vector3d& x, double most) { return std::min(-sharp.at(x), most); };
+  return thin_wall(points, depth, 0.25 * voxel, [&](const Eigen::Vector3d& x, double most) {
+    return most > few ? 0 : depth_in_voxels(grid, inside, x, most);
+  });
 }
 
 /// Smoothing as wide as a wall makes holes in it: makes it a third of that at most along each axis, and says so.

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common/files/ending.hpp"
+#include "tools/organ/image_checks.hpp"
 
 namespace palpate {
 namespace {
@@ -70,6 +71,11 @@ GridShape shape_of(const Header& header) {
   return shape;
 }
 
+/// Whether not every stored value is one that is asked for: of fractions and numbers above 2^31 labels are not.
+template <class Stored, class T>
+constexpr bool kMayBeNone = std::is_integral_v<T> &&
+                            (std::is_floating_point_v<Stored> || std::is_same_v<Stored, std::uint32_t>);
+
 template <class Stored, class T>
 void take_values(gzFile in, bool swapped, Volume<T>& volume) {
   std::vector<Stored> row(volume.shape.count[0]);
@@ -82,7 +88,10 @@ void take_values(gzFile in, bool swapped, Volume<T>& volume) {
         auto* const raw = reinterpret_cast<unsigned char*>(&value);
         std::reverse(raw, raw + sizeof value);
       }
-      volume.value.push_back(static_cast<T>(value));
+      if constexpr (kMayBeNone<Stored, T>)
+        volume.value.push_back(label_of(value, volume.shape, volume.value.size()));
+      else
+        volume.value.push_back(static_cast<T>(value));
     }
   }
 }
@@ -99,7 +108,7 @@ void take_whole_numbers(gzFile in, double bits, bool negative_too, bool swapped,
   else if (bits == 16)
     negative_too ? take_values<std::int16_t>(in, swapped, volume) : take_values<std::uint16_t>(in, swapped, volume);
   else if (bits == 32)
-    take_values<std::int32_t>(in, swapped, volume);
+    negative_too ? take_values<std::int32_t>(in, swapped, volume) : take_values<std::uint32_t>(in, swapped, volume);
   else
     throw std::runtime_error(fmt::format("its values have {} bits: 8, 16 and 32 are read", bits));
 }
@@ -142,12 +151,11 @@ Volume<T> read_inr(const std::filesystem::path& file) {
   const double bits = number(header, "PIXSIZE", std::strtod(value_of(header, "PIXSIZE").c_str(), nullptr));
   if (type.ends_with("fixed"))
     take_whole_numbers(in.get(), bits, type.starts_with("signed"), swapped, volume);
-  else if (type == "float" && std::is_floating_point_v<T>)
+  else if (type == "float")
     take_fractions(in.get(), bits, swapped, volume);
   else
     throw std::runtime_error(
-        fmt::format("its values are '{}', and {} is asked for", type.substr(0, 30),
-                    std::is_floating_point_v<T> ? "fixed or float" : "fixed: labels are whole numbers"));
+        fmt::format("its TYPE is '{}': unsigned fixed, signed fixed and float are read", type.substr(0, 30)));
   return volume;
 }
 

@@ -6,6 +6,7 @@
 
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
+#include "tools/organ/idle_places.hpp"
 #include "tools/organ/surface_extent.hpp"
 #include "tools/organ/surface_file.hpp"
 #include "tools/organ/surface_repair.hpp"
@@ -48,7 +49,9 @@ void make_mesh(const SurfaceOptions& o) {
   });
   if (surface.crosses_itself) solid.measures.volumes.clear();
   out.next_mesh();
-  finish_mesh(make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh, o, out);
+  const TetMesh mesh = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh;
+  finish_mesh(mesh, o, out);
+  warn_of_idle_places(o, mesh, out.mesh().at("mean_edge_m"), out);
   out.finish();
 }
 

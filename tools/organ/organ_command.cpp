@@ -70,12 +70,17 @@ void name_parts(FilledSolid& filled, const std::vector<NamedLabel>& labels) {
   }
 }
 
+std::string joined(const std::vector<NamedLabel>& labels, const char* between) {
+  std::string names = labels[0].name;
+  for (std::size_t l = 1; l < labels.size(); ++l) names += between + labels[l].name;
+  return names;
+}
+
 /// Of several meshes each has a file and a folder of pictures of its own, with its labels' names.
 OrganOptions options_of_one(const OrganOptions& o, const std::vector<NamedLabel>& labels) {
   namespace fs = std::filesystem;
   OrganOptions own = o;
-  std::string name = labels[0].name;
-  for (std::size_t l = 1; l < labels.size(); ++l) name += "_" + labels[l].name;
+  const std::string name = joined(labels, "_");
   const fs::path file(o.output);
   own.output = file.parent_path() / fmt::format("{}_{}{}", file.stem().string(), name, file.extension().string());
   if (!o.preview.empty()) own.preview = fs::path(o.preview) / name;
@@ -129,19 +134,32 @@ void make_visual(const LabelVolume& volume, const std::vector<NamedLabel>& label
   out.mesh()["visual"] = {{"file", o.visual}, {"triangles", mesh.triangles()}, {"materials", mesh.parts.size()}};
 }
 
-void make_body(const LabelVolume& volume, const LabelVoxels& voxels, const std::vector<int>& labels,
-               const LabelSolid& solid, const MeshFineness& fineness, const OrganOptions& o, Output& out) {
-  FilledSolid filled = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress);
-  const std::vector<NamedLabel> named = named_labels(voxels, labels);
-  name_parts(filled, named);
+/// A mesh that is made and not yet written.
+struct MadeBody {
+  FilledSolid filled;  ///< in the image's frame
+  TetMesh mesh;        ///< in the world's, with its groups
+};
+
+MadeBody make_body(const LabelVolume& volume, const std::vector<NamedLabel>& labels, const LabelSolid& solid,
+                   const MeshFineness& fineness, const OrganOptions& o) {
+  MadeBody made{make_organ_mesh(solid.solid, solid.measures, fineness, say_progress), {}};
+  name_parts(made.filled, labels);
+  made.mesh = made.filled.mesh;
+  for (Eigen::Vector3d& x : made.mesh.nodes) x = volume.in_world(x);
+  add_groups(made.mesh, o);
+  return made;
+}
+
+void write_body(const LabelVolume& volume, const LabelVoxels& voxels, const Together& body, const MadeBody& made,
+                const OrganOptions& o, Output& out) {
+  const std::vector<NamedLabel> named = named_labels(voxels, body.labels);
   if (!o.preview.empty()) {
     say_progress("drawing slices and surface");
-    write_organ_pictures(volume, named, solid.solid, filled, o.preview);
+    write_organ_pictures(volume, named, body.solid.solid, made.filled, o.preview);
   }
-  tell_label_measures(voxels, labels, solid, filled, out);
-  if (!o.visual.empty()) make_visual(volume, named, solid, o, out);
-  for (Eigen::Vector3d& x : filled.mesh.nodes) x = volume.in_world(x);
-  finish_mesh(std::move(filled.mesh), o, out);
+  tell_label_measures(voxels, body.labels, body.solid, made.filled, out);
+  if (!o.visual.empty()) make_visual(volume, named, body.solid, o, out);
+  write_mesh(made.mesh, o, out);
 }
 
 /// A place in the world's frame, in the image's; of a box that is turned the box around it.
@@ -178,10 +196,13 @@ LabelVolume read(const OrganOptions& o, Output& out) {
 }
 
 /// What is found is in the image's frame.
-std::vector<Together> bodies_of(const OrganOptions& o, const LabelVoxels& voxels, std::vector<Finding>& findings) {
+std::vector<Together> bodies_of(const OrganOptions& o, const LabelVolume& volume, const LabelVoxels& voxels,
+                                std::vector<Finding>& findings) {
   std::vector<Together> bodies;
-  for (const std::vector<int>& labels : meshes_of(voxels, 1e-3 * o.gap_mm))
+  for (const std::vector<int>& labels : meshes_of(voxels, 1e-3 * o.gap_mm)) {
     bodies.push_back({labels, solid_of(voxels, labels, {o.smoothing, 1e-3 * o.gap_mm}, findings)});
+    bodies.back().solid.solid.in_world = [&volume](const Eigen::Vector3d& x) { return volume.in_world(x); };
+  }
   return bodies;
 }
 
@@ -189,6 +210,23 @@ void tell_in_world(std::vector<Finding> findings, const LabelVolume& volume, con
   for (Finding& finding : findings)
     for (Eigen::Vector3d& x : finding.places) x = volume.in_world(x);
   tell_findings(findings, o.report, out);
+}
+
+/// Of all of them before any is written: where one fails there is none.
+std::vector<MadeBody> make_bodies(const LabelVolume& volume, const LabelVoxels& voxels,
+                                  const std::vector<Together>& bodies, const OrganOptions& o, Output& out) {
+  double area = 0;
+  for (const Together& body : bodies) area += body.solid.measures.area;
+  std::vector<MadeBody> made;
+  for (const auto& [together, solid] : bodies) {
+    const std::vector<NamedLabel> labels = named_labels(voxels, together);
+    const auto make = [&] {
+      const MeshFineness fineness = fineness_for(volume, solid, o, solid.measures.area / area, out);
+      return make_body(volume, labels, solid, fineness, o);
+    };
+    made.push_back(bodies.size() == 1 ? make() : of_file(fmt::format("'{}'", joined(labels, "', '")), make));
+  }
+  return made;
 }
 
 void make_organ(const OrganOptions& o) {
@@ -203,16 +241,14 @@ void make_organ(const OrganOptions& o) {
   tell_refused_too([&] { tell_in_world(findings, volume, o, out); },
                    [&] {
                      voxels = of_file(o.volume, [&] { return voxels_of(volume, labels, findings); });
-                     bodies = bodies_of(o, voxels, findings);
+                     bodies = bodies_of(o, volume, voxels, findings);
                    });
   say_apart(volume, voxels, bodies, out);
-  double area = 0;
-  for (const Together& body : bodies) area += body.solid.measures.area;
-  for (const auto& [together, solid] : bodies) {
+  const std::vector<MadeBody> made = make_bodies(volume, voxels, bodies, o, out);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     out.next_mesh();
-    const OrganOptions own = bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, together));
-    const MeshFineness fineness = fineness_for(volume, solid, o, solid.measures.area / area, out);
-    make_body(volume, voxels, together, solid, fineness, own, out);
+    const OrganOptions own = bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, bodies[b].labels));
+    write_body(volume, voxels, bodies[b], made[b], own, out);
   }
   out.finish();
 }

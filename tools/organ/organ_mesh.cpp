@@ -10,13 +10,13 @@
 #include <stdexcept>
 
 #include "common/mesh/measures.hpp"
-#include "common/mesh/normals.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
 #include "tools/organ/angles_around.hpp"
 #include "tools/organ/better_angles.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/mesh_pieces.hpp"
+#include "tools/organ/part_volumes.hpp"
 
 namespace palpate {
 namespace {
@@ -24,8 +24,7 @@ namespace {
 constexpr double kNodesOfArea = 1.5;  // times the edge squared over the area of the surface
 constexpr int kTries = 4;             // for a number of nodes
 constexpr double kNearEnough = 0.08;  // of the number of nodes
-constexpr double kSameVolume = 1e-4;
-constexpr double kWorstAngle = 12;  // [degrees] that every mesh has
+constexpr double kWorstAngle = 12;    // [degrees] that every mesh has
 constexpr double kKeptAngle =
     14;  // [degrees] to which moving a node to the surface may lower one, and worse ones are bettered
 constexpr int kBetterings = 3;         // after the surface is exact
@@ -79,51 +78,8 @@ void project(const Solid& solid, TetMesh& mesh) {
   }
 }
 
-std::vector<double> volumes_of(const FilledSolid& filled, std::size_t parts) {
-  std::vector<double> volumes(parts, 0);
-  for (std::size_t t = 0; t < filled.part.size(); ++t)
-    volumes[filled.part[t] - 1] += tet_volume(filled.mesh, filled.mesh.tetrahedra[t]);
-  return volumes;
-}
-
-/// Adds to each part's nodes on the outer surface what brings its volume nearer, more where triangles are large, since
-/// those have lost it; true once all are right.
-bool step_to_volumes(const Surface& surface, const std::vector<double>& volumes, FilledSolid& filled) {
-  TetMesh& mesh = filled.mesh;
-  std::vector<double> missing = volumes_of(filled, volumes.size()), squares(volumes.size(), 0);
-  bool right = true;
-  for (std::size_t p = 0; p < volumes.size(); ++p) {
-    missing[p] = volumes[p] - missing[p];
-    right = right && std::abs(missing[p]) < kSameVolume * volumes[p];
-  }
-  if (right) return true;
-  std::vector<Eigen::Vector3d> normals(mesh.nodes.size());
-  vertex_normals(mesh.nodes, surface.triangles, normals);
-  std::vector<double> of_node(mesh.nodes.size(), 0), share(mesh.nodes.size(), 0);
-  std::vector<double> area;
-  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    const auto& [a, b, c] = surface.triangles[i];
-    area.push_back(0.5 * (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]).norm());
-    squares[filled.part[surface.tetrahedra[i]] - 1] += area[i] * area[i];
-  }
-  for (std::size_t i = 0; i < surface.triangles.size(); ++i)
-    for (const int n : surface.triangles[i]) {
-      const int part = filled.part[surface.tetrahedra[i]] - 1;
-      of_node[n] += missing[part] / squares[part] * area[i], share[n] += 1;
-    }
-  for (const int n : surface.nodes) mesh.nodes[n] += of_node[n] / share[n] * normals[n];
-  return false;
-}
-
-/// Chords of a curved surface lose volume: its nodes are moved along their normals until it is right.
-void match_volumes(const std::vector<double>& volumes, FilledSolid& filled) {
-  constexpr int kSteps = 8;
-  const Surface surface = extract_surface(filled.mesh);
-  for (int i = 0; i < kSteps && !step_to_volumes(surface, volumes, filled); ++i) continue;
-}
-
 /// Walls and necks that the edges are too long for are lost; nothing that comes later would tell.
-void check_complete(const SolidMeasures& measures, const FilledSolid& filled) {
+void check_complete(const Solid& solid, const SolidMeasures& measures, const FilledSolid& filled) {
   const std::vector<double> volumes = volumes_of(filled, filled.part.empty() ? 0 : std::ranges::max(filled.part));
   for (std::size_t p = 0; p < std::min(volumes.size(), measures.volumes.size()); ++p)
     if (volumes[p] < (1 - kMissing) * measures.volumes[p])
@@ -131,16 +87,17 @@ void check_complete(const SolidMeasures& measures, const FilledSolid& filled) {
           fmt::format("{:.0f} % of its volume were lost", 100 * (1 - volumes[p] / measures.volumes[p])));
   const std::vector<MeshPiece> pieces = pieces_of(filled.mesh);
   if (pieces.size() > 1)
-    throw std::runtime_error(fmt::format(
-        "the mesh falls into {} pieces, one of {:.3g} ml at {} and one of {:.3g} ml at {}", pieces.size(),
-        1e6 * pieces[0].volume, place_in_mm(pieces[0].place), 1e6 * pieces[1].volume, place_in_mm(pieces[1].place)));
+    throw std::runtime_error(
+        fmt::format("the mesh falls into {} pieces, one of {:.3g} ml at {} and one of {:.3g} ml at {}", pieces.size(),
+                    1e6 * pieces[0].volume, place_in_mm(solid.in_world(pieces[0].place)), 1e6 * pieces[1].volume,
+                    place_in_mm(solid.in_world(pieces[1].place))));
 }
 
 std::string advice(const Solid& solid, const SolidMeasures& measures, double edge) {
   const ThinWall& wall = solid.wall;
   if (edge <= wall.thickness) return "ask for more nodes or a shorter edge";
   return fmt::format("its walls are {:.3g} mm thick at {}: ask for --edge {:.2g}, which is about {:.2g} nodes",
-                     1e3 * wall.thickness, place_in_mm(wall.place), wall.thickness,
+                     1e3 * wall.thickness, place_in_mm(solid.in_world(wall.place)), wall.thickness,
                      kNodesOfArea * measures.area / (wall.thickness * wall.thickness));
 }
 
@@ -179,7 +136,7 @@ void check_deviation(const Solid& solid, double deviation) {
 
 FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   FilledSolid filled = fill_solid(solid, sizes);
-  check_complete(measures, filled);
+  check_complete(solid, measures, filled);
   project(solid, filled.mesh);
   for (int i = 0; i < kBetterings; ++i) {
     better_angles(kKeptAngle, filled);

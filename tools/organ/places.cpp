@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/describe/printable.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
@@ -58,8 +59,18 @@ std::optional<Inside> parse_place(const std::string& place, const TetMesh& mesh)
   return {};
 }
 
+/// Mesh files have names in quotes.
+void check_name(const std::string& text, std::string_view name) {
+  const auto is_bad = [](unsigned char c) { return c == '"' || c == '\'' || c == '\\' || c < 32 || c == 127; };
+  if (std::ranges::any_of(name, is_bad))
+    throw std::runtime_error(
+        fmt::format("--group {}: a name has no quotes, backslashes or control characters, which mesh files cannot hold",
+                    printable(text)));
+}
+
 std::pair<std::string, Inside> parse_group(const std::string& text, const TetMesh& mesh) {
   const std::size_t equals = text.find('=');
+  check_name(text, std::string_view(text).substr(0, equals));
   if (equals != std::string::npos && equals > 0)
     if (const auto inside = parse_place(text.substr(equals + 1), mesh)) return {text.substr(0, equals), *inside};
   throw std::runtime_error(

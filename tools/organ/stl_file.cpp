@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/mesh/file_cursor.hpp"
 
 namespace palpate {
 namespace {
+
+char small_letter(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 constexpr std::size_t kHeader = 84, kOfTriangle = 50;
 
@@ -43,10 +48,24 @@ ReadSurface read_binary(std::string_view bytes) {
   return surface;
 }
 
+/// In small letters: keywords may be written in either.
+std::string keyword(FileCursor& cursor) {
+  std::string word(cursor.word());
+  std::ranges::transform(word, word.begin(), small_letter);
+  return word;
+}
+
+/// Where a word stands, in letters of either kind.
+std::size_t find_word(std::string_view bytes, std::string_view word) {
+  const auto same = [](char a, char b) { return small_letter(a) == b; };
+  const auto found = std::search(bytes.begin(), bytes.end(), word.begin(), word.end(), same);
+  return found == bytes.end() ? std::string_view::npos : static_cast<std::size_t>(found - bytes.begin());
+}
+
 /// Goes behind the next "loop"; false where the file ends before one. Names may be anything.
 bool find_loop(FileCursor& cursor) {
   while (cursor.left() > 0) {
-    const std::string_view word = cursor.word();
+    const std::string word = keyword(cursor);
     if (word == "loop") return true;
     if (word == "solid" || word == "endsolid") cursor.rest_of_line();
   }
@@ -56,10 +75,10 @@ bool find_loop(FileCursor& cursor) {
 std::array<Eigen::Vector3d, 3> take_corners(FileCursor& cursor) {
   std::array<Eigen::Vector3d, 3> corners;
   for (Eigen::Vector3d& corner : corners) {
-    if (cursor.word() != "vertex") throw std::runtime_error("it has not three corners");
+    if (keyword(cursor) != "vertex") throw std::runtime_error("it has not three corners");
     for (int i = 0; i < 3; ++i) corner[i] = cursor.text_number<double>();
   }
-  if (cursor.word() != "endloop") throw std::runtime_error("it has more than three corners, or no end");
+  if (keyword(cursor) != "endloop") throw std::runtime_error("it has more than three corners, or no end");
   return corners;
 }
 
@@ -78,8 +97,9 @@ ReadSurface read_text(std::string_view bytes) {
 
 ReadSurface read_stl(std::string_view bytes) {
   const bool exact = bytes.size() >= kHeader && bytes.size() == kHeader + kOfTriangle * announced(bytes);
-  const bool text = bytes.substr(0, bytes.find("facet")).find('\0') == std::string_view::npos &&
-                    bytes.find("facet") != std::string_view::npos && bytes.find("vertex") != std::string_view::npos;
+  const std::size_t facet = find_word(bytes, "facet");
+  const bool text = facet != std::string_view::npos && bytes.substr(0, facet).find('\0') == std::string_view::npos &&
+                    find_word(bytes.substr(facet), "vertex") != std::string_view::npos;
   if (!exact && text) return read_text(bytes);
   if (bytes.size() < kHeader + kOfTriangle) throw std::runtime_error("it is too short for an STL file with a triangle");
   return read_binary(bytes);

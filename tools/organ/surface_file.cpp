@@ -2,20 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <limits>
-#include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "common/files/ending.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "tools/organ/obj_polygons.hpp"
+#include "tools/organ/off_file.hpp"
+#include "tools/organ/ply_file.hpp"
 #include "tools/organ/polydata_file.hpp"
 #include "tools/organ/stl_file.hpp"
 #include "tools/organ/surface_extent.hpp"
-#include "tools/organ/surface_library.hpp"
 #include "tools/organ/vtp_file.hpp"
 
 namespace palpate {
@@ -36,65 +34,35 @@ std::string text_of(const fs::path& file) {
   return text;
 }
 
-/// Fans of triangles.
 ReadSurface triangles_of(const Polygons& read) {
   ReadSurface surface{{read.points, {}}, {}};
   std::size_t larger = 0;
   for (const auto& polygon : read.polygons) {
     larger += polygon.size() > 3;
-    for (std::size_t c = 2; c < polygon.size(); ++c)
-      surface.mesh.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
+    const auto triangles = cut_polygon(read.points, polygon);
+    surface.mesh.triangles.insert(surface.mesh.triangles.end(), triangles.begin(), triangles.end());
   }
   if (larger > 0)
     surface.findings.push_back({fmt::format("{} polygons of more than three sides", larger), "cut into triangles", {}});
   return surface;
 }
 
-/// Lines of an OBJ file that say nothing of polygons, which the library passes over or refuses.
-std::vector<Finding> strange_lines(const std::string& obj) {
-  static const std::set<std::string, std::less<>> known{"v", "vn", "vt", "vp",     "f",     "o",
-                                                        "g", "s",  "mg", "mtllib", "usemtl"};
-  std::istringstream lines(obj);
-  std::string line, word, first;
-  int count = 0;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    if (!(std::istringstream(line) >> word) || word[0] == '#' || known.contains(word)) continue;
-    if (count++ == 0) first = fmt::format("{}, '{:.20}'", number, word);
-  }
-  if (count == 0) return {};
-  return {{fmt::format("lines that say nothing of polygons ({}), the first line {}", count, first), "passed over", {}}};
-}
-
-/// Names of groups of an OBJ file's triangles, which the library passes over.
-std::vector<Finding> group_names(const std::string& obj) {
-  std::istringstream lines(obj);
-  std::set<std::string> names;
-  std::string line, word, name, first;
-  while (std::getline(lines, line)) {
-    std::istringstream words(line);
-    if (!(words >> word) || word != "g" || !(words >> name) || !names.insert(name).second) continue;
-    if (names.size() == 1) first = name;
-  }
-  if (names.empty()) return {};
-  return {{fmt::format("groups of triangles ({}), the first '{:.40}'", names.size(), first),
-           "not kept: --group names nodes by their place",
-           {}}};
+ReadSurface read_obj(std::string_view bytes) {
+  std::vector<Finding> findings;
+  ReadSurface surface = triangles_of(read_obj_polygons(bytes, findings));
+  surface.findings.insert(surface.findings.end(), findings.begin(), findings.end());
+  return surface;
 }
 
 ReadSurface read(const fs::path& file) {
   if (has_ending(file, ".stl")) return read_stl(text_of(file));
   if (has_ending(file, ".vtp")) return triangles_of(read_vtp(text_of(file)));
-  if (has_ending(file, ".vtk"))
-    if (const std::string text = text_of(file); is_polydata(text)) return triangles_of(read_polydata(text));
-  if (has_ending(file, ".vtk")) return {load_triangle_mesh(file, 1), {}};
-  if (!has_ending(file, ".obj") && !has_ending(file, ".ply") && !has_ending(file, ".off"))
-    refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");
-  const std::string text = text_of(file);
-  ReadSurface surface = triangles_of(read_with_surface_library(file));
-  if (has_ending(file, ".obj"))
-    for (const auto& found : {strange_lines(text), group_names(text)})
-      surface.findings.insert(surface.findings.end(), found.begin(), found.end());
-  return surface;
+  if (has_ending(file, ".obj")) return read_obj(text_of(file));
+  if (has_ending(file, ".ply")) return triangles_of(read_ply(text_of(file)));
+  if (has_ending(file, ".off")) return triangles_of(read_off(text_of(file)));
+  if (!has_ending(file, ".vtk")) refuse(file, "a surface is read from .stl, .obj, .ply, .off, .vtk and .vtp files");
+  if (const std::string text = text_of(file); is_polydata(text)) return triangles_of(read_polydata(text));
+  return {load_triangle_mesh(file, 1), {}};
 }
 
 }  // namespace

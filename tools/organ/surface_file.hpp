@@ -14,7 +14,7 @@ struct ReadSurface {
 };
 
 /// Reads STL (text or binary, whatever its first line or its count say), OBJ, PLY, OFF, legacy VTK and VTP. Polygons
-/// become fans of triangles. `scale` [m per unit of the file].
+/// are cut into triangles. `scale` [m per unit of the file].
 /// Throws std::runtime_error("FILE: reason") where it is none of these, holds no triangle or a number that is none, or
 /// is of no body's size (surface_extent.hpp).
 ReadSurface read_surface(const std::filesystem::path& file, double scale);

@@ -4,23 +4,16 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/IO/OBJ.h>
-#include <CGAL/IO/OFF.h>
-#include <CGAL/IO/PLY.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
-#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 
-#include "common/files/ending.hpp"
-#include "common/mesh/child.hpp"
 #include "tools/organ/plain_words.hpp"
 
 namespace palpate {
@@ -44,29 +37,6 @@ std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& places) {
   return points;
 }
 
-std::string read(const std::filesystem::path& file) {
-  std::vector<Point> points;
-  std::vector<std::vector<std::size_t>> polygons;
-  const bool is_obj = has_ending(file, ".obj"), is_ply = has_ending(file, ".ply");
-  std::ifstream in(file, std::ios::binary);
-  const bool good = is_obj   ? CGAL::IO::read_OBJ(in, points, polygons)
-                    : is_ply ? CGAL::IO::read_PLY(in, points, polygons)
-                             : CGAL::IO::read_OFF(in, points, polygons);
-  if (!good)
-    throw std::runtime_error(fmt::format("it cannot be read as {}: it is damaged or cut short", is_obj   ? "OBJ"
-                                                                                                : is_ply ? "PLY"
-                                                                                                         : "OFF"));
-  std::string bytes;
-  std::vector<Eigen::Vector3d> places;
-  for (const Point& p : points) places.push_back(vector_of(p));
-  put(bytes, places.size());
-  for (const Eigen::Vector3d& x : places)
-    for (int i = 0; i < 3; ++i) put(bytes, x[i]);
-  put(bytes, polygons.size());
-  for (const auto& polygon : polygons) put_all(bytes, std::vector<std::uint64_t>(polygon.begin(), polygon.end()));
-  return bytes;
-}
-
 /// +1, -1: the ray from x along `direction` goes through the triangle with or against its normal; 0: it misses; 2: it
 /// meets an edge, or nearly.
 int crossing(const Kernel::Triangle_3& t, const Eigen::Vector3d& x, const Eigen::Vector3d& direction) {
@@ -80,24 +50,27 @@ int crossing(const Kernel::Triangle_3& t, const Eigen::Vector3d& x, const Eigen:
   return along <= 0 ? 0 : u > 0 ? 1 : -1;
 }
 
-}  // namespace
-
-Polygons read_with_surface_library(const std::filesystem::path& file) {
-  const std::string answer = run_in_child(
-      [&] { return in_plain_words("it cannot be read: it is damaged or cut short", [&] { return read(file); }); });
-  Polygons found;
-  std::size_t at = 0;
-  found.points.resize(take<std::size_t>(answer, at));
-  for (Eigen::Vector3d& x : found.points)
-    for (int i = 0; i < 3; ++i) x[i] = take<double>(answer, at);
-  found.polygons.resize(take<std::size_t>(answer, at));
-  for (auto& polygon : found.polygons)
-    for (const std::uint64_t n : take_all<std::uint64_t>(answer, at)) {
-      if (n >= found.points.size()) throw std::runtime_error("a polygon names a point that is not there");
-      polygon.push_back(static_cast<int>(n));
+/// Whether two triangles do no more than touch in a corner or an edge that they have at the same places.
+bool touch_alone(const TriangleMesh& mesh, int first, int second) {
+  std::array<int, 3> a = mesh.triangles[first], b = mesh.triangles[second];
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = same; j < 3; ++j) {
+      if (mesh.nodes[a[i]] != mesh.nodes[b[j]]) continue;
+      std::swap(a[same], a[i]);
+      std::swap(b[same++], b[j]);
+      break;
     }
-  return found;
+  if (same != 1) return same == 2;
+  const auto corner = [&](int n) { return point_of(mesh.nodes[n]); };
+  const auto meets = [&](const std::array<int, 3>& edge, const std::array<int, 3>& t) {
+    return CGAL::do_intersect(Kernel::Segment_3(corner(edge[1]), corner(edge[2])),
+                              Kernel::Triangle_3(corner(t[0]), corner(t[1]), corner(t[2])));
+  };
+  return !meets(a, b) && !meets(b, a);
 }
+
+}  // namespace
 
 void orient_triangles(TriangleMesh& mesh) {
   std::vector<Point> points = points_of(mesh.nodes);
@@ -129,7 +102,9 @@ std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh) {
     return processing::self_intersections(surface, std::back_inserter(faces));
   });
   std::vector<std::pair<int, int>> pairs;
-  for (const auto& [a, b] : faces) pairs.emplace_back(std::minmax(static_cast<int>(a), static_cast<int>(b)));
+  for (const auto& [a, b] : faces)
+    if (!touch_alone(mesh, static_cast<int>(a), static_cast<int>(b)))
+      pairs.emplace_back(std::minmax(static_cast<int>(a), static_cast<int>(b)));
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -9,20 +8,6 @@
 /// What CGAL does with surfaces, behind plain types: its headers take a minute to compile.
 namespace palpate {
 
-struct Polygons {
-  std::vector<Eigen::Vector3d> points;
-  std::vector<std::vector<int>> polygons;  ///< indices into points
-
-  /// Adds the triangles of a strip: each of its corners makes one with the two before it, every other one turned.
-  void add_strip(const std::vector<int>& strip) {
-    for (std::size_t c = 2; c < strip.size(); ++c)
-      polygons.push_back({strip[c - 2], strip[c - 1 + c % 2], strip[c - c % 2]});
-  }
-};
-
-/// Reads OBJ, PLY and OFF in a child process (common/mesh/child.hpp). Throws std::runtime_error(reason).
-Polygons read_with_surface_library(const std::filesystem::path& file);
-
 /// Turns triangles so that neighbours agree; where three or more meet in an edge, or two parts in a node, the nodes
 /// there are doubled and the copies put behind the others. Their number stays.
 void orient_triangles(TriangleMesh& mesh);
@@ -30,7 +15,8 @@ void orient_triangles(TriangleMesh& mesh);
 /// Triangles that close a loop of points, as indices into it, wound as the loop is. Empty: it cannot be closed.
 std::vector<std::array<int, 3>> close_loop(const std::vector<Eigen::Vector3d>& loop);
 
-/// Pairs of triangles that cross one another, of a surface whose edges have two triangles at most.
+/// Pairs of triangles that cross one another, of a surface whose edges have two triangles at most; what merely touches
+/// in corners or an edge at the same places does not cross.
 std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh);
 
 /// A closed, oriented surface that is asked again and again.

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "tools/organ/crowded_edges.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/surface_shells.hpp"
 
@@ -231,6 +232,7 @@ RepairedSurface repair_surface(TriangleMesh mesh, double max_hole, std::vector<F
   if (mesh.triangles.empty()) throw std::runtime_error("no triangle has an area");
   note_needles(mesh, findings);
   note_crowded_edges(mesh, findings);
+  part_crowded_edges(mesh);
   orient(mesh, findings);
   leave_open_shells_out(mesh, max_hole, findings);
   close_holes(mesh, max_hole, findings);

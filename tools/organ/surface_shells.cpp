@@ -16,6 +16,8 @@ namespace {
 
 using Triangle = std::array<int, 3>;
 
+constexpr double kOnShell = 1e-7;  // of a shell's diagonal: what is that near to it lies on it
+
 struct EdgeUse {
   std::array<int, 2> edge;  ///< ascending
   int triangle;
@@ -86,25 +88,76 @@ std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
   return parts;
 }
 
-Finding shell_found(const std::string& what, const TriangleMesh& part, const char* done) {
+Finding shell_found(const char* what, const char* kind, const TriangleMesh& part, const char* done) {
   return {fmt::format("a {} of {} triangles and {:.3g} ml", what, part.triangles.size(),
                       1e6 * std::abs(enclosed_volume(part))),
           done,
           {part.nodes[0]},
-          what + "s"};
+          kind};
 }
 
-/// Adds a closed shell to what is kept, or says why not.
-void place_shell(TriangleMesh part, const SurfaceTree& largest, TriangleMesh& kept, std::vector<Finding>& findings) {
-  const auto inside = std::ranges::count_if(part.nodes, [&](const auto& x) { return largest.winding(x) != 0; });
+/// A closed shell that is asked what lies in it.
+class Enclosure {
+ public:
+  explicit Enclosure(const TriangleMesh& shell) : tree_(shell), on_it_(kOnShell * diagonal(shell)) {
+    for (const Eigen::Vector3d& x : shell.nodes) box_.extend(x);
+  }
+
+  /// Places of another shell; those on this one say nothing, since shells may touch.
+  struct Sides {
+    int inside = 0, outside = 0;
+  };
+  Sides sides_of(const TriangleMesh& part) const {
+    Sides sides;
+    for (const Eigen::Vector3d& x : part.nodes) add(x, sides);
+    if (sides.inside + sides.outside > 0) return sides;
+    for (const auto& [a, b, c] : part.triangles) add((part.nodes[a] + part.nodes[b] + part.nodes[c]) / 3, sides);
+    return sides;
+  }
+  bool holds(const TriangleMesh& part) const {
+    if (!std::ranges::all_of(part.nodes, [&](const auto& x) { return box_.exteriorDistance(x) <= on_it_; }))
+      return false;
+    const Sides sides = sides_of(part);
+    return sides.inside > 0 && sides.outside == 0;
+  }
+
+ private:
+  void add(const Eigen::Vector3d& x, Sides& sides) const {
+    if (tree_.distance(x, 2 * on_it_) <= on_it_) return;
+    ++(tree_.winding(x) != 0 ? sides.inside : sides.outside);
+  }
+
+  SurfaceTree tree_;
+  Eigen::AlignedBox3d box_;
+  double on_it_;  // [m]
+};
+
+/// Adds a closed shell to what is kept, or says why not. `inner`: those inside the largest, larger than this one.
+void place_shell(TriangleMesh part, const Enclosure& largest, std::vector<Enclosure>& inner, TriangleMesh& kept,
+                 std::vector<Finding>& findings) {
+  const auto [inside, outside] = largest.sides_of(part);
   if (inside == 0) {
-    findings.push_back(shell_found("stray shell", part, "left out"));
+    findings.push_back(shell_found("stray shell", "stray shells", part, "left out"));
     return;
   }
-  const bool cavity = inside == static_cast<std::ptrdiff_t>(part.nodes.size());
-  findings.push_back(cavity ? shell_found("shell inside the largest", part, "taken for a cavity")
-                            : shell_found("shell that crosses the largest", part, "joined to it"));
-  if ((enclosed_volume(part) < 0) != cavity) turn(part);
+  if (outside > 0) {
+    findings.push_back(
+        shell_found("shell that crosses the largest", "shells that cross the largest", part, "joined to it"));
+    if (enclosed_volume(part) < 0) turn(part);
+    append(kept, part);
+    return;
+  }
+  const auto around = std::ranges::count_if(inner, [&](const Enclosure& shell) { return shell.holds(part); });
+  inner.emplace_back(part);
+  if (around > 0) {  // what is in a cavity hangs on nothing, and a hole in it goes with it
+    findings.push_back(
+        around % 2 == 1
+            ? shell_found("loose island, a shell within a cavity,", "loose islands within cavities", part, "left out")
+            : shell_found("cavity in a loose island", "cavities in loose islands", part, "left out with it"));
+    return;
+  }
+  findings.push_back(shell_found("shell inside the largest", "shells inside the largest", part, "taken for a cavity"));
+  if (enclosed_volume(part) > 0) turn(part);
   append(kept, part);
 }
 
@@ -198,8 +251,9 @@ void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::ranges::stable_sort(parts, std::ranges::greater{}, [](const auto& p) { return std::abs(enclosed_volume(p)); });
   TriangleMesh kept = parts[0];
   turn_outward(kept, findings);
-  const SurfaceTree largest(kept);
-  for (std::size_t p = 1; p < parts.size(); ++p) place_shell(parts[p], largest, kept, findings);
+  const Enclosure largest(kept);
+  std::vector<Enclosure> inner;
+  for (std::size_t p = 1; p < parts.size(); ++p) place_shell(parts[p], largest, inner, kept, findings);
   mesh = kept;
 }
 

@@ -25,7 +25,8 @@ double enclosed_volume(const TriangleMesh& mesh);
 void leave_open_shells_out(TriangleMesh& mesh, double max_hole, std::vector<Finding>& findings);
 
 /// Of closed shells keeps the one that encloses most, its normals outward, with the cavities in it and what crosses it;
-/// the others are noted, and that it was inside out.
+/// the others are noted, and that it was inside out. Which shell lies in which says what it is, however it is wound:
+/// one inside the largest alone is a cavity, one within a cavity a loose island, which is left out with what is in it.
 void keep_largest_shell(TriangleMesh& mesh, std::vector<Finding>& findings);
 
 }  // namespace palpate

@@ -21,7 +21,9 @@ using DepthUpTo = std::function<double(const Eigen::Vector3d& x, double most)>;
 
 /// How thick the thinnest twentieth of a surface's points find the body, going inward until they are less than `near`
 /// [m] below the surface. Infinite where few points face a surface nearly
-/// parallel to theirs: edges and tips are no walls. Needs a point.
-ThinWall thin_wall(const std::vector<SurfacePoint>& points, const DepthUpTo& depth, double near);
+/// parallel to theirs: edges and tips are no walls. `exact`: asked too where `depth` may be too little; may be absent.
+/// Needs a point.
+ThinWall thin_wall(const std::vector<SurfacePoint>& points, const DepthUpTo& depth, double near,
+                   const DepthUpTo& exact = {});
 
 }  // namespace palpate

@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "tools/organ/surface_library.hpp"
+#include "tools/organ/polygons.hpp"
 
 namespace palpate {
 
