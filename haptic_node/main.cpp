@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/bus/domain_claim.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/log/log.hpp"
 #include "common/node/handling_summary.hpp"
@@ -27,7 +28,9 @@ void run(const NodeOptions& o, bool hands) {
   std::vector<std::unique_ptr<Device>> devices = make_devices(scene.tools, scene.rates.haptic_hz, hands);
 
   const std::uint64_t run_id = new_run();
-  const std::unique_ptr<Bus> bus = make_dds_bus(bus_settings(scene, o, "haptic"));
+  const BusSettings settings = bus_settings(scene, o, "haptic");
+  const DomainClaim domain = DomainClaim::of_haptic_node(settings.domain);
+  const std::unique_ptr<Bus> bus = make_dds_bus(settings);
   Presence presence(*bus, "haptic", run_id, loaded.scene_hash, loaded.archive_hash);
   std::optional<TopologyMemory> topology;
   if (haptic.has_moving_tissue()) topology.emplace(*bus, presence, loaded.archives);

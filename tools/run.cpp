@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "common/bus/domain_claim.hpp"
 #include "common/cli/progress.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -13,7 +14,6 @@
 #include "common/scene/moved_files.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "common/tool/trajectory.hpp"
-#include "tools/domain_claim.hpp"
 #include "tools/guard_summary.hpp"
 #include "tools/node_plan.hpp"
 #include "tools/run_nodes.hpp"
@@ -78,7 +78,7 @@ DomainClaim claim_domain(const Scene& scene, const RunOptions& o) {
   if (!o.domain.empty() && o.domain != "auto") return DomainClaim(parse_domain(o.domain));
   DomainClaim claim = DomainClaim::first_free(scene.network.domain);
   if (claim.domain() != scene.network.domain)
-    fmt::print(stderr, "domain {} is another run's on this host; this one takes domain {}\n", scene.network.domain,
+    fmt::print(stderr, "domain {} is another's on this host; this one takes domain {}\n", scene.network.domain,
                claim.domain());
   return claim;
 }

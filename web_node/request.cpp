@@ -37,7 +37,11 @@ void Request::read() {
   stream_.expires_after(std::chrono::seconds(10));
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
     if (!error) return self->answer();
-    if (error != http::error::end_of_stream && error != beast::error::timeout) ++self->host_.counts().refused;
+    if (error == http::error::end_of_stream || error == beast::error::timeout) return;
+    if (error == http::error::unexpected_body) return self->refuse(http::status::method_not_allowed, "GET alone\n");
+    if (error.category() == make_error_code(http::error::bad_version).category())
+      return self->refuse(http::status::bad_request, "no request of HTTP/1.1\n");
+    ++self->host_.counts().refused;
   });
 }
 

@@ -79,7 +79,8 @@ TEST(ToolsRun, WhatCannotBeKeptIsSaidBeforeTheRun) {
 
 TEST(ToolsRun, AQuietRunSaysItsResultsAlone) {
   const LoopbackScene scene("quiet", kLinear);
-  const ProgramResult said = run_program(program("palpate") + " run " + scene.scene() + " --seconds 0.3 --quiet");
+  const ProgramResult said = run_program(fmt::format("{} run {} --domain {} --seconds 0.3 --quiet", program("palpate"),
+                                                     scene.scene(), testing::own_domain()));
   EXPECT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(said.err.find("haptic loop at"), std::string::npos) << said.err;
   EXPECT_TRUE(said.out.starts_with("haptic ")) << said.out;

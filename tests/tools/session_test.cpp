@@ -206,8 +206,7 @@ TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
   scene.replace("[render]", "[network]\ndomain = " + domain + "\n\n[render]");
   const auto other = run_program(run + " --seconds 1");
   EXPECT_EQ(other.status, 0) << other.err;
-  EXPECT_NE(other.err.find("domain " + domain + " is another run's on this host; this one takes domain"),
-            std::string::npos)
+  EXPECT_NE(other.err.find("domain " + domain + " is another's on this host; this one takes domain"), std::string::npos)
       << other.err;
   EXPECT_TRUE(first.running());
   first.interrupt();
@@ -216,6 +215,25 @@ TEST(SessionTest, ASecondRunInOneDomainIsToldSoAndTakesAnotherOneByItself) {
   const auto word = run_program(run + " --domain one");
   EXPECT_EQ(word.status, 1);
   EXPECT_NE(word.err.find("give a number from 0 to 230, or auto"), std::string::npos) << word.err;
+}
+
+TEST(SessionTest, ARunTakesAnotherDomainThanAHapticNodesThatWasStartedByHand) {
+  const LoopbackScene scene("by-hand", kLinear);
+  scene.write("motion.csv", kLongRest);
+  const int domain = 100 + testing::own_domain();
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  ChildProcess node("haptic_node",
+                    {program("haptic_node"), scene.scene(), "--domain", std::to_string(domain), "--supervised"});
+  ASSERT_TRUE(comes_within(30s, [&] { return !node.take_lines().empty(); })) << "it has the domain before its tools";
+  scene.replace("[render]", fmt::format("[network]\ndomain = {}\n\n[render]", domain));
+  const auto run = run_program(program("palpate") + " run " + scene.scene() + " --seconds 0.5");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find(fmt::format("domain {} is another's on this host; this one takes domain", domain)),
+            std::string::npos)
+      << run.err;
+  EXPECT_TRUE(node.running());
+  node.interrupt();
+  ASSERT_TRUE(node.wait(30s));
 }
 
 TEST(SessionTest, ASecondHapticNodeInOneDomainDoesNotStart) {

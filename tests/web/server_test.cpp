@@ -305,6 +305,25 @@ TEST_F(WebServer, BytesThatAreNoRequestAreDropped) {
   EXPECT_EQ(Client(server_.port()).get("/", Client(server_.port()).host()), 200u);
 }
 
+TEST_F(WebServer, WhatItDoesNotTakeIsAnswered) {
+  const auto answer_to = [&](const std::string& request) {
+    boost::asio::io_context context;
+    tcp::socket socket(context);
+    socket.connect(address());
+    boost::asio::write(socket, boost::asio::buffer(request));
+    std::string answer;
+    boost::system::error_code end;
+    boost::asio::read(socket, boost::asio::dynamic_buffer(answer), end);
+    return answer.substr(0, 12);
+  };
+  const std::string host = "Host: " + Client(server_.port()).host() + "\r\n";
+  EXPECT_EQ(answer_to("POST / HTTP/1.1\r\n" + host + "Content-Length: 2\r\n\r\nab"), "HTTP/1.1 405");
+  EXPECT_EQ(answer_to("DELETE / HTTP/1.1\r\n" + host + "\r\n"), "HTTP/1.1 405");
+  EXPECT_EQ(answer_to("GET / HTTP/9.9\r\n" + host + "\r\n").substr(9), "400");
+  EXPECT_EQ(answer_to("nonsense\r\n\r\n").substr(9), "400");
+  EXPECT_EQ(server_.seen().refused, 4u);
+}
+
 TEST_F(WebServer, ConnectionsThatAskForNothingGiveWayToNewOnes) {
   boost::asio::io_context context;
   std::list<tcp::socket> idle;

@@ -28,7 +28,9 @@ class OffPolygons {
  private:
   /// The first word says what a vertex has beside its place: "ST", "C" and "N" stand before "OFF".
   void take_kind() {
-    std::string_view kind = next_word("its first line");
+    lines_.next();
+    find_word("its first line");
+    std::string_view kind = lines_.word();
     const std::string_view whole = kind;
     for (const std::string_view more : {"ST", "C", "N"})
       if (kind.starts_with(more)) kind.remove_prefix(more.size()), with_more_ = true;
@@ -68,21 +70,14 @@ class OffPolygons {
   }
 
   /// On this line or one that follows.
-  std::string_view next_word(const std::string& which) {
-    while (true) {
-      if (started_)
-        if (const std::string_view word = lines_.word(); !word.empty()) return word;
-      started_ = true;
-      if (!lines_.next()) throw std::runtime_error(fmt::format("the file ends before {}", which));
-    }
+  double next_number(const std::string& which) {
+    find_word(which);
+    return lines_.number();
   }
 
-  double next_number(const std::string& which) {
-    while (true) {
-      WordLines ahead = lines_;
-      if (!ahead.word().empty()) return lines_.number();
+  void find_word(const std::string& which) {
+    for (WordLines ahead = lines_; ahead.word().empty(); ahead = lines_)
       if (!lines_.next()) throw std::runtime_error(fmt::format("the file ends before {}", which));
-    }
   }
 
   void end_line() {
@@ -91,7 +86,7 @@ class OffPolygons {
   }
 
   WordLines lines_;
-  bool started_ = false, with_more_ = false;
+  bool with_more_ = false;
   Polygons read_;
 };
 
