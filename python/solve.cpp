@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -42,6 +43,18 @@ struct State {
   std::vector<Eigen::Vector3d> position, displacement, force;
 };
 
+void require_finite(std::string_view what, double number) {
+  if (!std::isfinite(number)) throw py::value_error(fmt::format("{}: {} is not a finite number", what, number));
+}
+
+void require_finite(const Asked& asked) {
+  for (const auto& [node, displacement] : asked.holds)
+    for (const auto& part : displacement) require_finite(fmt::format("the hold of node {}", node), part.value_or(0));
+  for (const auto& [node, force] : asked.forces)
+    for (const double part : force) require_finite(fmt::format("the force on node {}", node), part);
+  for (const double part : asked.gravity) require_finite("gravity", part);
+}
+
 State by_tensors(const Scene& scene, const Body& body, const Asked& asked) {
   if (asked.gravity != Force{})
     throw py::value_error("an archive knows no loads inside: gravity needs method='direct'");
@@ -57,9 +70,8 @@ State by_direct(const Body& body, const Asked& asked) {
   std::vector<NodalLoad> loads = asked.loads();
   for (const NodalLoad& load : loads)
     if (load.node < 0 || load.node >= nodes) throw py::value_error(fmt::format("the mesh has no node {}", load.node));
-  if (asked.gravity != Force{})
-    for (int n = 0; n < nodes; ++n) loads.push_back({n, problem.mass[n] * Eigen::Vector3d(asked.gravity.data())});
-  const StaticSolution solution = problem.solve(asked.constraints(), loads);
+  const StaticSolution solution =
+      problem.solve(asked.constraints(), {loads, {}, Eigen::Vector3d(asked.gravity.data())});
   State state{std::vector<int>(nodes), problem.mesh.nodes, solution.displacement, solution.force};
   std::iota(state.node.begin(), state.node.end(), 0);
   return state;
@@ -89,8 +101,10 @@ py::dict solve(const Scene& scene, const std::map<int, Hold>& holds, const std::
   if (method != "tensors" && method != "direct") throw py::value_error("method must be 'tensors' or 'direct'");
   const Asked asked{holds, forces, gravity};
   if (asked.constraints().empty() && !asked.loaded()) throw py::value_error("nothing is held or loaded");
+  require_finite(asked);
   State state = method == "direct" ? by_direct(body, asked) : by_tensors(scene, body, asked);
   const std::optional<double> corrected = correct(scene, body, asked, state);
+  require_numbers(state.node, state.displacement, state.force);
   py::dict result;
   result["node"] = py::array_t<int>(static_cast<py::ssize_t>(state.node.size()), state.node.data());
   result["position"] = rows_of(std::span(std::as_const(state.position)));

@@ -143,21 +143,19 @@ std::vector<NodalLoad> parse_forces(const std::vector<std::string>& texts, int m
   return loads;
 }
 
-std::vector<NodalLoad> parse_pressure(const std::string& text, const std::vector<Eigen::Vector3d>& position,
-                                      const std::vector<std::array<int, 3>>& triangles, const GroupNodes& group) {
+std::vector<SurfacePressure> parse_pressure(const std::string& text, const std::vector<std::array<int, 3>>& triangles,
+                                            const GroupNodes& group) {
   const Parser parser("--pressure", text, "GROUP:p");
   const auto [left, right] = parser.halves(text);
   const double pressure = parser.number<double>(right, "a number");
   if (!std::isfinite(pressure)) parser.fail("the pressure is not a finite number");
   const std::vector<int> nodes = group(std::string(trim(left)));
-  std::vector<NodalLoad> loads;
-  for (const auto& t : triangles) {
-    if (!std::ranges::all_of(t, [&](int n) { return std::ranges::binary_search(nodes, n); })) continue;
-    const Eigen::Vector3d area = 0.5 * (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
-    for (const int node : t) loads.push_back({node, -pressure / 3 * area});
-  }
-  if (loads.empty()) parser.fail("the group has no triangle of the surface");
-  return loads;
+  std::vector<SurfacePressure> pressures;
+  for (const auto& t : triangles)
+    if (std::ranges::all_of(t, [&](int n) { return std::ranges::binary_search(nodes, n); }))
+      pressures.push_back({t, pressure});
+  if (pressures.empty()) parser.fail("the group has no triangle of the surface");
+  return pressures;
 }
 
 std::vector<Constraint> touch_constraints(const TouchArgument& touch, const std::vector<Eigen::Vector3d>& position,

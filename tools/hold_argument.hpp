@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/fem/constraint.hpp"
+#include "common/fem/static_loads.hpp"
 
 namespace palpate {
 
@@ -33,11 +33,11 @@ std::vector<Constraint> parse_holds(const std::vector<std::string>& texts, int m
 /// Parses `--force "NODE:fx,fy,fz"`. Throws std::runtime_error as parse_holds does; a node may have several.
 std::vector<NodalLoad> parse_forces(const std::vector<std::string>& texts, int mesh_nodes);
 
-/// Parses `--pressure "GROUP:p"` [Pa], positive where it presses on the tissue: a third of the pressure times the area
-/// at each corner of each triangle of the surface, all of whose corners are in the group, against its normal. Throws
-/// std::runtime_error on anything that is not a number, and where the group has no triangle of the surface.
-std::vector<NodalLoad> parse_pressure(const std::string& text, const std::vector<Eigen::Vector3d>& position,
-                                      const std::vector<std::array<int, 3>>& triangles, const GroupNodes& group);
+/// Parses `--pressure "GROUP:p"` [Pa], positive where it presses on the tissue: on each triangle of the surface, all of
+/// whose corners are in the group, against its normal. Throws std::runtime_error on anything that is not a number, and
+/// where the group has no triangle of the surface.
+std::vector<SurfacePressure> parse_pressure(const std::string& text, const std::vector<std::array<int, 3>>& triangles,
+                                            const GroupNodes& group);
 
 /// The bilateral barycentric rule: the surface point nearest to the touch moves by its displacement.
 /// Triangles index `position`; `node_number` gives mesh node numbers.

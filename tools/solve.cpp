@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -74,16 +73,17 @@ std::vector<Constraint> constraints_of(const Body& body, const SolveArguments& a
   return constraints;
 }
 
-/// Every force and pressure of the command line, by mesh nodes.
-std::vector<NodalLoad> loads_of(const Body& body, const SolveArguments& arguments, int mesh_nodes) {
-  std::vector<NodalLoad> loads = parse_forces(arguments.forces, mesh_nodes);
+/// Every load of the command line, by mesh nodes.
+StaticLoads loads_of(const Body& body, const SolveArguments& arguments, int mesh_nodes) {
+  StaticLoads loads{.nodes = parse_forces(arguments.forces, mesh_nodes),
+                    .gravity = Eigen::Vector3d(arguments.gravity.data())};
   if (arguments.pressures.empty()) return loads;
   const TetMesh mesh = std::visit([](const auto& spec) { return direct_problem(spec); }, body).mesh;
   const auto triangles = extract_surface(mesh).triangles;
   const auto group = [&](const std::string& name) { return select_nodes(mesh, {.group = name}, "--pressure"); };
   for (const std::string& text : arguments.pressures) {
-    const auto more = parse_pressure(text, mesh.nodes, triangles, group);
-    loads.insert(loads.end(), more.begin(), more.end());
+    const auto more = parse_pressure(text, triangles, group);
+    loads.pressures.insert(loads.pressures.end(), more.begin(), more.end());
   }
   return loads;
 }
@@ -107,11 +107,7 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
       constraints_of(body, arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
-  auto loads = loads_of(body, arguments, static_cast<int>(mesh.nodes.size()));
-  if (falls(arguments))
-    for (const int node : table.node)
-      loads.push_back({node, problem.mass[node] * Eigen::Vector3d(arguments.gravity.data())});
-  const auto solution = problem.solve(constraints, loads);
+  const auto solution = problem.solve(constraints, loads_of(body, arguments, static_cast<int>(mesh.nodes.size())));
   table.displacement = solution.displacement;
   table.force = solution.force;
   table.stress = std::visit([&](const auto& spec) { return stress_of(spec, mesh, table.displacement); }, body);
@@ -139,6 +135,17 @@ SolutionTable sorted_table(const SurfaceMap& surface, const SurfaceSolution& sol
   return table;
 }
 
+/// An archive knows its nodes' responses alone: a pressure becomes forces at corners.
+std::vector<NodalLoad> nodal_loads(const Archive& archive, const StaticLoads& given) {
+  const SurfaceMap& surface = archive.surface;
+  std::vector<Eigen::Vector3d> position(archive.mesh_nodes);
+  for (int i = 0; i < surface.size(); ++i) position[surface.node_number[i]] = surface.position[i];
+  std::vector<NodalLoad> loads = given.nodes;
+  for (const SurfacePressure& p : given.pressures)
+    for (const NodalLoad& load : corner_loads(p, position)) loads.push_back(load);
+  return loads;
+}
+
 Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArguments& arguments) {
   ensure_archive(scene, body);
   const auto archive = find_archive(scene, body, ArchivePart::surface);
@@ -146,7 +153,7 @@ Solved solve_by_tensors(const Scene& scene, const Body& body, const SolveArgumen
   const auto held =
       constraints_of(body, arguments, archive.mesh_nodes, surface.position, surface.node_number, surface.triangles);
   if (arguments.plain) return {sorted_table(surface, superpose_tensors(archive, held, Superposition::plain)), held};
-  const auto loads = loads_of(body, arguments, archive.mesh_nodes);
+  const auto loads = nodal_loads(archive, loads_of(body, arguments, archive.mesh_nodes));
   return {sorted_table(surface, solve_tensors(archive, held, loads)), held};
 }
 
@@ -211,13 +218,6 @@ void print_json(const SolutionTable& table, const std::string& method, std::opti
   fmt::print("{}\n", figures.dump());
 }
 
-void require_numbers(const SolutionTable& table) {
-  for (std::size_t i = 0; i < table.node.size(); ++i)
-    if (!std::isfinite(table.displacement[i].norm()) || !std::isfinite(table.force[i].norm()))
-      throw std::runtime_error(
-          fmt::format("there is no solution in numbers: at node {} it is not finite", table.node[i]));
-}
-
 void check_model(const Body& body) {
   if (!std::visit([](const auto& spec) { return has_static_states(spec); }, body))
     throw std::runtime_error(
@@ -250,7 +250,7 @@ void solve(const SolveArguments& arguments) {
       arguments.method == "direct" ? solve_by_direct(body, arguments) : solve_by_tensors(scene, body, arguments);
   const auto corrected = correct(scene, body, loaded(arguments), solved);
   const SolutionTable& table = solved.table;
-  require_numbers(table);
+  require_numbers(table.node, table.displacement, table.force);
   if (!arguments.csv.empty()) write_csv(table, arguments.csv);
   if (!arguments.vtu.empty()) write_vtu(table, arguments.vtu);
   if (arguments.json)

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -197,6 +198,13 @@ SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Cons
   std::vector<Entry> forces;
   for (Index i = 0; i < size; ++i) forces.push_back({held.row[i], force[i]});
   return respond(archive, forces);  // eq. 9: T^u_nk u~_k = C_nk f_k
+}
+
+void require_numbers(const std::vector<int>& node, const std::vector<Eigen::Vector3d>& displacement,
+                     const std::vector<Eigen::Vector3d>& force) {
+  for (std::size_t i = 0; i < node.size(); ++i)
+    if (!std::isfinite(displacement[i].norm()) || !std::isfinite(force[i].norm()))
+      throw std::runtime_error(fmt::format("there is no solution in numbers: at node {} it is not finite", node[i]));
 }
 
 }  // namespace palpate

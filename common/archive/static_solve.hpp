@@ -31,4 +31,9 @@ enum class Superposition {
 /// Takes conditions of one term each; the axes of one node form its block of the tensors.
 SurfaceSolution superpose_tensors(const Archive& archive, const std::vector<Constraint>& holds, Superposition how);
 
+/// Of a static state as lists with one entry a node, `node` their numbers: throws std::runtime_error with the first one
+/// whose displacement or force is not finite.
+void require_numbers(const std::vector<int>& node, const std::vector<Eigen::Vector3d>& displacement,
+                     const std::vector<Eigen::Vector3d>& force);
+
 }  // namespace palpate

@@ -76,17 +76,18 @@ StaticProblem make_static_problem(const SolidSpec& body, TetMesh mesh) {
 }
 
 StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints,
-                            const std::vector<NodalLoad>& loads) {
+                            const StaticLoads& loads) {
   auto reduced = eliminate_holds(problem, constraints);
   StaticSolution solution{std::move(reduced.displacement), {}};
   if (reduced.dofs.size() > 0) {
     const auto stiffness = assemble_stiffness(problem.mesh, problem.materials, reduced.dofs);
     Factorisation factor(stiffness);
     factor.factorise(stiffness);
+    const std::vector<Vector3d> load = load_vector(loads, problem.mesh, problem.materials);
     // One more pass than needed: the second corrects the first by its own residual.
     for (int pass = 0; pass < 2; ++pass) {
       auto lacking = internal_force(problem.mesh, problem.materials, solution.displacement);
-      for (const NodalLoad& load : loads) lacking[load.node] -= load.force;
+      for (std::size_t node = 0; node < load.size(); ++node) lacking[node] -= load[node];
       scatter_add(reduced.dofs, factor.solve(-gather(reduced.dofs, lacking)), solution.displacement);
     }
     if (!reduced.conditions.empty()) impose_conditions(reduced, factor, solution.displacement);

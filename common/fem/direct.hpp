@@ -6,6 +6,7 @@
 #include "common/fem/assembly.hpp"
 #include "common/fem/constraint.hpp"
 #include "common/fem/factorisation.hpp"
+#include "common/fem/static_loads.hpp"
 
 namespace palpate {
 
@@ -29,7 +30,7 @@ struct StaticSolution {
 /// K^-1 J^T) lambda = d - J u. Throws std::runtime_error if conditions repeat or contradict one another or
 /// touch no free dof. `loads` act besides; those on held or fixed dofs go straight into what holds them.
 StaticSolution solve_direct(const StaticProblem& problem, const std::vector<Constraint>& constraints,
-                            const std::vector<NodalLoad>& loads = {});
+                            const StaticLoads& loads = {});
 
 /// The response to dead loads [N] per mesh node (those on fixed dofs go straight into the support).
 StaticSolution solve_loads(const StaticProblem& problem, const std::vector<Eigen::Vector3d>& load);

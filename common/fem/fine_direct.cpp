@@ -54,32 +54,52 @@ std::vector<Vector3d> mean_displacement(const FineProblem& problem, const std::v
   return mean;
 }
 
-/// Adds what the support exerts: K u at fixed fine dofs less the applied forces that act there themselves.
-void add_reactions(const FineProblem& problem, const std::vector<Vector3d>& fine, std::vector<Vector3d>& force) {
+/// What run-time nodes stand for of forces on fine nodes.
+void gather_forces(const FineProblem& problem, const std::vector<Vector3d>& fine, std::vector<Vector3d>& force) {
+  for (int node = 0; node < problem.dofs.nodes(); ++node) {
+    const auto& hats = problem.space.interpolation[node];
+    for (int h = 0; h < hats.count; ++h) force[hats.node[h]] += hats.weight[h] * fine[node];
+  }
+}
+
+/// What the support exerts: K u at fixed fine dofs less the forces that are applied there.
+std::vector<Vector3d> reactions(const FineProblem& problem, const std::vector<Vector3d>& fine,
+                                const std::vector<Vector3d>& applied) {
   auto support =
       internal_force(problem.space, problem.materials, problem.pressures ? &*problem.pressures : nullptr, fine);
-  for (int node = 0; node < problem.run_time_dofs.nodes(); ++node)
-    for (SparseMatrix::InnerIterator it(problem.hats, node); it; ++it) support[it.row()] -= it.value() * force[node];
   for (int node = 0; node < problem.dofs.nodes(); ++node)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (problem.dofs.index(node, axis) != DofMap::kFixed) continue;
-      const auto& hats = problem.space.interpolation[node];
-      for (int h = 0; h < hats.count; ++h) force[hats.node[h]][axis] += hats.weight[h] * support[node][axis];
-    }
+    for (int axis = 0; axis < 3; ++axis)
+      support[node][axis] =
+          problem.dofs.index(node, axis) == DofMap::kFixed ? support[node][axis] - applied[node][axis] : 0;
+  return support;
+}
+
+/// On the axes that may move.
+std::vector<Vector3d> nodal_forces(const FineProblem& problem, const std::vector<NodalLoad>& loads) {
+  std::vector<Vector3d> force(problem.run_time_dofs.nodes(), Vector3d::Zero());
+  for (const NodalLoad& load : loads)
+    for (int axis = 0; axis < 3; ++axis)
+      if (problem.run_time_dofs.is_free(load.node, axis)) force.at(load.node)[axis] += load.force[axis];
+  return force;
+}
+
+void add(const std::vector<Vector3d>& more, std::vector<Vector3d>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += more[i];
 }
 
 }  // namespace
 
 StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints,
-                            const std::vector<NodalLoad>& given) {
+                            const StaticLoads& given) {
   const auto count = static_cast<Index>(constraints.size());
   const MatrixXd loads = condition_loads(problem, constraints);
-  std::vector<Vector3d> load(problem.run_time_dofs.nodes(), Vector3d::Zero());
-  for (const NodalLoad& one : given) load[one.node] += one.force;
+  const std::vector<Vector3d> within = fine_load_vector(given, problem.space, problem.materials);
+  std::vector<Vector3d> force = nodal_forces(problem, given.nodes);
+  std::vector<Vector3d> applied = spread_loads(problem, force);
+  add(within, applied);
   const FineFactor factor(problem, 4 * sizeof(double) * static_cast<std::size_t>(loads.size()));
   const MatrixXd response = count > 0 ? factor.solve_corrected(loads) : loads;
-  VectorXd moved = VectorXd::Zero(problem.dofs.size());  // by the given loads alone
-  if (!given.empty()) moved = factor.solve_corrected(gather(problem.dofs, spread_loads(problem, load)));
+  const VectorXd moved = factor.solve_corrected(gather(problem.dofs, applied));  // by the given loads alone
   const MatrixXd compliance = loads.transpose() * response;
   const DenseCholesky schur(compliance);
   if (count > 0 && !schur.well_conditioned())
@@ -88,13 +108,16 @@ StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constr
   for (Index c = 0; c < count; ++c) value[c] = constraints[c].value;
   const VectorXd multiplier = schur.solve(value - loads.transpose() * moved);
 
-  const auto fine = fine_field(problem, moved + response * multiplier);
-  StaticSolution solution{mean_displacement(problem, fine), load};
+  std::vector<Vector3d> holding(force.size(), Vector3d::Zero());
   for (Index c = 0; c < count; ++c)
     for (const auto& [node, axis, weight] : constraints[c].terms)
-      if (problem.run_time_dofs.is_free(node, axis)) solution.force[node][axis] += weight * multiplier[c];
-  add_reactions(problem, fine, solution.force);
-  return solution;
+      if (problem.run_time_dofs.is_free(node, axis)) holding[node][axis] += weight * multiplier[c];
+  add(holding, force);
+  add(spread_loads(problem, holding), applied);
+  const auto fine = fine_field(problem, moved + response * multiplier);
+  gather_forces(problem, within, force);
+  gather_forces(problem, reactions(problem, fine, applied), force);
+  return {mean_displacement(problem, fine), std::move(force)};
 }
 
 std::vector<Vector3d> spread_loads(const FineProblem& problem, const std::vector<Vector3d>& load) {

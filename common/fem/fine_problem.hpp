@@ -55,9 +55,10 @@ SurfaceCompliance surface_compliance(const FineProblem& problem, const std::vect
                                      const std::vector<int>& other, const Progress& progress = {});
 
 /// solve_direct() of the run-time nodes. Fixed axes of the result do not move; reactions are gathered on the
-/// run-time nodes that their fine nodes interpolate. `loads` are on run-time nodes.
+/// run-time nodes that their fine nodes interpolate. Pressures and weight load the fine nodes themselves, and are told
+/// likewise; what is on fixed axes of a node goes straight into what holds them.
 StaticSolution solve_direct(const FineProblem& problem, const std::vector<Constraint>& constraints,
-                            const std::vector<NodalLoad>& loads = {});
+                            const StaticLoads& loads = {});
 
 /// Forces [N] on run-time nodes as forces on fine nodes, W f.
 std::vector<Eigen::Vector3d> spread_loads(const FineProblem& problem, const std::vector<Eigen::Vector3d>& load);

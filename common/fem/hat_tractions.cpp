@@ -35,19 +35,6 @@ double share(int count, int a, int c) {
   return on_edge ? 2. / 15 : 1. / 15;
 }
 
-/// The three corners of the run-time triangle that a fine face lies in.
-std::array<int, 3> run_time_corners(const FineSpace& space, const FineFace& face) {
-  std::array<int, 3> corners{-1, -1, -1};
-  int count = 0;
-  for (int c = 0; c < 3; ++c) {
-    const auto& hats = space.interpolation[face.node[c]];
-    for (int h = 0; h < hats.count; ++h)
-      if (std::find(corners.begin(), corners.begin() + count, hats.node[h]) == corners.begin() + count)
-        corners[count++] = hats.node[h];
-  }
-  return corners;
-}
-
 /// The linear shape function of a run-time node at a fine node.
 double hat_at(const FineSpace& space, int fine_node, int run_time_node) {
   const auto& hats = space.interpolation[fine_node];
@@ -73,6 +60,18 @@ std::vector<FineFace> fine_surface(const FineSpace& space) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     faces.push_back(face_of(space, surface.triangles[t], surface.tetrahedra[t]));
   return faces;
+}
+
+std::array<int, 3> run_time_corners(const FineSpace& space, const FineFace& face) {
+  std::array<int, 3> corners{-1, -1, -1};
+  int count = 0;
+  for (int c = 0; c < 3; ++c) {
+    const auto& hats = space.interpolation[face.node[c]];
+    for (int h = 0; h < hats.count; ++h)
+      if (std::find(corners.begin(), corners.begin() + count, hats.node[h]) == corners.begin() + count)
+        corners[count++] = hats.node[h];
+  }
+  return corners;
 }
 
 std::vector<Eigen::Vector3d> traction_loads(const FineSpace& space, const Traction& traction) {

@@ -31,6 +31,9 @@ struct FineFace {
 
 std::vector<FineFace> fine_surface(const FineSpace& space);
 
+/// The three corners of the run-time triangle that a fine face lies in.
+std::array<int, 3> run_time_corners(const FineSpace& space, const FineFace& face);
+
 /// Traction [Pa] at a point of the surface with an outward unit normal.
 using Traction = std::function<Eigen::Vector3d(const Eigen::Vector3d& point, const Eigen::Vector3d& normal)>;
 

@@ -13,4 +13,16 @@ std::vector<double> lumped_mass(const TetMesh& mesh, const MaterialField& materi
   return mass;
 }
 
+std::vector<double> lumped_mass(const FineSpace& space, const MaterialField& materials) {
+  const bool quadratic = space.per_element == 10;
+  std::vector<double> mass(space.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const double density = materials.at(static_cast<int>(e) / space.children).density;
+    const double own = density * tet_volume(space.mesh, space.mesh.tetrahedra[e]);
+    for (int i = 0; i < space.per_element; ++i)
+      mass[space.elements[e][i]] += own * (quadratic ? (i < 4 ? 1. / 36 : 4. / 27) : 1. / 4);
+  }
+  return mass;
+}
+
 }  // namespace palpate

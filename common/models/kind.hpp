@@ -168,7 +168,6 @@ DirectProblem direct_problem(const SolidSpec& body);
 DirectProblem direct_problem(const MovingSpec& body);
 
 /// vibration(spec): how it swings freely about its rest shape.
-FreeVibration vibration(const SolidSpec& body);
 FreeVibration vibration(const MovingSpec& body);
 
 /// static_correction(spec): what is done to a linear static state with the archive's help; returns the factor of the

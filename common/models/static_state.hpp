@@ -11,8 +11,7 @@ namespace palpate {
 /// The full system of a body.
 struct DirectProblem {
   TetMesh mesh;
-  std::vector<double> mass;  ///< [kg] per mesh node
-  std::function<StaticSolution(const std::vector<Constraint>&, const std::vector<NodalLoad>&)> solve;
+  std::function<StaticSolution(const std::vector<Constraint>&, const StaticLoads&)> solve;
 };
 
 /// Of tetrahedra.

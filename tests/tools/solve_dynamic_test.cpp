@@ -29,7 +29,8 @@ class ToolsSolveForms : public ::testing::Test {
   }
 
   /// A bar 20 x 20 x 60 mm whose bottom slides, held so that nothing keeps it from becoming wider.
-  std::string bar() const {
+  /// `more`: of the body; quadratic elements unless it says otherwise.
+  std::string bar(const std::string& more = "") const {
     write_tet_mesh(make_block({0, 0, 0}, {0.02, 0.02, 0.06}, {2, 2, 6}), folder_ / "bar.msh");
     return write_scene(R"([[body]]
 name = "bar"
@@ -37,8 +38,7 @@ mesh = "bar.msh"
 young = 5000
 poisson = 0.3
 fixed = [{ group = "bottom", axes = "z" }, { nodes = [0], axes = "xy" }, { nodes = [2], axes = "y" }]
-offline = { element = "p1" }
-)");
+)" + more);
   }
 
   /// The numbers of a list in the VTU file that the command writes.
@@ -57,22 +57,51 @@ offline = { element = "p1" }
   OwnFolder folder_{"solve-forms"};
 };
 
+constexpr const char* kElements[] = {"", "offline = { element = \"p1\" }\n", "offline = { element = \"p2\" }\n",
+                                     "offline = { element = \"p2\", refine = 1 }\n"};
+
 TEST_F(ToolsSolveForms, APulledBarHasOneStressEverywhere) {
-  const std::string command = program("palpate solve") + " " + bar() + " --method direct --pressure top:-700";
-  const auto stress = solved(command, "stress"), von_mises = solved(command, "von_mises");
-  ASSERT_EQ(von_mises.size(), 144u);
-  ASSERT_EQ(stress.size(), 6 * von_mises.size());
-  const std::array<double, 6> expected{0, 0, 700, 0, 0, 0};
-  for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], expected[i % 6], 1e-6) << i;
-  for (const double s : von_mises) EXPECT_NEAR(s, 700, 1e-6);
+  for (const std::string elements : kElements) {
+    const std::string command = program("palpate solve") + " " + bar(elements) + " --method direct --pressure top:-700";
+    const auto stress = solved(command, "stress"), von_mises = solved(command, "von_mises");
+    ASSERT_EQ(von_mises.size(), 144u);
+    ASSERT_EQ(stress.size(), 6 * von_mises.size());
+    const std::array<double, 6> expected{0, 0, 700, 0, 0, 0};
+    for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], expected[i % 6], 1e-6) << elements << i;
+    for (const double s : von_mises) EXPECT_NEAR(s, 700, 1e-6);
+  }
 }
 
 TEST_F(ToolsSolveForms, PressureFromAllSidesIsPressureInside) {
-  std::string command = program("palpate solve") + " " + bar() + " --method direct";
-  for (const char* side : {"top", "x0", "x1", "y0", "y1"}) command += fmt::format(" --pressure {}:300", side);
-  const auto stress = solved(command, "stress"), von_mises = solved(command, "von_mises");
-  for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 < 3 ? -300 : 0, 1e-6) << i;
-  for (const double s : von_mises) EXPECT_NEAR(s, 0, 1e-6);
+  for (const std::string elements : kElements) {
+    std::string command = program("palpate solve") + " " + bar(elements) + " --method direct";
+    for (const char* side : {"top", "x0", "x1", "y0", "y1"}) command += fmt::format(" --pressure {}:300", side);
+    const auto stress = solved(command, "stress"), von_mises = solved(command, "von_mises");
+    for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 < 3 ? -300 : 0, 1e-6) << elements << i;
+    for (const double s : von_mises) EXPECT_NEAR(s, 0, 1e-6);
+  }
+}
+
+TEST_F(ToolsSolveForms, ABarStretchesByItsOwnWeightAsItsClosedFormSays) {
+  // (rho g / 2 E) L^2 at its end, hanging from its bottom
+  const double expected = 1060 * 9.81 * 0.06 * 0.06 / (2 * 5000);
+  for (const std::string elements : kElements) {
+    const auto result = run_program(program("palpate solve") + " " + bar("density = 1060\n" + elements) +
+                                    " --method direct --set body.poisson=0 --gravity 0 0 9.81 --json");
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NEAR(nlohmann::json::parse(result.out)["max_displacement_m"].get<double>(), expected, 5e-3 * expected)
+        << elements;
+  }
+}
+
+TEST_F(ToolsSolveForms, AForceOnWhatIsFixedMovesNothing) {
+  for (const std::string elements : kElements)
+    for (const char* method : {"direct", "tensors"}) {
+      const auto result = run_program(
+          fmt::format("{} solve {} --method {} --force \"0:0,0,2\" --json", program("palpate"), bar(elements), method));
+      ASSERT_EQ(result.status, 0) << result.err;
+      EXPECT_LT(nlohmann::json::parse(result.out)["max_displacement_m"].get<double>(), 1e-12) << elements << method;
+    }
 }
 
 TEST_F(ToolsSolveForms, APressureThatPressesNothingIsRefused) {

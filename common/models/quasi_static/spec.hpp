@@ -131,6 +131,7 @@ constexpr bool stores_inertia(const QuasiStaticSpec&) {
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report);
 std::vector<std::string> locking_warnings(const QuasiStaticSpec& body);
 DirectProblem direct_problem(const QuasiStaticSpec& body);
+FreeVibration vibration(const QuasiStaticSpec& body);
 StaticCorrection static_correction(const QuasiStaticSpec& body);
 
 }  // namespace palpate

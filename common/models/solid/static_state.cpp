@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "common/fem/lumped_mass.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/kind.hpp"
 
@@ -20,8 +19,7 @@ DirectProblem direct_problem(const SolidSpec& body) {
 
 DirectProblem direct_problem_of(StaticProblem problem) {
   TetMesh mesh = problem.mesh;
-  auto mass = lumped_mass(mesh, problem.materials);
-  return {std::move(mesh), std::move(mass), [problem = std::move(problem)](const auto& constraints, const auto& loads) {
+  return {std::move(mesh), [problem = std::move(problem)](const auto& constraints, const auto& loads) {
             return solve_direct(problem, constraints, loads);
           }};
 }

@@ -6,10 +6,6 @@
 
 namespace palpate {
 
-FreeVibration vibration(const SolidSpec& body) {
-  return vibration_of(make_static_problem(body, load_tet_mesh(body.mesh, body.scale)));
-}
-
 FreeVibration vibration_of(const StaticProblem& problem) {
   const TetMesh& mesh = problem.mesh;
   FreeVibration free{assemble_stiffness(mesh, problem.materials, problem.dofs),
