@@ -79,7 +79,7 @@ TEST(TissueTool, GoesOnEvenlyWhereAStepBeganLateOrWasLeftOut) {
   for (const double late : {0.05, 0.3, 0.7, 0.95})
     for (const std::uint64_t left_out : {0, 1, 2})
       for (const std::uint64_t apart : {0, 1}) {
-        SCOPED_TRACE(testing::Message() << late << " late, " << left_out << " left out, ticks apart: " << apart);
+        SCOPED_TRACE(::testing::Message() << late << " late, " << left_out << " left out, ticks apart: " << apart);
         TissueTool tool(Tool{}, kTick);
         double before = 0;
         const std::uint64_t comes = 51 + left_out + 1;

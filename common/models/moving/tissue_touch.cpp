@@ -18,6 +18,8 @@ ToolContacts::Options beside_patches(const TissuePatches* patches, const std::fu
   return options;
 }
 
+constexpr double kPassed = 1;  // mean edge
+
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
   for (const TouchContact& c : contacts)
@@ -42,6 +44,7 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
               : nullptr),
       contacts_(surface, law_, parts_of(settings.tools),
                 beside_patches(patches_.get(), [this](int tool) { return grasping(tool); })),
+      passed_(kPassed * mean_edge(archive.surface)),
       fading_ticks_(fading_ticks(settings.dt)),
       max_leavers_((kMaxContacts + 2 * settings.tools.size()) * fading_ticks_) {  // with a tip's and a shaft's patch
   aimed_.reserve(kMaxContacts);
@@ -53,13 +56,36 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
 
 std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools, double dt) {
   if (dt != dt_) follow_response(dt);
+  loose_.clear();
+  drop_where([&](const TouchContact& c) { return passed(c, tools[c.tool_point().tool]); });
   contacts_.look(tools);
   contacts_.collide(tools);
-  loose_.clear();
   if (patches_)
     patches_->find(
         tools, [this](int tool) { return grasping(tool); }, loose());
   return loose_;
+}
+
+// Round an edge in which the tissue ends, or through a flap: held on to, it would be drawn along.
+bool TissueTouch::passed(const TouchContact& c, const MovingTool& tool) const {
+  if (c.grasped) return false;
+  const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
+  const int part = c.tool_point().part;
+  const double away = (anchor - nearest_point(tool.axis(part), anchor)).norm();
+  return away > tool.radius(part) + c.softness() * c.force.norm() + passed_;
+}
+
+// What they did to nodes is loose.
+template <class Gone>
+void TissueTouch::drop_where(Gone&& gone) {
+  for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
+    const TouchContact c = law_.contacts()[i];
+    if (!gone(c)) continue;
+    law_.remove(i);
+    for (int v = 0; v < 3; ++v)
+      if (c.anchor.weights[v] != 0) loose_.push_back({c.anchor.nodes[v], c.anchor.weights[v] * c.force});
+    leave(c);
+  }
 }
 
 void TissueTouch::drop_tool(int tool) {
@@ -129,14 +155,7 @@ std::span<const PatchForce> TissueTouch::follow_cut(const CutMesh& topology) {
     return c.face && !c.grasped && surface_.facet_of(c.anchor.nodes) < 0;
   };
   loose_.clear();
-  for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
-    const TouchContact c = law_.contacts()[i];
-    if (!has_gone(c)) continue;
-    law_.remove(i);
-    for (int v = 0; v < 3; ++v)
-      if (c.anchor.weights[v] != 0) loose_.push_back({c.anchor.nodes[v], c.anchor.weights[v] * c.force});
-    leave(c);
-  }
+  drop_where(has_gone);
   if (patches_) patches_->follow_cut(topology, loose());
   follow_response(dt_);
   return loose_;

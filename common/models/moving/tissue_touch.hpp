@@ -67,6 +67,9 @@ class TissueTouch {
     Eigen::Vector3d normal, force, at;  ///< force [N] on the tissue when it went, at [m] the place on the tool now
   };
 
+  bool passed(const TouchContact& contact, const MovingTool& tool) const;
+  template <class Gone>
+  void drop_where(Gone&& gone);
   void leave(const TouchContact& contact);
   TissuePatches::Loose loose() {
     return {loose_, [this](const TouchContact& c) { leave(c); }};
@@ -92,6 +95,7 @@ class TissueTouch {
   ToolContacts contacts_;
   std::vector<TouchContact> all_;
   std::vector<JawHold> holds_;
+  double passed_;  ///< [m] behind a part's surface, where tissue that it pressed is no more under it
   int fading_ticks_;
   std::size_t max_leavers_;
   std::vector<Leaver> leavers_;
