@@ -35,7 +35,7 @@ TEST(MotionSteps, AreReadWithTheirUnits) {
 // From rest to rest, at no more than the speed that was asked for.
 TEST(MotionSteps, AWayIsGoneGently) {
   const Trocar trocar = make_trocar({0, 0, 0.2}, {0, 0, -1}, {0, 1, 0});
-  MotionRows rows(trocar, {0, 0, 0});
+  MotionRows rows(trocar, 0, {0, 0, 0});
   rows.go({{0.03, 0, 0}, {0.07, 0, 0}}, 0.05);
   const Trajectory motion = rows.trajectory();
   const double dt = 1e-3, duration = motion.duration();
@@ -60,12 +60,12 @@ TEST(TipPath, StandsWhereAStepBeginsAndEnds) {
   const Trocar trocar = make_trocar({0, 0, 0.2}, {0, 0, -1}, {0, 1, 0});
   const std::array<Eigen::Vector3d, 4> places{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.03, 0, 0),
                                               Eigen::Vector3d(0.03, 0.02, 0), Eigen::Vector3d(0.03, 0.02, 0.04)};
-  MotionRows rows(trocar, places[0]);
+  MotionRows rows(trocar, 0, places[0]);
   rows.go({places[1]}, 0.05);
   rows.stand(0.2);
   rows.go({places[2]}, 0.05);
   rows.go({places[3]}, 0.05);
-  const TipPath path = tip_path(trocar, rows.trajectory());
+  const TipPath path = tip_path(trocar, 0, rows.trajectory());
   ASSERT_EQ(path.stands.size(), places.size());
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT((path.stands[i] - places[i]).norm(), 5e-4) << i;
   double length = 0;
@@ -128,6 +128,25 @@ TEST_F(ToolsMotion, WhereMoreIsFeltThanAskedForThePressGoesBack) {
   EXPECT_NEAR(felt_in(made.out, "press 0.05N").end, 0.05, 0.001) << made.out;
   EXPECT_NEAR(felt_in(made.out, "hold 0.1s").end, 0.05, 0.001) << made.out;
   EXPECT_NEAR(felt_in(made.out, "press 0.1N").end, 0.1, 0.002) << made.out;
+}
+
+// With the joint for its tip the jaws, 20 mm long, would be within the duct where they are to stand clear of it.
+TEST(ToolsMotionForceps, TheEndsOfShutJawsAreTheTipAndTheTableIsOfWhatIsWritten) {
+  const testing::OwnFolder folder("motion-forceps");
+  setenv("PALPATE_CACHE", (folder / "cache").c_str(), 1);
+  const std::string scene = PALPATE_SOURCE "/scenes/duct_poke.toml", file = folder / "made.csv";
+  const auto made = run_program(
+      fmt::format("{} motion {} \"to -20mm,-5mm,6mm\" \"press 3mm\" \"slide -5mm,-5mm,6mm\" withdraw --json -o {}",
+                  program("palpate"), scene, file));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto steps = nlohmann::json::parse(made.out)["steps"];
+  EXPECT_GT(steps[1]["end_force_n"].get<double>(), 0.05);
+  EXPECT_LT(steps[1]["end_force_n"].get<double>(), 0.3);
+  const auto run =
+      run_program(fmt::format("{} drive {} --set tool.forceps.trajectory={} --json", program("palpate"), scene, file));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto figures = nlohmann::json::parse(run.out)["figures"];
+  EXPECT_DOUBLE_EQ(figures["tool.forceps.force.max"].get<double>(), steps[2]["max_force_n"].get<double>());
 }
 
 // On its quick way the tool feels the tissue's inertia and damping too: when it stands, about half as much is left.

@@ -48,7 +48,7 @@ void draw_path(const PathPictureSettings& s) {
 
   Stage stage = make_stage(loaded);
   stage.set_tool(state_of(number, motion.at(motion.duration())));
-  const TipPath path = tip_path(make_trocar(tool.pivot, tool.axis, tool.up), motion);
+  const TipPath path = tip_path(make_trocar(tool.pivot, tool.axis, tool.up), reach_of(tool), motion);
   const Eigen::Vector3d origin = view_origin(loaded.archives);
   const PathShape tube = tube_along(places_from(origin, path.points), kTube);
   const PathShape balls = balls_at(places_from(origin, path.stands), kBall);

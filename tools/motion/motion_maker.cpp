@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/tool/instrument.hpp"
+#include "tools/motion/tip_path.hpp"
 
 namespace palpate {
 namespace {
@@ -38,6 +39,7 @@ MotionMaker::MotionMaker(const Tool& tool, const SurfaceMap& map, const Rehearsa
       rehearsal_(rehearsal),
       manner_(manner),
       trocar_(make_trocar(tool.pivot, tool.axis, tool.up)),
+      reach_(reach_of(tool)),
       radius_(abilities_of(tool).radius),
       deepest_press_(diagonal_of(map.position)),
       widest_jaws_(widest_jaws_of(tool)) {
@@ -55,7 +57,7 @@ void MotionMaker::go_to(const Eigen::Vector3d& point) {
   place_ = place_near(point);
   depth_ = -manner_.clear;
   const Eigen::Vector3d tip = tip_at(*place_, depth_);
-  if (!rows_) return void(rows_.emplace(trocar_, tip));
+  if (!rows_) return void(rows_.emplace(trocar_, reach_, tip));
   rows_->go({tip}, manner_.speed);
 }
 
@@ -87,7 +89,8 @@ MotionMaker::Pass MotionMaker::pass_to(double depth) const {
   Pass pass;
   for (std::size_t i = first; i < felt.size(); ++i) {
     const ToolDofs dofs = motion.at(static_cast<double>(i) * rehearsal_.dt());
-    pass.depth.push_back((tip_pose(trocar_, dofs).translation() - touching).dot(place_->inward));
+    const Eigen::Vector3d tip = tip_pose(trocar_, dofs) * (reach_ * Eigen::Vector3d::UnitZ());
+    pass.depth.push_back((tip - touching).dot(place_->inward));
     pass.force.push_back(felt[i]);
   }
   return pass;

@@ -62,6 +62,7 @@ class MotionMaker {
   const Rehearsal& rehearsal_;
   MotionManner manner_;
   Trocar trocar_;
+  double reach_;  ///< [m] from the tip frame's origin to where the tool touches first
   double radius_;
   double deepest_press_;               ///< [m] the body's box from corner to corner
   std::optional<double> widest_jaws_;  ///< [rad] of jaws that turn

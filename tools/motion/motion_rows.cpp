@@ -32,22 +32,31 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
   return points.back();
 }
 
+/// As the file has it: what is tried is what is written.
+double rounded(double value, double digits) {
+  const double scale = std::pow(10, digits);
+  return std::round(value * scale) / scale;
+}
+
 }  // namespace
 
-MotionRows::MotionRows(const Trocar& trocar, const Eigen::Vector3d& tip) : trocar_(trocar), tip_(tip) {
+MotionRows::MotionRows(const Trocar& trocar, double reach, const Eigen::Vector3d& tip)
+    : trocar_(trocar), reach_(reach), tip_(tip) {
   row(0, tip);
 }
 
 void MotionRows::row(double time, const Eigen::Vector3d& tip) {
   tip_ = tip;
   ToolDofs dofs = dofs_for_tip(trocar_, tip, 0);
-  dofs.grip = grip_;
+  dofs.depth -= reach_;
+  for (double* dof : {&dofs.yaw, &dofs.pitch, &dofs.depth}) *dof = rounded(*dof, 6);
+  dofs.grip = rounded(grip_, 4);
   dofs.pedal = pedal_;
   if (!MotionLimits{}.allow(dofs))
     throw std::runtime_error(fmt::format("no tool can be there: angles are at most {} rad, the depth {} m",
                                          MotionLimits::kMaxAngle, MotionLimits::kMaxDepth));
   if (time > kLatestRow) throw std::runtime_error(fmt::format("a motion ends within {} s", kLatestRow));
-  time_.push_back(time);
+  time_.push_back(rounded(time, 4));
   dofs_.push_back(dofs);
 }
 

@@ -10,8 +10,8 @@ namespace palpate {
 /// file may hold (load_trajectory) throws std::runtime_error at once.
 class MotionRows {
  public:
-  /// Stands at a place [m] at time 0.
-  MotionRows(const Trocar& trocar, const Eigen::Vector3d& tip);
+  /// Stands at a place [m] at time 0. `reach` [m]: how far along the shaft the tip is before the frame's origin.
+  MotionRows(const Trocar& trocar, double reach, const Eigen::Vector3d& tip);
 
   /// Leads the tip along points [m], at `speed` [m/s] in the middle.
   void go(const std::vector<Eigen::Vector3d>& points, double speed);
@@ -30,6 +30,7 @@ class MotionRows {
   void row(double time, const Eigen::Vector3d& tip);
 
   Trocar trocar_;
+  double reach_;
   Eigen::Vector3d tip_;
   double grip_ = 0, pedal_ = 0;
   std::vector<double> time_;

@@ -1,5 +1,7 @@
 #include "tools/motion/tip_path.hpp"
 
+#include "common/tool/instrument.hpp"
+
 namespace palpate {
 namespace {
 
@@ -12,8 +14,15 @@ void add_if_apart(std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& p
 
 }  // namespace
 
-TipPath tip_path(const Trocar& trocar, const Trajectory& motion) {
-  const auto tip = [&](double time) { return Eigen::Vector3d(tip_pose(trocar, motion.at(time)).translation()); };
+double reach_of(const Tool& tool) {
+  const auto shape = forceps_shape(tool);
+  return shape ? shape->jaw_length : 0;
+}
+
+TipPath tip_path(const Trocar& trocar, double reach, const Trajectory& motion) {
+  const auto tip = [&](double time) {
+    return Eigen::Vector3d(tip_pose(trocar, motion.at(time)) * (reach * Eigen::Vector3d::UnitZ()));
+  };
   TipPath path;
   Eigen::Vector3d before = tip(0);
   bool stood = false;
