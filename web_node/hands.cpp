@@ -51,7 +51,7 @@ std::optional<DeviceState> Hands::move(int tool, std::uint32_t page, const Sampl
   Held& held = held_[tool];
   if (held.holder != page || sample.number <= held.number) return {};
   held.number = sample.number;
-  held.seq = held.base + sample.number;
+  held.numbers[++held.seq % held.numbers.size()] = sample.number;
   held.heard = now;
   const ToolDofs dofs = dofs_for_tip(held.tool.trocar, sample.tip, sample.roll);
   return DeviceState{.tool = static_cast<std::uint32_t>(tool),
@@ -68,9 +68,10 @@ Hands::View Hands::view(int tool, std::uint64_t device_seq) const {
   const std::lock_guard lock(mutex_);
   const Held& held = held_.at(tool);
   const bool own = held.holder != 0 && device_seq > held.base && device_seq <= held.seq;
+  const bool kept = own && held.seq - device_seq < held.numbers.size();
   return {.holder = held.holder,
           .asker = held.asker,
-          .sample = own ? static_cast<std::uint32_t>(device_seq - held.base) : 0,
+          .sample = kept ? held.numbers[device_seq % held.numbers.size()] : 0,
           .offered = held.tool.offered};
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -38,7 +39,7 @@ class Hands {
 
   struct View {
     std::uint32_t holder = 0, asker = 0;
-    std::uint32_t sample = 0;  ///< the holder's number of `device_seq`, 0 if that is from before it took the tool
+    std::uint32_t sample = 0;  ///< the holder's number of `device_seq`, 0 if that is older than when it took the tool
     bool offered = false;
   };
   View view(int tool, std::uint64_t device_seq) const;
@@ -47,8 +48,9 @@ class Hands {
   struct Held {
     OfferedTool tool;
     std::uint32_t holder = 0, asker = 0, number = 0;
-    std::uint64_t base = 0, seq = 0;  ///< of the bus: when the tool was taken; told last
-    double heard = 0;                 ///< [s]
+    std::uint64_t base = 0, seq = 0;           ///< of the bus: when the tool was taken; told last
+    double heard = 0;                          ///< [s]
+    std::array<std::uint32_t, 256> numbers{};  ///< of the page, which leaves some out, for the bus's last ones
   };
   bool known(int tool) const { return tool >= 0 && tool < static_cast<int>(held_.size()); }
   static void hand_over(Held& held, std::uint32_t page);

@@ -74,11 +74,23 @@ TEST_F(WebHands, TheTipGoesWhereThePageSaysAndItsNumberComesBack) {
   ASSERT_TRUE(state);
   const Eigen::Isometry3d pose = tip_pose({}, {state->yaw, state->pitch, state->depth, state->roll, state->grip});
   EXPECT_NEAR((pose.translation() - Eigen::Vector3d(0.01, 0.02, -0.1)).norm(), 0, 1e-12);
-  EXPECT_EQ(state->seq, kFirst + 42);
+  EXPECT_EQ(state->seq, kFirst + 1);
   EXPECT_EQ(hands_.view(0, state->seq).sample, 42u);
   EXPECT_EQ(hands_.view(0, kFirst).sample, 0u) << "from before it took the tool";
   hands_.take(0, 4, now_ + 10);
   EXPECT_EQ(hands_.view(0, state->seq).sample, 0u) << "another's";
+}
+
+TEST_F(WebHands, WhatAPageLeavesOutIsNoGapOnTheBus) {
+  hands_.take(0, 3, now_);
+  for (std::uint32_t i = 1; i <= 400; ++i) {
+    const auto state = move(3, 64 * i);
+    ASSERT_TRUE(state);
+    EXPECT_EQ(state->seq, kFirst + i);
+    EXPECT_EQ(hands_.view(0, state->seq).sample, 64 * i);
+    if (i > 20) EXPECT_EQ(hands_.view(0, state->seq - 20).sample, 64 * (i - 20)) << "the haptic node is behind";
+  }
+  EXPECT_EQ(hands_.view(0, kFirst + 1).sample, 0u) << "long ago";
 }
 
 }  // namespace
