@@ -29,11 +29,13 @@ class Device {
 
   /// False if it was not sent.
   bool write(const std::array<double, 6>& dofs, std::optional<std::int64_t> sense_ns) {
-    state_.seq++;
+    state_.seq = written_ + 1;
     state_.sense_ns = sense_ns.value_or(now_ns());
     state_.yaw = dofs[0], state_.pitch = dofs[1], state_.depth = dofs[2];
     state_.roll = dofs[3], state_.grip = dofs[4], state_.pedal = dofs[5];
-    return writer_->write(state_);
+    const bool sent = writer_->write(state_);
+    written_ += sent;
+    return sent;
   }
 
   /// The newest force since the last call, as it was told.
@@ -52,7 +54,7 @@ class Device {
 
   /// Until something has come.
   bool wait(double seconds) { return bus_->wait(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds))); }
-  std::uint64_t written() const { return state_.seq; }
+  std::uint64_t written() const { return written_; }
 
  private:
   void hear() {
@@ -66,6 +68,7 @@ class Device {
   ForceFollower follower_;
   std::optional<ForceState> newest_;
   DeviceState state_;
+  std::uint64_t written_ = 0;
 };
 
 }  // namespace
@@ -100,7 +103,8 @@ PYBIND11_MODULE(_device, module) {
            py::arg("max_grip") = MotorLimits{}.max_grip, py::arg("max_force_rate") = MotorLimits{}.max_force_rate,
            "The driver of a tool whose device is \"bus\": `tool` is its place in the scene's list. `max_force` [N], "
            "`max_torque`,\n"
-           "`max_grip` [N m], `max_force_rate` [N/s]: what its motors give. Raises RuntimeError with one sentence.")
+           "`max_grip` [N m], `max_force_rate` [N/s]: what its motors give, above 0. Raises RuntimeError with one "
+           "sentence.")
       .def(
           "write", &Device::write, py::arg("dofs"), py::arg("sense_ns") = py::none(),
           "Yaw, pitch [rad], depth [m], roll, grip [rad], pedal. `sense_ns`: time.monotonic_ns() when the hardware was "
@@ -114,7 +118,7 @@ PYBIND11_MODULE(_device, module) {
       .def("take", &Device::take, "The newest force since the last call, as it was told, or None.")
       .def("wait", &Device::wait, py::arg("seconds"), py::call_guard<py::gil_scoped_release>(),
            "Sleeps until something may have come, at most so long.")
-      .def_property_readonly("written", &Device::written, "samples written")
+      .def_property_readonly("written", &Device::written, "samples sent")
       .def_property_readonly(
           "limp", [](const Device& d) { return d.follower().limp(); }, "without force, since none comes")
       .def_property_readonly(

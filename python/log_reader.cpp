@@ -79,8 +79,14 @@ class Column {
   py::list list_;
 };
 
+/// A UserWarning where not all of the log could be read.
+void warn_of_damage(const LogReader& reader) {
+  const std::string damage = reader.damage_text();
+  if (!damage.empty() && PyErr_WarnEx(PyExc_UserWarning, damage.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 template <class M>
-py::dict columns_of(const std::string& file, const Topic<M>& topic) {
+py::dict columns_of(const std::filesystem::path& file, const Topic<M>& topic) {
   LogReader reader(file);
   std::vector<std::int64_t> receive_ns;
   std::vector<M> messages;
@@ -90,6 +96,7 @@ py::dict columns_of(const std::string& file, const Topic<M>& topic) {
     receive_ns.push_back(event.receive_ns);
     messages.push_back(message);
   }
+  warn_of_damage(reader);
   py::dict columns;
   columns["receive_ns"] = py::array_t<std::int64_t>(static_cast<py::ssize_t>(receive_ns.size()), receive_ns.data());
   M shape;
@@ -114,7 +121,7 @@ py::dict columns_of(const std::string& file, const Topic<M>& topic) {
   return columns;
 }
 
-py::dict read_log(const std::string& file, const std::string& topic) {
+py::dict read_log(const std::filesystem::path& file, const std::string& topic) {
   const std::string name = topic.find('/') == topic.npos ? "palpate/" + topic : topic;
   py::object found = py::none();
   std::string known;
@@ -126,21 +133,26 @@ py::dict read_log(const std::string& file, const std::string& topic) {
   return found;
 }
 
-std::map<std::string, std::size_t> topics_in(const std::string& file) {
+std::map<std::string, std::size_t> topics_in(const std::filesystem::path& file) {
   std::map<std::string, std::size_t> counts;
   LogReader reader(file);
   for (LogEvent event; reader.next(event);) ++counts[event.channel];
+  warn_of_damage(reader);
   return counts;
 }
 
 }  // namespace
 
 void bind_log(py::module_& module) {
-  module.def("read_log", &read_log, py::arg("file"), py::arg("topic"),
-             "Every sample of a topic, a column for each field: arrays (n,) or (n, k), lists for texts and sequences; "
-             "receive_ns\n"
-             "is when the recorder got it. Units are in docs/topics.md.");
-  module.def("topics_in", &topics_in, py::arg("file"), "how many samples a log has of each topic");
+  module.def(
+      "read_log", &read_log, py::arg("file"), py::arg("topic"),
+      "Every sample of a topic, a column for each field: arrays (n,) or (n, k), lists for texts and sequences; "
+      "receive_ns\n"
+      "is when the recorder got it. Units are in docs/topics.md. Warns with the sentence of `palpate info` where "
+      "the log is\n"
+      "damaged or cut off.");
+  module.def("topics_in", &topics_in, py::arg("file"),
+             "How many samples a log has of each topic; warns as read_log does.");
 }
 
 }  // namespace palpate::python

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "common/describe/value_text.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "python/bindings.hpp"
 #include "tools/check.hpp"
@@ -11,14 +12,21 @@ namespace {
 
 using Changes = std::map<std::string, py::object>;
 
-/// As --set takes them: TOML, or a word.
+/// A value of Python's or NumPy's as TOML writes it; what is no number, truth value or list is text.
+std::string toml_of(const py::handle& value) {
+  if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")());  // NumPy's
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return py::str(value);
+  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
+    return value_text::text(std::string(py::str(value)));
+  std::vector<std::string> entries;
+  for (const py::handle& entry : value) entries.push_back(toml_of(entry));
+  return value_text::list(entries);
+}
+
 std::vector<SceneChange> changes_of(const Changes& set) {
   std::vector<SceneChange> changes;
-  for (const auto& [key, value] : set) {
-    std::string text = py::str(value);
-    if (py::isinstance<py::bool_>(value)) text = value.cast<bool>() ? "true" : "false";
-    changes.push_back(parse_change(key + "=" + text));
-  }
+  for (const auto& [key, value] : set) changes.push_back(parse_change(key + "=" + toml_of(value)));
   return changes;
 }
 
@@ -57,11 +65,13 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "palpate's simulator, in lock step, and its logs";
   module.attr("__version__") = PALPATE_VERSION;
   py::class_<Scene>(module, "Scene")
-      .def(py::init([](const std::string& file, const Changes& set) { return load_scene(file, changes_of(set)); }),
+      .def(py::init(
+               [](const std::filesystem::path& file, const Changes& set) { return load_scene(file, changes_of(set)); }),
            py::arg("file"), py::arg("set") = Changes(),
-           "Reads and checks a scene file; `set` has keys in place of the file's, such as {\"body.young\": 8000}. "
-           "Raises\n"
-           "RuntimeError with the place and the sentence that the command line says.")
+           "Reads and checks a scene file; `set` has keys in place of the file's, such as {\"body.young\": 8000}: "
+           "numbers, truth\n"
+           "values, texts, lists or arrays. Raises RuntimeError with the place and the sentence that the command line "
+           "says.")
       .def_readonly("title", &Scene::title, "what a person reads")
       .def_property_readonly("bodies", &body_names, "names, in the order of the scene")
       .def_property_readonly("tools", &tool_names, "names, in the order of the scene")

@@ -12,11 +12,16 @@ using Dofs = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 constexpr int kDofs = 6;  // yaw, pitch, depth, roll, grip, pedal
 
+std::vector<Archive> archives_of(const Scene& scene) {
+  drive::lock_step_devices(scene);
+  return load_or_precompute(scene, ArchivePart::surface);
+}
+
 class Simulator {
  public:
   explicit Simulator(const Scene& scene)
       : scene_(scene),
-        archives_(load_or_precompute(scene, ArchivePart::surface)),
+        archives_(archives_of(scene)),
         lock_step_(scene, archives_),
         watch_(lock_step_.simulator(), archives_) {}
 
@@ -25,6 +30,7 @@ class Simulator {
   bool over() const { return lock_step_.motions_over(); }
 
   void follow(int steps) {
+    if (steps < 0) throw py::value_error(fmt::format("{} steps cannot be followed: give 0 or more", steps));
     const py::gil_scoped_release others_may_run;
     for (int i = 0; i < steps; ++i) {
       lock_step_.step();

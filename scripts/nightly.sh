@@ -41,6 +41,7 @@ for stage in "$@"; do
         echo "$example"
         PYTHONPATH=build/python/python python3 "$example" scenes
       done
+      PYTHONPATH=build/python/python python3 tests/python/simulator.py scenes
       mkdir -p out
       rm -f out/force_depth.png
       PYTHONPATH=build/python/python MPLBACKEND=Agg python3 python/examples/force_depth.py scenes out/force_depth.png

@@ -2,11 +2,14 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/print.hpp"
 #include "common/bus/topic_named.hpp"
+#include "common/files/atomic_file.hpp"
+#include "common/files/ending.hpp"
 #include "idl/topics.hpp"
 #include "tools/mcap/export_mcap.hpp"
 #include "tools/shared/commands.hpp"
@@ -19,10 +22,13 @@ struct ExportOptions {
   bool csv = false, json = false, mcap = false;
 };
 
-/// A file, or the standard output.
+/// A file, which is there once finish() returns, or the standard output.
 class Output {
  public:
-  explicit Output(const std::string& file) : name_(file), file_(file.empty() ? stdout : std::fopen(file.c_str(), "w")) {
+  explicit Output(const std::string& file) : name_(file) {
+    if (file.empty()) return;
+    whole_.emplace(file);
+    file_ = std::fopen(whole_->handle().c_str(), "w");
     if (!file_) throw std::runtime_error(fmt::format("{}: cannot write", file));
   }
   ~Output() {
@@ -36,11 +42,13 @@ class Output {
   void finish() {
     if (std::fflush(file_) != 0 || std::ferror(file_))
       throw std::runtime_error(fmt::format("{}: cannot write", name_.empty() ? "standard output" : name_));
+    if (whole_) whole_->commit();
   }
 
  private:
   std::string name_;
-  std::FILE* file_;
+  std::optional<AtomicFile> whole_;
+  std::FILE* file_ = stdout;
 };
 
 template <class M>
@@ -60,12 +68,18 @@ std::uint64_t export_topic(const ExportOptions& o, const Topic<M>& topic, LogRea
 
 void write_mcap(const ExportOptions& o, const std::string& topic) {
   if (o.file.empty()) throw std::runtime_error("export: --mcap needs a file: give -o FILE.mcap");
-  const std::uint64_t count = export_mcap(o.log, topic, o.file);
-  if (count == 0) throw std::runtime_error(fmt::format("{}: holds no such sample", o.log));
-  fmt::print("{}: {} messages\n", o.file, count);
+  fmt::print("{}: {} messages\n", o.file, export_mcap(o.log, topic, o.file));
+}
+
+/// A file's ending says what is in it.
+void check_ending(const ExportOptions& o) {
+  const bool named = has_ending(o.file, ".mcap");
+  if (o.mcap && !named) throw std::runtime_error(fmt::format("export: {} does not end in .mcap", o.file));
+  if (named && !o.mcap) throw std::runtime_error(fmt::format("export: {} ends in .mcap: give --mcap too", o.file));
 }
 
 void run(const ExportOptions& o) {
+  if (!o.file.empty()) check_ending(o);
   if (o.mcap && o.topic.empty()) return write_mcap(o, "");
   if (o.topic.empty()) throw std::runtime_error("export: CSV and JSON lines are of one topic: give --topic");
   const std::string name = topic_named(o.topic);
@@ -75,9 +89,9 @@ void run(const ExportOptions& o) {
     if (o.mcap) return write_mcap(o, name);
     Output out(o.file);
     const std::uint64_t count = export_topic(o, topic, reader, out);
-    out.finish();
     if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
     if (count == 0) throw std::runtime_error(fmt::format("{}: holds no sample of {}", o.log, name));
+    out.finish();
   });
 }
 

@@ -97,6 +97,11 @@ void print_tasks(const LogSummary& s) {
     fmt::print("\ntask of catheter {} in run {:016x}\n{}\n", task.body, task.run, fmt::join(task_lines(task), "\n"));
 }
 
+std::string scene_line(const LogSummary& s) {
+  if (s.header.scene.empty()) return "none in the log";
+  return s.title.empty() ? "without a title" : printable(s.title);
+}
+
 void print_text(const LogSummary& s, const std::string& file) {
   fmt::print("{}: {:.2f} s, {:.1f} MB\n", file, s.seconds, 1e-6 * static_cast<double>(s.bytes));
   if (s.has_header)
@@ -104,7 +109,7 @@ void print_text(const LogSummary& s, const std::string& file) {
                printable(s.header.version));
   else
     fmt::print("the header is damaged: scene, version and start are unknown\n");
-  fmt::print("scene     {}\n", s.title.empty() ? "none in the log" : printable(s.title));
+  fmt::print("scene     {}\n", scene_line(s));
   fmt::print("code path {}\n", s.code_path.empty() ? "unknown" : printable(s.code_path));
   for (const LogFile& f : s.files)
     fmt::print("file      {} ({:.2f} MB, {})\n", printable(std::filesystem::path(f.path).filename().string()),

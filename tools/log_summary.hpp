@@ -27,7 +27,7 @@ struct TopicSummary {
 struct LogSummary {
   LogHeader header;
   bool has_header = false;
-  std::string title;      ///< of the scene; empty if the log has none
+  std::string title;      ///< of the scene; empty if it has none
   std::string code_path;  ///< of the haptic step; empty if unknown
   double seconds = 0;     ///< from the first sample to the last
   std::uint64_t bytes = 0;

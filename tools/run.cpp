@@ -8,6 +8,7 @@
 
 #include "common/bus/domain_claim.hpp"
 #include "common/cli/progress.hpp"
+#include "common/devices/device.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
@@ -155,6 +156,7 @@ void run(const RunOptions& o) {
   if (!o.keep.empty() && log_of(scene, o).empty())
     throw std::runtime_error("--keep: there is no log; --record names one, or `file` in the scene's [record]");
   keep_files_of(scene, {log_of(scene, o), o.film, o.still, o.summary});
+  make_devices(scene.tools, scene.rates.haptic_hz);  // what is wrong with a motion is said before all else
   for (const Body& body : scene.bodies) ensure_archive(scene, body, say_stages(body));
   catch_shutdown_signals();
   std::optional<AtomicFile> summary_file;  // what cannot be written is found before the run

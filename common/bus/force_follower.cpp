@@ -1,8 +1,12 @@
 #include "common/bus/force_follower.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -26,6 +30,15 @@ MotorForce sum(double s, const MotorForce& a, double t, const MotorForce& b) {
 }
 
 }  // namespace
+
+ForceFollower::ForceFollower(std::uint32_t tool, const MotorLimits& limits) : tool_(tool), limits_(limits) {
+  const auto& [force, torque, grip, force_rate] = limits;
+  for (const auto& [name, limit] :
+       {std::pair{"max_force", force}, {"max_torque", torque}, {"max_grip", grip}, {"max_force_rate", force_rate}})
+    if (!(limit > 0 && std::isfinite(limit)))
+      throw std::runtime_error(
+          fmt::format("{}: what a device's motors give is a finite number above 0, not {}", name, limit));
+}
 
 // [N] of all together, by the proportion of the limits; infinite where one of them is no number.
 double ForceFollower::size(const MotorForce& f) const {

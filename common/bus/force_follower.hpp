@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// What a device's motors give, whatever a scene asks for.
+/// What a device's motors give, whatever a scene asks for: finite numbers above 0.
 struct MotorLimits {
   double max_force = 10;        ///< [N]
   double max_torque = 3;        ///< [N m]
@@ -33,7 +33,8 @@ class ForceFollower {
   static constexpr double kFade = 0.02, kReturn = 0.05;  ///< [s] from all to nothing, and back
   static constexpr double kAbsurd = 10;                  ///< times the limits: no force for this device, and refused
 
-  explicit ForceFollower(std::uint32_t tool, const MotorLimits& limits = {}) : tool_(tool), limits_(limits) {}
+  /// Throws std::runtime_error with the limit that is no finite number above 0.
+  explicit ForceFollower(std::uint32_t tool, const MotorLimits& limits = {});
 
   /// True if the motors are to follow it: of this tool, of the loop that is followed, and a force that can be.
   bool hear(const ForceState& told, std::int64_t now_ns);

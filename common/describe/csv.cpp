@@ -7,6 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/describe/byte_order_mark.hpp"
+
 namespace palpate {
 
 namespace {
@@ -67,7 +69,7 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
   int number = 0;
   for (std::string text; std::getline(stream, text);) {
     ++number;
-    const std::string_view line = trimmed(text);
+    const std::string_view line = trimmed(number == 1 ? without_byte_order_mark(text) : text);
     if (line.empty() || line.starts_with('#')) continue;
     const std::vector<std::string_view> cells = split(line);
     if (wanted == 0) {

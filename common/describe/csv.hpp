@@ -22,7 +22,7 @@ struct CsvTable {
 };
 
 /// Reads comma-separated finite numbers below a header that names exactly `columns`, or those and then
-/// `optional`, where it is not empty. Lines that begin with '#' and empty lines are skipped. Throws
+/// `optional`, where it is not empty. Lines that begin with '#', empty lines and a byte-order mark are skipped. Throws
 /// std::runtime_error("FILE:LINE: sentence"), also when there is no row.
 CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string_view>& columns,
                   std::string_view optional = {});

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include "common/describe/byte_order_mark.hpp"
+
 namespace palpate {
 namespace {
 
@@ -78,7 +80,8 @@ std::string_view kind_of(const std::filesystem::path& file) {
   std::error_code unknown;
   if (is_binary_stl(bytes, std::filesystem::file_size(file, unknown))) return ".stl";
   if (bytes.empty() || !is_text(bytes)) return {};
-  return is_motion(bytes) ? kMotion : is_toml(bytes) ? kScene : kText;
+  const std::string_view text = without_byte_order_mark(bytes);
+  return is_motion(text) ? kMotion : is_toml(text) ? kScene : kText;
 }
 
 std::string_view kind_in_words(std::string_view kind) {

@@ -57,6 +57,7 @@ struct InstrumentView {
   double shaft_radius = 0.0025;
   double shaft_length = 0.3;  ///< from the origin back along the shaft
   double jaw_opening = 0;     ///< [rad] between the jaws
+  double most_open = 0;       ///< [rad] that they are shown; 0: without jaws
   double jaw_length = 0;      ///< of a forceps, from the hinge; 0: a probe
   double jaw_radius = 0.001;  ///< of a forceps' jaw about its middle line
 };

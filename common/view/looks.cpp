@@ -17,6 +17,7 @@ constexpr std::size_t kMaxTrianglesOfOrgan = 16000, kMaxTrianglesOfWall = 6000, 
 constexpr std::array<double, 3> kDuctColour{0.60, 0.29, 0.23}, kPlasticColour{0.66, 0.74, 0.76};
 constexpr float kBareSteel = 0.045f;  // behind a probe's tip [m]
 constexpr float kBareFork = 5;        // behind a forceps' hinge [radii of the shaft]
+constexpr double kProbeOpens = 1.2;   // [rad] at most, its jaws as they are shown
 constexpr float kSatin = 0.35f;       // polish of a forceps: flat faces show their shape by shading
 
 }  // namespace
@@ -43,7 +44,9 @@ InstrumentView instrument_of(const Tool& tool) {
   const EndAbilities can = abilities_of(tool);
   if (can.ball) view.tip_radius = *can.ball;
   view.blade = can.cautery && !can.closing;
+  if (can.closing) view.most_open = kProbeOpens;
   if (can.turning) {
+    view.most_open = std::numbers::pi;
     view.jaw_length = can.turning->length;
     view.jaw_radius = can.turning->radius;
   }
@@ -58,7 +61,7 @@ Steel steel_of(const InstrumentView& instrument) {
 void place(InstrumentView& instrument, const Trocar& trocar, const ToolState& s) {
   instrument.tip = tip_pose(trocar, dofs_of(s));
   const bool forceps = instrument.jaw_length > 0;
-  instrument.jaw_opening = std::clamp(forceps ? s.opening : s.grip, 0.0, forceps ? std::numbers::pi : 1.2);
+  instrument.jaw_opening = std::clamp(forceps ? s.opening : s.grip, 0.0, instrument.most_open);
 }
 
 Camera fit_camera(std::span<const SurfaceMap> surfaces) {

@@ -1,4 +1,5 @@
 """palpate, a haptic simulator of soft tissue: scenes, tensors, static states, runs in lock step, topic logs, drivers of devices."""
+import importlib
 import os
 import pathlib
 from typing import TYPE_CHECKING, Any
@@ -31,5 +32,11 @@ def __getattr__(name: str) -> Any:
     """The simulator's libraries are loaded with the first of its names: a driver goes without them."""
     if name not in __all__:
         raise AttributeError(f"module 'palpate' has no attribute '{name}'")
-    from . import _core
-    return getattr(_core, name)
+    try:
+        core = importlib.import_module("palpate._core")
+    except ModuleNotFoundError as error:
+        if error.name != "palpate._core":
+            raise
+        raise ImportError(f"this installation has only palpate.Device: {name} is in the package python3-palpate, or in a build with "
+                          "the preset 'python' (docs/python.md)") from None
+    return getattr(core, name)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace palpate {
 namespace {
@@ -37,6 +38,16 @@ class ForceFollowerTest : public ::testing::Test {
   MotorForce given_;
   double largest_change_ = 0;
 };
+
+TEST(ForceFollowerLimits, AreFiniteNumbersAboveZero) {
+  for (double MotorLimits::*limit :
+       {&MotorLimits::max_force, &MotorLimits::max_torque, &MotorLimits::max_grip, &MotorLimits::max_force_rate})
+    for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -1.0}) {
+      MotorLimits limits;
+      limits.*limit = value;
+      EXPECT_THROW(ForceFollower(0, limits), std::runtime_error) << value;
+    }
+}
 
 TEST_F(ForceFollowerTest, BringsAForceInGentlyAndThenGivesWhatIsTold) {
   press(2, 1);

@@ -54,6 +54,20 @@ TEST_F(DriveCommand, SaysWhatARunComesToAndFailsWhereItIsNotAsExpected) {
   EXPECT_NEAR(json::parse(part.out)["figures"]["seconds"].get<double>(), 0.75, 1e-9);
 }
 
+TEST(DriveBeforeAll, WhatIsWrongWithAMotionIsSaidBeforeArchivesAreComputed) {
+  const LoopbackScene scene("drive-motion", testing::kLinear);
+  const auto refused_at_once = [&](const std::string& command, const std::string& why) {
+    expect_refusal(program("palpate") + " " + command, {why});
+    EXPECT_FALSE(std::filesystem::exists(scene.folder() / ".palpate")) << command;
+  };
+  const std::string drive = "drive " + scene.scene();
+  refused_at_once(drive + " --set tool.device=bus", "is moved by a driver elsewhere");
+  scene.write("motion.csv", "time,depth\n0,0\n");
+  for (const std::string& command :
+       {drive, drive + " --sweep body.young=4000,8000", "run " + scene.scene() + " --domain 140"})
+    refused_at_once(command, "motion.csv:1: the header must be");
+}
+
 TEST_F(DriveCommand, SweepsIntoOneTableAndTasksMergeIntoTheSame) {
   const std::string what = "--sweep body.young=4000,8000 --sweep contact.friction=0,0.5 --seconds 1.2 ";
   const auto sweep = run_program(drive(what + "-o " + file("sweep.csv").string()));

@@ -37,14 +37,30 @@ TEST(Drivers, InCppWithTheInstalledLibrary) {
   expect_a_whole_driver(rig, with({example_in("cpp")}, {std::to_string(own_domain())}));
 }
 
+const fs::path kModule = fs::path(PALPATE_BUILD) / "python";
+
+/// Null where it can be tried.
+const char* why_not_in_python() {
+  if (!fs::exists(kModule)) return "built without pybind11";
+  return kSanitized ? "Python itself has no sanitizer, which the module needs" : nullptr;
+}
+
+/// A script of the source tree, in the domain of this process.
+std::vector<std::string> python(const std::string& script) {
+  return {"/usr/bin/env", "PYTHONPATH=" + kModule.string(), PALPATE_PYTHON3, PALPATE_SOURCE "/" + script,
+          std::to_string(own_domain())};
+}
+
 TEST(Drivers, InPythonWithItsModule) {
-  const fs::path module = fs::path(PALPATE_BUILD) / "python";
-  if (!fs::exists(module)) GTEST_SKIP() << "built without pybind11";
-  if (kSanitized) GTEST_SKIP() << "Python itself has no sanitizer, which the module needs";
+  if (const char* why = why_not_in_python()) GTEST_SKIP() << why;
   DriverRig rig;
-  expect_a_whole_driver(rig, with({"/usr/bin/env", "PYTHONPATH=" + module.string(), PALPATE_PYTHON3,
-                                   PALPATE_SOURCE "/drivers/python/press.py"},
-                                  {std::to_string(own_domain())}));
+  expect_a_whole_driver(rig, with(python("drivers/python/press.py")));
+}
+
+TEST(Drivers, InPythonAreRefusedWrongLimitsAndCountWhatWasSent) {
+  if (const char* why = why_not_in_python()) GTEST_SKIP() << why;
+  std::string said;
+  EXPECT_EQ(run_command(fmt::format("{}", fmt::join(python("tests/python/device.py"), " ")), &said), 0) << said;
 }
 
 /// What a subscriber hears of a press from a signal to the haptic node on.

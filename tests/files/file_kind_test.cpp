@@ -29,6 +29,8 @@ TEST(FileKind, IsToldByTheFirstBytes) {
   EXPECT_EQ(kind("<?xml version=\"1.0\"?>"), ".vtu");
   EXPECT_EQ(kind("{\"a\": 1}\n"), ".json");
   EXPECT_EQ(kind("# a motion\ntime,yaw\n0,1\n"), "motion");
+  EXPECT_EQ(kind("\xef\xbb\xbftime,yaw\n0,1\n"), "motion");
+  EXPECT_EQ(kind("\xef\xbb\xbf[[body]]\n"), ".toml");
   EXPECT_EQ(kind("# of nodes\nnode,x\n0,1\n"), ".csv");
   EXPECT_EQ(kind("# of the liver\n\ntitle = \"x, y\"\n"), ".toml");
   EXPECT_EQ(kind("[[body]]\n"), ".toml");

@@ -73,14 +73,24 @@ TEST(Stage, ShowsToolsOnceHeardOf) {
   EXPECT_TRUE(stage.frame().instruments.empty());
   ToolState tool;
   tool.depth = 0.15;
-  tool.grip = 0.3;
   EXPECT_TRUE(stage.set_tool(tool));
   const Frame frame = stage.frame();
   ASSERT_EQ(frame.instruments.size(), 1u);
   EXPECT_TRUE(frame.instruments[0].tip.translation().isApprox(Eigen::Vector3d(0, 0, 0.05)));
-  EXPECT_DOUBLE_EQ(frame.instruments[0].jaw_opening, 0.3);
   tool.tool = 1;
   EXPECT_FALSE(stage.set_tool(tool));
+}
+
+TEST(Stage, OpensOnlyJawsThatThereAre) {
+  BallWorld world;
+  ToolState tool;
+  tool.grip = 0.3;
+  for (const bool jaws : {false, true}) {
+    if (jaws) std::get<ProbeSpec>(world.scene.tools[0].end).jaws.emplace();
+    Stage stage = world.stage();
+    stage.set_tool(tool);
+    EXPECT_DOUBLE_EQ(stage.frame().instruments.at(0).jaw_opening, jaws ? 0.3 : 0);
+  }
 }
 
 TEST(Stage, LegendCoversTheLargestDisplacement) {

@@ -20,6 +20,20 @@ TEST(Csv, ReadsNumbersBelowItsHeaderAndKeepsLineNumbers) {
   EXPECT_EQ(table.rows[1].values, (std::vector<double>{-0.03, 4}));
 }
 
+TEST(Csv, AByteOrderMarkIsNoPartOfTheFirstName) {
+  const SceneFolder folder;
+  EXPECT_EQ(read_csv(folder.write("a.csv",
+                                  "\xef\xbb\xbf"
+                                  "a,b\n1,2\n"),
+                     {"a", "b"})
+                .rows[0]
+                .values,
+            (std::vector<double>{1, 2}));
+  EXPECT_EQ(
+      read_csv(folder.write("b.csv", "\xef\xbb\xbf# by another program\r\na,b\r\n1,2\r\n"), {"a", "b"}).rows[0].line,
+      3);
+}
+
 TEST(Csv, AnOptionalLastColumnIsThereForAllRowsOrForNone) {
   const SceneFolder folder;
   EXPECT_EQ(read_csv(folder.write("a.csv", "a,b\n1,2\n"), {"a", "b"}, "c").rows[0].values, (std::vector<double>{1, 2}));

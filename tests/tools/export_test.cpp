@@ -59,6 +59,24 @@ TEST_F(Export, SequencesAsJsonAndIntoAFile) {
   EXPECT_EQ(sample["message"]["forces"][0]["node"], 7);
 }
 
+TEST_F(Export, TheEndingSaysWhatIsInTheFile) {
+  const std::string palpate = program("palpate") + " export " + log_;
+  expect_refusal(palpate + " --mcap -o " + (folder_ / "x.csv").string(), {"x.csv does not end in .mcap"});
+  expect_refusal(palpate + " --topic force_state -o " + (folder_ / "x.mcap").string(), {"x.mcap ends in .mcap"});
+}
+
+TEST_F(Export, WhereTheLogHasNoSampleNoFileIsLeftAndAnOldOneStays) {
+  for (const std::string& to : {"none.mcap --mcap", "none.csv --csv"})
+    expect_refusal(program("palpate") + " export " + log_ + " --topic modal_state -o " + (folder_ / to).string(),
+                   {"short.lcmlog", "sample"});
+  ASSERT_EQ(run("--topic force_state -o " + (folder_ / "old.csv").string()).status, 0);
+  const std::string old = text_of(folder_ / "old.csv");
+  EXPECT_EQ(run("--topic modal_state -o " + (folder_ / "old.csv").string()).status, 1);
+  EXPECT_EQ(text_of(folder_ / "old.csv"), old);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    EXPECT_TRUE(entry.path() == log_ || entry.path() == folder_ / "old.csv") << entry.path();
+}
+
 TEST_F(Export, SaysWhatItCannotDo) {
   const std::string palpate = program("palpate") + " export ";
   expect_refusal(palpate + log_ + " --topic nonsense", {"nonsense", "force_state"});

@@ -103,6 +103,19 @@ TEST(ToolsHelp, ThreeNumbersAreTakenBetweenSpacesOrCommas) {
   EXPECT_EQ(testing::text_of(with_spaces), testing::text_of(with_commas));
 }
 
+TEST(ToolsHelp, BashOffersCommandsAndEachOfTheirOptionsOnce) {
+  const auto offered = [](const std::string& words) {
+    const std::string script = ". " PALPATE_SOURCE "/scripts/completion/palpate; COMP_WORDS=(" + program("palpate") +
+                               " " + words + "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _palpate; echo ${COMPREPLY[*]}";
+    return run_program("bash -c \"" + std::regex_replace(script, std::regex(R"([$"])"), R"(\$&)") + "\"").out;
+  };
+  EXPECT_EQ(offered("--"), "--help --version\n");
+  EXPECT_EQ(offered("exp"), "export\n");
+  EXPECT_EQ(offered("export --"), "--help --topic --csv --jsonl --mcap --output --force\n");
+  EXPECT_EQ(offered("drive scene.toml --co"), "--course\n");
+  EXPECT_EQ(offered("export log"), "\n") << "files";
+}
+
 TEST(ToolsHelp, HelpThatCannotBeWrittenIsTold) {
   EXPECT_EQ(run_program("{ " + program("palpate") + " --help > /dev/full; }").status, 1);
 }

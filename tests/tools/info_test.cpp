@@ -47,6 +47,23 @@ TEST(Info, TellsHowTheTaskOfALogEnded) {
   EXPECT_EQ(tasks[0]["deepest"], 0.022);
 }
 
+TEST(Info, TellsAScenesTitleThatItHasNoneAndThatThereIsNoScene) {
+  const OwnFolder folder("info-scene");
+  const auto said_of = [&](const std::string& scene) {
+    const std::string log = folder / "scene.lcmlog";
+    LogWriter writer(log);
+    LogHeader header;
+    header.schema = schema_text();
+    writer.write(kHeaderChannel, 1, header);
+    if (!scene.empty()) writer.write(topics::scene.name, 2, SceneText{.seq = 1, .scene_hash = "a", .text = scene});
+    writer.finish();
+    return run_program(program("palpate") + " info " + log).out;
+  };
+  EXPECT_NE(said_of("title = \"a block\"\n").find("scene     a block\n"), std::string::npos);
+  EXPECT_NE(said_of("[[body]]\n").find("scene     without a title\n"), std::string::npos);
+  EXPECT_NE(said_of("").find("scene     none in the log\n"), std::string::npos);
+}
+
 // What is lost on the way lacks its sequence number, and is counted as missing.
 TEST(Info, StepsThatTheHapticNodeToldNobodyAreNamed) {
   const OwnFolder folder("info-untold");

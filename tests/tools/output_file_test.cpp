@@ -108,6 +108,34 @@ TEST_F(ToolsOutputFile, WhatTheSceneNamesIsKept) {
   EXPECT_EQ(text_of(file("motion.csv")), motion);
 }
 
+/// A folder's files are a command's own where the one that it writes first is.
+TEST_F(ToolsOutputFile, InAFolderNothingIsReplacedThatTheCommandDidNotMake) {
+  ASSERT_EQ(run_program(drive("--log", file("run.lcmlog"))).status, 0);
+  const std::string out = scene_.folder() / "report/", latency = scene_.folder() / "latency/";
+  const std::string report =
+      program("palpate") + " report --pictures 1 " + file("run.lcmlog") + " " + file("run.lcmlog") + " -o " + out;
+  const std::string measure = program("palpate") + fmt::format(" latency --seconds 0.1 --domain {} --udp-port {} -o {}",
+                                                               testing::own_domain(), testing::own_udp_port(), latency);
+  fs::create_directory(out);
+  fs::create_directory(latency);
+  const auto kept = [&](const std::string& command, const std::string& name, const std::string& text) {
+    std::ofstream(name) << text;
+    testing::expect_refusal(command, {name + ": not made by this command"});
+    EXPECT_EQ(text_of(name), text);
+    fs::remove(name);
+  };
+  for (const char* name :
+       {"course_0.csv", "course_1.csv", "index.html", "report.json", "picture_0_0.png", "picture_1_0.png"})
+    kept(report, out + name, "precious");
+  EXPECT_TRUE(fs::is_empty(out));
+  kept(measure, latency + "latency.json", "{\n  \"precious\": 1\n}\n");
+  kept(measure, latency + "latency.png", "precious");
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(run_program(report).status, 0) << "its own are written anew";
+    EXPECT_EQ(run_program(measure).status, 0);
+  }
+}
+
 TEST_F(ToolsOutputFile, AFileOfAnotherKindIsReplacedOnlyByForce) {
   scene_.write("notes", "of the kidney, and of the spleen\n");
   scene_.write("other.png", "no picture");

@@ -12,6 +12,7 @@
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/ensure_archive.hpp"
 #include "common/scene/moved_files.hpp"
+#include "tools/drive/lock_step.hpp"
 #include "tools/drive/run.hpp"
 #include "tools/drive/sweep.hpp"
 #include "tools/shared/child_process.hpp"
@@ -69,6 +70,7 @@ PointResult result_of(const DriveOptions& o, const std::vector<SceneChange>& cha
   try {
     const Scene scene = load_scene(o.scene, changes);
     keep_files_of(scene, {o.log, o.course, o.output});
+    lock_step_devices(scene);  // what is wrong with a motion is said before archives are computed
     for (const Body& body : scene.bodies) ensure_archive(scene, body, say_stages(body));
     catch_shutdown_signals();  // until here Ctrl-C ends it at once
     return run_scene(scene, settings_of(o));
@@ -111,6 +113,7 @@ void prepare(const DriveOptions& o, const std::vector<std::vector<SceneChange>>&
   for (const auto& changes : points) {
     scenes.push_back(load_scene(o.scene, changes));
     keep_files_of(scenes.back(), {o.output});
+    lock_step_devices(scenes.back());
   }
   if (o.tasks) return;
   std::set<std::string> known;

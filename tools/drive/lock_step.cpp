@@ -7,17 +7,21 @@
 
 namespace palpate::drive {
 
-LockStep::LockStep(const Scene& scene, const std::vector<Archive>& archives)
-    : simulator_(scene, archives),
-      devices_(make_devices(scene.tools, scene.rates.haptic_hz)),
-      inputs_(scene.tools.size()) {
-  for (int t = 0; t < simulator_.tools(); ++t) {
-    guards_.emplace_back(scene.tools[t].motion, simulator_.dt());
-    if (devices_[t]->on_bus())
+std::vector<std::unique_ptr<Device>> lock_step_devices(const Scene& scene) {
+  std::vector<std::unique_ptr<Device>> devices = make_devices(scene.tools, scene.rates.haptic_hz);
+  for (std::size_t t = 0; t < devices.size(); ++t)
+    if (devices[t]->on_bus())
       throw std::runtime_error(fmt::format(
           "tool '{}' is moved by a driver elsewhere (device '{}'), which lock step does not wait for: give it a motion "
           "with --set tool.{}.device=scripted and --set tool.{}.trajectory=FILE",
           scene.tools[t].name, kind_of(scene.tools[t].device), scene.tools[t].name, scene.tools[t].name));
+  return devices;
+}
+
+LockStep::LockStep(const Scene& scene, const std::vector<Archive>& archives)
+    : simulator_(scene, archives), devices_(lock_step_devices(scene)), inputs_(scene.tools.size()) {
+  for (int t = 0; t < simulator_.tools(); ++t) {
+    guards_.emplace_back(scene.tools[t].motion, simulator_.dt());
     inputs_[t] = devices_[t]->read(0);
   }
   simulator_.start(inputs_);

@@ -9,12 +9,16 @@
 
 namespace palpate::drive {
 
+/// What moves the tools of a scene. Throws std::runtime_error for a missing or malformed file, or where a tool waits
+/// for a driver elsewhere: who is to compute archives first asks for it before.
+std::vector<std::unique_ptr<Device>> lock_step_devices(const Scene& scene);
+
 /// A scene with what moves its tools, tick by tick, as fast as it goes: no clock, no bus, no picture. The tools'
 /// motions pass the same guard as in the haptic node.
 class LockStep {
  public:
-  /// One archive per body, read with ArchivePart::surface. Throws std::runtime_error if the scene cannot be run, a tool
-  /// starts in contact, or a tool waits for a driver elsewhere.
+  /// One archive per body, read with ArchivePart::surface. Throws std::runtime_error if the scene cannot be run or a
+  /// tool starts in contact, and as lock_step_devices() does.
   LockStep(const Scene& scene, const std::vector<Archive>& archives);
 
   sim::Simulator& simulator() { return simulator_; }

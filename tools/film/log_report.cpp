@@ -28,8 +28,27 @@ void write_text(const fs::path& file, const std::string& text) {
   if (!(out << text).flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
 }
 
+constexpr const char* kCourseHead = "time,tool,x,y,z,force\n";
+
+std::string course_name(std::size_t session) {
+  return fmt::format("course_{}.csv", session);
+}
+std::string picture_name(std::size_t session, std::size_t picture) {
+  return fmt::format("picture_{}_{}.png", session, picture);
+}
+
+/// Those that are written after the first course.
+std::vector<std::string> other_files(const LogReportSettings& s) {
+  std::vector<std::string> names{"report.json", "index.html"};
+  for (std::size_t i = 0; i < s.logs.size(); ++i) {
+    names.push_back(course_name(i));
+    for (int k = 0; k < s.pictures; ++k) names.push_back(picture_name(i, k));
+  }
+  return names;
+}
+
 void write_course(const fs::path& file, const LogFigures& figures, const Scene& scene) {
-  std::string text = "time,tool,x,y,z,force\n";
+  std::string text = kCourseHead;
   for (const LogFigures::Place& p : figures.course())
     text += fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5g}\n", p.time, scene.tools[p.tool].name, p.tip.x(),
                         p.tip.y(), p.tip.z(), p.force);
@@ -58,7 +77,7 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
     Frame frame = pictures.at(time);
     frame.overlay = {};  // too small to read
     renderer.draw(frame, image);
-    const std::string name = fmt::format("picture_{}_{}.png", session, drawn.size());
+    const std::string name = picture_name(session, drawn.size());
     write_png(image, s.folder / name);
     drawn.push_back({{"time", time}, {"file", name}});
   }
@@ -85,7 +104,7 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session) {
   LogReader reader(s.logs[session]);
   for (LogEvent event; !shutdown_requested() && reader.next(event);) figures.look(event);
   figures.finish();
-  const std::string course = fmt::format("course_{}.csv", session);
+  const std::string course = course_name(session);
   write_course(s.folder / course, figures, scene);
   ordered_json report{{"log", s.logs[session]},
                       {"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
@@ -99,7 +118,7 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session) {
 }  // namespace
 
 std::string report_logs(const LogReportSettings& s, const std::function<void(const std::string&)>& progress) {
-  prepare_folder(s.folder, "course_0.csv", "time,tool,x,y,z,force");
+  prepare_folder(s.folder, {course_name(0), kCourseHead}, other_files(s));
   ordered_json all{{"sessions", ordered_json::array()}};
   for (std::size_t i = 0; i < s.logs.size(); ++i) {
     progress(s.logs[i]);

@@ -64,7 +64,8 @@ void add_report_command(cli::Command& app) {
       app.add_command("report", "A page of sessions: force and path, pictures, and figures by which trainers compare");
   auto s = std::make_shared<LogReportSettings>();
   command.add_option("LOG", s->logs, "Topic logs, which are set side by side").required();
-  command.add_option("-o,--output", s->folder, "Folder for the figures and the page").required();
+  command.add_option("-o,--output", s->folder, "Folder for the figures and the page, which take no other file's place")
+      .required();
   command.add_option("--pictures", s->pictures, "Pictures of each session; 0: none, which needs no archives")
       .between(0, 100)
       .show_default();

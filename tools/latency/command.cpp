@@ -16,6 +16,7 @@
 #include "tools/shared/child_process.hpp"
 #include "tools/shared/commands.hpp"
 #include "tools/shared/network_options.hpp"
+#include "tools/study/output_folder.hpp"
 #include "tools/study/run_script.hpp"
 
 namespace palpate {
@@ -231,6 +232,12 @@ void print_text(const Result& r) {
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
 }
 
+/// Figures as a file has them.
+constexpr const char* kFile = "latency.json";
+std::string beginning_of_file() {
+  return fmt::format("{{\n  \"{}_us\":", kNames[0]);
+}
+
 void run(LatencyOptions& o) {
   if (o.answer) return answer(o);
   if (!o.scene.empty()) {
@@ -239,6 +246,7 @@ void run(LatencyOptions& o) {
   }
   if (!o.network.interface.empty() && o.network.peers.empty())
     throw std::runtime_error("latency: with --interface, name the other host by --peer");
+  if (!o.out.empty()) prepare_folder(o.out, {kFile, beginning_of_file()}, {"latency.png"});
   catch_shutdown_signals();
   const Result result = measure(o);
   const Json json = json_of(o, result);
@@ -247,8 +255,7 @@ void run(LatencyOptions& o) {
   else
     print_text(result);
   if (o.out.empty()) return;
-  std::filesystem::create_directories(o.out);
-  const auto file = std::filesystem::path(o.out) / "latency.json";
+  const auto file = std::filesystem::path(o.out) / kFile;
   std::ofstream stream(file);
   stream << json.dump(2) << "\n";
   if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot write", file.string()));
@@ -270,7 +277,7 @@ void add_latency_command(cli::Command& app) {
   command.add_option("--seconds", o->seconds, "How long").positive().show_default();
   command.add_option("--udp-port", o->port, "Port of the bare UDP messages").between(1024, 65535).show_default();
   command.add_flag("--json", o->json, "Print JSON");
-  command.add_option("-o,--output", o->out, "Folder for latency.json and its plot");
+  command.add_option("-o,--output", o->out, "Folder for latency.json and its plot, which take no other file's place");
   add_network_options(command, o->network, "latency");
   command.examples({"palpate latency scenes/liver.toml --seconds 10 -o out/latency", "palpate latency --answer"});
   command.does([o] { run(*o); });

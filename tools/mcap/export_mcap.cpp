@@ -59,8 +59,9 @@ std::uint64_t export_mcap(const std::filesystem::path& log, const std::string& t
   LogReader reader(log);
   Export to(reader, file);
   for (LogEvent event; reader.next(event);) to.add(event, topic);
-  to.finish();
   if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
+  if (to.messages() == 0) throw std::runtime_error(fmt::format("{}: holds no such sample", log.string()));
+  to.finish();
   return to.messages();
 }
 

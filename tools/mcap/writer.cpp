@@ -75,7 +75,8 @@ void McapWriter::Times::add(std::uint64_t time) {
   last = std::max(last, time);
 }
 
-McapWriter::McapWriter(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "wb")) {
+McapWriter::McapWriter(const std::filesystem::path& file)
+    : path_(file), whole_(file), file_(std::fopen(whole_.handle().c_str(), "wb")) {
   if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
   Bytes begin(std::begin(kMagic), std::end(kMagic));
   add_record(begin, header, Fields().text("").text("palpate " PALPATE_VERSION));
@@ -187,6 +188,7 @@ void McapWriter::finish() {
   put(last);
   if (!good_ || std::fflush(file_.get()) != 0)
     throw std::runtime_error(fmt::format("{}: cannot be written", path_.string()));
+  whole_.commit();
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/codec.hpp"
+#include "common/files/atomic_file.hpp"
 
 namespace palpate {
 
@@ -16,7 +17,7 @@ namespace palpate {
 /// readers find topics and times without reading all.
 class McapWriter {
  public:
-  /// Throws std::runtime_error if the file cannot be written.
+  /// The file is there once finish() returns. Throws std::runtime_error if it cannot be written.
   explicit McapWriter(const std::filesystem::path& file);
 
   /// A topic, with the type of its messages; its number.
@@ -55,6 +56,7 @@ class McapWriter {
   Bytes summary() const;
 
   std::filesystem::path path_;
+  AtomicFile whole_;
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t at_ = 0;  ///< [bytes] written
   bool good_ = true;

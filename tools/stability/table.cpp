@@ -108,7 +108,7 @@ int run_table(const std::vector<Point>& points, const std::filesystem::path& fol
   if (std::ranges::none_of(points, asked))
     throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", how.only));
   const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
-  prepare_folder(folder, csv.filename(), kHeading);
+  prepare_folder(folder, {csv.filename(), fmt::format("{}\n", kHeading)}, {"index.html"});
   std::vector<Row> before;
   if (text_of(mark) == subject) before = read_rows(csv);
   std::ofstream(mark) << subject << "\n";

@@ -69,7 +69,7 @@ Methods make_methods(const Scene& scene, const StudyOptions& options) {
 }
 
 Result run_study(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options) {
-  prepare_folder(folder, "study.csv", kStudyHead);
+  prepare_folder(folder, {"study.csv", fmt::format("{}\n", kStudyHead)}, {"index.html"});
   const Store store(folder, study_key(scene, options.quick));
   if (store.is_new()) std::filesystem::remove(folder / "machine.txt");
   StudyOptions here = options;

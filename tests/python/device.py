@@ -1,0 +1,22 @@
+"""What palpate.Device takes and counts: device.py DOMAIN"""
+import math
+import pathlib
+import sys
+
+import palpate
+
+from refused import refused
+
+domain = int(sys.argv[1])
+refused(RuntimeError, "domain", lambda: palpate.Device(domain=999))
+for limit in "max_force", "max_torque", "max_grip", "max_force_rate":
+    for value in math.nan, math.inf, 0, -1:
+        refused(RuntimeError, limit, lambda: palpate.Device(domain=domain, **{limit: value}))
+
+device = palpate.Device(domain=domain)
+assert device.write([0, 0, 0.1, 0, 0, 0]) and device.written == 1
+assert not device.write([math.nan] * 6) and device.written == 1, "what was not sent is not counted"
+assert device.write([0, 0, 0.1, 0, 0, 0]) and device.written == 2
+
+if not list(pathlib.Path(palpate.__file__).parent.glob("_core.*so")):
+    refused(ImportError, "has only palpate.Device: Scene is in the package python3-palpate", lambda: palpate.Scene)

@@ -1,0 +1,62 @@
+"""What scenes, static states, runs and logs take, refuse and warn of: simulator.py SCENES"""
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import palpate
+
+import numpy as np
+
+from refused import refused
+
+scenes = pathlib.Path(sys.argv[1]).resolve()
+plate = palpate.Scene(scenes / "plate.toml")
+
+for method in "tensors", "direct":
+    for number in math.nan, math.inf, -math.inf:
+        refused(ValueError, "hold of node 180", lambda: palpate.solve(plate, {180: (None, None, number)}, method=method))
+        refused(ValueError, "force on node 180", lambda: palpate.solve(plate, forces={180: (0, number, 0)}, method=method))
+        refused(ValueError, "gravity", lambda: palpate.solve(plate, gravity=(0, 0, number), method=method))
+    refused(RuntimeError, "not finite", lambda: palpate.solve(plate, forces={180: (0, 0, 1e308)}, method=method))
+
+changed = palpate.Scene(scenes / "plate.toml", {
+    "title": 'a "b" of\tsome', "tool.first.pivot": np.array([0.0, 0.01, 0.25]), "tool.first.up": (0, 1, 0), "body.young": np.float64(8e3),
+    "rates.haptic_hz": np.int64(500), "tool.first.trajectory": scenes / "trajectories/plate_second.csv", "render.overlay": False})
+assert changed.title == 'a "b" of\tsome'
+for line in "pivot = [0.0, 0.01, 0.25]", "up = [0.0, 1.0, 0.0]", "young = 8000.0", "haptic_hz = 500.0", "overlay = false":
+    assert line in changed.to_toml(), line
+refused(RuntimeError, "young must be a number, not a string", lambda: palpate.Scene(scenes / "plate.toml", {"body.young": "8000"}))
+
+with tempfile.TemporaryDirectory() as folder:
+    folder = pathlib.Path(folder)
+    bad = folder / "bad.csv"
+    bad.write_text("time,yaw\n0,0\n")
+    os.environ["PALPATE_CACHE"] = str(folder / "cache")
+    scene = palpate.Scene(scenes / "plate.toml", {"tool.first.trajectory": bad})
+    refused(RuntimeError, "the header must be", lambda: palpate.Simulator(scene))
+    assert not (folder / "cache").exists(), "it is read before archives are computed"
+    del os.environ["PALPATE_CACHE"]
+
+    log, cut = folder / "run.lcmlog", folder / "cut.lcmlog"
+    program = pathlib.Path(palpate.__file__).parents[2] / "bin" / "palpate"
+    subprocess.run([program, "drive", scenes / "plate.toml", "--seconds", "0.1", "--log", log], check=True, stdout=subprocess.DEVNULL)
+    cut.write_bytes(log.read_bytes()[:-1000])
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        whole = palpate.topics_in(log), len(palpate.read_log(log, "force_state")["step"])
+        assert not said, "of a whole log"
+        damaged = palpate.topics_in(cut), len(palpate.read_log(cut, "force_state")["step"])
+    assert sum(damaged[0].values()) < sum(whole[0].values())
+    assert len(said) == 2 and str(said[0].message) == str(said[1].message)
+    assert str(said[0].message).startswith(f"{cut}: the last event is cut off at byte ")
+    told = subprocess.run([program, "info", cut], check=True, capture_output=True, text=True).stdout
+    assert str(said[0].message) in told.splitlines(), "the sentence of palpate info"
+
+simulator = palpate.Simulator(plate)
+refused(ValueError, "-1 steps", lambda: simulator.follow(-1))
+simulator.follow(0)
+assert simulator.time == 0
