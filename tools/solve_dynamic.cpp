@@ -116,6 +116,7 @@ void print(const DynamicArguments& arguments, double time, const SolutionTable& 
 void solve_dynamic(const DynamicArguments& arguments) {
   const Scene scene = scene_of(arguments);
   const Body& body = choose_body(scene, arguments.body);
+  drive::lock_step_devices(scene);  // a motion that cannot be read is told of before anything is computed
   const std::vector<Archive> archives = load_or_precompute(scene, ArchivePart::surface);
   drive::LockStep run(scene, archives);
   const int place = organ_of(run.simulator().tissue(), scene, body);
