@@ -55,6 +55,7 @@ struct FrameTool {
 };
 inline constexpr std::uint32_t kSeen = 1u << 31;     ///< FrameTool::flags: its pose is known
 inline constexpr std::uint32_t kOffered = 1u << 30;  ///< a person may take it
+inline constexpr std::uint32_t kHolding = 1u << 29;  ///< its jaws are shut on what is between them
 
 /// The state of a moment.
 struct Frame {

@@ -104,7 +104,8 @@ FrameTool WebLoop::tool_in_frame(int index) const {
   for (int part = 0; part < 3; ++part) out.parts[part] = part_pose(tool.view, tool.shape, part).cast<float>();
   for (int axis = 0; axis < 3; ++axis) out.force[axis] = static_cast<float>(tool.force.force[axis]);
   out.grip_torque = static_cast<float>(tool.force.grip);
-  out.flags = tool.force.flags | (tool.seen ? kSeen : 0) | (hand.offered ? kOffered : 0);
+  out.flags =
+      tool.force.flags | (tool.seen ? kSeen : 0) | (hand.offered ? kOffered : 0) | (tool.state.holding ? kHolding : 0);
   out.sample = hand.sample;
   out.holder = hand.holder;
   out.asker = hand.asker;

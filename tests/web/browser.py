@@ -23,6 +23,7 @@ from watcher import FRAME, TAKEN, Connection, Watcher
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
 LAG = "Math.hypot(...palpate.frame.tools[0].parts[0].slice(12, 15).map((x, i) => x - palpate.hand.pose.tip[i]))"
 HANDLING = "document.querySelector('#handling p').textContent"
+SAID_FORCE = "document.querySelector('#forces b').textContent"
 MOVED = "Math.max(...palpate.bodies()[0].displacement)"
 
 
@@ -88,11 +89,17 @@ def press_by_mouse(options, arguments):
             page.let_go(0.54, 0.56)
             page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
             expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+            page.get("palpate.toggle('pause')")
             page.press(0.45, 0.6)
-            for _ in range(100):
-                page.get("palpate.deeper(0.0006)")
-                time.sleep(0.01)
-            deep = page.wait("palpate.hand.depth > 0.059 && palpate.hand.depth", 5)
+            page.wait(f"parseFloat({SAID_FORCE}) > 0.05", 5)  # the picture stands, what is felt does not
+            page.get("palpate.toggle('pause')")
+            for _ in range(10):
+                views.wheel(page, 5)
+            page.wait("palpate.hand.depth === 0.03", 3)  # no further than the slider
+            for _ in range(50):
+                page.get("palpate.hand.depth += 0.0006")
+                time.sleep(0.02)
+            deep = page.get("palpate.hand.depth")
             time.sleep(0.5)
             pulled, lag = page.get(FORCE), page.get(LAG)
             print(f"led {1e3 * deep:.0f} mm deep the tip stays {1e3 * lag:.0f} mm behind, with {pulled:.2f} N")
@@ -108,18 +115,24 @@ def press_by_mouse(options, arguments):
         expect(nodes.stop() == 0, "palpate run failed")
 
 
-CURVE_IS_SEEN = """(() => { const side = document.getElementById('side').getBoundingClientRect();
-const curve = document.getElementById('curve').getBoundingClientRect();
-return curve.height > 60 && curve.top >= side.top && curve.bottom <= side.bottom; })()"""
-CAP_TO_THE_RIGHT = """navigator.getGamepads = () => [{ connected: true, id: '3Dconnexion SpaceMouse (Vendor: 256f)',
-axes: [0.6, 0, 0, 0, 0, 0], buttons: [] }];
+PHONES = ((390, 800), (360, 640), (640, 360), (320, 568))
+FORCE_IS_SEEN = """(() => { const box = (id) => document.getElementById(id).getBoundingClientRect(), side = box('side');
+const curve = box('curve'), forces = box('forces');
+return curve.height > 60 && forces.height > 10 && [curve, forces].every((seen) =>
+  seen.top >= side.top && seen.bottom <= side.bottom && seen.left >= 0 && seen.right <= innerWidth); })()"""
+# `pad`: one that is only plugged in so far. The cap's last axis never rests at 0, as a throttle's.
+PLUGGED_IN = """const buttons = Array.from({ length: 8 }, () => ({ value: 0 }));
+globalThis.pad = { connected: true, buttons, ...arguments[0] };
+navigator.getGamepads = () => [pad];"""
+CAP = {"id": "3Dconnexion SpaceMouse (Vendor: 256f)", "axes": [0, 0, 0, 0, 0, -1], "buttons": []}
+GAMEPAD = {"id": "Gamepad (Vendor: 045e)", "axes": [0, 0, 0, 0]}
+CAP_TO_THE_RIGHT = """pad.axes = [0.6, 0, 0, 0, 0, -1];
 const { right } = palpate.picture.axes, tip = () => palpate.frame.tools[0].parts[0].slice(12, 15);
 const begin = tip();
 globalThis.wentRight = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * right[i], 0);"""
 
 
-PAD_UP_AND_ROLLED = """navigator.getGamepads = () => [{ connected: true, id: 'Gamepad (Vendor: 045e)',
-axes: [0, -0.6, 0.7, 0], buttons: Array.from({ length: 8 }, () => ({ value: 0 })) }];
+PAD_UP_AND_ROLLED = """pad.axes = [0, -0.6, 0.7, 0];
 const { up } = palpate.picture.axes, tip = () => palpate.frame.tools[0].parts[0].slice(12, 15);
 const begin = tip(), rolled = palpate.frame.tools[0].roll;
 globalThis.wentUp = () => tip().reduce((sum, x, i) => sum + (x - begin[i]) * up[i], 0);
@@ -131,18 +144,26 @@ BUTTONS_ARE_SEEN = """(() => { const bar = document.getElementById('bar'), box =
 return document.fullscreenElement?.contains(bar) && box.height > 20 && box.bottom <= innerHeight + 1; })()"""
 
 
+def plug_in(page, pad):
+    """A pad that nobody has moved yet, for a few of the page's looks at it."""
+    page.browser.execute_script(PLUGGED_IN, pad)
+    page.browser.execute_async_script("let looks = 5; const look = () => (--looks ? requestAnimationFrame(look) : "
+                                      "arguments[0]()); look();")
+
+
 def touch(options):
-    """A finger on a phone presses the organ, and sees the curve; two push and roll the tool; a 6-axis mouse and a
+    """A finger on a phone presses the organ, whose force is seen; two push and roll the tool; a 6-axis mouse and a
     gamepad move it; a page that fills the screen has its buttons."""
     with Nodes(options, "liver.toml") as nodes:
         browser = open_browser()
         try:
-            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                                    {"width": 390, "height": 800, "deviceScaleFactor": 2, "mobile": True})
             browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
             page = Page(browser, nodes.address)
             page.wait("palpate.frame.tools[0].seen", 20)
-            expect(page.get(CURVE_IS_SEEN), "the curve is cut off")
+            for width, height in reversed(PHONES):
+                browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                        {"width": width, "height": height, "deviceScaleFactor": 2, "mobile": True})
+                expect(page.get(FORCE_IS_SEEN), f"the force is cut off at {width} x {height}")
             page.touch("touchStart", (0.5, 0.55))
             page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
             page.touch("touchMove", (0.52, 0.55))
@@ -161,16 +182,158 @@ def touch(options):
             print(f"two fingers pushed the tool {1e3 * ahead:.0f} mm ahead and rolled it by {rolled:.2f} rad")
             page.touch("touchEnd")
             expect(page.get("!palpate.camera.free"), "two fingers on a tool turned the camera")
+            plug_in(page, CAP)
             browser.execute_script(CAP_TO_THE_RIGHT)
             page.wait("palpate.hand.holds(palpate.frame, palpate.me) && wentRight() > 0.01", 10)
+            expect(page.get(f"palpate.frame.tools[0].roll > {rolled} - 0.1"), "an axis rolls that nobody has moved")
+            plug_in(page, GAMEPAD)
             browser.execute_script(PAD_UP_AND_ROLLED)
             page.wait("wentUp() > 0.01 && turned() > 0.2", 10)
-            for kind in ("keyDown", "keyUp"):
-                browser.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "key": "f", "text": "f"})
+            page.key("f")
             page.wait(BUTTONS_ARE_SEEN, 5)
             expect(not page.errors(), page.errors())
         finally:
             browser.quit()
+
+
+# Of the first tool while it is in the hand and not pressed down: how far its force has risen since it was least [N].
+WATCH_THE_WAY = """const take = palpate.take.bind(palpate);
+let least = Infinity;
+globalThis.rise = 0;
+palpate.take = (buffer) => {
+  take(buffer);
+  const { drag, pose } = palpate.hand, force = Math.hypot(...palpate.next.tools[0].force);
+  least = pose && !drag?.down ? Math.min(least, force) : Infinity;
+  rise = Math.max(rise, force - least);
+};"""
+# Where the first tool's tip is in the picture, by shares of it.
+TIP_SEEN = """(() => { const { axes } = palpate.picture, tip = palpate.next.tools[0].parts[0].slice(12, 15);
+const d = [...tip].map((x, i) => x - axes.eye[i]), along = (v) => d.reduce((sum, x, i) => sum + x * v[i], 0);
+return [0.5 + 0.5 * along(axes.right) / along(axes.forward) / axes.halfWidth,
+  0.5 - 0.5 * along(axes.up) / along(axes.forward) / axes.halfHeight]; })()"""
+PRESSES = f"palpate.hand.drag?.down && {FORCE} > 0.4 && {LAG} < 0.01"
+
+
+def pressed(page, at):
+    """Its force [N], once it stands."""
+    page.press(*at)
+    page.wait(PRESSES, 10)
+    time.sleep(0.7)
+    return page.get(FORCE)
+
+
+def way(options):
+    """A tool that is in tissue goes out of it before it goes elsewhere, and presses as deep as one that was outside."""
+    with Nodes(options, "liver.toml") as nodes:
+        browser = open_small_browser()
+        try:
+            page = Page(browser, nodes.address)
+            browser.execute_script(WATCH_THE_WAY)
+            page.get("palpate.setDepth(25)")
+            page.wait(f"{FORCE} > 0.15", 20)  # its script presses
+            here, there = page.get(TIP_SEEN), (0.25, 0.55)
+            page.press(*there)
+            page.let_go(*there)
+            page.wait(f"{FORCE} === 0", 5)
+            forces = []
+            for at in (here, there, there):
+                forces.append(pressed(page, at))
+                page.let_go(*at)  # and presses again before it has lifted off: on a surface with a dent
+            page.wait(f"{FORCE} === 0", 5)
+            risen = page.get("rise")
+            print(f"on its way the force rises by {risen:.3f} N; presses with {forces[0]:.3f} N here, "
+                  f"{forces[1]:.3f} and {forces[2]:.3f} N there")
+            expect(risen < 0.05, risen)
+            expect(abs(forces[1] / forces[2] - 1) < 0.02, forces)
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
+TOOL = "palpate.next.tools[palpate.hand.tool]"
+FORCE_LINE = "document.querySelector('#forces li').textContent"
+
+
+def lit(name):
+    return f"document.querySelector('[data-do={name}]').classList.contains('on')"
+
+
+def pedal(options):
+    """The pedal comes up with its key, wherever the focus is then, and with the window's focus; cautery is shown."""
+    with Nodes(options, "plate_cut.toml") as nodes:
+        browser = open_small_browser()
+        try:
+            page = Page(browser, nodes.address)
+            page.wait("palpate.frame.tools[0].seen", 20)
+            page.get("document.getElementById('tools').hidden = false")  # the list of one tool
+            page.press(0.5, 0.5)
+            page.let_go(0.5, 0.5)
+            for focus in ("#picture", "#depth", "#tools select"):
+                page.key(" ", "keyDown")
+                page.wait(f"{TOOL}.pedal === 1 && {lit('pedal')} && {FORCE_LINE}.includes('cautery on')", 5)
+                page.get(f"document.querySelector('{focus}').focus()")
+                page.key(" ", "keyUp")
+                page.wait(f"{TOOL}.pedal === 0", 3)
+                page.wait(f"!{lit('pedal')} && !{FORCE_LINE}.includes('cautery')", 3)
+                page.get("document.getElementById('picture').focus()")
+            for gone in ("window.dispatchEvent(new Event('blur'))", HIDDEN):
+                page.key(" ", "keyDown")
+                page.wait(f"{TOOL}.pedal === 1", 5)
+                browser.execute_script(gone)
+                page.wait("palpate.hand.pose.pedal === 0", 3)
+                page.key(" ", "keyUp")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
+def jaws(options):
+    """Jaws and pedal are those of the chosen tool, as it is; a pad that is only plugged in leaves them alone; a list or
+    a slider does not keep the keys; the same scene again has the same tool chosen."""
+    with Nodes(options, "hepatectomy.toml") as nodes:
+        port = nodes.port
+        browser = open_small_browser()
+        try:
+            page = Page(browser, nodes.address)
+            page.wait(f"{TOOL}.holding && {lit('grip')}", 40)
+            plug_in(page, GAMEPAD)
+            page.get("palpate.hand.take(palpate.next)")
+            page.wait(f"{TOOL}.holder === palpate.me && {TOOL}.sample > 640", 5)
+            expect(page.get(f"{TOOL}.holding"), "a pad that is only plugged in opens the jaws")
+            page.key("g")
+            page.wait(f"!{TOOL}.holding && {TOOL}.grip > 0.5 && !{lit('grip')}", 3)
+            page.get("pad.buttons[7].value = 1")
+            page.wait(f"{TOOL}.grip < 0.1 && {lit('grip')}", 3)
+            page.key("g")
+            page.wait(f"{TOOL}.grip > 0.5", 3)
+            choose(page, 1)
+            page.wait("document.querySelector('[data-do=grip]').hidden && "
+                      "!document.querySelector('[data-do=pedal]').hidden", 3)
+            page.key("2")
+            expect(page.get("palpate.mode === 'move'"), "the list keeps the keys")
+            page.key("g")
+            expect(page.get("!palpate.hand.pose"), "jaws of a tool that has none")
+            page.get("document.getElementById('depth').focus()")
+            page.key("1")
+            expect(page.get("palpate.mode === 'press'"), "the slider keeps the keys")
+            page.get("palpate.setDepth(21)")
+            nodes.stop()
+            page.wait("!palpate.link.open", 10)
+            expect(page.get(f"!/\\d/.test({FORCE_LINE})"), "forces without a connection")
+            with Nodes(options, "hepatectomy.toml", port):
+                page.wait("palpate.link.open && palpate.frame && palpate.scenery", 40)
+                expect(page.get("palpate.hand.tool === 1 && document.querySelector('#tools select').value === '1'"),
+                       "another tool is chosen")
+                expect(page.get("palpate.hand.depth === 0.021"), "another depth")
+            expect(not page.errors(), page.errors())
+        finally:
+            browser.quit()
+
+
+def choose(page, tool):
+    """As a person does in the list."""
+    page.browser.execute_script("const list = document.querySelector('#tools select'); list.focus(); "
+                                "list.value = arguments[0]; list.dispatchEvent(new Event('change'));", tool)
 
 
 SILENCE_TOLD = """const status = palpate.panel.status.bind(palpate.panel);
@@ -243,8 +406,10 @@ def share(options):
             # The page says so itself as it is closed: before its link is gone, however long a busy browser takes.
             expect(watch.holder != mine and took < max(200, of_it), (watch.holder, took, of_it))
             there.wait("palpate.next.tools[0].holder === palpate.me", 5)  # it had asked
+            there.wait("palpate.hand.pose && !document.getElementById('handling').hidden", 5)
             second.execute_script(NOTES + SILENCE_TOLD)
             there.get("palpate.hand.release()")
+            there.wait("document.getElementById('handling').hidden", 3)  # it is in no hand
             there.wait("globalThis.silenceTold", 10)
             time.sleep(0.2)
             notes = there.get("notes")
@@ -525,8 +690,8 @@ def attack(port):
         pass
 
 
-CASES = {"press": press, "touch": touch, "share": share, "slow": slow, "cut": cut, "cut_off": cut_off, "camera": views.camera,
-         "through": views.through, "hostile": hostile}
+CASES = {"press": press, "touch": touch, "way": way, "pedal": pedal, "jaws": jaws, "share": share, "slow": slow,
+         "cut": cut, "cut_off": cut_off, "camera": views.camera, "through": views.through, "hostile": hostile}
 
 
 def main():

@@ -33,6 +33,18 @@ TEST(WebBrowser, AHandPressesTheOrganAndLetsGo) {
   run("press");
 }
 
+TEST(WebBrowser, AToolInTissueGoesOutOfItBeforeItGoesElsewhere) {
+  run("way");
+}
+
+TEST(WebBrowser, APedalComesUpWhereverTheFocusIs) {
+  run("pedal");
+}
+
+TEST(WebBrowser, JawsAreThoseOfTheChosenToolAndAnIdlePadLeavesThemAlone) {
+  run("jaws");
+}
+
 TEST(WebBrowser, AFingerOnAPhoneAndACapOfSixAxesMoveTheTool) {
   run("touch");
 }

@@ -141,6 +141,12 @@ class Page:
     def let_go(self, x, y):
         self.mouse("mouseReleased", x, y, False)
 
+    def key(self, key, *kinds):
+        """Goes down and up, or as `kinds` say."""
+        for kind in kinds or ("keyDown", "keyUp"):
+            text = {"text": key} if kind == "keyDown" else {}
+            self.browser.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "key": key, **text})
+
     def touch(self, kind, *shares):
         points = [dict(zip("xy", self.place(*share)), id=finger) for finger, share in enumerate(shares)]
         self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})

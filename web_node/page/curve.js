@@ -8,12 +8,16 @@ export const inks = ['#ffb454', '#6fc3ff', '#9be564', '#ff7ab8', '#c9a6ff', '#5f
 export class Curve {
   constructor(canvas) {
     this.canvas = canvas;
+    this.clear();
+  }
+
+  clear() {
     this.points = [];  // {t, forces} in order of t [s]
   }
 
   add(t, forces) {
     const last = this.points.at(-1);
-    if (last && t < last.t - 1) this.points = [];
+    if (last && t < last.t - 1) this.clear();
     if (last && t <= last.t) return;
     this.points.push({ t, forces });
     let old = 0;

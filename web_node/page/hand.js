@@ -1,18 +1,24 @@
 // A hand on a tool: what mouse, touch, keys and gamepad want becomes poses for web_node.
 import * as wire from './wire.js';
+import { Press } from './press.js';
 import { rayThrough } from './camera.js';
-import { fromLine, pick, snapshot } from './pick.js';
 import { origin } from './scene_block.js';
-import { add, dot, scale, sub, unit } from './vec.js';
+import { add, dot, scale, sub } from './vec.js';
 
-const hover = 0.012, nearLine = 0.004, open = 0.6;  // [m] above the surface; from the line; [rad]
+const open = 0.6, shut = 0.1;  // [rad] between jaws
 const settle = 1000, apart = 8, longest = 1000;  // [ms]; longest: that the server says a sample again
 
-const standing = (state) => ({ tip: origin(state.parts[0]), roll: state.roll, grip: state.grip, pedal: 0 });
+const tipOf = (state) => origin(state.parts[0]);
+const standing = (state) => ({ tip: tipOf(state), roll: state.roll, grip: state.grip, pedal: 0 });
+
+// Whether a tool's jaws are.
+export const areShut = (state) => state.holding || state.grip < shut;
 
 export class Hand {
-  constructor(link) {
+  // `bodies()`: as they are now. `shape`: the tool's, as the scenery has it, once that has come.
+  constructor(link, bodies) {
     this.link = link;
+    this.bodies = bodies;
     this.tool = 0;
     this.number = 0;
     this.depth = 0.01;
@@ -31,6 +37,7 @@ export class Hand {
 
   // A page that is hidden lets go at once, and tells its hand again when it is seen.
   pause() {
+    this.pedal(false);
     if (document.hidden) this.link.send(wire.rest());
     this.changed = performance.now();
     this.told = undefined;
@@ -71,10 +78,10 @@ export class Hand {
     else if (!this.drag) this.rest();
   }
 
-  beginPress(frame, bodies, axes, at) {
-    const surfaces = snapshot(bodies), hit = pick(surfaces, rayThrough(axes, ...at));
-    if (!hit || !this.take(frame)) return false;
-    this.drag = { kind: 'press', surfaces, hit, down: false };
+  beginPress(frame, axes, at) {
+    const press = new Press(this.shape, this.bodies, rayThrough(axes, ...at));
+    if (!press.hit || !this.take(frame)) return false;
+    this.drag = press;
     return true;
   }
 
@@ -96,7 +103,7 @@ export class Hand {
     const { drag, wanted: { axes, at, event } } = this;
     this.wanted = undefined;
     this.led = event;
-    if (drag.kind === 'press') drag.hit = pick(drag.surfaces, rayThrough(axes, ...at)) ?? drag.hit;
+    if (drag.kind === 'press') drag.lead(rayThrough(axes, ...at));
     else this.moveTo(axes, at);
     this.aim(frame);
     this.tell();
@@ -112,11 +119,10 @@ export class Hand {
     drag.last = at;
   }
 
-  // [m] away from the camera; of a press, into the surface.
+  // [m] away from the camera.
   deeper(by, axes) {
     const { drag } = this;
-    if (drag?.kind === 'press') this.depth = Math.max(0, this.depth + by);
-    else if (drag?.kind === 'move') {
+    if (drag?.kind === 'move') {
       drag.along += by;
       this.moveTo(axes, drag.last ?? drag.at);
     } else if (this.pose) this.shift(scale(by, axes.forward));
@@ -130,35 +136,24 @@ export class Hand {
     if (this.pose) this.pose.roll = Math.min(Math.max(this.pose.roll + by, -3), 3);
   }
 
-  jaws(closed) {
-    if (this.pose) this.pose.grip = closed ? 0 : open;
+  // From 0, shut, to 1, open.
+  jaws(opened) {
+    if (this.pose) this.pose.grip = open * opened;
   }
 
   pedal(down) {
     if (this.pose) this.pose.pedal = down ? 1 : 0;
   }
 
-  endDrag() {
+  endDrag(frame) {
     const { drag } = this;
-    if (drag?.kind === 'press') this.pose.tip = this.above(drag.hit, hover);
+    if (drag?.kind === 'press') this.pose.tip = drag.off(tipOf(frame.tools[this.tool]));
     this.drag = this.wanted = undefined;
   }
 
-  // Tip's place so that what meets tissue first is `height` [m] above a point of the surface.
-  above({ point, normal }, height) {
-    const { shape } = this, end = shape.jaw_length > 0 ? shape.jaw_radius : shape.tip_radius;
-    const at = add(point, scale(end + height, normal));
-    return sub(at, scale(shape.jaw_length, unit(sub(at, shape.pivot))));
-  }
-
-  // A press goes above its place first, and then down.
   aim(frame) {
     const { drag } = this;
-    if (drag?.kind !== 'press') return;
-    const ready = this.above(drag.hit, hover);
-    const off = fromLine(origin(frame.tools[this.tool].parts[0]), ready, drag.hit.normal);
-    if (off < nearLine) drag.down = true;
-    this.pose.tip = drag.down ? this.above(drag.hit, -this.depth) : ready;
+    if (drag?.kind === 'press') this.pose.tip = drag.next(tipOf(frame.tools[this.tool]), this.depth);
   }
 
   // Sixty times a second.

@@ -1,6 +1,9 @@
 // Mouse, touch and keys over the picture.
 const pinched = 0.1;  // [m] that the tool goes when two fingers come nearer by the picture's height
 
+// The browser's own keys are not the page's, nor are those in a list that chooses by them.
+const ownsKeys = (event) => !event.ctrlKey && !event.metaKey && !event.altKey && !event.target.matches?.('select');
+
 export class Input {
   constructor(canvas, app) {
     this.canvas = canvas;
@@ -16,6 +19,7 @@ export class Input {
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     addEventListener('keydown', (event) => this.key(event, true));
     addEventListener('keyup', (event) => this.key(event, false));
+    addEventListener('blur', () => this.app.hand.pedal(false));
   }
 
   // From -1 to 1, y upwards.
@@ -91,11 +95,11 @@ export class Input {
     else this.app.deeper(0.001 * notches);
   }
 
+  // A key that comes up is heard wherever the focus has gone meanwhile, and with whatever else is down.
   key(event, down) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
-    const act = this.app.keys[event.key.toLowerCase()];
-    if (!act || (event.repeat && !act.repeats)) return;
-    event.preventDefault();
+    const act = this.app.keys[event.key.toLowerCase()], elsewhere = !ownsKeys(event);
+    if (!act || (down && (elsewhere || (event.repeat && !act.repeats)))) return;
+    if (!elsewhere) event.preventDefault();
     act(down);
   }
 }

@@ -1,6 +1,7 @@
 // The page: what comes over the link is drawn, what the hand does goes back.
 import { Curve, roundUp } from './curve.js';
-import { Hand } from './hand.js';
+import { Gamepad } from './gamepad.js';
+import { Hand, areShut } from './hand.js';
 import { Handling } from './handling.js';
 import { Input } from './input.js';
 import { Link } from './link.js';
@@ -9,11 +10,11 @@ import { Picture } from './picture.js';
 import { Shapes } from './shapes.js';
 import { ViewCamera } from './camera.js';
 import { keyTable, wireButtons } from './controls.js';
-import { readGamepad } from './gamepad.js';
 import { size, sub } from './vec.js';
 import * as wire from './wire.js';
 
 const canvas = document.getElementById('picture');
+const leastScales = { legendMax: 0.001, forceMax: 0.01 };  // [m], [N] of the last colour
 const leadApart = 16, wordsApart = 50, lateSeen = 1000, mostGiven = 100;  // [ms]; frames
 
 class App {
@@ -25,7 +26,7 @@ class App {
     this.panel = new Panel();
     this.camera = new ViewCamera();
     this.curve = new Curve(document.getElementById('curve'));
-    this.look = { byScalar: false, legendMax: 0.001, forceMax: 0.01, through: false };
+    this.look = { byScalar: false, through: false, ...leastScales };
     this.given = [];  // frames that the picture has been given since the one that is shown
     this.mode = 'press';
     this.scale = Math.min(devicePixelRatio, 2);
@@ -36,7 +37,8 @@ class App {
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });
-    this.hand = new Hand(this.link);
+    this.hand = new Hand(this.link, () => this.bodies());
+    this.gamepad = new Gamepad();
     this.handling = new Handling();
     this.keys = keyTable(this);
     this.input = new Input(canvas, this);
@@ -64,8 +66,8 @@ class App {
     this.hand.rest();
     this.frame = this.next = this.topology = undefined;
     this.given = [];
-    this.panel.hand(false);
-    this.panel.link('no connection; trying again', false);
+    this.handling.end();
+    this.panel.lost();
   }
 
   text(message) {
@@ -101,23 +103,30 @@ class App {
     if (this.shapes) this.shapes.topology = topology;
   }
 
+  // What was chosen stays where it is the same scene again.
   setScenery(scenery) {
+    const chosen = this.scenery?.tools[this.hand.tool]?.name;
     this.scenery = scenery;
     this.topology = undefined;
     this.shapes?.setScenery(scenery);
     this.panel.setScenery(scenery);
-    const back = this.camera.scene;
-    if (JSON.stringify(back) !== JSON.stringify(scenery.camera)) this.camera.setScene(scenery.camera);
-    this.look.byScalar = scenery.colour === 'displacement';
-    this.selectTool(0);
-    this.setDepth(Math.min(Math.max(Math.round(30 * size(sub(scenery.camera.eye, scenery.camera.target))), 1), 15));
+    this.curve.clear();
+    Object.assign(this.look, leastScales);
+    if (JSON.stringify(this.camera.scene) !== JSON.stringify(scenery.camera)) this.setView(scenery);
+    this.selectTool(Math.max(scenery.tools.findIndex(({ name }) => name === chosen), 0));
     this.showToggles();
   }
 
-  // The bodies as they are shown: a press begins on them.
+  setView({ camera, colour }) {
+    this.camera.setScene(camera);
+    this.look.byScalar = colour === 'displacement';
+    this.setDepth(Math.min(Math.max(Math.round(30 * size(sub(camera.eye, camera.target))), 1), 15));
+  }
+
+  // The bodies as they are now, or as they are shown where their triangles are still to come.
   bodies() {
     const { shapes } = this;
-    if (!shapes?.take(this.frame)) shapes?.take(this.next);
+    if (!shapes?.take(this.next)) shapes?.take(this.frame);
     return shapes?.bodies ?? [];
   }
 
@@ -130,7 +139,7 @@ class App {
     const early = this.software && !this.firstDrawn;  // fewer pixels are there sooner
     this.picture.show(this.camera, early ? 0.4 * this.scale : this.scale, this.look, Boolean(this.paused));
     if (!this.frame) return;
-    readGamepad(this.hand, this.picture.axes, seconds, () => this.hand.take(this.frame));
+    this.gamepad.read(this.hand, this.picture.axes, seconds, () => this.hand.take(this.next));
     if (!this.firstDrawn || now - (this.worded ?? -wordsApart) < wordsApart) return;
     this.worded = now;
     this.words();
@@ -152,15 +161,17 @@ class App {
     this.firstDrawn ??= performance.now();
   }
 
-  // What stands beside the picture; nobody reads faster.
+  // What stands beside the picture, and goes on while that is frozen; nobody reads faster.
   words() {
-    if (!this.frame) return;
+    const tool = this.next.tools[this.hand.tool];
     this.panel.legend(this.look);
-    this.panel.frame(this.frame, this.me);
+    this.panel.frame(this.next, this.me);
+    if (tool) this.panel.tool(this.hand.shape, tool);
     this.panel.handling(this.handling);
     this.panel.hand(this.hand.holds(this.next, this.me) && performance.now() - this.hand.lateAt < lateSeen);
     this.curve.draw();
-    this.askOrGive();
+    const asked = this.hand.holds(this.next, this.me) && tool.asker;
+    this.panel.ask(asked ? `Page ${asked} asks for the ${this.hand.shape.name}.` : undefined);
   }
 
   lead() {
@@ -171,7 +182,6 @@ class App {
   leadHand() {
     this.led = performance.now();
     if (!this.frame || document.hidden) return;
-    this.hand.shape = this.scenery.tools[this.hand.tool];
     this.hand.agree(this.next, this.me);
     this.hand.follow(this.next);
   }
@@ -183,12 +193,6 @@ class App {
     if (this.slow > 12 && this.scale > 0.5) this.scale = Math.max(0.5, 0.75 * this.scale);
     if (this.slow < -400 && this.scale < full) this.scale = Math.min(full, 1.2 * this.scale);
     if (this.slow > 12 || this.slow < -400) this.slow = 0;
-  }
-
-  askOrGive() {
-    const tool = this.frame.tools[this.hand.tool];
-    const asked = tool && this.hand.holds(this.frame, this.me) && tool.asker;
-    this.panel.ask(asked ? `Page ${tool.asker} asks for the ${this.scenery.tools[this.hand.tool].name}.` : undefined);
   }
 
   status(status) {
@@ -205,9 +209,9 @@ class App {
   }
 
   beginDrag(at) {
-    if (!this.frame || this.mode === 'look') return false;
-    if (this.mode === 'move') return this.hand.beginMove(this.frame, this.picture.axes, at);
-    return this.hand.beginPress(this.frame, this.bodies(), this.picture.axes, at);
+    if (!this.next || !this.hand.shape || this.mode === 'look') return false;
+    if (this.mode === 'move') return this.hand.beginMove(this.next, this.picture.axes, at);
+    return this.hand.beginPress(this.next, this.picture.axes, at);
   }
 
   dragTo(at, event) {
@@ -215,12 +219,12 @@ class App {
   }
 
   endDrag() {
-    this.hand.endDrag();
+    this.hand.endDrag(this.next);
   }
 
   deeper(by) {
-    this.hand.deeper(by, this.picture.axes);
-    if (this.hand.drag?.kind === 'press') this.setDepth(1e3 * this.hand.depth);
+    if (this.hand.drag?.kind === 'press') this.setDepth(1e3 * (this.hand.depth + by));
+    else this.hand.deeper(by, this.picture.axes);
   }
 
   pan(right, up) {
@@ -228,10 +232,10 @@ class App {
   }
 
   setDepth(mm) {
-    const slider = document.getElementById('depth');
-    slider.value = mm;
-    slider.nextElementSibling.textContent = `${+Number(mm).toFixed(1)} mm`;
-    this.hand.depth = mm / 1e3;
+    const slider = document.getElementById('depth'), bound = Math.min(Math.max(mm, slider.min), slider.max);
+    slider.value = bound;
+    slider.nextElementSibling.textContent = `${+bound.toFixed(1)} mm`;
+    this.hand.depth = bound / 1e3;
   }
 
   setMode(mode) {
@@ -244,6 +248,7 @@ class App {
   selectTool(index) {
     if (index !== this.hand.tool) this.hand.release();
     this.hand.tool = index;
+    this.hand.shape = this.scenery.tools[index];
     document.querySelector('#tools select').value = index;
   }
 
@@ -251,19 +256,27 @@ class App {
     if (what === 'colour') this.look.byScalar = !this.look.byScalar;
     if (what === 'through') this.look.through = !this.look.through;
     if (what === 'pause') this.paused = !this.paused;
-    if (what === 'grip') this.closed = !this.closed;
-    if (what === 'grip') this.withTool(() => this.hand.jaws(this.closed));
     this.showToggles();
   }
 
+  toggleJaws() {
+    this.withTool('grips', () => this.hand.jaws(areShut(this.next.tools[this.hand.tool]) ? 1 : 0));
+  }
+
+  pedal(down) {
+    if (down) this.withTool('cuts', () => this.hand.pedal(true));
+    else this.hand.pedal(false);
+  }
+
   showToggles() {
-    const on = { colour: this.look.byScalar, through: this.look.through, pause: this.paused, grip: this.closed };
+    const on = { colour: this.look.byScalar, through: this.look.through, pause: this.paused };
     for (const [name, value] of Object.entries(on))
       document.querySelector(`[data-do=${name}]`).classList.toggle('on', Boolean(value));
   }
 
-  withTool(act) {
-    if (this.frame && (this.hand.pose || this.hand.take(this.frame))) act();
+  // `ability`: without which the tool is left alone.
+  withTool(ability, act) {
+    if (this.next && this.hand.shape?.[ability] && (this.hand.pose || this.hand.take(this.next))) act();
   }
 
   async save() {

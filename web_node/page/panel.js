@@ -1,5 +1,6 @@
 // The words beside the picture.
 import { inks } from './curve.js';
+import { areShut } from './hand.js';
 import { forceMark, forceReading, forceUnit } from './units.js';
 import { size } from './vec.js';
 import { SILENT } from './wire.js';
@@ -15,6 +16,7 @@ function row(tag, ...children) {
   return made;
 }
 
+const pedalIsDown = (state) => state.pedal > 0.5;
 const strongest = (task) => forceReading(task.force_max_n, Math.max(task.force_max_n, 0.001));
 
 export class Panel {
@@ -36,8 +38,18 @@ export class Panel {
     }));
     byId('tools').hidden = scenery.tools.length < 2;
     document.querySelector('[data-do=through]').hidden = !scenery.bodies.some((body) => body.finish === 'duct');
-    document.querySelector('[data-do=grip]').hidden = !scenery.tools.some((tool) => tool.grips);
-    document.querySelector('[data-do=pedal]').hidden = !scenery.tools.some((tool) => tool.cuts);
+  }
+
+  // What the chosen tool can do, and does.
+  tool({ grips, cuts }, state) {
+    this.button('grip', grips, areShut(state));
+    this.button('pedal', cuts, pedalIsDown(state));
+  }
+
+  button(name, shown, on) {
+    const button = document.querySelector(`[data-do=${name}]`);
+    button.hidden = !shown;
+    button.classList.toggle('on', on);
   }
 
   // `colours`: the pixels of the scale.
@@ -66,12 +78,29 @@ export class Panel {
       const item = byId('forces').children[i];
       if (!item) return;
       item.querySelector('b').textContent = forceReading(size(tool.force), this.forceMax);
-      const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text);
+      const burns = this.scenery.tools[i].cuts && pedalIsDown(tool);
+      const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text), burn = burns && 'cautery on';
+      item.classList.toggle('burns', burns);
       item.classList.toggle('flag', (tool.flags & (4 | 16 | SILENT)) !== 0);
       const hand = !tool.holder ? '' : tool.holder === me ? 'in your hand' : `in the hand of page ${tool.holder}`;
       const asked = tool.asker === me ? ['you have asked for it'] : [];
-      item.querySelector('small').textContent = [hand, ...asked, ...words].filter(Boolean).join(', ');
+      item.querySelector('small').textContent = [burn, hand, ...asked, ...words].filter(Boolean).join(', ');
     });
+  }
+
+  // What was told is no longer so.
+  lost() {
+    for (const item of byId('forces').children) {
+      item.className = '';
+      item.querySelector('b').textContent = item.querySelector('small').textContent = '';
+    }
+    this.tool({}, {});
+    byId('handling').hidden = true;
+    byId('rates').replaceChildren();
+    this.ask(undefined);
+    this.said = [];
+    this.hand(false);
+    this.link('no connection; trying again', false);
   }
 
   status(status, page) {
@@ -134,6 +163,7 @@ export class Panel {
   }
 
   help(mode) {
+    const starts = 'A scene starts when it is run, not with this page: run it again, and the page follows it.';
     const fingers = {
       press: 'Hold a finger on the organ to press it, drag to slide; let go and the tool lifts off. ' +
         'Two fingers turn and zoom.',
@@ -141,7 +171,7 @@ export class Panel {
         'a twist rolls it.',
       look: 'A finger turns the camera, two zoom.',
     };
-    if (matchMedia('(pointer: coarse)').matches) return void (byId('help').textContent = fingers[mode]);
+    if (matchMedia('(pointer: coarse)').matches) return void (byId('help').textContent = `${fingers[mode]} ${starts}`);
     const words = {
       press: 'Hold the button on the organ to press it, drag to slide, wheel for depth; let go and the tool lifts off.',
       move: 'Drag moves the tool across the view, wheel for depth, with Shift for roll; it stays where it is left.',
@@ -149,6 +179,6 @@ export class Panel {
     };
     byId('help').textContent = `${words[mode]} Right button turns the camera, middle button pans, wheel zooms. ` +
       'Keys: 1 2 3 mode, Q W roll, G jaws, space pedal, E endoscope, C colour, T through, P pause, S save, ' +
-      'F full screen.';
+      `F full screen. ${starts}`;
   }
 }

@@ -1,10 +1,10 @@
 // Where a ray meets the bodies: {point, normal} of the nearest triangle that faces it; undefined for none.
 import { add, dot, scale, unit } from './vec.js';
 
-// What was there when a drag began: a surface that gives way must not lead the tool on.
+// What is there now, and where tissue comes back to.
 export function snapshot(bodies) {
   return bodies.filter((body) => body.spec.finish !== 'plastic').flatMap((body) => body.surfaces())
-    .map(({ position, normal, triangles }) => ({ position: position.slice(), normal: normal.slice(), triangles }));
+    .map((of) => ({ ...of, position: of.position.slice(), normal: of.normal.slice() }));
 }
 
 export function pick(surfaces, ray) {

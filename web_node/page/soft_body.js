@@ -66,9 +66,10 @@ export class SoftBody {
     return most;
   }
 
-  // What a ray can meet: {position, normal, triangles}.
+  // What a ray can meet: {position, normal, triangles}, and the body's own places at rest.
   surfaces() {
-    const own = { position: this.position, normal: this.normal, triangles: this.refinement.triangles };
+    const { position, normal, rest: atRest, refinement: { triangles } } = this;
+    const own = { position, normal, atRest, triangles };
     return this.visual ? [own, ...this.visual.views()] : [own];
   }
 
