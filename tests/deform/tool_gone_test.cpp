@@ -44,12 +44,12 @@ TEST(ToolGone, AToolIsGoneOnceItsHapticNodeHasEndedThoughAStrangerWrites) {
   });
   bool consumed = false, left = false;
   for (; !over; sleep_until_ns(now_ns() + 1'000'000)) {
+    stranger->write(foreign);  // of what comes between two looks the node takes the newest
     if (tools) {
       state.seq = ++state.step;
       state.sense_ns = now_ns();
       tools->write(state);
     }
-    stranger->write(foreign);
     while (const auto step = steps->take())
       for (const ConsumedStep& of : step->consumed) {
         (of.step == tool_left ? left : consumed) = true;

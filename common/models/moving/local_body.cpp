@@ -18,7 +18,6 @@ using Stiffness = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>
 
 constexpr double kRounding = 1e-9;
 constexpr double kOwnReach = 1.25;  // of a part's radius: a contact this near to its axis is its own
-constexpr double kBeside = 0.01;    // [m] beyond two radii of a part, or its jaws' reach: what a tool holds is nearer
 constexpr double kDent = 3;         // radii of a part: a place this near to a contact lies in that one's dent
 // [1] The middle of a square sinks by so much of its edge times pressure / (E / (1 - nu^2)): 4/pi asinh(1) (Love 1929),
 // rounded; HalfSpace::pressed() has it for any place.
@@ -32,7 +31,7 @@ double jaws_reach(const Tool& tool) {
 
 bool beside(const MovingTool& tool, double reach, const Vector3d& at) {
   for (int p = 0; p < tool.size(); ++p)
-    if ((at - nearest_point(tool.axis(p), at)).norm() <= 2 * tool.radius(p) + reach + kBeside) return true;
+    if ((at - nearest_point(tool.axis(p), at)).norm() <= 2 * tool.radius(p) + reach + LocalBody::kBeside) return true;
   return false;
 }
 

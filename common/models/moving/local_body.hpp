@@ -29,6 +29,8 @@ class LocalBody {
   static constexpr double kSilent = 0.02;        ///< [s] without a model after which the next comes in gradually
   static constexpr double kLately = 0.1;         ///< [s] over which time that the tissue lost is forgotten
   static constexpr double kLate = 0.01;          ///< [s] lost lately from which on the tissue is late
+  /// [m] Beyond two radii of a part, or its jaws' reach: what a tool holds is nearer.
+  static constexpr double kBeside = 0.01;
 
   /// `contact`: of the scene; dt [s]: the haptic step.
   LocalBody(const Tool& tool, const ContactSpec& contact, double dt);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/models/moving/fading_loads.hpp"
+#include "common/models/moving/local_body.hpp"
 
 namespace palpate {
 namespace {
@@ -18,7 +19,8 @@ ToolContacts::Options beside_patches(const TissuePatches* patches, const std::fu
   return options;
 }
 
-constexpr double kPassed = 1;  // mean edge
+constexpr double kPassed = 1;                           // mean edge
+constexpr double kFarthest = 0.5 * LocalBody::kBeside;  // [m] beyond two radii: before the haptic node leaves it out
 
 template <class Visit>
 void for_each_node(std::span<const TouchContact> contacts, Visit&& visit) {
@@ -72,7 +74,8 @@ bool TissueTouch::passed(const TouchContact& c, const MovingTool& tool) const {
   const Eigen::Vector3d anchor = anchor_position(c.anchor, surface_.positions());
   const int part = c.tool_point().part;
   const double away = (anchor - nearest_point(tool.axis(part), anchor)).norm();
-  return away > tool.radius(part) + c.softness() * c.force.norm() + passed_;
+  const double radius = tool.radius(part);
+  return away > radius + std::min(c.softness() * c.force.norm() + passed_, radius + kFarthest);
 }
 
 // What they did to nodes is loose.
