@@ -14,7 +14,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/web"))
-from live_page import Nodes, Page, need_browser, open_browser  # noqa: E402
+from live_page import Nodes, need_browser, open_browser, open_page  # noqa: E402
 from watcher import Watcher  # noqa: E402
 
 STATE_TIMES = """
@@ -65,30 +65,25 @@ def slide(page, moves):
 
 
 def one_page(options):
-    with Nodes(options, "liver.toml") as nodes:
-        browser = open_browser()
-        try:
-            page = Page(browser, nodes.address)
-            row("web,liver,first_drawn", "ms", page.get("palpate.firstDrawn"))
-            browser.execute_script(STATE_TIMES)
-            browser.execute_script(COUNTS)
-            page.press(0.45, 0.6)
-            page.wait("palpate.hand.drag?.down", 10)
-            slide(page, 100)  # meanwhile the page finds how many pixels the machine draws in time
-            page.get("[palpate.hand.delays, madeDelays, stateDelays].map((of) => { of.length = 0; })")
-            begin, counted = time.monotonic(), page.get("[bytes, pictures]")
-            slide(page, options.moves)
-            seconds = time.monotonic() - begin
-            grown = [now - before for now, before in zip(page.get("[bytes, pictures]"), counted)]
-            row("web,liver,bytes_per_s", "B/s", grown[0] / seconds)
-            row("web,liver,pictures", "Hz", grown[1] / seconds)
-            for name, list_of in (("event_to_picture", "palpate.hand.delays"), ("event_to_made", "madeDelays"),
-                                  ("event_to_state", "stateDelays")):
-                values = page.get(list_of)
-                row(f"web,liver,{name}", "ms p50 p99 max n", percentile(values, 0.5), percentile(values, 0.99),
-                    max(values), len(values))
-        finally:
-            browser.quit()
+    with Nodes(options, "liver.toml") as nodes, open_page(nodes, open_browser) as page:
+        row("web,liver,first_drawn", "ms", page.get("palpate.firstDrawn"))
+        page.browser.execute_script(STATE_TIMES)
+        page.browser.execute_script(COUNTS)
+        page.press(0.45, 0.6)
+        page.wait("palpate.hand.drag?.down", 10)
+        slide(page, 100)  # meanwhile the page finds how many pixels the machine draws in time
+        page.get("[palpate.hand.delays, madeDelays, stateDelays].map((of) => { of.length = 0; })")
+        begin, counted = time.monotonic(), page.get("[bytes, pictures]")
+        slide(page, options.moves)
+        seconds = time.monotonic() - begin
+        grown = [now - before for now, before in zip(page.get("[bytes, pictures]"), counted)]
+        row("web,liver,bytes_per_s", "B/s", grown[0] / seconds)
+        row("web,liver,pictures", "Hz", grown[1] / seconds)
+        for name, list_of in (("event_to_picture", "palpate.hand.delays"), ("event_to_made", "madeDelays"),
+                              ("event_to_state", "stateDelays")):
+            values = page.get(list_of)
+            row(f"web,liver,{name}", "ms p50 p99 max n", percentile(values, 0.5), percentile(values, 0.99),
+                max(values), len(values))
 
 
 # From the side, so that the arrow has its length.
@@ -101,24 +96,19 @@ palpate.scale = 2;"""
 
 def portrait(options):
     """A picture of the page while the organ is pressed."""
-    with Nodes(options, "liver.toml") as nodes:
-        browser = open_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait("palpate.frame.tools[0].seen", 20)
-            browser.execute_script(FROM_THE_SIDE)
-            time.sleep(5)  # meanwhile the page finds how many pixels the machine draws in time
-            page.press(0.45, 0.45)
-            page.wait("palpate.hand.drag?.down", 10)
-            for step in range(30):
-                page.drag(0.45 + 0.001 * step, 0.45)
-                time.sleep(0.02)
-            time.sleep(1)
-            browser.execute_script(FINE)
-            time.sleep(3)
-            browser.save_screenshot(options.picture)
-        finally:
-            browser.quit()
+    with Nodes(options, "liver.toml") as nodes, open_page(nodes, open_browser) as page:
+        page.wait("palpate.frame.tools[0].seen", 20)
+        page.browser.execute_script(FROM_THE_SIDE)
+        time.sleep(5)  # meanwhile the page finds how many pixels the machine draws in time
+        page.press(0.45, 0.45)
+        page.wait("palpate.hand.drag?.down", 10)
+        for step in range(30):
+            page.drag(0.45 + 0.001 * step, 0.45)
+            time.sleep(0.02)
+        time.sleep(1)
+        page.browser.execute_script(FINE)
+        time.sleep(3)
+        page.browser.save_screenshot(options.picture)
 
 
 def haptic_p99(options, viewers):

@@ -17,7 +17,7 @@ import threading
 import time
 
 import views
-from live_page import Nodes, Page, expect, need_browser, open_browser, open_small_browser
+from live_page import Nodes, Page, expect, need_browser, open_browser, open_page, open_small_browser
 from watcher import FRAME, TAKEN, Connection, Watcher
 
 FORCE = "Math.hypot(...palpate.frame.tools[0].force)"
@@ -72,46 +72,41 @@ def press(options):
 
 
 def press_by_mouse(options, arguments):
-    with Nodes(options, "liver.toml", 0, arguments) as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait("palpate.frame.tools[0].seen", 20)  # without a tool there is nothing to press with
-            page.press(0.45, 0.6)
-            page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05 && {MOVED} > 0.002", 10)
-            page.wait("palpate.curve.points.at(-1).forces[0] > 0.05", 3)
-            for step in range(15):
-                page.drag(0.45 + 0.006 * step, 0.6 - 0.003 * step)
-                time.sleep(0.03)
-            held = page.state()
-            expect(held["force"] > 0.05 and held["holder"] == held["me"], held)
-            expect(page.wait("palpate.hand.delays.length", 3), "no picture told of a sample")
-            page.let_go(0.54, 0.56)
-            page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
-            expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
-            page.get("palpate.toggle('pause')")
-            page.press(0.45, 0.6)
-            page.wait(f"parseFloat({SAID_FORCE}) > 0.05", 5)  # the picture stands, what is felt does not
-            page.get("palpate.toggle('pause')")
-            for _ in range(10):
-                views.wheel(page, 5)
-            page.wait("palpate.hand.depth === 0.03", 3)  # no further than the slider
-            for _ in range(50):
-                page.get("palpate.hand.depth += 0.0006")
-                time.sleep(0.02)
-            deep = page.get("palpate.hand.depth")
-            time.sleep(0.5)
-            pulled, lag = page.get(FORCE), page.get(LAG)
-            print(f"led {1e3 * deep:.0f} mm deep the tip stays {1e3 * lag:.0f} mm behind, with {pulled:.2f} N")
-            expect(pulled < 2.1 and lag > 0.01, (pulled, lag))
-            page.let_go(0.45, 0.6)
-            page.wait(f"{FORCE} < 0.01 && {LAG} < 0.001", 6)
-            page.wait(f"/ s, path \\d{{2,}} mm, peak 2.\\d+\\sN/.test({HANDLING})", 3)
-            curve = browser.execute_async_script(SMALL_CURVE)
-            expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    with Nodes(options, "liver.toml", 0, arguments) as nodes, open_page(nodes) as page:
+        page.wait("palpate.frame.tools[0].seen", 20)  # without a tool there is nothing to press with
+        page.press(0.45, 0.6)
+        page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05 && {MOVED} > 0.002", 10)
+        page.wait("palpate.curve.points.at(-1).forces[0] > 0.05", 3)
+        for step in range(15):
+            page.drag(0.45 + 0.006 * step, 0.6 - 0.003 * step)
+            time.sleep(0.03)
+        held = page.state()
+        expect(held["force"] > 0.05 and held["holder"] == held["me"], held)
+        expect(page.wait("palpate.hand.delays.length", 3), "no picture told of a sample")
+        page.let_go(0.54, 0.56)
+        page.wait(f"{FORCE} < 0.01 && {MOVED} < 0.0003", 6)
+        expect(page.get("palpate.curve.points.some(p => p.forces[0] > 0.05)"), "no curve")
+        page.get("palpate.toggle('pause')")
+        page.press(0.45, 0.6)
+        page.wait(f"parseFloat({SAID_FORCE}) > 0.05", 5)  # the picture stands, what is felt does not
+        page.get("palpate.toggle('pause')")
+        for _ in range(10):
+            views.wheel(page, 5)
+        page.wait("palpate.hand.depth === 0.03", 3)  # no further than the slider
+        for _ in range(50):
+            page.get("palpate.hand.depth += 0.0006")
+            time.sleep(0.02)
+        deep = page.get("palpate.hand.depth")
+        time.sleep(0.5)
+        pulled, lag = page.get(FORCE), page.get(LAG)
+        print(f"led {1e3 * deep:.0f} mm deep the tip stays {1e3 * lag:.0f} mm behind, with {pulled:.2f} N")
+        expect(pulled < 2.1 and lag > 0.01, (pulled, lag))
+        page.let_go(0.45, 0.6)
+        page.wait(f"{FORCE} < 0.01 && {LAG} < 0.001", 6)
+        page.wait(f"/ s, path \\d{{2,}} mm, peak 2.\\d+\\sN/.test({HANDLING})", 3)
+        curve = page.browser.execute_async_script(SMALL_CURVE)
+        expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
+        expect(not page.errors(), page.errors())
         expect(nodes.stop() == 0, "palpate run failed")
 
 
@@ -224,30 +219,25 @@ def pressed(page, at):
 
 def way(options):
     """A tool that is in tissue goes out of it before it goes elsewhere, and presses as deep as one that was outside."""
-    with Nodes(options, "liver.toml") as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            browser.execute_script(WATCH_THE_WAY)
-            page.get("palpate.setDepth(25)")
-            page.wait(f"{FORCE} > 0.15", 20)  # its script presses
-            here, there = page.get(TIP_SEEN), (0.25, 0.55)
-            page.press(*there)
-            page.let_go(*there)
-            page.wait(f"{FORCE} === 0", 5)
-            forces = []
-            for at in (here, there, there):
-                forces.append(pressed(page, at))
-                page.let_go(*at)  # and presses again before it has lifted off: on a surface with a dent
-            page.wait(f"{FORCE} === 0", 5)
-            risen = page.get("rise")
-            print(f"on its way the force rises by {risen:.3f} N; presses with {forces[0]:.3f} N here, "
-                  f"{forces[1]:.3f} and {forces[2]:.3f} N there")
-            expect(risen < 0.05, risen)
-            expect(abs(forces[1] / forces[2] - 1) < 0.02, forces)
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    with Nodes(options, "liver.toml") as nodes, open_page(nodes) as page:
+        page.browser.execute_script(WATCH_THE_WAY)
+        page.get("palpate.setDepth(25)")
+        page.wait(f"{FORCE} > 0.15", 20)  # its script presses
+        here, there = page.get(TIP_SEEN), (0.25, 0.55)
+        page.press(*there)
+        page.let_go(*there)
+        page.wait(f"{FORCE} === 0", 5)
+        forces = []
+        for at in (here, there, there):
+            forces.append(pressed(page, at))
+            page.let_go(*at)  # and presses again before it has lifted off: on a surface with a dent
+        page.wait(f"{FORCE} === 0", 5)
+        risen = page.get("rise")
+        print(f"on its way the force rises by {risen:.3f} N; presses with {forces[0]:.3f} N here, "
+              f"{forces[1]:.3f} and {forces[2]:.3f} N there")
+        expect(risen < 0.05, risen)
+        expect(abs(forces[1] / forces[2] - 1) < 0.02, forces)
+        expect(not page.errors(), page.errors())
 
 
 TOOL = "palpate.next.tools[palpate.hand.tool]"
@@ -260,74 +250,64 @@ def lit(name):
 
 def pedal(options):
     """The pedal comes up with its key, wherever the focus is then, and with the window's focus; cautery is shown."""
-    with Nodes(options, "plate_cut.toml") as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait("palpate.frame.tools[0].seen", 20)
-            page.get("document.getElementById('tools').hidden = false")  # the list of one tool
-            page.press(0.5, 0.5)
-            page.let_go(0.5, 0.5)
-            for focus in ("#picture", "#depth", "#tools select"):
-                page.key(" ", "keyDown")
-                page.wait(f"{TOOL}.pedal === 1 && {lit('pedal')} && {FORCE_LINE}.includes('cautery on')", 5)
-                page.get(f"document.querySelector('{focus}').focus()")
-                page.key(" ", "keyUp")
-                page.wait(f"{TOOL}.pedal === 0", 3)
-                page.wait(f"!{lit('pedal')} && !{FORCE_LINE}.includes('cautery')", 3)
-                page.get("document.getElementById('picture').focus()")
-            for gone in ("window.dispatchEvent(new Event('blur'))", HIDDEN):
-                page.key(" ", "keyDown")
-                page.wait(f"{TOOL}.pedal === 1", 5)
-                browser.execute_script(gone)
-                page.wait("palpate.hand.pose.pedal === 0", 3)
-                page.key(" ", "keyUp")
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    with Nodes(options, "plate_cut.toml") as nodes, open_page(nodes) as page:
+        page.wait("palpate.frame.tools[0].seen", 20)
+        page.get("document.getElementById('tools').hidden = false")  # the list of one tool
+        page.press(0.5, 0.5)
+        page.let_go(0.5, 0.5)
+        for focus in ("#picture", "#depth", "#tools select"):
+            page.key(" ", "keyDown")
+            page.wait(f"{TOOL}.pedal === 1 && {lit('pedal')} && {FORCE_LINE}.includes('cautery on')", 5)
+            page.get(f"document.querySelector('{focus}').focus()")
+            page.key(" ", "keyUp")
+            page.wait(f"{TOOL}.pedal === 0", 3)
+            page.wait(f"!{lit('pedal')} && !{FORCE_LINE}.includes('cautery')", 3)
+            page.get("document.getElementById('picture').focus()")
+        for gone in ("window.dispatchEvent(new Event('blur'))", HIDDEN):
+            page.key(" ", "keyDown")
+            page.wait(f"{TOOL}.pedal === 1", 5)
+            page.browser.execute_script(gone)
+            page.wait("palpate.hand.pose.pedal === 0", 3)
+            page.key(" ", "keyUp")
+        expect(not page.errors(), page.errors())
 
 
 def jaws(options):
     """Jaws and pedal are those of the chosen tool, as it is; a pad that is only plugged in leaves them alone; a list or
     a slider does not keep the keys; the same scene again has the same tool chosen."""
-    with Nodes(options, "hepatectomy.toml") as nodes:
+    with Nodes(options, "hepatectomy.toml") as nodes, open_page(nodes) as page:
         port = nodes.port
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait(f"{TOOL}.holding && {lit('grip')}", 40)
-            plug_in(page, GAMEPAD)
-            page.get("palpate.hand.take(palpate.next)")
-            page.wait(f"{TOOL}.holder === palpate.me && {TOOL}.sample > 640", 5)
-            expect(page.get(f"{TOOL}.holding"), "a pad that is only plugged in opens the jaws")
-            page.key("g")
-            page.wait(f"!{TOOL}.holding && {TOOL}.grip > 0.5 && !{lit('grip')}", 3)
-            page.get("pad.buttons[7].value = 1")
-            page.wait(f"{TOOL}.grip < 0.1 && {lit('grip')}", 3)
-            page.key("g")
-            page.wait(f"{TOOL}.grip > 0.5", 3)
-            choose(page, 1)
-            page.wait("document.querySelector('[data-do=grip]').hidden && "
-                      "!document.querySelector('[data-do=pedal]').hidden", 3)
-            page.key("2")
-            expect(page.get("palpate.mode === 'move'"), "the list keeps the keys")
-            page.key("g")
-            expect(page.get("!palpate.hand.pose"), "jaws of a tool that has none")
-            page.get("document.getElementById('depth').focus()")
-            page.key("1")
-            expect(page.get("palpate.mode === 'press'"), "the slider keeps the keys")
-            page.get("palpate.setDepth(21)")
-            nodes.stop()
-            page.wait("!palpate.link.open", 10)
-            expect(page.get(f"!/\\d/.test({FORCE_LINE})"), "forces without a connection")
-            with Nodes(options, "hepatectomy.toml", port):
-                page.wait("palpate.link.open && palpate.frame && palpate.scenery", 40)
-                expect(page.get("palpate.hand.tool === 1 && document.querySelector('#tools select').value === '1'"),
-                       "another tool is chosen")
-                expect(page.get("palpate.hand.depth === 0.021"), "another depth")
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+        page.wait(f"{TOOL}.holding && {lit('grip')}", 40)
+        plug_in(page, GAMEPAD)
+        page.get("palpate.hand.take(palpate.next)")
+        page.wait(f"{TOOL}.holder === palpate.me && {TOOL}.sample > 640", 5)
+        expect(page.get(f"{TOOL}.holding"), "a pad that is only plugged in opens the jaws")
+        page.key("g")
+        page.wait(f"!{TOOL}.holding && {TOOL}.grip > 0.5 && !{lit('grip')}", 3)
+        page.get("pad.buttons[7].value = 1")
+        page.wait(f"{TOOL}.grip < 0.1 && {lit('grip')}", 3)
+        page.key("g")
+        page.wait(f"{TOOL}.grip > 0.5", 3)
+        choose(page, 1)
+        page.wait("document.querySelector('[data-do=grip]').hidden && "
+                  "!document.querySelector('[data-do=pedal]').hidden", 3)
+        page.key("2")
+        expect(page.get("palpate.mode === 'move'"), "the list keeps the keys")
+        page.key("g")
+        expect(page.get("!palpate.hand.pose"), "jaws of a tool that has none")
+        page.get("document.getElementById('depth').focus()")
+        page.key("1")
+        expect(page.get("palpate.mode === 'press'"), "the slider keeps the keys")
+        page.get("palpate.setDepth(21)")
+        nodes.stop()
+        page.wait("!palpate.link.open", 10)
+        expect(page.get(f"!/\\d/.test({FORCE_LINE})"), "forces without a connection")
+        with Nodes(options, "hepatectomy.toml", port):
+            page.wait("palpate.link.open && palpate.frame && palpate.scenery", 40)
+            expect(page.get("palpate.hand.tool === 1 && document.querySelector('#tools select').value === '1'"),
+                   "another tool is chosen")
+            expect(page.get("palpate.hand.depth === 0.021"), "another depth")
+        expect(not page.errors(), page.errors())
 
 
 def choose(page, tool):
@@ -476,37 +456,32 @@ document.dispatchEvent(new Event('visibilitychange'));"""
 
 def slow(options):
     """A page that stands for longer than a silent hand is held does not lose it; one that hangs or is hidden does."""
-    with Nodes(options, "liver.toml") as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait("palpate.frame.tools[0].seen", 20)
-            page.press(0.45, 0.6)
-            page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
-            watch = HoldWatch(nodes.port)
-            watch.start()
-            browser.execute_script(SLOW_PAGE + NOTES)
-            time.sleep(0.5)
-            held = watch.during(3)
-            least, most = min(force for _, force, _ in held), max(force for _, force, _ in held)
-            print(f"{len(held)} frames of a slow page: {least:.3f} to {most:.3f} N, "
-                  f"{sum(let_go for *_, let_go in held)} of them let go")
-            expect(len(held) > 60 and least > 0.9 * most, (len(held), least, most))
-            expect(not any(let_go for *_, let_go in held), "let go while the page is slow")
-            seen = len(watch.told)
-            browser.execute_script("slowness.unshift(2500)")  # it hangs with its next picture, before it answers or after
-            expect(watch.lets_go(10, seen), "a page that hangs holds the tool")
-            browser.execute_script("slowness = [0]")
-            page.wait("notes.some((said) => said.startsWith('this page is too slow'))", 5)
-            page.wait("!notes.at(-1).includes('too slow')", 5)
-            notes = page.get("notes")
-            expect(not any("driver elsewhere" in said for said in notes), notes)
-            page.wait(f"{FORCE} > 0.05 && !(palpate.next.tools[0].flags & {HoldWatch.LET_GO})", 5)
-            browser.execute_script(HIDDEN)
-            expect(watch.lets_go(5), "a hidden page holds the tool")
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    with Nodes(options, "liver.toml") as nodes, open_page(nodes) as page:
+        page.wait("palpate.frame.tools[0].seen", 20)
+        page.press(0.45, 0.6)
+        page.wait(f"palpate.hand.drag?.down && {FORCE} > 0.05", 10)
+        watch = HoldWatch(nodes.port)
+        watch.start()
+        page.browser.execute_script(SLOW_PAGE + NOTES)
+        time.sleep(0.5)
+        held = watch.during(3)
+        least, most = min(force for _, force, _ in held), max(force for _, force, _ in held)
+        print(f"{len(held)} frames of a slow page: {least:.3f} to {most:.3f} N, "
+              f"{sum(let_go for *_, let_go in held)} of them let go")
+        expect(len(held) > 60 and least > 0.9 * most, (len(held), least, most))
+        expect(not any(let_go for *_, let_go in held), "let go while the page is slow")
+        seen = len(watch.told)
+        page.browser.execute_script("slowness.unshift(2500)")  # it hangs with its next picture, before it answers or after
+        expect(watch.lets_go(10, seen), "a page that hangs holds the tool")
+        page.browser.execute_script("slowness = [0]")
+        page.wait("notes.some((said) => said.startsWith('this page is too slow'))", 5)
+        page.wait("!notes.at(-1).includes('too slow')", 5)
+        notes = page.get("notes")
+        expect(not any("driver elsewhere" in said for said in notes), notes)
+        page.wait(f"{FORCE} > 0.05 && !(palpate.next.tools[0].flags & {HoldWatch.LET_GO})", 5)
+        page.browser.execute_script(HIDDEN)
+        expect(watch.lets_go(5), "a hidden page holds the tool")
+        expect(not page.errors(), page.errors())
 
 
 class StandingPage:

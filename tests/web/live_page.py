@@ -1,4 +1,5 @@
 """Nodes of a scene with their live view, and pages in headless Chromium."""
+import contextlib
 import os
 import queue
 import shutil
@@ -154,3 +155,13 @@ class Page:
     def errors(self):
         return [line for line in self.browser.get_log("browser") if line["level"] == "SEVERE"
                 and "ERR_CONNECTION_REFUSED" not in line["message"]]
+
+
+@contextlib.contextmanager
+def open_page(nodes, opener=open_small_browser):
+    """The page of nodes in a browser of its own."""
+    browser = opener()
+    try:
+        yield Page(browser, nodes.address)
+    finally:
+        browser.quit()

@@ -1,7 +1,7 @@
 """What the live view's camera and its buttons do to the picture, in headless Chromium."""
 import math
 
-from live_page import Nodes, Page, expect, open_small_browser
+from live_page import Nodes, Page, expect, open_page, open_small_browser
 
 GRID = (64, 48)  # squares of the picture that are looked at
 HIGHER_THAN_WIDE = {"width": 420, "height": 760, "deviceScaleFactor": 1, "mobile": False}
@@ -160,26 +160,21 @@ INSERTED = "parseInt(document.querySelector('#tasks p')?.textContent) >= 5"  # [
 
 def through(options):
     """The catheter in the duct is in the picture where ducts are seen through, and only there."""
-    with Nodes(options, "catheter_insertion.toml") as nodes:
-        browser = open_small_browser()
-        try:
-            page = Page(browser, nodes.address)
-            page.wait(INSERTED, 60)
-            browser.execute_script(STAND)
-            look(page)
-            count = browser.execute_script(PLACES_INSIDE)
-            expect(count > 30, f"{count} places of the catheter are in the duct")
-            closed = look(page, None)
-            page.get("palpate.keys.t(true)")
-            clear = look(page, None)
-            browser.execute_script(CATHETER_IS_HIDDEN)
-            clear_without = look(page, None)
-            page.get("palpate.keys.t(true)")
-            closed_without = look(page, None)
-            print(f"{count} places: the catheter makes {apart(clear, clear_without):.1f} in a clear duct, "
-                  f"{apart(closed, closed_without):.1f} in a closed one")
-            expect(apart(clear, clear_without) > 8, "the catheter is not seen in a clear duct")
-            expect(apart(closed, closed_without) < 1, "the catheter is seen in a closed duct")
-            expect(not page.errors(), page.errors())
-        finally:
-            browser.quit()
+    with Nodes(options, "catheter_insertion.toml") as nodes, open_page(nodes) as page:
+        page.wait(INSERTED, 60)
+        page.browser.execute_script(STAND)
+        look(page)
+        count = page.browser.execute_script(PLACES_INSIDE)
+        expect(count > 30, f"{count} places of the catheter are in the duct")
+        closed = look(page, None)
+        page.get("palpate.keys.t(true)")
+        clear = look(page, None)
+        page.browser.execute_script(CATHETER_IS_HIDDEN)
+        clear_without = look(page, None)
+        page.get("palpate.keys.t(true)")
+        closed_without = look(page, None)
+        print(f"{count} places: the catheter makes {apart(clear, clear_without):.1f} in a clear duct, "
+              f"{apart(closed, closed_without):.1f} in a closed one")
+        expect(apart(clear, clear_without) > 8, "the catheter is not seen in a clear duct")
+        expect(apart(closed, closed_without) < 1, "the catheter is seen in a closed duct")
+        expect(not page.errors(), page.errors())
