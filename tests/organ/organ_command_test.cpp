@@ -138,9 +138,14 @@ TEST_F(OrganCommand, LabelsThatDoNotTouchBecomeAMeshEach) {
     for (int j = 0; j < kY; ++j)
       for (int i = 30; i < 36; ++i) apart[voxel(i, j, k)] = 0;
   const auto image = write_file(folder_ / "apart.inr", header() + apart);
-  const auto made = organ(image, "--label 7=big --label 9=small --nodes 400 --preview " +
-                                     (folder_ / "pictures").string() + " -o " + (folder_ / "a.msh").string());
+  const auto made = organ(image,
+                          "--label 7=big --label 9=small --nodes 400 --fine 0.042,0.022,0.012,0.003:0.003 "
+                          "--fine 1,0,0,0.01:0.005 --preview " +
+                              (folder_ / "pictures").string() + " -o " + (folder_ / "a.msh").string());
   ASSERT_EQ(made.status, 0) << made.err;
+  const std::size_t idle = made.out.find("warning: --fine 1,0,0,0.01:0.005 reaches no part of the body");
+  EXPECT_NE(idle, std::string::npos) << made.out;
+  EXPECT_EQ(made.out.find("warning: --fine"), made.out.rfind("warning: --fine")) << "it is fine in one of them";
   EXPECT_NE(made.out.find("2 bodies that share no border"), std::string::npos) << made.out;
   for (const auto& [name, label] : {std::pair{"a_big.msh", 7}, {"a_small.msh", 9}}) {
     const double counted = 2e-9 * static_cast<double>(std::count(apart.begin(), apart.end(), label));

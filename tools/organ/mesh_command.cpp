@@ -51,7 +51,7 @@ void make_mesh(const SurfaceOptions& o) {
   out.next_mesh();
   const TetMesh mesh = make_organ_mesh(solid.solid, solid.measures, fineness, say_progress).mesh;
   finish_mesh(mesh, o, out);
-  warn_of_idle_places(o, mesh, out.mesh().at("mean_edge_m"), out);
+  warn_of_idle_places(o, {{mesh, out.mesh().at("mean_edge_m")}}, out);
   out.finish();
 }
 

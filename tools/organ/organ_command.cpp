@@ -10,6 +10,7 @@
 
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
+#include "tools/organ/idle_places.hpp"
 #include "tools/organ/label_measures.hpp"
 #include "tools/organ/organ_pictures.hpp"
 #include "tools/organ/organ_visual.hpp"
@@ -245,11 +246,14 @@ void make_organ(const OrganOptions& o) {
                    });
   say_apart(volume, voxels, bodies, out);
   const std::vector<MadeBody> made = make_bodies(volume, voxels, bodies, o, out);
+  std::vector<MeshWithEdge> written;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     out.next_mesh();
     const OrganOptions own = bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, bodies[b].labels));
     write_body(volume, voxels, bodies[b], made[b], own, out);
+    written.push_back({made[b].mesh, out.mesh().at("mean_edge_m")});
   }
+  warn_of_idle_places(o, written, out);
   out.finish();
 }
 
