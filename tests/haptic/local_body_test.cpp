@@ -225,6 +225,24 @@ TEST_F(LocalBodyTest, ATouchThatBeginsFromNothingIsFeltAtOnce) {
   EXPECT_EQ(haptic_->flags(0) & stale_model, 0u) << "away from the tissue nothing is missing";
 }
 
+TEST_F(LocalBodyTest, WhileNoModelComesAToolGoesThroughWhatStandsThereWithoutAJump) {
+  for (int i = 0; i < 60; ++i) {
+    LocalContactModel m = model({0, 0, 0.02});
+    add_square(m, 0, 250);
+    add_square(m, -4e-3, 250);
+    m.triangles[2] = {4, 6, 5}, m.triangles[3] = {4, 7, 6};  // the other side of a flap, which faces down
+    ASSERT_TRUE(haptic_->consume(m));
+    feel({0, 0, kBallRadius - 1e-3});
+  }
+  Vector3d last = haptic_->force(0);
+  ASSERT_NEAR(last.z(), 0.25, 1e-9);
+  for (int i = 1; i <= 140; ++i) {  // 14 mm
+    const Vector3d force = feel({0, 0, kBallRadius - 1e-3 - 1e-4 * i});
+    EXPECT_LT((force - last).norm(), i <= 5 ? 0.026 : 0.33 / 20) << i;
+    last = force;
+  }
+}
+
 TEST_F(LocalBodyTest, AToolThatIsFirstToldOfFromWithinTheTissueIsPushedOutSlowly) {
   LocalContactModel m = model({0, 0, 0.006});
   ASSERT_TRUE(haptic_->consume(m));  // the tissue does not know of it yet

@@ -44,6 +44,11 @@ Vector3d within_cone(const Vector3d& force, const Vector3d& normal, double frict
   return size > most ? Vector3d(pressure * normal + most / size * tangential) : force;
 }
 
+Vector3d shortened(const Vector3d& v, double most) {
+  const double size = v.norm();
+  return size > most ? Vector3d(most / size * v) : v;
+}
+
 }  // namespace
 
 LocalBody::LocalBody(const Tool& tool, const ContactSpec& contact, double dt)
@@ -111,13 +116,13 @@ ToolLoad LocalBody::load(const MovingTool& tool, std::uint64_t step, double most
     add(touched.at, touched.force, tool, load);
   }
   keep_within(most, load);
+  keep_steady(load);
   const bool felt = !load.force.isZero(0) || !load.torque.isZero(0);
   const bool coming = state_.from_share > 0;
   if (!felt && age <= kSilent) reach_.set_free(tool);
   if (fresh && !felt && !coming) state_.weight = 1;  // what begins from nothing needs no fading
   stale_ = weight() < 1 - kRounding && felt;
   late_ = state_.lost > kLate && felt;
-  keep_from_rising(load);
   load.force *= state_.weight;
   load.torque *= state_.weight;
   come_from_before(load);
@@ -135,15 +140,21 @@ void LocalBody::keep_within(double most, ToolLoad& load) {
   grasp_force_ *= share;
 }
 
-// Nobody knows how the tissue answers to a tool that goes on while no model comes.
-void LocalBody::keep_from_rising(ToolLoad& load) {
+// Nobody knows how the tissue answers to a tool that goes on while no model comes. Where it goes through what stands
+// there, its nearest surface is another one at once, time and again.
+void LocalBody::keep_steady(ToolLoad& load) {
+  Eigen::Map<Vector3d> force(state_.model_force.data()), torque(state_.model_torque.data());
   const double size = std::max(load.force.norm(), load.torque.norm() / SafetyChain::kMaxLever);
   if (++state_.silent <= rises_) {
     state_.ceiling = size;
-  } else if (size > state_.ceiling) {
-    load.force *= state_.ceiling / size;
-    load.torque *= state_.ceiling / size;
+  } else {
+    const double share = size > state_.ceiling ? state_.ceiling / size : 1;
+    const double most = state_.ceiling * dt_ / kTurns;
+    load.force = force + shortened(share * load.force - force, most);
+    load.torque = torque + shortened(share * load.torque - torque, most * SafetyChain::kMaxLever);
   }
+  force = load.force;
+  torque = load.torque;
 }
 
 void LocalBody::come_from_before(ToolLoad& load) {

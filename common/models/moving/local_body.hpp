@@ -17,15 +17,17 @@ namespace palpate {
 /// deform node sent for this tool. Where the tissue is held, its force follows the tool's motion since the model's pose
 /// by the stiffness in it; a part of the tool that held nothing is felt by how deep it has come into the near surface,
 /// which gives way as its nodes do and, where the tissue's own contacts do so, as a half-space under the part.
-/// Age counts in haptic steps, so that a replay gives the same bits. While no model comes the force rises no more, then
-/// fades; what comes after a silence, or from another deform node, comes in from the present force. Tissue whose own
-/// time stands still or goes slower is felt as it is, and told. Never allocates.
+/// Age counts in haptic steps, so that a replay gives the same bits. While no model comes the force rises no more and
+/// changes by small steps, whatever the tool passes in the tissue that stands, then fades; what comes after a silence,
+/// or from another deform node, comes in from the present force. Tissue whose own time stands still or goes slower is
+/// felt as it is, and told. Never allocates.
 class LocalBody {
  public:
   static constexpr double kOldest = 0.15;        ///< [s] age of a model at which its force begins to fade
   static constexpr double kFadeSeconds = 0.05;   ///< [s] from full force to none, and back
   static constexpr double kExtrapolated = 0.02;  ///< [s] at most for which nodes move on with their velocity
   static constexpr double kRises = 0.005;        ///< [s] without a model after which the force rises no more
+  static constexpr double kTurns = 0.02;         ///< [s] at least in which it is then gone, or has another direction
   static constexpr double kSilent = 0.02;        ///< [s] without a model after which the next comes in gradually
   static constexpr double kLately = 0.1;         ///< [s] over which time that the tissue lost is forgotten
   static constexpr double kLate = 0.01;          ///< [s] lost lately from which on the tissue is late
@@ -62,14 +64,15 @@ class LocalBody {
  private:
   struct Memory {
     LocalModel model;
-    double weight = 0;                        ///< share of the model's force that is rendered
-    std::uint64_t silent = 0;                 ///< steps since a model came
-    double ceiling = 0;                       ///< [N] while silent: the size beyond which the force does not rise
-    std::array<double, 3> force{}, torque{};  ///< [N], [N m] of the last load
-    std::array<double, 3> from_force{}, from_torque{};  ///< of the load from which the model comes in
-    double from_share = 0;                              ///< of that load, which is still rendered
-    double from_weight = 0;                             ///< share of the force that it was
-    double lost = 0;                                    ///< [s] of the tissue's time, of late
+    double weight = 0;         ///< share of the model's force that is rendered
+    std::uint64_t silent = 0;  ///< steps since a model came
+    double ceiling = 0;        ///< [N] while silent: the size beyond which the force does not rise
+    std::array<double, 3> model_force{}, model_torque{};  ///< [N], [N m] that the model asked for in the last load
+    std::array<double, 3> force{}, torque{};              ///< [N], [N m] of the last load
+    std::array<double, 3> from_force{}, from_torque{};    ///< of the load from which the model comes in
+    double from_share = 0;                                ///< of that load, which is still rendered
+    double from_weight = 0;                               ///< share of the force that it was
+    double lost = 0;                                      ///< [s] of the tissue's time, of late
   };
   struct Held {
     Eigen::Vector3d at;  ///< [m] where the tool holds tissue now
@@ -83,7 +86,7 @@ class LocalBody {
   int hold(const MovingTool& tool, ToolLoad& load);
   void count_lost(const LocalModel& model);
   void keep_within(double most, ToolLoad& load);
-  void keep_from_rising(ToolLoad& load);
+  void keep_steady(ToolLoad& load);
   void come_from_before(ToolLoad& load);
   double weight() const { return state_.weight + state_.from_share * state_.from_weight; }  ///< of all that is rendered
   void extrapolate(double seconds);
