@@ -206,15 +206,20 @@ TIP_SEEN = """(() => { const { axes } = palpate.picture, tip = palpate.next.tool
 const d = [...tip].map((x, i) => x - axes.eye[i]), along = (v) => d.reduce((sum, x, i) => sum + x * v[i], 0);
 return [0.5 + 0.5 * along(axes.right) / along(axes.forward) / axes.halfWidth,
   0.5 - 0.5 * along(axes.up) / along(axes.forward) / axes.halfHeight]; })()"""
-PRESSES = f"palpate.hand.drag?.down && {FORCE} > 0.4 && {LAG} < 0.01"
+PRESSES = f"palpate.hand.drag?.down && {FORCE} > 0.3 && {LAG} < 0.01"
 
 
 def pressed(page, at):
     """Its force [N], once it stands."""
     page.press(*at)
     page.wait(PRESSES, 10)
-    time.sleep(0.7)
-    return page.get(FORCE)
+    force = 0
+    for _ in range(20):
+        before, force = force, page.get(FORCE)
+        if abs(force - before) < 0.002 * force:
+            return force
+        time.sleep(0.5)
+    raise AssertionError(f"the force does not stand: {before} N, then {force} N")
 
 
 def way(options):
