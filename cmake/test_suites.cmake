@@ -14,7 +14,8 @@ function(palpate_test_suites target)
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
     set(judged "")
   else()
-    set(judged ${PROJECT_SOURCE_DIR}/tests/realtime/unless_held_up.sh)
+    set(judged $<TARGET_FILE:unless_held_up>)
+    add_dependencies(${target} unless_held_up)
   endif()
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D LIST=${list} -D "PROPERTIES=${suites_PROPERTIES}"

@@ -8,5 +8,5 @@ cd "$(dirname "$0")/.."
 # In slots: a test that computes takes two of them, as a core; one that only waits takes one.
 held_up=build/release/cache/held_up
 rm -f "$held_up"
-trap 'if [ -e "$held_up" ]; then cat "$held_up"; fi' EXIT  # what ran again (tests/realtime/unless_held_up.sh)
+trap 'if [ -e "$held_up" ]; then cat "$held_up"; fi' EXIT  # what ran again (tests/realtime/unless_held_up.cpp)
 ctest --preset release --timeout 900 --parallel "$((2 * $(nproc) + 1))" "$@"

@@ -7,6 +7,7 @@ namespace palpate {
 std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t now_ns) {
   std::vector<std::string> said;
   if (company_ns_ == 0) company_ns_ = now_ns;
+  leave_out_own_pause(now_ns);
   std::erase_if(heard_, [&](const auto& entry) { return !presence.peers().contains(entry.first); });
   for (const auto& [node, peer] : presence.peers()) {
     const NodeStatus& status = peer.status;
@@ -25,6 +26,15 @@ std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t 
   if (alone && !said_alone_) said.push_back(fmt::format("alone for 5 s; listening in {}", place_));
   said_alone_ = alone;
   return said;
+}
+
+void LinkWatch::leave_out_own_pause(std::int64_t now_ns) {
+  const std::int64_t paused_ns = looked_ns_ == 0 ? 0 : now_ns - looked_ns_;
+  looked_ns_ = now_ns;
+  if (paused_ns <= kOwnPauseNs) return;
+  company_ns_ += paused_ns;
+  for (auto& [node, heard] : heard_)
+    if (!heard.silent) heard.last_ns += paused_ns;
 }
 
 std::string LinkWatch::silence(const std::string& role, std::int64_t now_ns) const {

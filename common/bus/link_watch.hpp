@@ -14,10 +14,13 @@ class LinkWatch {
  public:
   static constexpr std::int64_t kSilentAfterNs = 2'500'000'000;  ///< each node announces itself once a second
   static constexpr std::int64_t kAloneAfterNs = 5'000'000'000;
+  static constexpr std::int64_t kOwnPauseNs =
+      1'500'000'000;  ///< longer between two looks: this node itself stood still
 
   explicit LinkWatch(const Bus& bus) : place_(bus.place()) {}
 
-  /// Sentences about what has changed. Call a few times a second, after Presence::watch().
+  /// Sentences about what has changed. Call once a second or oftener, after Presence::watch(). While this node itself
+  /// stood still nobody was silent.
   std::vector<std::string> look(const Presence& presence, std::int64_t now_ns);
   /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever
   /// was.
@@ -30,9 +33,12 @@ class LinkWatch {
     std::int64_t last_ns = 0;
     bool silent = false;
   };
+  void leave_out_own_pause(std::int64_t now_ns);
+
   std::string place_;
   std::map<std::string, Heard> heard_;  ///< by node
-  std::int64_t company_ns_ = 0;         ///< when another node was there, or this one began
+  std::int64_t looked_ns_ = 0;
+  std::int64_t company_ns_ = 0;  ///< when another node was there, or this one began
   bool said_alone_ = false;
 };
 

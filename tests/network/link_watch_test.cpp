@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "common/bus/memory_bus.hpp"
 
 namespace palpate {
@@ -11,8 +14,16 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 class LinkWatchTest : public ::testing::Test {
  protected:
-  /// What the node is told at a time [s] after its start.
+  /// What the node, which looks each second, is told until a time [s] after its start.
   std::vector<std::string> at(double time) {
+    std::vector<std::string> told;
+    while (looked_ + 1 < time) std::ranges::copy(after_pause(looked_ + 1), std::back_inserter(told));
+    std::ranges::copy(after_pause(time), std::back_inserter(told));
+    return told;
+  }
+  /// The same, where it stood still from its last look on.
+  std::vector<std::string> after_pause(double time) {
+    looked_ = time;
     own_.watch();
     return link_.look(own_, kStart + static_cast<std::int64_t>(time * kSecond));
   }
@@ -25,6 +36,7 @@ class LinkWatchTest : public ::testing::Test {
   std::unique_ptr<Bus> bus_ = make_memory_bus(network_), other_bus_ = make_memory_bus(network_);
   Presence own_{*bus_, "render", 0, "scene", "archive"};
   LinkWatch link_{*bus_};
+  double looked_ = 0;  ///< [s]
 };
 
 using Said = std::vector<std::string>;
@@ -50,7 +62,17 @@ TEST_F(LinkWatchTest, SilenceAndReturnOfANodeAreTold) {
   EXPECT_EQ(at(4.5), Said{name + " is back"});
   EXPECT_EQ(silence(4.5), "");
   EXPECT_EQ(at(7.2).size(), 1u) << "silent once more";
-  EXPECT_EQ(at(9.9), Said{"alone for 5 s; listening in this process"});
+  EXPECT_EQ(at(11.4), Said{});
+  EXPECT_EQ(at(11.6), Said{"alone for 5 s; listening in this process"});
+}
+
+TEST_F(LinkWatchTest, WhileANodeItselfStoodNobodyWasSilent) {
+  const Presence haptic(*other_bus_, "haptic", 7, "scene", "archive");
+  EXPECT_EQ(at(0.5), Said{});
+  EXPECT_EQ(after_pause(6), Said{}) << "what came meanwhile has not been delivered yet";
+  EXPECT_EQ(at(8.4), Said{});
+  EXPECT_EQ(at(8.6), Said{"nothing from " + haptic.node() + " for 2.6 s: it has ended, or the network is cut"});
+  EXPECT_EQ(after_pause(14), Said{});
 }
 
 }  // namespace

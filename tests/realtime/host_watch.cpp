@@ -1,11 +1,15 @@
 #include "tests/realtime/host_watch.hpp"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/periodic.hpp"
@@ -29,10 +33,36 @@ std::vector<int> allowed_cores() {
   return cores;
 }
 
+/// How long a thread was ready to run while its core ran others.
+class RunDelay {
+ public:
+  RunDelay() : file_(open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC)) {}
+  ~RunDelay() {
+    if (file_ >= 0) close(file_);
+  }
+  RunDelay(const RunDelay&) = delete;
+
+  /// [ns] since the last call; 0 where the kernel does not count it.
+  std::int64_t take() {
+    std::array<char, 100> text{};  // "RUN DELAY SLICES"
+    const ssize_t size = pread(file_, text.data(), text.size() - 1, 0);
+    const char* const space = std::find(text.data(), text.data() + std::max<ssize_t>(size, 0), ' ');
+    std::int64_t all = all_;
+    std::from_chars(space + 1, text.data() + text.size(), all);
+    return all - std::exchange(all_, all);
+  }
+
+ private:
+  int file_;
+  std::int64_t all_ = 0;
+};
+
 }  // namespace
 
-HostWatch::HostWatch() {
-  for (const int core : allowed_cores())
+HostWatch::HostWatch() : HostWatch(allowed_cores()) {}
+
+HostWatch::HostWatch(const std::vector<int>& cores) {
+  for (const int core : cores)
     threads_.emplace_back([this, core](const std::stop_token& stop) { watch(stop, core); });
 }
 
@@ -44,13 +74,15 @@ void HostWatch::watch(const std::stop_token& stop, int core) {
   request_realtime({.priority = kBeforeAll, .lock_memory = false, .core = core});
   PeriodicTimer timer(kRateHz, kNoSpin);
   timer.start();
+  RunDelay delay;
+  delay.take();
   std::int64_t last_ns = now_ns();
   while (!stop.stop_requested()) {
     timer.wait();
-    const std::int64_t now = now_ns();
-    if (now - last_ns > timer.period_ns() + kPauseNs) {
+    const std::int64_t now = now_ns(), until = now - delay.take();
+    if (until - last_ns > timer.period_ns() + kPauseNs) {
       const std::lock_guard lock(mutex_);
-      pauses_.push_back({last_ns, now});
+      pauses_.push_back({last_ns, until});
     }
     last_ns = now;
   }

@@ -9,13 +9,14 @@ namespace palpate::testing {
 
 /// When this machine did not run: a virtual one's host has other things to do now and then, for up to a second, and no
 /// loop's rate says anything then. On each core a thread before which nothing else comes wakes each millisecond; where
-/// it is late, so would any loop have been. Without real-time rights it is late where others compute, too.
+/// it is late, so would any loop have been. What it waits while its core runs others of this machine is not counted.
 class HostWatch {
  public:
-  HostWatch();
+  HostWatch();  ///< of all cores that this process may run on
+  explicit HostWatch(const std::vector<int>& cores);
   ~HostWatch();
 
-  /// [s] of this time (of the monotonic clock) in which one core or another stood still.
+  /// [s] of this time (of the monotonic clock) in which one of the cores or another stood still.
   double stood_still(std::int64_t from_ns, std::int64_t to_ns) const;
   /// [s] so far that the host gave to others while a core had work, of all cores together, as the kernel counts it in
   /// hundredths. Pauses too short to be seen are in it.

@@ -92,7 +92,7 @@ TEST(ToolsRun, ASceneWithoutAToolIsForLockStep) {
                  {"has no tool", "drive", "--seconds"});
 }
 
-TEST(ToolsRun, ASoundRunEndsWithoutAnAlarmAndPassesAsStrict) {
+TEST(ToolsRunSound, EndsWithoutAnAlarmAndPassesAsStrict) {
   const LoopbackScene scene("calm", kLinear);
   scene.write("motion.csv", kSlowPress);
   for (const int processes : {2, 3}) {
