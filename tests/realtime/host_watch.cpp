@@ -62,8 +62,7 @@ class RunDelay {
 HostWatch::HostWatch() : HostWatch(allowed_cores()) {}
 
 HostWatch::HostWatch(const std::vector<int>& cores) {
-  for (const int core : cores)
-    threads_.emplace_back([this, core](const std::stop_token& stop) { watch(stop, core); });
+  for (const int core : cores) threads_.emplace_back([this, core](const std::stop_token& stop) { watch(stop, core); });
 }
 
 HostWatch::~HostWatch() {
