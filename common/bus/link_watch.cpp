@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace palpate {
 
 std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t now_ns) {
   std::vector<std::string> said;
   if (company_ns_ == 0) company_ns_ = now_ns;
-  leave_out_own_pause(now_ns);
+  leave_out_pause(now_ns);
   std::erase_if(heard_, [&](const auto& entry) { return !presence.peers().contains(entry.first); });
   for (const auto& [node, peer] : presence.peers()) {
     const NodeStatus& status = peer.status;
@@ -28,13 +30,11 @@ std::vector<std::string> LinkWatch::look(const Presence& presence, std::int64_t 
   return said;
 }
 
-void LinkWatch::leave_out_own_pause(std::int64_t now_ns) {
-  const std::int64_t paused_ns = looked_ns_ == 0 ? 0 : now_ns - looked_ns_;
+void LinkWatch::leave_out_pause(std::int64_t now_ns) {
+  const std::int64_t pause_ns = looked_ns_ == 0 ? 0 : std::max<std::int64_t>(now_ns - looked_ns_ - kLookNs, 0);
   looked_ns_ = now_ns;
-  if (paused_ns <= kOwnPauseNs) return;
-  company_ns_ += paused_ns;
-  for (auto& [node, heard] : heard_)
-    if (!heard.silent) heard.last_ns += paused_ns;
+  company_ns_ += pause_ns;
+  for (auto& [node, heard] : heard_) heard.last_ns += pause_ns;
 }
 
 std::string LinkWatch::silence(const std::string& role, std::int64_t now_ns) const {

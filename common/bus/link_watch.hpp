@@ -14,13 +14,12 @@ class LinkWatch {
  public:
   static constexpr std::int64_t kSilentAfterNs = 2'500'000'000;  ///< each node announces itself once a second
   static constexpr std::int64_t kAloneAfterNs = 5'000'000'000;
-  static constexpr std::int64_t kOwnPauseNs =
-      1'500'000'000;  ///< longer between two looks: this node itself stood still
+  static constexpr std::int64_t kLookNs = 1'200'000'000;  ///< between two looks no more than this counts
 
   explicit LinkWatch(const Bus& bus) : place_(bus.place()) {}
 
   /// Sentences about what has changed. Call once a second or oftener, after Presence::watch(). While this node itself
-  /// stood still nobody was silent.
+  /// stood still nobody else was silent.
   std::vector<std::string> look(const Presence& presence, std::int64_t now_ns);
   /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever
   /// was.
@@ -33,7 +32,7 @@ class LinkWatch {
     std::int64_t last_ns = 0;
     bool silent = false;
   };
-  void leave_out_own_pause(std::int64_t now_ns);
+  void leave_out_pause(std::int64_t now_ns);
 
   std::string place_;
   std::map<std::string, Heard> heard_;  ///< by node
