@@ -6,6 +6,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/log_writer.hpp"
+#include "common/realtime/clock.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/network/network_test.hpp"
 #include "tests/network/program_lines.hpp"
@@ -144,7 +145,9 @@ void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
   double handed_us = 0, heard_us = 0;
   for (int replay = 0; replay < 3; ++replay) {
     const fs::path again = scene_.folder() / fmt::format("again{}.lcmlog", replay);
+    const HostWatch host;
     const double stolen = HostWatch::stolen();
+    const std::int64_t begin = now_ns();
     const json report = replayed("", again);
     EXPECT_TRUE(report["complete"].get<bool>());
     EXPECT_EQ(report["skipped"], 0);
@@ -154,7 +157,8 @@ void LogOfQuasiStatic::expect_replay_at_its_own_pace() const {
         "replay: handed to the bus {:.1f} us (p99 {:.1f} us) after the recorded times, a message costs {:.1f} us; "
         "another process hears it {:.1f} us (median) off the even pace\n",
         handed_us, report["pace_us"]["p99"].get<double>(), message_us, heard_us);
-    if ((handed_us < bound_us && heard_us < bound_us) || HostWatch::stolen() == stolen) break;
+    const bool held_up = HostWatch::stolen() > stolen || host.stood_still(begin, now_ns()) > 0;
+    if ((handed_us < bound_us && heard_us < bound_us) || !held_up) break;
   }
   EXPECT_GT(handed_us, 0);
   EXPECT_LT(handed_us, bound_us);

@@ -59,17 +59,18 @@ class RunDelay {
 
 }  // namespace
 
-HostWatch::HostWatch() : HostWatch(allowed_cores()) {}
+HostWatch::HostWatch(By by) : HostWatch(by, allowed_cores()) {}
 
-HostWatch::HostWatch(const std::vector<int>& cores) {
-  for (const int core : cores) threads_.emplace_back([this, core](const std::stop_token& stop) { watch(stop, core); });
+HostWatch::HostWatch(By by, const std::vector<int>& cores) {
+  for (const int core : cores)
+    threads_.emplace_back([this, core, by](const std::stop_token& stop) { watch(stop, core, by); });
 }
 
 HostWatch::~HostWatch() {
   threads_.clear();
 }
 
-void HostWatch::watch(const std::stop_token& stop, int core) {
+void HostWatch::watch(const std::stop_token& stop, int core, By by) {
   request_realtime({.priority = kBeforeAll, .lock_memory = false, .core = core});
   PeriodicTimer timer(kRateHz, kNoSpin);
   timer.start();
@@ -78,7 +79,7 @@ void HostWatch::watch(const std::stop_token& stop, int core) {
   std::int64_t last_ns = now_ns();
   while (!stop.stop_requested()) {
     timer.wait();
-    const std::int64_t now = now_ns(), until = now - delay.take();
+    const std::int64_t now = now_ns(), until = by == By::host ? now - delay.take() : now;
     if (until - last_ns > timer.period_ns() + kPauseNs) {
       const std::lock_guard lock(mutex_);
       pauses_.push_back({last_ns, until});

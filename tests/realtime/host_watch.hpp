@@ -9,11 +9,15 @@ namespace palpate::testing {
 
 /// When this machine did not run: a virtual one's host has other things to do now and then, for up to a second, and no
 /// loop's rate says anything then. On each core a thread before which nothing else comes wakes each millisecond; where
-/// it is late, so would any loop have been. What it waits while its core runs others of this machine is not counted.
+/// it is late, so would any loop have been. Without real-time rights it is late where others compute, too.
 class HostWatch {
  public:
-  HostWatch();  ///< of all cores that this process may run on
-  explicit HostWatch(const std::vector<int>& cores);
+  /// What makes a core stand still: whatever keeps the thread from it, or less what it waits while the core runs others
+  /// of this machine, as the kernel counts it.
+  enum class By { any, host };
+
+  explicit HostWatch(By by = By::any);  ///< on all cores that this process may run on
+  HostWatch(By by, const std::vector<int>& cores);
   ~HostWatch();
 
   /// [s] of this time (of the monotonic clock) in which one of the cores or another stood still.
@@ -28,7 +32,7 @@ class HostWatch {
   struct Pause {
     std::int64_t from_ns, to_ns;
   };
-  void watch(const std::stop_token& stop, int core);
+  void watch(const std::stop_token& stop, int core, By by);
 
   mutable std::mutex mutex_;
   std::vector<Pause> pauses_;  ///< as they ended

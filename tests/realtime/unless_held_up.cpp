@@ -60,7 +60,7 @@ int main(int count, char** arguments) {
   }
   if (std::getenv("PALPATE_LONG_TESTS")) become(arguments + 1);
   for (int left = kRuns - 1;; --left) {
-    const HostWatch host;
+    const HostWatch host(HostWatch::By::host);
     const double stolen = HostWatch::stolen();
     const std::int64_t begin = palpate::now_ns();
     const int status = run(arguments + 1);

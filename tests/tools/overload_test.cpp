@@ -69,10 +69,12 @@ Felt felt_in(const fs::path& log) {
   return felt;
 }
 
-/// Of what a node had to do, the share that it left out; of what the host kept from it, nothing.
-double left_out(const json& summary, const char* node, const char* done, double host = 0) {
+/// Of what a node had to do, the share that it left out, all where it came to nothing; of what the host kept from it,
+/// nothing.
+double left_out(const json& summary, const char* node, const char* what, double host = 0) {
   const double missed = std::max(summary[node]["missed"].get<double>() - host, 0.);
-  return missed / (missed + summary[node][done].get<double>());
+  const double done = summary[node][what].get<double>();
+  return done > 0 ? missed / (missed + done) : 1;
 }
 
 /// Shares that were left out, and the force [N] beside that of a run in lock step.
@@ -106,7 +108,7 @@ std::optional<Overloaded> on_one_core(std::array<int, 3> cells, int busy_loops) 
                       std::vector<std::string>{"/usr/bin/taskset", "-c", "0", "/bin/sh", "-c", "while :; do :; done"});
   const Session session(scene.folder());
   for (int turn = 0; turn < 3 && found.steps > 0.02; ++turn) {
-    const HostWatch host({0});
+    const HostWatch host(HostWatch::By::host, {0});
     const std::int64_t begin = now_ns();
     const auto run = run_program("taskset -c 0 " + joined(session.arguments(scene, 3)) + "--force --seconds 5");
     EXPECT_EQ(run.status, 0) << run.err;
