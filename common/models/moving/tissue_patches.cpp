@@ -239,11 +239,14 @@ void TissuePatches::lay(Part& own, const MovingTool& tool, const Loose& loose) {
   own.patch.meet({surface_, *near_field_, friction_}, own.give);
 }
 
-// A patch lies in the others' dents, which the nodes' own motion does not show.
+// A patch lies in the others' dents, which the nodes' own motion does not show. What comes through the body that does
+// show, and what K has beside it is of the other sign and larger than what a square gives way by: known a tick later,
+// it made the patches on both sides answer one another's change with a larger one.
 void TissuePatches::meet_others(Part& own) {
   own.beside.assign(own.nodes.size(), Vector3d::Zero());
   for (const Part& other : parts_) {
     if (&other == &own || own.nodes.empty() || other.nodes.empty() || !other.patch.touches()) continue;
+    if (own.patch.normal().dot(other.patch.normal()) <= 0) continue;
     own.patch.lie_beside(other.patch);
     for (const PatchForce& f : other.patch.forces())
       for (std::size_t i = 0; i < own.nodes.size(); ++i)

@@ -25,8 +25,9 @@ namespace palpate {
 ///   L = G + Phi (K - C) Phi^T,
 /// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
 /// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
-/// patch lies on both parts of a hybrid alike, and in the dents that the others made in the tick before. What has been
-/// cut open, and jaws, are left to contacts by points.
+/// patch lies on both parts of a hybrid alike, and in the dents that others on its side of the body made in the tick
+/// before; what those on the other side do to it, the nodes alone say. What has been cut open, and jaws, are left to
+/// contacts by points.
 class TissuePatches {
  public:
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
