@@ -214,7 +214,7 @@ TEST_F(KilledInAnExample, ADeformationNodeThatComesBackIsNoKickByTheLog) {
 TEST_F(KilledInAnExample, AHapticNodeThatStandsForAMomentIsNoKick) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: TissueTool.* are of that";
   const FeltByTools in_step = in_lock_step(kCarried);
-  const FeltByTools felt = least_late_run(
+  const FeltByTools felt = run(
       [&](auto&, const ChildProcess& haptic) {
         ASSERT_TRUE(reaches(kCarried));
         for (int i = 0; i < kHapticStops; ++i) {

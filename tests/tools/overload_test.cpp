@@ -69,12 +69,10 @@ Felt felt_in(const fs::path& log) {
   return felt;
 }
 
-/// Of what a node had to do, the share that it left out, all where it came to nothing; of what the host kept from it,
-/// nothing.
-double left_out(const json& summary, const char* node, const char* what, double host = 0) {
+/// Of what a node had to do, the share that it left out; of what the host kept from it, nothing.
+double left_out(const json& summary, const char* node, const char* done, double host = 0) {
   const double missed = std::max(summary[node]["missed"].get<double>() - host, 0.);
-  const double done = summary[node][what].get<double>();
-  return done > 0 ? missed / (missed + done) : 1;
+  return missed / (missed + summary[node][done].get<double>());
 }
 
 /// Shares that were left out, and the force [N] beside that of a run in lock step.
@@ -122,8 +120,7 @@ std::optional<Overloaded> on_one_core(std::array<int, 3> cells, int busy_loops) 
     found.said = run.err;
     fmt::print(
         "left out: {:.1f} % of the pictures, {:.1f} % of the tissue's ticks, {:.2f} % of the loop's steps (beside "
-        "{:.3f} s of "
-        "the host); "
+        "{:.3f} s of the host); "
         "{:.4f} N at most, {:.4f} N held, by {:.4f} N a step; undisturbed {:.4f} N, {:.4f} N, {:.4f} N\n",
         100 * found.pictures, 100 * found.tissue, 100 * found.steps, paused, found.felt.largest, found.felt.held,
         found.felt.change, found.undisturbed.largest, found.undisturbed.held, found.undisturbed.change);
