@@ -107,8 +107,10 @@ TEST_F(TissueOverRelay, IsLetGoWhenTheHapticNodeEndsAndNotWhileItIsStopped) {
   observer_->max_jump = 0;
   kill(haptic.pid(), SIGCONT);
   observer_->listen(1s);
-  EXPECT_LT(observer_->max_jump, 0.05 * force);
+  // Where the machine stands for a moment the force fades and comes back: it is felt again, and without a jump.
+  observer_->listen(5s, [&] { return std::abs(observer_->force.force[2] - force) < 0.02 * force; });
   EXPECT_NEAR(observer_->force.force[2], force, 0.02 * force);
+  EXPECT_LT(observer_->max_jump, 0.05 * force);
 
   haptic.interrupt();
   ASSERT_TRUE(haptic.wait(5s));
