@@ -93,18 +93,25 @@ Vector3d Patch::place_of_force() const {
   return laid_at_ + middle_of_pressure() * (across_ + flank_.slope * normal_) + grid_.radius() * normal_;
 }
 
-// G of a force that is spread over a cell, by a distance that is as long for the cell itself.
 void Patch::lie_beside(const Patch& other) {
+  OfCells dents;
+  find_dents(other, dents);
+  for (int p = 0; p < grid_.size(); ++p) cells_[p].dent += dents[p];
+}
+
+// G of a force that is spread over a cell, by a distance that is as long for the cell itself.
+void Patch::find_dents(const Patch& other, OfCells& dents) {
+  dents.fill(0);
   if (other.normal_.dot(normal_) <= 0) return;  // another side of the body
   const HalfSpace& half_space = grid_.half_space();
   const double scale = half_space.scale() * (1 - half_space.poisson) * other.force_.dot(normal_) / other.pressing_;
   const double self = half_space.scale() * (1 - half_space.poisson) / other.kernel_.own();
   list_laid();
   const int laid = static_cast<int>(rows_.size());
-  PerCell x(laid), y(laid), z(laid), dent(laid);
+  PerCell x(laid), y(laid), z(laid), dent = PerCell::Zero(laid);
   for (int i = 0; i < laid; ++i) {
-    const Cell& cell = cells_[rows_[i]];
-    x[i] = cell.at.x(), y[i] = cell.at.y(), z[i] = cell.at.z(), dent[i] = cell.dent;
+    const Vector3d& at = cells_[rows_[i]].at;
+    x[i] = at.x(), y[i] = at.y(), z[i] = at.z();
   }
   for (int q = 0; q < other.grid_.size(); ++q) {
     if (!(other.pressure_force_[q] > 0)) continue;
@@ -112,7 +119,49 @@ void Patch::lie_beside(const Patch& other) {
     dent += scale * other.pressure_force_[q] /
             ((x - at.x()).square() + (y - at.y()).square() + (z - at.z()).square() + self * self).sqrt();
   }
-  for (int i = 0; i < laid; ++i) cells_[rows_[i]].dent = dent[i];
+  for (int i = 0; i < laid; ++i) dents[rows_[i]] = dent[i];
+}
+
+void Patch::lie_in(const OfCells& dents) {
+  for (int p = 0; p < grid_.size(); ++p) cells_[p].dent = dents[p];
+}
+
+// Of its force that a cell bears; before there is one, all of it is the deepest cell's.
+void Patch::find_shares(OfCells& shares) const {
+  shares.fill(0);
+  const auto less_deep = [](const Cell& a, const Cell& b) { return a.gap < b.gap; };
+  if (!touches()) shares[std::ranges::max_element(cells_, less_deep) - cells_.begin()] = 1;
+  for (int p = 0; p < grid_.size() && touches(); ++p)
+    if (laid(p)) shares[p] = pressure_force_[p] / pressing_;
+}
+
+double Patch::sunk(const OfCells& dents, std::span<const Vector3d> moved) const {
+  OfCells shares;
+  find_shares(shares);
+  double sunk = 0;
+  for (int p = 0; p < grid_.size(); ++p) {
+    if (!(shares[p] > 0)) continue;
+    const Foot& f = foot(p);
+    sunk += shares[p] * dents[p];
+    for (int v = 0; v < 3; ++v) sunk += shares[p] * f.weights[v] * normal_.dot(moved[f.local[v]]);
+  }
+  return sunk;
+}
+
+double Patch::softness() const {
+  const int n = grid_.size();
+  OfCells shares;
+  find_shares(shares);
+  std::array<double, kMaxNodes> of_nodes{};
+  double soft = 0;
+  for (int p = 0; p < n; ++p) {
+    if (!(shares[p] > 0)) continue;
+    for (int q = 0; q < n; ++q) soft += shares[p] * shares[q] * compliance_[p * n + q];
+    for (int v = 0; v < 3; ++v) of_nodes[foot(p).local[v]] += foot(p).weights[v] * shares[p];
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t j = 0; j < nodes_.size(); ++j) soft -= of_nodes[i] * of_nodes[j] * nodes_give_[i * max_nodes_ + j];
+  return soft;
 }
 
 void Patch::sum_pressures() {
@@ -233,18 +282,9 @@ bool Patch::solve_active() {
 
 Eigen::Matrix3d Patch::give() const {
   if (!touches()) return Eigen::Matrix3d::Zero();
-  const int n = grid_.size();
-  std::array<double, kMaxNodes> share{};
-  double give = 0;
-  for (const int p : rows_) {
-    for (const int q : rows_) give += pressure_force_[p] * pressure_force_[q] * compliance_[p * n + q];
-    for (int v = 0; v < 3; ++v) share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p];
-  }
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    for (std::size_t j = 0; j < nodes_.size(); ++j) give -= share[i] * share[j] * nodes_give_[i * max_nodes_ + j];
   Eigen::Matrix<double, 3, 2> plane;
   plane << across_, up_;
-  return give / (pressing_ * pressing_) * normal_ * normal_.transpose() + plane * sheared_give_ * plane.transpose();
+  return softness() * normal_ * normal_.transpose() + plane * sheared_give_ * plane.transpose();
 }
 
 bool Patch::fits(int nodes) const {

@@ -80,6 +80,15 @@ class Patch {
   /// After lay(): another patch's last forces lie on this tissue too. What they do to the cells by the half-space; what
   /// they do beyond it comes with `moved`.
   void lie_beside(const Patch& other);
+  /// The same in two steps: [m] the dents at its cells, and all such in which it lies now.
+  using OfCells = std::array<double, kMaxCells>;
+  void find_dents(const Patch& other, OfCells& dents);
+  void lie_in(const OfCells& dents);
+  /// [m] By which it sinks in such dents and as the nodes of lay() are moved, in the mean over its last pressures;
+  /// where it has none, where it is deepest.
+  double sunk(const OfCells& dents, std::span<const Eigen::Vector3d> moved) const;
+  /// [m/N] By which the tissue gives way under the same, along the normal, beyond what its nodes do.
+  double softness() const;
   /// Solves for the pressures and the shear. `moved` [m]: displacement of those nodes by all other forces and by all of
   /// the past. `less` [m]: by which the part presses less deep than it stands.
   void press(const Ground& ground, std::span<const Eigen::Vector3d> moved, double less = 0);
@@ -169,6 +178,7 @@ class Patch {
   double gap(int cell, const Step& step, const Rise& of_nodes) const;
   Eigen::Vector3d on_axis(const Segment& axis, double along) const;
   double middle_of_pressure() const;
+  void find_shares(OfCells& shares) const;
   /// Triangles in which the sphere or strip may have feet.
   std::span<int> near(const SmoothSurface& surface, const Segment& axis) const;
   bool find_below(const Ground& ground, const Eigen::Vector3d& middle, double above);

@@ -20,6 +20,9 @@ constexpr double kAbout = 3;  // radii, or longest edges, about a patch over whi
 // By which the tissue may go [radii] and turn [rad] under a patch before that goes with it: one that followed each
 // swing would feed it.
 constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
+// By which all others may let a patch sink beyond what the nodes do, of what it gives way by. Patches that lie near
+// each other on a thin body would do more, and answer one another's change with a larger one.
+constexpr double kMostByOthers = 0.05;
 constexpr double kResolved = 4;  // edges over which linear elements know the true compliance
 
 std::array<int, 3> ascending(std::array<int, 3> nodes) {
@@ -84,6 +87,8 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     for (std::vector<NodeGive>* give : {&own.world_give, &own.give}) give->reserve(still ? pairs : most);
     for (std::vector<Vector3d>* of_nodes : {&own.last, &own.beside}) of_nodes->reserve(most);
   }
+  met_.resize(parts_.size());
+  for (Met& met : met_) met.moved.reserve(Patch::kMaxNodes);
   moved_.reserve(Patch::kMaxNodes);
   went_.reserve(Patch::kMaxNodes);
   forces_.reserve(Patch::kMaxNodes);
@@ -165,7 +170,6 @@ void TissuePatches::find(std::span<const MovingTool> tools, const std::function<
     else
       lay(own, tools[own.tool], loose);
   }
-  for (Part& own : parts_) meet_others(own);
 }
 
 // At rest, below the part: where it pressed, or what is nearest to it now.
@@ -239,25 +243,46 @@ void TissuePatches::lay(Part& own, const MovingTool& tool, const Loose& loose) {
   own.patch.meet({surface_, *near_field_, friction_}, own.give);
 }
 
-// A patch lies in the others' dents, which the nodes' own motion does not show. What comes through the body that does
-// show, and what K has beside it is of the other sign and larger than what a square gives way by: known a tick later,
-// it made the patches on both sides answer one another's change with a larger one.
+// A patch lies in the others' dents, which the nodes' own motion does not show. As they are pressed now: known a step
+// late they would feed the tissue's swing. Each pair knows of each other by the same share.
 void TissuePatches::meet_others(Part& own) {
+  own.sunk_by_others = 0;
+  for (const Part& other : parts_)
+    if (meet(own, other)) own.sunk_by_others += find_met(own, other);
+  OfCells dents{};
   own.beside.assign(own.nodes.size(), Vector3d::Zero());
   for (const Part& other : parts_) {
-    if (&other == &own || own.nodes.empty() || other.nodes.empty() || !other.patch.touches()) continue;
-    if (own.patch.normal().dot(other.patch.normal()) <= 0) continue;
-    own.patch.lie_beside(other.patch);
-    for (const PatchForce& f : other.patch.forces())
-      for (std::size_t i = 0; i < own.nodes.size(); ++i)
-        own.beside[i] += near_field_->between(own.nodes[i], f.node) * f.force;
+    if (!meet(own, other)) continue;
+    const Met& met = met_[number(other)];
+    const double share = kMostByOthers / std::max({kMostByOthers, own.sunk_by_others, other.sunk_by_others});
+    for (std::size_t p = 0; p < dents.size(); ++p) dents[p] += share * met.dents[p];
+    for (std::size_t i = 0; i < own.nodes.size(); ++i) own.beside[i] += share * met.moved[i];
   }
+  own.patch.lie_in(dents);
+}
+
+bool TissuePatches::meet(const Part& own, const Part& other) {
+  return &other != &own && other.patch.touches();
+}
+
+// [1] By how much it sinks, of what the larger one's force would do between two such patches in one place.
+double TissuePatches::find_met(Part& own, const Part& other) {
+  Met& met = met_[number(other)];
+  own.patch.find_dents(other.patch, met.dents);
+  met.moved.assign(own.nodes.size(), Vector3d::Zero());
+  for (const PatchForce& f : other.patch.forces())
+    for (std::size_t i = 0; i < own.nodes.size(); ++i)
+      met.moved[i] += near_field_->between(own.nodes[i], f.node) * f.force;
+  const double gives =
+      std::max(own.patch.pressing(), other.patch.pressing()) * std::sqrt(own.patch.softness() * other.patch.softness());
+  return gives > 0 ? std::abs(own.patch.sunk(met.dents, met.moved)) / gives : 0;
 }
 
 void TissuePatches::lift(Part& own) {
   nodes_->release(number(own));
   own.patch.lift();
   own.nodes.clear();
+  own.sunk_by_others = 0;
   own.ease.fill(0);
   own.depth.fill(0);
 }
@@ -269,6 +294,7 @@ void TissuePatches::step(std::span<const MovingTool> tools, double dt) {
 
 void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
   const Eigen::Isometry3d to_rest = own.motion.inverse();
+  meet_others(own);
   nodes_->release(number(own));
   moved_.clear();
   went_.clear();
@@ -355,6 +381,7 @@ void TissuePatches::state(State& s) {
     own.patch.state(s);
     s.require(own.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
     s.value(own.motion.matrix());
+    s.value(own.sunk_by_others);
     s.value(own.ease);
     s.value(own.depth);
     s.value(own.cut);

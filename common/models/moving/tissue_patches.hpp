@@ -72,7 +72,7 @@ class TissuePatches {
   void state(State& s);
 
  private:
-  using OfCells = std::array<double, Patch::kMaxCells>;
+  using OfCells = Patch::OfCells;
 
   struct Part {
     int tool, part;
@@ -85,6 +85,7 @@ class TissuePatches {
     std::vector<NodeGive> world_give, give;                    ///< as they are, and seen from rest
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
     std::vector<Eigen::Vector3d> beside;                       ///< [m] what other patches do to nodes beyond C
+    double sunk_by_others = 0;                                 ///< [1] of what it gives way by, were it by all of it
     OfCells ease{};                                            ///< [m] that it stands too deep, and is led out of
     OfCells depth{};                                           ///< [m] in the last step
     bool relaid = false;                                       ///< no step has been done since it was laid
@@ -92,6 +93,12 @@ class TissuePatches {
     double approach = 0;                                       ///< [m] its way over the tissue in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
+  };
+
+  /// [m] What another patch does to the one that is looked at, beyond what the nodes do.
+  struct Met {
+    OfCells dents{};
+    std::vector<Eigen::Vector3d> moved;  ///< per node under it
   };
 
   /// A surface that tools meet, and of its triangles those of map_.
@@ -109,6 +116,8 @@ class TissuePatches {
   void lay(Part& own, const MovingTool& tool, const Loose& loose);
   static void come_loose(const Part& own, double share, std::span<const PatchForce> forces, const Loose& loose);
   void meet_others(Part& own);
+  static bool meet(const Part& own, const Part& other);
+  double find_met(Part& own, const Part& other);
   void lift(Part& own);
   void let_go(Part& own, const Loose& loose);
   void ease_in(Part& own, std::span<const double> depth) const;
@@ -129,6 +138,7 @@ class TissuePatches {
   HalfSpace material_;
   PatchGrids grids_;
   std::vector<Part> parts_;
+  std::vector<Met> met_;  ///< one a part
   std::vector<Eigen::Vector3d> moved_, went_;
   std::vector<PatchForce> forces_;
   std::vector<int> ground_of_node_;        ///< per node: the one that knows where it is
