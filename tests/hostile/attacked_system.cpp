@@ -113,11 +113,17 @@ AttackedSystem::AttackedSystem(int domain, bool with_keys)
   std::string said;
   if (run_command(program("palpate") + " precompute " + scene_.scene(), &said) != 0) throw std::runtime_error(said);
   driver_ = std::thread([this] { drive(); });
-  for (const char* name : {"deform", "render", "web", "haptic"})
-    nodes_.emplace(name, ChildProcess(name, {program(std::string(name) + "_node"), scene_.scene(), "--domain", domain_,
-                                             "--supervised"}));
+  for (const char* name : {"deform", "render", "web", "haptic"}) start(name);
   const bool there = watch(30s, [&] { return hand_.newest().step > 800 && statuses_.size() == 4 && pictures_ > 20; });
   if (!there) throw std::runtime_error("the attacked system does not come up");
+}
+
+void AttackedSystem::start(const std::string& node) {
+  const std::string terminal = scene_.folder() / (node + ".terminal");
+  std::ofstream{terminal};
+  terminals_.emplace(node, terminal);
+  nodes_.emplace(node, ChildProcess(node, {"/bin/sh", "-c", "exec \"$@\" 2>>\"$0\"", terminal, program(node + "_node"),
+                                           scene_.scene(), "--domain", domain_, "--supervised"}));
 }
 
 bool AttackedSystem::in_free_air() const {
@@ -169,6 +175,12 @@ void AttackedSystem::look() {
         statuses_[name] = *status;
         said_[name] += status->text + '\n';
       }
+  for (auto& [name, terminal] : terminals_) {
+    terminal.clear();
+    const std::string more(std::istreambuf_iterator<char>(terminal), {});
+    said_[name] += more;
+    fmt::print("{}", more);
+  }
   while (const auto picture = picture_->take()) newest_picture_ = *picture, ++pictures_;
 }
 
@@ -186,7 +198,7 @@ std::map<std::string, double> AttackedSystem::memory_at_most() {
   const std::filesystem::path log = scene_.folder() / "recorder.lcmlog";
   ChildProcess recorder("record", {program("palpate"), "record", "--scene", scene_.scene(), "--domain", domain_,
                                    "--keep", "everything", "--force", "-o", log});
-  const bool records = watch(20s, [&] { return std::filesystem::exists(log) && file_size(log) > kHears; });
+  const bool records = watch(60s, [&] { return std::filesystem::exists(log) && file_size(log) > kHears; });
   if (!records) throw std::runtime_error("the recorder hears nothing");
   kill(recorder.pid(), SIGSTOP);
   watch(std::chrono::milliseconds(step_depth + 500));

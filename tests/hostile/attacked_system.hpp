@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <csignal>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -54,7 +55,8 @@ class AttackedSystem {
   std::map<std::string, double> memory_at_most();
   /// The newest status of the node of a role, as it told itself.
   std::map<std::string, NodeStatus>& statuses() { return statuses_; }
-  /// All texts of the statuses of a role's node since begin_anew().
+  /// All that a role's node has said since begin_anew(), in its statuses and on its own terminal: where the machine is
+  /// busy a status may be overtaken by the next one.
   const std::string& said(const std::string& role) { return said_[role]; }
   void begin_anew() {
     hand_.begin_anew();
@@ -85,6 +87,7 @@ class AttackedSystem {
   std::uint64_t run_of(const std::string& role) { return statuses_[role].run; }
 
  private:
+  void start(const std::string& node);
   void look();
   void drive();
 
@@ -95,6 +98,7 @@ class AttackedSystem {
   std::unique_ptr<Reader<NodeStatus>> status_;
   std::unique_ptr<Reader<PictureState>> picture_;
   std::map<std::string, NodeStatus> statuses_;  ///< by role, of the processes started here
+  std::map<std::string, std::ifstream> terminals_;
   std::map<std::string, std::string> said_;
   PictureState newest_picture_;
   std::uint64_t pictures_ = 0;

@@ -25,9 +25,10 @@ namespace palpate {
 ///   L = G + Phi (K - C) Phi^T,
 /// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
 /// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
-/// patch lies on both parts of a hybrid alike, and in the dents that others on its side of the body made in the tick
-/// before; what those on the other side do to it, the nodes alone say. What has been cut open, and jaws, are left to
-/// contacts by points.
+/// patch lies on both parts of a hybrid alike, and in the dents that others make. Those, and what the others' forces do
+/// to its nodes by K - C, it knows as they are pressed in the same step, but by no more than a small part of what the
+/// patches give way by: they would answer one another's change with a larger one. What has been cut open, and jaws, are
+/// left to contacts by points.
 class TissuePatches {
  public:
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
