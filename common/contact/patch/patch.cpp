@@ -160,7 +160,8 @@ double Patch::softness() const {
     for (int v = 0; v < 3; ++v) of_nodes[foot(p).local[v]] += foot(p).weights[v] * shares[p];
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    for (std::size_t j = 0; j < nodes_.size(); ++j) soft -= of_nodes[i] * of_nodes[j] * nodes_give_[i * max_nodes_ + j];
+    for (std::size_t j = 0; of_nodes[i] != 0 && j < nodes_.size(); ++j)
+      soft -= of_nodes[i] * of_nodes[j] * nodes_give_[i * max_nodes_ + j];
   return soft;
 }
 
