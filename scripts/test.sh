@@ -7,6 +7,11 @@ cd "$(dirname "$0")/.."
 ./scripts/format.sh --check
 # In slots: a test that computes takes two of them, as a core; one that only waits takes one.
 held_up=build/release/cache/held_up
-rm -f "$held_up"
-trap 'if [ -e "$held_up" ]; then cat "$held_up"; fi' EXIT  # what ran again (tests/realtime/unless_held_up.cpp)
+last=build/release/Testing/Temporary/LastTest.log
+rm -f "$held_up" "$last"
+say_at_end() {
+  if [ $? -ne 0 ] && [ -e "$last" ]; then grep -A4 ': Failure$' "$last" | cut -c1-300 | head -n 60 || true; fi
+  if [ -e "$held_up" ]; then cat "$held_up"; fi  # what ran again (tests/realtime/unless_held_up.cpp)
+}
+trap say_at_end EXIT
 ctest --preset release --timeout 900 --parallel "$((2 * $(nproc) + 1))" "$@"

@@ -1,6 +1,10 @@
 #pragma once
 #include <dds/dds.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
 #include <tuple>
 
 #include "common/bus/dds_bus.hpp"
@@ -10,15 +14,47 @@
 
 namespace palpate::testing {
 
+/// The readers in a domain, as discovery tells of them.
+class ReadersHeard {
+ public:
+  explicit ReadersHeard(dds_entity_t participant)
+      : reader_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr), "readers") {}
+
+  std::size_t of(std::string_view topic) const {
+    constexpr int most = 1024;
+    std::array<void*, most> samples{};
+    std::array<dds_sample_info_t, most> infos;
+    const int count = dds_read_mask(reader_, samples.data(), infos.data(), most, most, DDS_ALIVE_INSTANCE_STATE);
+    if (count <= 0) return 0;
+    const auto is_of_topic = [&](void* sample) {
+      return static_cast<const dds_builtintopic_endpoint_t*>(sample)->topic_name == topic;
+    };
+    const auto found = std::count_if(samples.begin(), samples.begin() + count, is_of_topic);
+    dds_return_loan(reader_, samples.data(), count);
+    return static_cast<std::size_t>(found);
+  }
+
+ private:
+  Entity reader_;
+};
+
 /// A writer of a topic that sends whatever it is told to: the project's own refuse what is not valid.
 template <class M>
 class HostileWriter {
  public:
-  HostileWriter(dds_entity_t participant, const Topic<M>& topic)
-      : topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
+  HostileWriter(dds_entity_t participant, const ReadersHeard& readers, const Topic<M>& topic)
+      : name_(topic.name),
+        readers_(&readers),
+        topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
                topic.name),
         writer_(dds_create_writer(participant, topic_, qos(topic.qos).get(), nullptr), topic.name) {}
 
+  /// All readers of the topic in the domain have been found: with keys a busy machine takes seconds.
+  bool reaches_all() const {
+    dds_publication_matched_status_t found{};
+    return dds_get_publication_matched_status(writer_, &found) == DDS_RETCODE_OK &&
+           found.current_count >= readers_->of(name_);
+  }
   /// False where the middleware itself does not send such a sample.
   bool write(const M& message) const { return send(message, dds_write); }
   /// Says that the message's instance is over: for all, or for this writer.
@@ -42,6 +78,8 @@ class HostileWriter {
     dds_qset_writer_data_lifecycle(q.get(), false);
     return q;
   }
+  std::string name_;
+  const ReadersHeard* readers_;
   Entity topic_, writer_;
 };
 
@@ -49,17 +87,18 @@ class HostileWriter {
 class Attacker {
  public:
   explicit Attacker(const BusSettings& settings)
-      : bus_(make_dds_bus(settings)), participant_(make_participant(settings), "attacker") {}
+      : bus_(make_dds_bus(settings)), participant_(make_participant(settings), "attacker"), readers_(participant_) {}
 
   Bus& bus() { return *bus_; }
   template <class M>
   HostileWriter<M> writer(const Topic<M>& topic) const {
-    return {participant_, topic};
+    return {participant_, readers_, topic};
   }
 
  private:
   std::unique_ptr<Bus> bus_;
   Entity participant_;
+  ReadersHeard readers_;
 };
 
 }  // namespace palpate::testing

@@ -66,8 +66,13 @@ class Hostile : public ::testing::TestWithParam<bool> {
   template <class M>
   static std::unique_ptr<HostileWriter<M>> writer(const Topic<M>& topic) {
     std::unique_ptr<HostileWriter<M>> made(new HostileWriter<M>(system_->attacker().writer(topic)));
-    system_->watch(std::chrono::milliseconds(150));  // the nodes find it
+    wait_until_it_reaches_all(*made);
     return made;
+  }
+  template <class M>
+  static void wait_until_it_reaches_all(const HostileWriter<M>& made) {
+    EXPECT_TRUE(system_->watch(kAfterFlood, [&] { return made.reaches_all(); })) << "an attack that is not heard";
+    system_->watch(std::chrono::milliseconds(50));  // the readers find it too
   }
   static std::uint64_t haptic_run() { return hand().newest().run; }
   static std::uint64_t deform_run() { return system_->run_of("deform"); }

@@ -50,7 +50,7 @@ TEST_P(Hostile, EveryFieldAtItsExtremes) {
   for_each_topic_of_nodes([&](auto at) {
     const auto& topic = std::get<at>(topics::all);
     const auto attack = system().attacker().writer(topic);
-    system().watch(50ms);
+    wait_until_it_reaches_all(attack);
     auto base = learned.template of<at>((topic.writers & roles::deform) ? deform_run() : haptic_run());
     if constexpr (requires { base.tool_run; })
       base.tool = kHovering, base.contacts = press(haptic_run(), deform_run(), 0, 1).contacts;
@@ -77,6 +77,7 @@ TEST_P(Hostile, AnyFieldsSpoiltByChance) {
             std::unique_ptr<HostileWriter<M>>(new HostileWriter<M>(system().attacker().writer(topic)))...};
       },
       topics::all);
+  std::apply([](const auto&... made) { (wait_until_it_reaches_all(*made), ...); }, writers);
   system().watch(400ms);
   int sent = 0;
   repeat(40, kLong, [&](int round) {
@@ -142,7 +143,7 @@ TEST_P(Hostile, InstancesThatOthersSayAreOverGoOn) {
   for_each_topic_of_nodes([&](auto at) {
     const auto& topic = std::get<at>(topics::all);
     const auto attack = system().attacker().writer(topic);
-    system().watch(50ms);
+    wait_until_it_reaches_all(attack);
     const auto message = learned.template of<at>((topic.writers & roles::deform) ? deform_run() : haptic_run());
     for (int k = 0; k < 5; ++k) {
       attack.dispose(message);
