@@ -220,6 +220,7 @@ TEST_F(ToolsCheckDynamic, AMeshAloneIsSaidToBeWhatItIsAndTakes) {
   expect_line(said, "  793 nodes, 3456 tetrahedra; surface: ");
   expect_line(said, "  size: ");
   expect_line(said, "  dihedral angles: smallest ");
+  expect_line(said, "  groups: 'bottom' with 61 nodes, ");  // by names alone: the file numbers them too
   expect_line(
       said,
       "  as a quasi-static body, touchable where it is not held, tensors from quadratic elements: precompute takes ");

@@ -13,6 +13,7 @@
 #include "common/mesh/surface.hpp"
 #include "common/models/quasi_static/free_surface.hpp"
 #include "common/models/quasi_static/spec.hpp"
+#include "common/models/quasi_static/tensor_work.hpp"
 #include "common/scene/scene.hpp"
 #include "tools/organ/finding.hpp"
 #include "tools/organ/places.hpp"
@@ -22,8 +23,6 @@ namespace palpate {
 namespace {
 
 constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
-// Of surface nodes squared [s], measured on one core (docs/organ.md): with quadratic elements and with linear ones.
-constexpr double kQuadraticSeconds = 6e-6, kLinearSeconds = 1.3e-6;
 
 void write_whole(const TetMesh& mesh, const std::filesystem::path& file) {
   AtomicFile whole(file);
@@ -44,20 +43,18 @@ std::size_t bytes_of(std::string_view owner, std::span<const MemoryPart> parts) 
   return sum;
 }
 
-/// Of a quasi-static body that can be touched where it is not held: memory as `palpate check` has it, time as measured
-/// (docs/organ.md).
+/// Of a quasi-static body that can be touched where it is not held, as `palpate check` has it.
 void tell_cost(const TetMesh& mesh, Output& out) {
   const SurfaceMap surface = free_surface(mesh);
   const std::vector<MemoryPart> parts = free_surface_memory(surface);
   const std::size_t archive = bytes_of("disk", parts), haptic = bytes_of("haptic_node", parts);
-  const double nodes = surface.size();
-  const double seconds = (surface.size() > kMaxQuadratic ? kLinearSeconds : kQuadraticSeconds) * nodes * nodes;
+  const WorkTime time = time_of(tensor_work(mesh, surface, offline_of(QuasiStaticSpec{}, surface.size())));
   out.say(fmt::format(
       "  to come, as a quasi_static body, touchable where it is not held: archive of {:.3g} MB{}, "
-      "haptic node {:.3g} MB, precomputation about {:.2g} s",
+      "haptic node {:.3g} MB, precomputation {}",
       1e-6 * static_cast<double>(archive), form_of(surface.touchable) == TensorForm::compressed ? " (compressed)" : "",
-      1e-6 * static_cast<double>(haptic), seconds));
-  out.mesh().update({{"archive_bytes", archive}, {"haptic_node_bytes", haptic}, {"precomputation_s", seconds}});
+      1e-6 * static_cast<double>(haptic), time.words));
+  out.mesh().update({{"archive_bytes", archive}, {"haptic_node_bytes", haptic}, {"precomputation_s", time.seconds}});
 }
 
 void tell_groups(const TetMesh& mesh, Output& out) {
