@@ -42,18 +42,17 @@ class ReadersHeard {
 template <class M>
 class HostileWriter {
  public:
-  HostileWriter(dds_entity_t participant, const ReadersHeard& readers, const Topic<M>& topic)
+  HostileWriter(dds_entity_t participant, const Topic<M>& topic)
       : name_(topic.name),
-        readers_(&readers),
         topic_(dds_create_topic(participant, &dds::Generated<M>::descriptor(), topic.name, nullptr, nullptr),
                topic.name),
         writer_(dds_create_writer(participant, topic_, qos(topic.qos).get(), nullptr), topic.name) {}
 
   /// All readers of the topic in the domain have been found: with keys a busy machine takes seconds.
-  bool reaches_all() const {
+  bool reaches_all(const ReadersHeard& readers) const {
     dds_publication_matched_status_t found{};
     return dds_get_publication_matched_status(writer_, &found) == DDS_RETCODE_OK &&
-           found.current_count >= readers_->of(name_);
+           found.current_count >= readers.of(name_);
   }
   /// False where the middleware itself does not send such a sample.
   bool write(const M& message) const { return send(message, dds_write); }
@@ -79,7 +78,6 @@ class HostileWriter {
     return q;
   }
   std::string name_;
-  const ReadersHeard* readers_;
   Entity topic_, writer_;
 };
 
@@ -92,7 +90,11 @@ class Attacker {
   Bus& bus() { return *bus_; }
   template <class M>
   HostileWriter<M> writer(const Topic<M>& topic) const {
-    return {participant_, readers_, topic};
+    return {participant_, topic};
+  }
+  template <class M>
+  bool reaches_all(const HostileWriter<M>& writer) const {
+    return writer.reaches_all(readers_);
   }
 
  private:

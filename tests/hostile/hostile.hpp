@@ -71,7 +71,8 @@ class Hostile : public ::testing::TestWithParam<bool> {
   }
   template <class M>
   static void wait_until_it_reaches_all(const HostileWriter<M>& made) {
-    EXPECT_TRUE(system_->watch(kAfterFlood, [&] { return made.reaches_all(); })) << "an attack that is not heard";
+    EXPECT_TRUE(system_->watch(kAfterFlood, [&] { return system_->attacker().reaches_all(made); }))
+        << "an attack that is not heard";
     system_->watch(std::chrono::milliseconds(50));  // the readers find it too
   }
   static std::uint64_t haptic_run() { return hand().newest().run; }
