@@ -17,6 +17,7 @@ struct BusSettings {
   std::filesystem::path keys{};  ///< folder of keys, see security.hpp; empty: open to all, and nothing of it is loaded
   std::string role{};            ///< whose keys of those: a role of roles.hpp; means nothing without keys
   bool favoured = false;         ///< what it receives comes before all that is not realtime on this host
+  bool newest_alone = false;     ///< where it does not keep up, what comes is lost rather than late, as for pictures
   bool gathers = false;          ///< Writer::gather() waits for send(); else it is write()
 };
 

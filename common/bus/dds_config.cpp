@@ -111,21 +111,22 @@ std::string dds_configuration(const BusSettings& settings) {
   // put together at once it would take nothing more, so that this number is large. A reader that stood still for a
   // tenth of a second at full rate lacks megabytes: it asks for a socket that holds them, keeps what comes after a gap,
   // and the writer repeats it all at the first asking. Fragments are asked for one sample at a time, so that it asks
-  // often.
+  // often. Who wants the newest alone has a smaller one: where it does not keep up, what comes is lost there, and not
+  // seconds late.
   return fmt::format(
       "<CycloneDDS><Domain Id=\"{}\">{}"
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</"
       "MaxAutoParticipantIndex>"
       "<LeaseDuration>120 s</LeaseDuration><SPDPInterval>2 s</SPDPInterval>{}</Discovery>"
       "<Internal>{}<HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"50 ms\">5 ms</HeartbeatInterval>"
-      "<NackDelay>10 ms</NackDelay><SocketReceiveBufferSize max=\"8 "
+      "<NackDelay>10 ms</NackDelay><SocketReceiveBufferSize max=\"{} "
       "MB\"/><PrimaryReorderMaxSamples>4096</PrimaryReorderMaxSamples>"
       "<MaxQueuedRexmitBytes>8 MB</MaxQueuedRexmitBytes><MaxQueuedRexmitMessages>4096</MaxQueuedRexmitMessages>"
       "<MaxSampleSize>64 MB</MaxSampleSize><DefragReliableMaxSamples>2048</DefragReliableMaxSamples>"
       "<Watermarks><WhcLow>1 MB</WhcLow><WhcHigh>128 MB</WhcHigh><WhcHighInit>128 MB</WhcHighInit>"
       "<WhcAdaptive>false</WhcAdaptive></Watermarks><WriteBatch>{}</WriteBatch></Internal>"
       "</Domain></CycloneDDS>",
-      settings.domain, parts.general, parts.peers, parts.internal, settings.gathers);
+      settings.domain, parts.general, parts.peers, parts.internal, settings.newest_alone ? 2 : 8, settings.gathers);
 }
 
 }  // namespace palpate

@@ -38,7 +38,8 @@ BusSettings bus_settings(const Scene& scene, const NodeOptions& o, const std::st
   if (!o.keys.empty()) settings.keys = o.keys;
   settings.role = role;
   settings.favoured = role == "haptic" || role == "deform";  // pictures yield to forces
-  settings.gathers = role == "haptic";                       // it tells of all tools at once, a thousand times a second
+  settings.newest_alone = role == "render" || role == "web";
+  settings.gathers = role == "haptic";  // it tells of all tools at once, a thousand times a second
   return settings;
 }
 

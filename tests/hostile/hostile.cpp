@@ -59,7 +59,7 @@ void Hostile::TearDown() {
     return first && hand().newest().step > first->step + kJudged;
   });
   EXPECT_TRUE(system_->all_run());
-  if (is_in_free_air()) EXPECT_TRUE(system_->in_free_air()) << "it lasted to step " << hand().newest().step;
+  EXPECT_TRUE(!is_in_free_air() || system_->in_free_air()) << "it lasted to step " << hand().newest().step;
   for (int tool = 0; tool < hand().tools(); ++tool) expect_guarded(tool);
   const double rate_hz = hand().rate_hz(*host_);
   EXPECT_GE(rate_hz, kMinHz);

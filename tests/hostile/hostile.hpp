@@ -17,6 +17,8 @@ inline constexpr double kOnce = 5;  ///< [MB] by which a node may grow in a floo
 /// For pictures, and what nodes say: on a busy machine these yield first.
 inline constexpr std::chrono::seconds kAfterFlood{15};
 
+inline constexpr std::chrono::seconds kFound{60};  ///< in which a new writer has found all readers, with keys
+
 /// A press of 10 N on the hovering tool, as the deform node would tell of it.
 LocalContactModel press(std::uint64_t tool_run, std::uint64_t deform_run, std::uint64_t step, std::uint64_t seq);
 
@@ -71,7 +73,7 @@ class Hostile : public ::testing::TestWithParam<bool> {
   }
   template <class M>
   static void wait_until_it_reaches_all(const HostileWriter<M>& made) {
-    EXPECT_TRUE(system_->watch(kAfterFlood, [&] { return system_->attacker().reaches_all(made); }))
+    EXPECT_TRUE(system_->watch(kFound, [&] { return system_->attacker().reaches_all(made); }))
         << "an attack that is not heard";
     system_->watch(std::chrono::milliseconds(50));  // the readers find it too
   }

@@ -45,7 +45,7 @@ M realistic() {
     return task_sample();
   else if constexpr (std::same_as<M, SceneText>) {
     SceneText m = scene_sample();
-    m.text.resize(1500, '#');
+    m.text = std::string(1500, '#');
     return m;
   } else if constexpr (std::same_as<M, HapticKeyframe>) {
     HapticKeyframe m = keyframe_sample();

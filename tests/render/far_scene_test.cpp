@@ -59,7 +59,7 @@ TEST(FarSurfaces, OfThisProcessAreWhereTheyAre) {
 
 TEST(FarStage, ShowsTheSamePicture) {
   const BallWorld near, far(kFar);
-  const auto frame_of = [](const BallWorld& world, Stage& stage) {
+  const auto frame_of = [](Stage& stage) {
     ToolState tool;
     tool.depth = 0.15;
     stage.set_tool(tool);
@@ -67,7 +67,7 @@ TEST(FarStage, ShowsTheSamePicture) {
   };
   Stage here(near.scene, std::span(&near.archive.surface, 1), {}),
       there(far.scene, std::span(&far.archive.surface, 1), {}, {}, origin_of(far));
-  const Frame a = frame_of(near, here), b = frame_of(far, there);
+  const Frame a = frame_of(here), b = frame_of(there);
   const Vector3d apart = kFar - origin_of(far);
   EXPECT_LT((a.camera.eye + apart - b.camera.eye).norm(), 1e-9);
   EXPECT_LT((a.camera.target + apart - b.camera.target).norm(), 1e-9);

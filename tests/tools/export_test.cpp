@@ -66,7 +66,7 @@ TEST_F(Export, TheEndingSaysWhatIsInTheFile) {
 }
 
 TEST_F(Export, WhereTheLogHasNoSampleNoFileIsLeftAndAnOldOneStays) {
-  for (const std::string& to : {"none.mcap --mcap", "none.csv --csv"})
+  for (const char* to : {"none.mcap --mcap", "none.csv --csv"})
     expect_refusal(program("palpate") + " export " + log_ + " --topic modal_state -o " + (folder_ / to).string(),
                    {"short.lcmlog", "sample"});
   ASSERT_EQ(run("--topic force_state -o " + (folder_ / "old.csv").string()).status, 0);
