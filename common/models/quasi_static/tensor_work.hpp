@@ -13,7 +13,8 @@ struct TensorWork {
   double factor_bytes = 0;  ///< of the sparse factor
 };
 
-/// Of a body that can be touched all over `surface`, by the analysis of the sparse system that is solved for it.
+/// Of a body that can be touched at the touchable nodes of `surface`, by the analysis of the sparse system that is
+/// solved.
 TensorWork tensor_work(const TetMesh& mesh, const SurfaceMap& surface, const Offline& offline);
 
 /// How long that takes here and now, by the speed of a dense product on all cores: "about 38 s on this machine".
