@@ -64,9 +64,9 @@ class TissueVerifier {
     const std::uint64_t last = run.steps.empty() ? 0 : run.steps.rbegin()->first;
     for (; tick <= last; ++tick) {
       const auto step = run.steps.find(tick);
-      if (step == run.steps.end() || !take(world, step->second)) {
-        report_.gaps.push_back(
-            fmt::format("cannot verify tick {} of the tissue: what it consumed is not in the log", tick));
+      const std::string lack = step == run.steps.end() ? "what it came to" : lack_of(world, step->second);
+      if (!lack.empty()) {
+        report_.gaps.push_back(fmt::format("cannot verify tick {} of the tissue: {} is not in the log", tick, lack));
         return tick;
       }
       world.tick();
@@ -79,17 +79,22 @@ class TissueVerifier {
     return tick;
   }
 
-  bool take(DynamicWorld& world, const DeformStep& step) const {
-    for (const ConsumedStep& consumed : step.consumed) {
-      if (consumed.step == tool_left) {
-        if (consumed.tool >= static_cast<std::uint32_t>(world.tools())) return false;
-        world.leave(static_cast<int>(consumed.tool));
-        continue;
-      }
-      const auto tool = recorded_.tools.find({consumed.run, consumed.tool, consumed.step});
-      if (tool == recorded_.tools.end() || !world.take(tool->second)) return false;
+  /// Gives the world what the tick consumed; what of it is not there, in words, or nothing.
+  std::string lack_of(DynamicWorld& world, const DeformStep& step) const {
+    for (const ConsumedStep& consumed : step.consumed)
+      if (!take(world, consumed))
+        return fmt::format("step {} of tool {}, which it consumed,", consumed.step, consumed.tool);
+    return {};
+  }
+
+  bool take(DynamicWorld& world, const ConsumedStep& consumed) const {
+    if (consumed.step == tool_left) {
+      if (consumed.tool >= static_cast<std::uint32_t>(world.tools())) return false;
+      world.leave(static_cast<int>(consumed.tool));
+      return true;
     }
-    return true;
+    const auto tool = recorded_.tools.find({consumed.run, consumed.tool, consumed.step});
+    return tool != recorded_.tools.end() && world.take(tool->second);
   }
 
   const Scene& scene_;

@@ -9,6 +9,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/sim/leaving.hpp"
 
 namespace palpate {
 namespace {
@@ -18,8 +19,6 @@ using namespace std::chrono_literals;
 constexpr std::size_t kRingSlots = 256;  // a quarter of a second in which the publisher may be kept from running
 constexpr std::size_t kHeap = 16 << 20;  // [bytes] for messages that are kept until all have had them
 constexpr int kLoopPriority = 80, kPublisherPriority = 60;
-constexpr std::uint32_t kOfLeaving = silent_device | stale_model;  // no interventions while other nodes end too
-constexpr double kMaxLeaving = 0.2;  // [s] in which the force is gone, or it is left to the driver to fade it
 
 }  // namespace
 

@@ -84,8 +84,9 @@ void Show::tell(const std::vector<std::string>& above) {
   std::optional<Gauge> gauge;
   if (!latest_force_.empty()) gauge = Gauge{strongest, full};
   stage_.set_overlay(std::move(lines), gauge);
-  if (strongest > 1.01 * peak_force_) {
-    peak_force_ = strongest;
+  peak_force_ = std::max(peak_force_, strongest);
+  if (strongest > 1.01 * best_force_) {
+    best_force_ = strongest;
     best_ = stage_;
   }
 }

@@ -29,7 +29,7 @@ class Show {
   Frame frame() const { return stage_.frame(); }
   /// What was to be seen at the greatest force, or now if there was none.
   const Stage& best_moment() const { return best_ ? *best_ : stage_; }
-  double peak_force() const { return peak_force_; }   ///< [N]
+  double peak_force() const { return peak_force_; }   ///< [N] at the moments that were told
   std::uint64_t refused() const { return refused_; }  ///< messages of other runs, or that do not fit the scene
 
  private:
@@ -48,7 +48,7 @@ class Show {
   std::unique_ptr<Reader<TaskRecord>> tasks_;        ///< null: no catheter
   std::vector<ForceState> latest_force_;             ///< by tool
   std::map<std::uint32_t, TaskRecord> latest_task_;  ///< by catheter
-  double peak_force_ = 0;
+  double peak_force_ = 0, best_force_ = 0;           ///< [N]; the second at the best moment
   std::uint64_t refused_ = 0;
 };
 

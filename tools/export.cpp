@@ -10,6 +10,7 @@
 #include "common/bus/topic_named.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/files/ending.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "idl/topics.hpp"
 #include "tools/mcap/export_mcap.hpp"
 #include "tools/shared/commands.hpp"
@@ -58,6 +59,7 @@ std::uint64_t export_topic(const ExportOptions& o, const Topic<M>& topic, LogRea
   LogEvent event;
   M message;
   while (reader.next(event)) {
+    stop_if_interrupted();
     if (!event.read(topic, message)) continue;
     out.line(o.json ? fmt::format("{{\"receive_ns\":{},\"message\":{}}}", event.receive_ns, to_json(message))
                     : fmt::format("{},{}", event.receive_ns, csv_row(message)));
@@ -79,6 +81,7 @@ void check_ending(const ExportOptions& o) {
 }
 
 void run(const ExportOptions& o) {
+  catch_shutdown_signals();
   if (!o.file.empty()) check_ending(o);
   if (o.mcap && o.topic.empty()) return write_mcap(o, "");
   if (o.topic.empty()) throw std::runtime_error("export: CSV and JSON lines are of one topic: give --topic");

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/bus/log_reader.hpp"
 #include "common/cli/progress.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
+#include "common/scene/find_archive.hpp"
 #include "deform_node/verify_tissue.hpp"
 #include "haptic_node/verify.hpp"
 #include "tools/log_player.hpp"
@@ -41,28 +43,33 @@ nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& repo
           {"damage", report.damage}};
 }
 
-/// What else than the haptic step may have made a difference; empty where no archive was `computed` here.
-std::string doubt(const std::vector<std::string>& computed) {
-  if (computed.empty()) return {};
-  return fmt::format(
-      "; the tensors of '{}' were computed on this host, and have the recorded run's bits only where OpenBLAS takes "
-      "the same kernels",
-      fmt::join(computed, "', '"));
+/// What else than the steps may have made a difference.
+std::string doubt(const Scene& scene, const std::vector<std::string>& computed) {
+  std::vector<std::string> made;
+  for (const Body& body : scene.bodies) {
+    if (archive_path(body).empty()) continue;
+    const bool here = std::ranges::find(computed, name_of(body)) != computed.end();
+    made.push_back(fmt::format("those of '{}' were computed {}by {}", name_of(body), here ? "on this host " : "",
+                               find_archive(scene, body, ArchivePart::header).software));
+  }
+  if (made.empty()) return {};
+  return fmt::format("; tensors have the recorded run's bits only where OpenBLAS took the same kernels for both: {}",
+                     fmt::join(made, ", "));
 }
 
 /// Throws std::runtime_error where the recorded forces are not all come to again.
-void require_forces(const std::string& file, const VerifyReport& report, const std::vector<std::string>& computed) {
+void require_forces(const std::string& file, const VerifyReport& report, const std::string& doubt) {
   if (!report.mismatch.empty())
-    throw std::runtime_error(fmt::format("{}: the forces differ: {}{}", file, report.mismatch, doubt(computed)));
+    throw std::runtime_error(fmt::format("{}: the forces differ: {}{}", file, report.mismatch, doubt));
   if (!report.verified())
     throw std::runtime_error(fmt::format(
         "{}: not verified as a whole: {} forces of {} steps are equal bit for bit, {} places cannot be verified", file,
         report.forces, report.steps, report.gaps.size()));
 }
 
-void require_tissue(const std::string& file, const TissueReport& tissue, const std::vector<std::string>& computed) {
+void require_tissue(const std::string& file, const TissueReport& tissue, const std::string& doubt) {
   if (!tissue.mismatch.empty())
-    throw std::runtime_error(fmt::format("{}: the tissue differs: {}{}", file, tissue.mismatch, doubt(computed)));
+    throw std::runtime_error(fmt::format("{}: the tissue differs: {}{}", file, tissue.mismatch, doubt));
   if (!tissue.gaps.empty())
     throw std::runtime_error(
         fmt::format("{}: the tissue is not verified as a whole: {} ticks are equal bit for bit", file, tissue.ticks));
@@ -78,7 +85,9 @@ void verify(const ReplayOptions& o) {
   if (report.verified()) tissue = verify_tissue(o.file, logged.scene());  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
   if (o.json) fmt::print("{}\n", json_of(o.file, report, tissue).dump());
-  require_forces(o.file, report, computed);
+  const bool differs = !report.mismatch.empty() || !tissue.mismatch.empty();
+  const std::string doubts = differs ? doubt(logged.scene(), computed) : std::string();
+  require_forces(o.file, report, doubts);
   if (!o.json) {
     if (!computed.empty())
       fmt::print("{}: with tensors of '{}' that were computed on this host\n", o.file, fmt::join(computed, "', '"));
@@ -87,7 +96,7 @@ void verify(const ReplayOptions& o) {
     if (report.tasks > 0)
       fmt::print("{}: verified: {} records of the task are equal bit for bit\n", o.file, report.tasks);
   }
-  require_tissue(o.file, tissue, computed);
+  require_tissue(o.file, tissue, doubts);
   if (tissue.ticks > 0 && !o.json)
     fmt::print("{}: verified: {} ticks of the tissue end in the recorded state, bit for bit\n", o.file, tissue.ticks);
 }

@@ -165,13 +165,12 @@ void run(const RunOptions& o) {
   const DomainClaim claim = claim_domain(scene, o);
   RunNodes nodes(o.json);
   const bool began = start_nodes(nodes, scene, claim.domain(), o);
-  while (!shutdown_requested() && nodes.last_runs()) {
+  while (!shutdown_requested() && nodes.last_runs() && nodes.failure().empty()) {
     nodes.read();
-    nodes.check();
     std::this_thread::sleep_for(20ms);
   }
   nodes.stop();
-  if (!began) throw std::runtime_error("stopped before the run began");
+  if (!began) throw Interrupted("stopped before the run began");
 
   nlohmann::json summary = nodes.summary();
   summary["scene"] = o.scene;

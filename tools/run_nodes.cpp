@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <thread>
 
@@ -13,6 +14,10 @@
 namespace palpate {
 
 using namespace std::chrono_literals;
+
+namespace {
+constexpr std::chrono::seconds kPatience = 30s;  // with a node that has been told to stop
+}  // namespace
 
 void RunNodes::start(const std::string& role, const std::vector<std::string>& arguments) {
   nodes_.push_back({ChildProcess(role, arguments), Clock::now()});
@@ -33,11 +38,20 @@ void RunNodes::read() {
   }
 }
 
+std::string RunNodes::failure() {
+  for (Node& n : nodes_) {
+    if (n.hung) return fmt::format("{} did not stop within {} s and was killed", n.process.name(), kPatience.count());
+    const int status = n.process.running() ? 0 : n.process.status();
+    if (status == 0 || stopped_early(n)) continue;
+    const int signal = status - 128;
+    return signal > 0 ? fmt::format("{} was killed by signal {} ({})", n.process.name(), signal, strsignal(signal))
+                      : fmt::format("{} stopped with status {}; its message stands above", n.process.name(), status);
+  }
+  return {};
+}
+
 void RunNodes::check() {
-  for (Node& n : nodes_)
-    if (!n.process.running() && n.process.status() != 0 && !stopped_early(n))
-      throw std::runtime_error(
-          fmt::format("{} stopped with status {}; its message stands above", n.process.name(), n.process.status()));
+  if (const std::string said = failure(); !said.empty()) throw std::runtime_error(said);
 }
 
 void RunNodes::wait_ready() {
@@ -76,8 +90,8 @@ nlohmann::json RunNodes::summary() const {
 }
 
 void RunNodes::await(Node& node) {
-  if (!node.process.wait(30s))
-    throw std::runtime_error(fmt::format("{} did not stop within 30 s", node.process.name()));
+  node.hung = !node.process.wait(kPatience);
+  if (node.hung) node.process.kill();
 }
 
 void RunNodes::end(Node& node) {

@@ -19,6 +19,8 @@ class RunNodes {
   void start(const std::string& role, const std::vector<std::string>& arguments);
   /// Reads what the nodes print: "ready", and at the end one JSON line each.
   void read();
+  /// How a node has failed, in words; empty where none has.
+  std::string failure();
   /// Throws if a node has failed.
   void check();
   /// Throws where one fails or is not ready within a minute; returns early at a request to stop.
@@ -36,6 +38,7 @@ class RunNodes {
     ChildProcess process;
     Clock::time_point begun;
     bool ready = false;
+    bool hung = false;                 ///< it did not stop and was killed
     double startup = 0;                ///< [s] until it was ready
     double resident = 0;               ///< [bytes] when it was ready
     nlohmann::json summary = nullptr;  ///< its last line, once it has ended

@@ -131,7 +131,7 @@ void solve_dynamic(const DynamicArguments& arguments) {
   for (long tick = 1; tick <= ticks; ++tick) {
     run.step();
     if (tick % every == 0 || tick == ticks) frames.write(tick * dt, state_of(organ, map));
-    if (shutdown_requested()) throw std::runtime_error("stopped before its end");
+    stop_if_interrupted();
   }
   frames.finish();
   print(arguments, ticks * dt, state_of(organ, map), frames.count());

@@ -148,7 +148,7 @@ void check_fit(const Hdf5Reader& file, const Archive& archive, ArchivePart part)
 
 void write_archive(const Archive& archive, const std::filesystem::path& file) {
   make_folder_of(file);
-  AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes);
+  AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes, AtomicFile::Temporary::named);
   Hdf5Writer writer(atomic.path());
   write_header(writer, archive);
   write_surface(writer, archive.surface);

@@ -13,6 +13,7 @@
 #include "common/cli/progress.hpp"
 #include "common/describe/printable.hpp"
 #include "common/files/file_kind.hpp"
+#include "common/realtime/shutdown.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -266,13 +267,13 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     app_->parse(std::move(words));
     keep_inputs(*app_);
     keep_other_kinds(*app_);
-  } catch (const CLI::RequiredError& error) {
-    if (const std::string unknown = unknown_option(*app_); !unknown.empty()) {
+  } catch (const CLI::ParseError& error) {
+    const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
+    const bool may_be_unknown = kind == CLI::ExitCodes::RequiredError || kind == CLI::ExitCodes::ExtrasError;
+    if (const std::string unknown = may_be_unknown ? unknown_option(*app_) : ""; !unknown.empty()) {
       tell_user(fmt::format("there is no option {}; --help names all\n", printable(unknown)));
       return 1;
     }
-    return tell(*app_, error);
-  } catch (const CLI::ParseError& error) {
     return tell(*app_, error);
   }
   return std::nullopt;
@@ -282,6 +283,9 @@ int CommandLine::run(int argc, char** argv, const std::function<void()>& first) 
   try {
     if (first) first();
     if (const int status = read(argc, argv).value_or(0); status != 0) return status;
+  } catch (const Interrupted& stop) {
+    tell_user(fmt::format("palpate: {}\n", printable(stop.what())));
+    return kInterruptedStatus;
   } catch (const std::exception& error) {
     tell_user(fmt::format("palpate: {}\n", printable(error.what())));
     return 1;

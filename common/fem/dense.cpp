@@ -64,4 +64,8 @@ void keep_to_calling_thread() {
   openblas_set_num_threads(1);
 }
 
+std::string blas_kernels() {
+  return openblas_get_corename();
+}
+
 }  // namespace palpate

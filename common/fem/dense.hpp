@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <string>
 
 namespace palpate {
 
@@ -27,5 +28,8 @@ void pack_lower_by_rows(const ConstDenseRef& lower, double* packed);
 /// From now on OpenBLAS computes in the thread that calls it: how it shares work among threads changes the last bits,
 /// and an archive must not depend on how many cores its host has. The functions here and CholmodContext call it.
 void keep_to_calling_thread();
+
+/// For which processor OpenBLAS computes here, on whose kernels the last bits of all tensors hang too.
+std::string blas_kernels();
 
 }  // namespace palpate

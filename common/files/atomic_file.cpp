@@ -53,13 +53,21 @@ void remove_abandoned(const fs::path& target) {
   }
 }
 
+constexpr mode_t kMode = 0666;  // less the umask
+
+/// Returns a descriptor, or -1 with errno.
+int open_unnamed(const fs::path& folder) {
+  return open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+}
+int open_named(const fs::path& file) {
+  return open(file.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kMode);
+}
+
 /// Returns 0 or an errno.
-int create(const fs::path& file, std::size_t bytes, int& descriptor) {
+int reserve(int descriptor, std::size_t bytes) {
   rlimit limit{};
   // Beyond the limit the kernel would send SIGXFSZ instead of returning an error.
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur) return EFBIG;
-  descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
-  if (descriptor < 0) return errno;
   return bytes > 0 ? posix_fallocate(descriptor, 0, static_cast<off_t>(bytes)) : 0;
 }
 
@@ -79,24 +87,30 @@ void make_folder_of(const fs::path& file) {
   if (error) fail(file, error.value());
 }
 
-AtomicFile::AtomicFile(const fs::path& target, std::size_t expected_bytes) : target_(target) {
+AtomicFile::AtomicFile(const fs::path& target, std::size_t expected_bytes, Temporary temporary) : target_(target) {
   remove_abandoned(target_);
   std::random_device random;
   temporary_ = temporary_name(target_.string(), getpid(), std::uint64_t{random()} << 32 | random());
-  const int error = create(temporary_, expected_bytes, descriptor_);
-  if (error == 0) return;
-  if (descriptor_ >= 0) {  // else it is another's
-    close(descriptor_);
-    std::error_code ignored;
-    fs::remove(temporary_, ignored);
+  if (temporary == Temporary::unnamed) descriptor_ = open_unnamed(folder_of(target_));
+  if (descriptor_ < 0) {
+    descriptor_ = open_named(temporary_);
+    has_name_ = descriptor_ >= 0;
   }
-  fail(target_, error);
+  if (descriptor_ < 0) fail(target_, errno);
+  if (const int error = reserve(descriptor_, expected_bytes); error != 0) {
+    let_go();
+    fail(target_, error);
+  }
 }
 
 AtomicFile::~AtomicFile() {
+  let_go();
+}
+
+void AtomicFile::let_go() {
   close(descriptor_);
   std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  if (has_name_) fs::remove(temporary_, ignored);
 }
 
 fs::path AtomicFile::handle() const {
@@ -105,9 +119,13 @@ fs::path AtomicFile::handle() const {
 
 void AtomicFile::commit() {
   if (fsync(descriptor_) != 0) fail(target_, errno);
+  if (!has_name_ && linkat(AT_FDCWD, handle().c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+    fail(target_, errno);
+  has_name_ = true;
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) fail(target_, error.value());
+  has_name_ = false;
   sync_folder(folder_of(target_));
 }
 

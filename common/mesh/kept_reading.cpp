@@ -56,7 +56,7 @@ void keep_answer(const fs::path& place, const std::string& answer) {
   try {
     make_folder_of(place);
     AtomicFile file(place, kHead + answer.size());
-    std::ofstream out(file.path(), std::ios::binary);
+    std::ofstream out(file.handle(), std::ios::binary);
     out << head_of(place, answer) << answer;
     out.close();
     if (out) file.commit();

@@ -15,7 +15,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void on_signal(int signal, siginfo_t* info, void*) {
   requested = true;
   const bool from_launcher = info->si_code == SI_USER && info->si_pid == getppid();
-  if (signal == SIGINT && !from_launcher && interrupted.exchange(true)) _exit(130);
+  if (signal == SIGINT && !from_launcher && interrupted.exchange(true)) _exit(kInterruptedStatus);
 }
 
 }  // namespace
@@ -39,6 +39,10 @@ bool shutdown_requested() {
 
 void request_shutdown() {
   requested = true;
+}
+
+void stop_if_interrupted() {
+  if (shutdown_requested()) throw Interrupted();
 }
 
 void clear_shutdown() {

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <sstream>
 
@@ -44,25 +45,49 @@ class AtomicFileTest : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(AtomicFileTest, AppearsWholeAndLeavesNothingWithoutACommit) {
+class AtomicFileKinds : public AtomicFileTest, public ::testing::WithParamInterface<AtomicFile::Temporary> {};
+INSTANTIATE_TEST_SUITE_P(Both, AtomicFileKinds,
+                         ::testing::Values(AtomicFile::Temporary::unnamed, AtomicFile::Temporary::named));
+
+TEST_P(AtomicFileKinds, AppearsWholeAndLeavesNothingWithoutACommit) {
   write(file("a.csv"), "before");
   {
-    const AtomicFile whole(file("a.csv"));
-    write(whole.path(), "half");
-    EXPECT_EQ(whole.path().extension(), ".csv");
+    const AtomicFile whole(file("a.csv"), 0, GetParam());
+    write(whole.handle(), "half");
     EXPECT_EQ(text_of(file("a.csv")), "before");
   }
   EXPECT_EQ(text_of(file("a.csv")), "before");
-  AtomicFile whole(file("a.csv"));
+  AtomicFile whole(file("a.csv"), 0, GetParam());
   write(whole.handle(), "all");
   whole.commit();
   EXPECT_EQ(text_of(file("a.csv")), "all");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(AtomicFileTest, IsWrittenByItsHandleWhateverHasTakenItsName) {
+TEST_P(AtomicFileKinds, AFileThatIsOpenGoesOnAfterItsNameIsGiven) {
+  AtomicFile whole(file("a.csv"), 0, GetParam());
+  std::ofstream out(whole.handle());
+  out << "first" << std::flush;
+  whole.commit();
+  out << ", second" << std::flush;
+  EXPECT_EQ(text_of(file("a.csv")), "first, second");
+}
+
+TEST_F(AtomicFileTest, OfAKilledWriterNothingIsLeft) {
+  const pid_t writer = fork();
+  if (writer == 0) {
+    const AtomicFile whole(file("a.csv"));
+    write(whole.handle(), "half");
+    raise(SIGKILL);
+  }
+  waitpid(writer, nullptr, 0);
+  for (const auto& left : fs::directory_iterator(folder_)) ADD_FAILURE() << left.path();
+}
+
+TEST_F(AtomicFileTest, ANamedOneEndsAsItsTargetAndIsWrittenByItsHandleWhateverHasTakenItsName) {
   write(file("victim"), "precious");
-  const AtomicFile whole(file("a.csv"));
+  const AtomicFile whole(file("a.csv"), 0, AtomicFile::Temporary::named);
+  EXPECT_EQ(whole.path().extension(), ".csv");
   fs::remove(whole.path());
   fs::create_symlink("victim", whole.path());
   write(whole.handle(), "ours");

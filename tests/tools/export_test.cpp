@@ -3,12 +3,16 @@
 
 #include "common/bus/log_writer.hpp"
 #include "idl/topics.hpp"
+#include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tests/tools/unnamed_file.hpp"
+#include "tools/shared/child_process.hpp"
 
 namespace palpate {
 namespace {
 
 using namespace testing;
+namespace fs = std::filesystem;
 
 class Export : public ::testing::Test {
  protected:
@@ -47,6 +51,29 @@ TEST_F(Export, ATopicAsCsvWithEveryDigit) {
     EXPECT_TRUE(line.starts_with(std::to_string(100 * rows) + ",0,9," + std::to_string(rows) + ",")) << line;
   }
   EXPECT_EQ(rows, 3);
+}
+
+TEST_F(Export, StoppedByCtrlCLeavesNothing) {
+  const std::string log = folder_ / "long.lcmlog";
+  {
+    LogWriter writer(log, LogHeader{.schema = schema_text()});
+    for (std::uint64_t seq = 1; seq <= 300'000; ++seq)
+      writer.write(topics::force_state.name, static_cast<std::int64_t>(100 * seq), ForceState{.run = 9, .seq = seq});
+    writer.finish();
+  }
+  const fs::path into = folder_ / "into";
+  fs::create_directory(into);
+  for (const std::string kind : {"--csv -o forces.csv", "--jsonl -o forces.jsonl", "--mcap -o forces.mcap"}) {
+    ChildProcess child("palpate", {"/bin/sh", "-c",
+                                   fmt::format("cd {}; exec {} export {} --topic force_state {}", into.string(),
+                                               program("palpate"), log, kind)});
+    ASSERT_TRUE(comes_within(std::chrono::seconds(30), [&] { return bytes_on_the_way(child.pid(), into) > 0; }))
+        << kind;
+    child.interrupt();
+    ASSERT_TRUE(child.wait(std::chrono::seconds(30)));
+    EXPECT_EQ(child.status(), 130) << kind;
+    EXPECT_TRUE(fs::is_empty(into)) << kind;
+  }
 }
 
 TEST_F(Export, SequencesAsJsonAndIntoAFile) {

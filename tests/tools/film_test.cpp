@@ -5,6 +5,7 @@
 
 #include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
+#include "tests/tools/unnamed_file.hpp"
 #include "tools/shared/child_process.hpp"
 
 namespace palpate {
@@ -127,24 +128,43 @@ TEST_F(ToolsFilm, AReportHasTheSessionsSideBySide) {
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
 }
 
+TEST_F(ToolsFilm, ItsLargestForceIsThatOfTheReport) {
+  const std::string log = *folder_ / "a.lcmlog", folder = *folder_ / "force";
+  const auto made = run_program(fmt::format("{} report {} -o {} --pictures 0", program("palpate"), log, folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto drawn = draw("force", "--from 1.08 --rate 240 --speed 0.02 --json");
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const auto report = nlohmann::json::parse(testing::text_of(folder + "/report.json"));
+  const double largest = report["sessions"][0]["tools"][0]["force_max_n"];
+  EXPECT_NEAR(nlohmann::json::parse(drawn.out)["force_max_n"].get<double>(), largest, 1e-3 * largest);
+}
+
+TEST_F(ToolsFilm, OfAReportThatIsStoppedNothingIsLeft) {
+  const std::string folder = *folder_ / "stopped_report";
+  ChildProcess making("palpate",
+                      {program("palpate"), "report", *folder_ / "a.lcmlog", "-o", folder, "--pictures", "100"});
+  ASSERT_TRUE(testing::comes_within(30s, [&] { return fs::exists(folder + "/picture_0_0.png"); }));
+  making.interrupt();
+  ASSERT_TRUE(making.wait(30s));
+  EXPECT_EQ(making.status(), 130);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST_F(ToolsFilm, StoppedByCtrlCThereIsNoFilm) {
   const fs::path said = *folder_ / "said";
   ChildProcess drawing(
       "palpate", {"/bin/sh", "-c",
                   fmt::format("exec {} film {} -o {} --speed 0.01 --width 640 --height 480 2>{}", program("palpate"),
                               (*folder_ / "a.lcmlog").string(), film("stopped").string(), said.string())});
-  const auto part = [&] {
-    for (const auto& file : fs::directory_iterator(film("stopped").parent_path()))
-      if (file.path().filename().string().starts_with("stopped")) return file.path();
-    return fs::path();
-  };
-  ASSERT_TRUE(testing::comes_within(30s, [&] { return !part().empty() && fs::file_size(part()) > 0; }));
+  ASSERT_TRUE(
+      testing::comes_within(30s, [&] { return testing::bytes_on_the_way(drawing.pid(), folder_->path()) > 0; }));
   drawing.interrupt();
   ASSERT_TRUE(drawing.wait(30s));
-  EXPECT_EQ(drawing.status(), 1);
+  EXPECT_EQ(drawing.status(), 130);
   EXPECT_NE(testing::text_of(said).find("stopped.mp4: stopped before its end"), std::string::npos)
       << testing::text_of(said);
-  EXPECT_EQ(part(), fs::path()) << "nothing is left of it";
+  for (const auto& file : fs::directory_iterator(folder_->path()))
+    EXPECT_FALSE(file.path().filename().string().starts_with("stopped")) << file.path() << " is left of it";
 }
 
 }  // namespace

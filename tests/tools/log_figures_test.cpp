@@ -35,6 +35,14 @@ class Figures : public ::testing::Test {
     tell(receive_ns, topics::force_state, ForceState{.run = run, .force = {newton, 0, 0}});
     tell(receive_ns, topics::tool_state, ToolState{.run = run, .sense_ns = sense_ns, .depth = 0.1});
   }
+  /// Steps of a millisecond that are flagged so.
+  void flagged_steps(std::uint64_t run, int from, int to, std::uint32_t flags) {
+    for (int ms = from; ms < to; ++ms) {
+      const auto step = static_cast<std::uint64_t>(ms);
+      tell(ms * kMs, topics::force_state, ForceState{.run = run, .step = step, .flags = flags});
+      tell(ms * kMs, topics::tool_state, ToolState{.run = run, .step = step, .sense_ns = ms * kMs, .depth = 0.1});
+    }
+  }
   double last_time() const { return figures_.course().back().time; }
 
   Scene scene_ = load_scene(PALPATE_SOURCE "/scenes/plate_cut.toml");
@@ -78,6 +86,28 @@ TEST_F(Figures, EachStepHasItsOwnForceWhereverTheLogHasIt) {
   EXPECT_NEAR(all["impulse_n_s"], 1e-3 * (0.01 * 29 * 30 / 2 + 0.3 * 15), 1e-9);
   ASSERT_EQ(figures_.course().size(), 5u);
   EXPECT_NEAR(figures_.course()[1].force, newton(19), 1e-12);
+}
+
+// A run that ends fades its force as for a silent device; each of these has 20 such steps.
+TEST_F(Figures, ARunsEndIsNoSilentDevice) {
+  flagged_steps(1, 0, 100, 0);
+  flagged_steps(1, 100, 120, silent_device);  // and it is there again
+  flagged_steps(1, 120, 200, 0);
+  flagged_steps(1, 200, 220, silent_device | stale_model | slew_limited);
+  flagged_steps(2, 300, 400, 0);
+  flagged_steps(2, 400, 420, silent_device);
+  figures_.finish();
+  const auto flags = figures_.json()["tools"][0]["flags"];
+  EXPECT_EQ(flags["silent_device"], 20);
+  EXPECT_FALSE(flags.contains("stale_model"));
+  EXPECT_EQ(flags["slew_limited"], 20);
+}
+
+TEST_F(Figures, ADeviceThatIsSilentToTheEndIsOne) {
+  flagged_steps(1, 0, 100, 0);
+  flagged_steps(1, 100, 400, silent_device);
+  figures_.finish();
+  EXPECT_EQ(figures_.json()["tools"][0]["flags"]["silent_device"], 300);
 }
 
 TEST_F(Figures, ALogOfFewForcesSaysOfHowManyStepsEachIs) {

@@ -86,11 +86,19 @@ TEST_F(ToolsTravel, TensorsThatWereComputedOnThisHostAreToldOf) {
   const auto verified = run_program(verify(log()));
   EXPECT_NE(verified.out.find("tensors of \'block\' that were computed on this host"), std::string::npos)
       << verified.out;
+}
+
+TEST_F(ToolsTravel, WhereForcesDifferTheKernelsThatTheTensorsAreByAreTold) {
+  fs::create_directory(*away_ / "kept");
   // Kernels for a processor of 2004 sum in another order.
-  const auto elsewhere = run_program("OPENBLAS_CORETYPE=Prescott " + verify(log()));
-  EXPECT_EQ(elsewhere.status, 1);
-  EXPECT_NE(elsewhere.err.find("the forces differ"), std::string::npos) << elsewhere.err;
-  EXPECT_NE(elsewhere.err.find("of \'block\' were computed on this host"), std::string::npos) << elsewhere.err;
+  for (const std::string where : {"computed on this host by", "computed by"}) {  // the first leaves its archive there
+    const auto elsewhere =
+        run_program(fmt::format("OPENBLAS_CORETYPE=Prescott {} --data {}", verify(log()), (*away_ / "kept").string()));
+    EXPECT_EQ(elsewhere.status, 1);
+    EXPECT_NE(elsewhere.err.find("the forces differ"), std::string::npos) << elsewhere.err;
+    EXPECT_NE(elsewhere.err.find(fmt::format("of 'block' were {} palpate", where)), std::string::npos) << elsewhere.err;
+    EXPECT_NE(elsewhere.err.find("OpenBLAS for Prescott"), std::string::npos) << elsewhere.err;
+  }
 }
 
 TEST_F(ToolsTravel, AMissingPieceIsToldWithItsHashAndFoundByItsContents) {

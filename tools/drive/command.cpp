@@ -148,8 +148,11 @@ void run_sweep(const DriveOptions& o) {
     result.changes = points[result.point];
     result.points = static_cast<int>(points.size());
   }
+  if (results.empty()) throw Interrupted("stopped before one point was done");
   put_out(o, results);
   std::fflush(stdout);
+  if (results.size() < points.size())
+    throw Interrupted(fmt::format("stopped: {} of {} points are done", results.size(), points.size()));
   require_good(results, points.size());
 }
 

@@ -37,7 +37,7 @@ class Run {
       if (now < next_progress) continue;
       next_progress = now + kProgressNs;
       if (settings_.progress) settings_.progress(lock_step_.time(), 1e-9 * static_cast<double>(now - begin));
-      if (shutdown_requested()) throw std::runtime_error("stopped before its end");
+      stop_if_interrupted();
     }
     if (log_) log_->finish();
     if (course_) course_->finish();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/node/handling_summary.hpp"
+#include "common/sim/leaving.hpp"
 #include "common/tool/dofs_of.hpp"
 #include "idl/topics.hpp"
 
@@ -68,7 +69,7 @@ void LogFigures::count(OfTool& tool, const Waiting& step) {
   const Eigen::Vector3d force = Eigen::Map<const Eigen::Vector3d>(tool.force.force.data());
   tool.handling.look(step.time, tip, force);
   ++tool.steps;
-  for (std::size_t bit = 0; bit < tool.flagged.size(); ++bit) tool.flagged[bit] += tool.force.flags >> bit & 1;
+  count_flags(tool, step);
   if (tool.latest == 0 || step.time - course_[tool.latest - 1].time >= kCourseInterval) {
     course_.push_back({step.time, step.state.tool, tip, 0});
     tool.latest = course_.size();
@@ -77,8 +78,29 @@ void LogFigures::count(OfTool& tool, const Waiting& step) {
   largest = std::max(largest, force.norm());
 }
 
+void LogFigures::count_flags(OfTool& tool, const Waiting& step) {
+  if (tool.run != step.state.run) end_run(tool);
+  const bool silent = (tool.force.flags & silent_device) != 0;
+  if (!silent) tool.silence.reset();
+  if (silent && !tool.silence) tool.silence = Silence{step.time, tool.flagged};
+  for (std::size_t bit = 0; bit < tool.flagged.size(); ++bit) tool.flagged[bit] += tool.force.flags >> bit & 1;
+  tool.run = step.state.run;
+  tool.time = step.time;
+}
+
+// A run that ends under a force lets it fade, which is not told of as a silent device.
+void LogFigures::end_run(OfTool& tool) {
+  if (tool.silence && tool.time - tool.silence->begin < kMaxLeaving)
+    for (std::size_t bit = 0; bit < tool.flagged.size(); ++bit)
+      if (kOfLeaving >> bit & 1) tool.flagged[bit] = tool.silence->before[bit];
+  tool.silence.reset();
+}
+
 void LogFigures::finish() {
-  for (OfTool& tool : tools_) settle(tool, 0);
+  for (OfTool& tool : tools_) {
+    settle(tool, 0);
+    end_run(tool);
+  }
 }
 
 void LogFigures::look(const TopologyChange& change) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,11 @@ class LogFigures {
     ToolState state;
     double time;
   };
+  /// Steps that are flagged as of a silent device, from the first of them on.
+  struct Silence {
+    double begin = 0;                       ///< [s]
+    std::array<std::uint64_t, 9> before{};  ///< flagged steps until then
+  };
   struct OfTool {
     Trocar trocar;
     std::deque<Waiting> waiting;
@@ -51,6 +57,9 @@ class LogFigures {
     Handling handling;
     std::uint64_t steps = 0, forces = 0;     ///< that the log has
     std::array<std::uint64_t, 9> flagged{};  ///< steps with each bit of ForceFlag
+    std::optional<Silence> silence;          ///< that lasts
+    std::uint64_t run = 0;                   ///< of the last step
+    double time = 0;                         ///< [s] of it
     std::size_t latest = 0;                  ///< of its places, from 1; 0: none yet
   };
 
@@ -60,6 +69,8 @@ class LogFigures {
   double time_of(const ToolState& state);
   void settle(OfTool& tool, std::size_t may_wait);
   void count(OfTool& tool, const Waiting& step);
+  static void count_flags(OfTool& tool, const Waiting& step);
+  static void end_run(OfTool& tool);
 
   const Scene& scene_;
   std::vector<OfTool> tools_;

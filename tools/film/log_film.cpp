@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/realtime/shutdown.hpp"
 #include "render_node/film.hpp"
 #include "render_node/renderer.hpp"
 #include "render_node/scene_stage.hpp"
@@ -33,9 +34,9 @@ Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
 LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, long)>& progress) {
   const LoggedScene logged(s.log, s.data);
   keep_files_of(logged.scene(), {s.film, s.still});
-  logged.ensure_archives();
   const LogContents contents = contents_of(s.log);
   const Stretch stretch = stretch_of(s, contents);
+  logged.ensure_archives();
   LogPictures pictures(s.log, contents, logged.scene());
 
   const Render picture = logged.scene().render.value_or(Render{});
@@ -45,7 +46,7 @@ LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, 
   const long due = static_cast<long>(std::floor((stretch.end - stretch.begin) * s.rate / s.speed + 1e-6)) + 1;
   Image image;
   for (long i = 0; i < due; ++i) {
-    if (!progress(i, due)) throw std::runtime_error(fmt::format("{}: stopped before its end", s.film));
+    if (!progress(i, due)) throw Interrupted(fmt::format("{}: stopped before its end", s.film));
     renderer.draw(pictures.at(stretch.begin + static_cast<double>(i) * s.speed / s.rate), image);
     film.add(image);
   }

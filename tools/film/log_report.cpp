@@ -47,6 +47,26 @@ std::vector<std::string> other_files(const LogReportSettings& s) {
   return names;
 }
 
+/// A report that does not come to its end leaves nothing that looks like one.
+class Unfinished {
+ public:
+  explicit Unfinished(const LogReportSettings& settings) : settings_(settings) {}
+  ~Unfinished() {
+    if (!begun_) return;
+    std::error_code ignored;
+    fs::remove(settings_.folder / course_name(0), ignored);
+    for (const std::string& name : other_files(settings_)) fs::remove(settings_.folder / name, ignored);
+    fs::remove(settings_.folder, ignored);  // where nothing else is in it
+  }
+  Unfinished(const Unfinished&) = delete;
+  void begin() { begun_ = true; }
+  void end() { begun_ = false; }
+
+ private:
+  const LogReportSettings& settings_;
+  bool begun_ = false;
+};
+
 void write_course(const fs::path& file, const LogFigures& figures, const Scene& scene) {
   std::string text = kCourseHead;
   for (const LogFigures::Place& p : figures.course())
@@ -73,7 +93,7 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
   Renderer renderer(kWidth, kWidth * picture.height / picture.width, 4);
   Image image;
   for (const double time : picture_times(contents, s.pictures)) {
-    if (shutdown_requested()) break;
+    stop_if_interrupted();
     Frame frame = pictures.at(time);
     frame.overlay = {};  // too small to read
     renderer.draw(frame, image);
@@ -97,14 +117,18 @@ std::map<std::uint32_t, Resection> resections_of(const LoggedScene& logged) {
   return all;
 }
 
-ordered_json report_of(const LogReportSettings& s, std::size_t session) {
+ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinished& unfinished) {
   const LoggedScene logged(s.logs[session], s.data);
   const Scene& scene = logged.scene();
   LogFigures figures(scene, resections_of(logged));
   LogReader reader(s.logs[session]);
-  for (LogEvent event; !shutdown_requested() && reader.next(event);) figures.look(event);
+  for (LogEvent event; reader.next(event);) {
+    stop_if_interrupted();
+    figures.look(event);
+  }
   figures.finish();
   const std::string course = course_name(session);
+  unfinished.begin();
   write_course(s.folder / course, figures, scene);
   ordered_json report{{"log", s.logs[session]},
                       {"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
@@ -119,14 +143,16 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session) {
 
 std::string report_logs(const LogReportSettings& s, const std::function<void(const std::string&)>& progress) {
   prepare_folder(s.folder, {course_name(0), kCourseHead}, other_files(s));
+  Unfinished unfinished(s);
   ordered_json all{{"sessions", ordered_json::array()}};
   for (std::size_t i = 0; i < s.logs.size(); ++i) {
     progress(s.logs[i]);
-    all["sessions"].push_back(report_of(s, i));
-    if (shutdown_requested()) throw std::runtime_error("stopped before its end");
+    all["sessions"].push_back(report_of(s, i, unfinished));
   }
   write_text(s.folder / "report.json", all.dump(2) + "\n");
-  return run_script("report_page.py", s.folder);
+  const std::string missing = run_script("report_page.py", s.folder);
+  unfinished.end();
+  return missing;
 }
 
 }  // namespace palpate

@@ -140,7 +140,7 @@ Result measure(const LatencyOptions& o) {
     }
     observer.emplace(*bus);
   }
-  if (shutdown_requested()) throw std::runtime_error("latency: stopped before anything was measured");
+  if (shutdown_requested()) throw Interrupted("latency: stopped before anything was measured");
 
   PeriodicTimer timer(static_cast<double>(kNames.size()) * o.rate, 0);
   const auto warm_up = static_cast<std::uint64_t>(kNames.size() * o.rate * 0.3),
@@ -154,7 +154,7 @@ Result measure(const LatencyOptions& o) {
     ways[kOrder[i % kOrder.size()]]->send();
     if (observer && i % 16 == 0) observer->take();
   }
-  if (!begun) throw std::runtime_error("latency: stopped before anything was measured");
+  if (!begun) throw Interrupted("latency: stopped before anything was measured");
   Result result;
   for (std::size_t i = 0; i < ways.size(); ++i) result.trips[i] = ways[i]->finish();
   if (observer) result.hops = observer->times();

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "idl/topics.hpp"
 #include "tools/mcap/cdr.hpp"
 #include "tools/mcap/writer.hpp"
@@ -58,7 +59,10 @@ std::uint64_t export_mcap(const std::filesystem::path& log, const std::string& t
                           const std::filesystem::path& file) {
   LogReader reader(log);
   Export to(reader, file);
-  for (LogEvent event; reader.next(event);) to.add(event, topic);
+  for (LogEvent event; reader.next(event);) {
+    stop_if_interrupted();
+    to.add(event, topic);
+  }
   if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
   if (to.messages() == 0) throw std::runtime_error(fmt::format("{}: holds no such sample", log.string()));
   to.finish();

@@ -79,7 +79,7 @@ std::string header_of(const GreyVolume& volume, const std::filesystem::path& fil
 void write_label_volume(const GreyVolume& frame, const std::vector<char>& inside, const std::filesystem::path& file) {
   const std::string header = header_of(frame, file);
   AtomicFile whole(std::filesystem::absolute(file), header.size() + inside.size());
-  std::ofstream out(whole.path(), std::ios::binary);
+  std::ofstream out(whole.handle(), std::ios::binary);
   out << header;
   out.write(inside.data(), static_cast<std::streamsize>(inside.size()));
   out.close();

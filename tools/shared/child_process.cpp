@@ -67,10 +67,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
     interrupt();
-    if (!wait(2s)) {
-      kill(pid_, SIGKILL);
-      wait(2s);
-    }
+    if (!wait(2s)) kill();
   }
   if (output_ >= 0) close(output_);
 }
@@ -85,7 +82,12 @@ bool ChildProcess::running() {
 }
 
 void ChildProcess::interrupt() {
-  if (pid_ > 0) kill(pid_, SIGINT);
+  if (pid_ > 0) ::kill(pid_, SIGINT);
+}
+
+void ChildProcess::kill() {
+  if (pid_ > 0) ::kill(pid_, SIGKILL);
+  wait(2s);
 }
 
 bool ChildProcess::wait(std::chrono::milliseconds timeout) {

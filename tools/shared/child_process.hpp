@@ -24,6 +24,7 @@ class ChildProcess {
   bool running();                         ///< reaps the process if it has ended
   int status() const { return status_; }  ///< exit status; 128 + signal; meaningful once it has ended
   void interrupt();                       ///< SIGINT
+  void kill();                            ///< SIGKILL, and reaps it
   bool wait(std::chrono::milliseconds timeout);
 
   /// Complete lines that have come since the last call.

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "common/realtime/shutdown.hpp"
+
 namespace palpate {
 namespace {
 
@@ -37,7 +39,7 @@ std::string run_script(const std::string& name, const std::filesystem::path& fol
   const int status = std::system(fmt::format("{} {} {}", python, quoted(script), quoted(folder)).c_str());
   if (status == 0) return {};
   if (WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + SIGINT)
-    throw std::runtime_error(fmt::format("stopped before the page of {} was made", folder.string()));
+    throw Interrupted(fmt::format("stopped before the page of {} was made", folder.string()));
   return "no page was made, for which python3 needs matplotlib; the figures are in the CSV files";
 }
 

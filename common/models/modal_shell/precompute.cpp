@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/shell_file.hpp"
@@ -124,7 +125,7 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   archive.body = body.name;
   archive.model = ModalShellSpec::kKind;
   archive.parts.modal = true;
-  archive.software = "palpate " PALPATE_VERSION;
+  archive.software = fmt::format("palpate {}, OpenBLAS for {}", PALPATE_VERSION, blas_kernels());
   archive.mesh_nodes = static_cast<int>(mesh.nodes.size());
   archive.young = {body.material.young};
   archive.poisson = {body.material.poisson};

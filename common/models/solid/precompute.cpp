@@ -1,5 +1,9 @@
 #include "common/models/solid/precompute.hpp"
 
+#include <fmt/format.h>
+
+#include "common/fem/dense.hpp"
+
 namespace palpate {
 
 std::vector<Dof> free_dofs(const SurfaceMap& surface, int begin, int end) {
@@ -15,7 +19,7 @@ Archive start_archive(const SolidSpec& body, std::string_view kind, const TetMes
   Archive archive;
   archive.body = body.name;
   archive.model = kind;
-  archive.software = "palpate " PALPATE_VERSION;
+  archive.software = fmt::format("palpate {}, OpenBLAS for {}", PALPATE_VERSION, blas_kernels());
   archive.mesh_nodes = static_cast<int>(mesh.nodes.size());
   for (const auto& material : materials.materials) {
     archive.young.push_back(material.young);
