@@ -143,7 +143,9 @@ TEST_F(LabelImages, ValuesThatAreNoWholeNumbersAreNoLabels) {
   };
   for (const char* name : {"a.inr", "a.mha"}) {
     EXPECT_EQ(read_label_volume(image(name, 7)).value.back(), 7) << name;
-    for (const auto& [value, told] : {std::pair{1.5f, "1.5"}, {NAN, "nan"}, {3e9f, "3e+09"}}) try {
+    for (const auto& [value, told] :
+         {std::pair{1.5f, "1.5"}, {NAN, "nan"}, {5e9f, "5000000000"}, {-3e9f, "-3000000000"}})
+      try {
         read_label_volume(image(name, value));
         ADD_FAILURE() << name << " was read, with a label of " << told;
       } catch (const std::runtime_error& error) {
@@ -152,6 +154,50 @@ TEST_F(LabelImages, ValuesThatAreNoWholeNumbersAreNoLabels) {
       }
     EXPECT_EQ(read_grey_volume(image(name, 1.5)).value.back(), 1.5) << name;
   }
+}
+
+TEST_F(LabelImages, LabelsGoUpTo32BitsWithOrWithoutASign) {
+  const auto read = [&](const std::string& name, std::int64_t first, std::int64_t last, bool has_sign) {
+    std::string bytes(48, '\0');
+    std::memcpy(bytes.data(), &first, 4), std::memcpy(bytes.data() + 44, &last, 4);
+    const bool inr = name.ends_with(".inr");
+    const std::string header = inr ? inr_header({3, 2, 2}, {1, 2, 3}, has_sign ? "signed fixed" : "unsigned fixed", 32)
+                                   : replaced(nrrd_header(), "uchar", has_sign ? "int" : "uint");
+    return read_label_volume(write_file(folder_ / name, header + bytes));
+  };
+  for (const char* name : {"a.inr", "a.nrrd"}) {
+    const LabelVolume high = read(name, 70000, 4000000000, false), low = read(name, kLeastLabel, -5, true);
+    EXPECT_EQ(label_at(high, 0), 70000) << name;
+    EXPECT_EQ(label_at(high, 11), 4000000000) << name;
+    EXPECT_EQ(label_at(low, 0), kLeastLabel) << name;
+    EXPECT_EQ(label_at(low, 11), -5) << name;
+  }
+  std::vector<double> both(12, 0);
+  both[1] = -1, both[11] = 4e9;
+  const std::string bytes(reinterpret_cast<const char*>(both.data()), 8 * both.size());
+  try {
+    read_label_volume(write_file(folder_ / "both.nrrd", replaced(nrrd_header(), "uchar", "double") + bytes));
+    FAIL() << "-1 and 4e9 were read";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("its label at voxel 1,0,0 is below 0 and that at voxel 2,1,1 above"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(LabelImages, AGreyValueThatIsNoNumberIsRefusedWithItsVoxel) {
+  std::vector<float> values(12, 2);
+  values[7] = NAN;
+  const std::string bytes(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+  for (const auto& [name, header] : {std::pair{"n.inr", inr_header({3, 2, 2}, {1, 2, 3}, "float", 32)},
+                                     {"n.mha", replaced(meta_header("-1"), "MET_UCHAR", "MET_FLOAT")}})
+    try {
+      read_grey_volume(write_file(folder_ / name, header + bytes));
+      ADD_FAILURE() << name << " was read";
+    } catch (const std::runtime_error& error) {
+      const std::string words = fmt::format("{}: its value at voxel 1,0,1 is nan, which is no finite number", name);
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
 }
 
 TEST_F(LabelImages, ANiftiImageLiesWhereItsSformSays) {

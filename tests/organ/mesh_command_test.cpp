@@ -218,6 +218,8 @@ TEST_F(MeshCommand, MistakesAreToldInASentence) {
                  {"--fine 1,2,3:0.1", "x,y,z,RADIUS:EDGE"});
   expect_refusal(program("palpate") + " mesh " + (folder_ / "none.stl").string() + to,
                  {"none.stl: the file does not exist"});
+  expect_refusal(program("palpate") + " mesh none.stl -o nowhere/a.msh",
+                 {"nowhere/a.msh: it cannot be written, since the folder ", "nowhere is not there"});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.msh"));
 }
 

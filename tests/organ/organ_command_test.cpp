@@ -10,6 +10,7 @@
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
 #include "render_node/image.hpp"
+#include "tests/organ/phantom_image.hpp"
 #include "tests/organ/surfaces_for_tests.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tools/organ/mesh_pieces.hpp"
@@ -215,6 +216,27 @@ TEST_F(OrganCommand, AGapKeepsLabelsThatTouchApart) {
   EXPECT_LT(nearest, 2.2e-3);
 }
 
+// Edges and corners are rounded: the volume that they lose is won elsewhere.
+TEST_F(OrganCommand, FlatSidesOfAGapStayWhereTheyAre) {
+  std::string boxes(voxels().size(), '\0');
+  for (int k = 4; k < 10; ++k)
+    for (int j = 4; j < 16; ++j)
+      for (int i = 4; i < 26; ++i) boxes[voxel(i, j, k)] = i < 15 ? 1 : 2;
+  const auto image = write_file(folder_ / "boxes.inr", header() + boxes);
+  const auto made =
+      organ(image, "--label 1=a --label 2=b --gap 0.5 --edge 0.006 --json -o " + (folder_ / "g.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto json = nlohmann::json::parse(made.out);
+  EXPECT_NEAR(json["least_distance"]["distance_m"], 5e-4, 1e-4);
+  EXPECT_TRUE(json["warnings"].empty()) << made.out;
+  for (const auto& body : json["meshes"]) {
+    const double volume = body["labels"][0]["volume_m3"], wanted = body["labels"][0]["volume_of_voxels_m3"];
+    EXPECT_NEAR(volume, wanted, 1e-3 * wanted);
+  }
+  for (const Eigen::Vector3d& x : load_tet_mesh(folder_ / "g_a.msh", 1).nodes) EXPECT_LE(x.x(), 0.01425 + 5e-5);
+  for (const Eigen::Vector3d& x : load_tet_mesh(folder_ / "g_b.msh", 1).nodes) EXPECT_GE(x.x(), 0.01475 - 5e-5);
+}
+
 TEST_F(OrganCommand, AWallOfTwoVoxelsIsMeshedWithItsCavity) {
   std::string shell;
   for (int k = 0; k < kZ; ++k)
@@ -256,7 +278,38 @@ TEST_F(OrganCommand, FiguresArePrintedAsOneLineOfJson) {
   EXPECT_EQ(labels[1]["name"], "fat");
   EXPECT_NEAR(labels[0]["volume_m3"], labels[0]["volume_of_voxels_m3"], 1e-7);
   EXPECT_EQ(labels[0]["topology"], labels[0]["topology_of_voxels"]);
+  EXPECT_EQ(labels[0]["pieces"], labels[0]["pieces_of_voxels"]);
   EXPECT_EQ(json["meshes"][0]["nodes"], load_tet_mesh(balls().again(), 1).nodes.size());
+}
+
+TEST_F(OrganCommand, ASmallBodyIsAskedForTheSizeOfItsVoxels) {
+  const auto image = folder_ / "small.inr";
+  write_phantom(image, {20, 20, 20}, 0.2, [](int i, int j, int k) {
+    return (Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(9.5)).norm() < 8;
+  });
+  const auto made = organ(image, "--label 1 --edge 0.001 -o " + (folder_ / "small.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find(" m across: are the image's voxels of the right size?"), std::string::npos) << made.out;
+  EXPECT_EQ(made.out.find("--unit"), std::string::npos) << made.out;
+}
+
+// A part that is small beside its neighbour, of voxels as NIfTI has them, with whose sizes the mesher leaves one.
+TEST_F(OrganCommand, NoTetrahedronHangsOnItsPartByAnEdgeAlone) {
+  const auto image = folder_ / "bile.inr";
+  write_phantom(image, {26, 22, 18}, {1.2f, 0.9f, 1.5f}, [](int i, int j, int k) {
+    const auto within = [&](double x, double y, double z, double r) {
+      return (Eigen::Vector3d(i, j, k) - Eigen::Vector3d(x, y, z)).squaredNorm() < r * r;
+    };
+    if (within(9, 9, 8, 6.2) || within(16, 10, 9, 4.5) || within(9, 15, 9, 3.6)) return 1;
+    return within(19.5, 12, 10, 3.2) ? 2 : 0;
+  });
+  const auto made =
+      organ(image, "--label 1=liver --label 2=bile --edge 0.004 --json -o " + (folder_ / "bile.msh").string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  for (const auto& label : nlohmann::json::parse(made.out)["meshes"][0]["labels"]) {
+    EXPECT_EQ(label["pieces"], 1) << label;
+    EXPECT_EQ(label["pieces_of_voxels"], 1) << label;
+  }
 }
 
 TEST_F(OrganCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
@@ -284,6 +337,13 @@ TEST_F(OrganCommand, MistakesAndDamageAreToldInASentence) {
   refused(header() + voxels(), "7 --label 9 --gap 40", "a gap of 40 mm leaves");
   refused(header() + voxels(), "7 --edge 1e-7", "edges of 0.0001 mm would be about");
   refused(header() + voxels(), "liver", "--label liver: NUMBER or NUMBER=NAME");
+  refused(header() + voxels(), "4294967296",
+          "--label 4294967296: labels are whole numbers from -2147483648 to 4294967295");
+  for (const char* option : {" -o ", " -o a.msh --visual ", " -o a.msh --report "}) {  // before the image is read
+    const std::string ending = std::string(option).ends_with("--visual ") ? ".obj" : option[4] == 'a' ? ".csv" : ".msh";
+    const auto nowhere = organ("none.inr", "--label 7" + std::string(option) + "nowhere/a" + ending);
+    EXPECT_NE(nowhere.err.find("it cannot be written, since the folder "), std::string::npos) << option << nowhere.err;
+  }
   refused(header() + voxels().substr(0, 5000), "7", "bad.inr: it ends before its last voxel");
   refused(header("XDIM=60000\nYDIM=60000\nZDIM=60000\n"), "7", "a billion in all");
   refused(header("XDIM=nan\nYDIM=4\nZDIM=4\n"), "7", "its XDIM is");

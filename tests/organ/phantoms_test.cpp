@@ -200,7 +200,8 @@ TEST_F(Phantom, ATunnelThatSmoothingClosesIsWarnedOf) {
   });
   EXPECT_EQ(topology_of(mesh), (Topology{1, 0}));
   EXPECT_NE(
-      said_.find("warning: 'label1' has 1 closed surface, genus 0, and its voxels have 1 closed surface, genus 1"),
+      said_.find("warning: 'label1' has 1 piece, 1 closed surface, genus 0, and its voxels have 1 piece, 1 closed "
+                 "surface, genus 1"),
       std::string::npos)
       << said_;
 }

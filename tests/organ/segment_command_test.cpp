@@ -136,6 +136,18 @@ TEST_F(SegmentCommand, LabelsAreWrittenWhereTheImageLiesAndOrganReadsThem) {
   EXPECT_NEAR(measures_of(load_tet_mesh(*folder_ / "liver.msh", 1)).volume, volume, 0.01 * volume);
 }
 
+TEST_F(SegmentCommand, AContourByHandThatIsLostIsWarnedOfAndNotCounted) {
+  write_file(*folder_ / "corner.txt", "2 2 2\n2 9 2\n2 9 9\n2 2 9\n" + clicked(thin_, 28));
+  const LabelVolume found = labels("thin.inr --neck 8 --points corner.txt --json" + kSeed, "corner.inr");
+  const auto json = nlohmann::json::parse(said_);
+  EXPECT_EQ(json["slices_by_hand"], 1);
+  EXPECT_EQ(json["slices_by_hand_lost"], std::vector{2});
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_NE(json["warnings"][0].get<std::string>().find("drawn by hand in slice 2:"), std::string::npos) << said_;
+  const auto first = std::ranges::find(found.value, 1) - found.value.begin();
+  EXPECT_EQ(json["first_slice"], found.shape.voxel_of(first)[2]);
+}
+
 TEST_F(SegmentCommand, ACavityIsFilledHoweverLarge) {
   constexpr double kBall = 18, kCavity = 7;  // [voxels] 6 % of the ball
   write_phantom(*folder_ / "hollow.inr", {48, 48, 48}, 1, [](int i, int j, int k) {
@@ -181,6 +193,9 @@ TEST_F(SegmentCommand, MistakesAndDamageAreToldInASentence) {
     EXPECT_NE(result.err.find(said), std::string::npos) << arguments << "\n" << result.err;
     EXPECT_FALSE(std::filesystem::exists(*folder_ / "refused.inr")) << arguments;
   };
+  const ProgramResult nowhere = segment("none.inr -o nowhere/a.inr" + kSeed);  // before the image is read
+  EXPECT_NE(nowhere.err.find("nowhere/a.inr: it cannot be written, since the folder "), std::string::npos)
+      << nowhere.err;
   refused("thin.inr", "a --seed or --seed-voxel in the organ is asked for");
   refused("thin.inr --seed 1,2", "--seed 1,2: three numbers x,y,z are asked for");
   refused("thin.inr --seed 1,2,300",
@@ -205,7 +220,7 @@ TEST_F(SegmentCommand, MistakesAndDamageAreToldInASentence) {
   std::string nan =
       replaced(replaced(good.substr(0, 256), "signed fixed", "float\n\n\n\n\n\n\n"), "16 bits", "32 bits");
   write_file(*folder_ / "nan.inr", nan + std::string(4 * thin_.size(), '\xff'));
-  refused("nan.inr" + kSeed, "nan.inr: its value number 1 is no finite number");
+  refused("nan.inr" + kSeed, "nan.inr: its value at voxel 0,0,0 is nan");
 }
 
 }  // namespace

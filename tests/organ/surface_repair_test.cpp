@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/organ/surfaces_for_tests.hpp"
+#include "tools/organ/surface_fault.hpp"
 #include "tools/organ/surface_shells.hpp"
 
 namespace palpate {
@@ -104,6 +105,41 @@ TEST_F(SurfaceRepair, AHoleIsClosedUpToItsSize) {
     expect_has(error.what(), "larger than 500 mm");
     expect_has(error.what(), "--hole");
   }
+}
+
+TEST_F(SurfaceRepair, ARoundHoleIsAsLargeAsItIsWide) {
+  TriangleMesh cup;  // of radius 0.24, closed below
+  constexpr int kAround = 24;
+  for (int n = 0; n < 2 * kAround; ++n) {
+    const double angle = 2 * std::numbers::pi * n / kAround;
+    cup.nodes.emplace_back(0.24 * std::cos(angle), 0.24 * std::sin(angle), n < kAround ? 0 : 2);
+  }
+  cup.nodes.emplace_back(0, 0, 0);
+  for (int n = 0; n < kAround; ++n) {
+    const int next = (n + 1) % kAround;
+    cup.triangles.push_back({n, next, kAround + next});
+    cup.triangles.push_back({n, kAround + next, kAround + n});
+    cup.triangles.push_back({2 * kAround, next, n});
+  }
+  const double prism = 12 * 0.24 * 0.24 * std::sin(2 * std::numbers::pi / kAround) * 2;
+  expect_has(finding(cup, prism), "a hole of 480 mm across with 24 edges at (");  // kHole is 500 mm
+}
+
+// A corner that is another node leaves a hole whose patch meets an edge that has two triangles.
+TEST_F(SurfaceRepair, TrianglesThatMakeNoSurfaceAreRefusedWithThePlace) {
+  TriangleMesh wrong = ball_;
+  wrong.triangles.back()[2] = 5;
+  std::vector<Finding> findings;
+  try {
+    repair_surface(wrong, 3, findings);
+    FAIL() << "closed";
+  } catch (const std::runtime_error& error) {
+    expect_has(error.what(), "its triangles do not make a surface: more than two meet in an edge at (");
+  }
+  TriangleMesh open = ball_;
+  open.triangles.pop_back();
+  EXPECT_THROW(check_is_surface(open), std::runtime_error);
+  EXPECT_NO_THROW(check_is_surface(ball_));
 }
 
 TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {

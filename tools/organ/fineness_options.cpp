@@ -25,7 +25,7 @@ namespace {
 constexpr double kMaxOrgan = 1, kMinOrgan = 5e-3;  // [m]
 
 void write_whole(const TetMesh& mesh, const std::filesystem::path& file) {
-  AtomicFile whole(file);
+  AtomicFile whole(file, 0, AtomicFile::Temporary::named);
   write_tet_mesh(mesh, whole.path());
   whole.commit();
 }
@@ -89,7 +89,7 @@ void tell_mesh(const TetMesh& mesh, const MeshOptions& o, Output& out) {
                      {"largest_angle_deg", m.max_angle}});
   tell_groups(mesh, out);
   if (m.extent.maxCoeff() > kMaxOrgan || m.extent.maxCoeff() < kMinOrgan)
-    out.warn(fmt::format("{:.3g} m across: is --unit right?", m.extent.maxCoeff()));
+    out.warn(fmt::format("{:.3g} m across: {}", m.extent.maxCoeff(), o.if_strange));
   tell_cost(mesh, out);
 }
 
@@ -128,6 +128,8 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
 
 MeshFineness fineness_of(const MeshOptions& o) {
   MeshFineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
+  check_folder_of(o.output);
+  check_folder_of(o.report);
   for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
   for (const std::string& text : o.groups) check_group(text);
   if (o.tool_radius > 0 && o.groups.empty())

@@ -16,11 +16,13 @@ struct MeshOptions {
   double edge = 0, inside = 0, deviation = 0, density = kTissueDensity, tool_radius = 0;
   std::vector<std::string> fine, groups;
   bool json = false;
+  const char* if_strange = "is --unit right?";  ///< asked where the mesh is no organ's by its size
 };
 
 void add_mesh_options(cli::Command& command, MeshOptions& options);
 
-/// Throws std::runtime_error where a place cannot be read, or a tool has no group to be opposite to.
+/// Throws std::runtime_error where a place cannot be read, a tool has no group to be opposite to, or the folder of a
+/// file that will be written is not there.
 MeshFineness fineness_of(const MeshOptions& options);
 
 /// Where tools touch a surface that is told by points of it [m], if --tool-radius (opposite to the first group) or

@@ -7,10 +7,21 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tools/organ/label_volume.hpp"
+
 namespace palpate {
 namespace {
 
 constexpr double kOffPlace = 0.1;  // of a step between slices: places are written with few digits
+
+std::string say_voxel(const GridShape& image, std::size_t at) {
+  const auto [i, j, k] = image.voxel_of(at);
+  return fmt::format("{},{},{}", i, j, k);
+}
+
+std::string say_value(double value) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.10g}", value);  // a sign of what is no number says nothing
+}
 
 std::string say_mm(const Eigen::Vector3d& x) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", x.x(), x.y(), x.z());
@@ -94,15 +105,32 @@ void check_upright(const SlicePlaces& slices, const Steps& steps) {
 
 }  // namespace
 
-std::int32_t label_of(double value, const GridShape& image, std::size_t at) {
-  using Range = std::numeric_limits<std::int32_t>;
-  if (value >= Range::min() && value <= Range::max() && value == std::floor(value))
-    return static_cast<std::int32_t>(value);
-  const auto [i, j, k] = image.voxel_of(at);
-  throw std::runtime_error(
-      fmt::format("its value at voxel {},{},{} is {:.6g}, and labels are whole numbers of up to 32 bits: write them as "
-                  "such, or make a label of grey values with `palpate segment`",
-                  i, j, k, value));
+std::int32_t LabelTaker::take(double value, std::size_t at) {
+  if (!(value >= static_cast<double>(kLeastLabel) && value <= static_cast<double>(kMostLabel) &&
+        value == std::floor(value)))
+    throw std::runtime_error(
+        fmt::format("its value at voxel {} is {}, and labels are whole numbers from {} to {}: write them as such, or "
+                    "make a label of grey values with `palpate segment`",
+                    say_voxel(image_, at), say_value(value), kLeastLabel, kMostLabel));
+  const auto label = static_cast<std::int64_t>(value);
+  if (label < 0 && !negative_) negative_ = at;
+  if (label > std::numeric_limits<std::int32_t>::max() && !high_) high_ = at;
+  return static_cast<std::int32_t>(label);
+}
+
+bool LabelTaker::is_high() const {
+  if (negative_ && high_)
+    throw std::runtime_error(fmt::format(
+        "its label at voxel {} is below 0 and that at voxel {} above {}: one or the other is read",
+        say_voxel(image_, *negative_), say_voxel(image_, *high_), std::numeric_limits<std::int32_t>::max()));
+  return high_.has_value();
+}
+
+void check_finite(const GridShape& image, const std::vector<float>& grey) {
+  const auto bad = std::ranges::find_if_not(grey, [](float value) { return std::isfinite(value); });
+  if (bad != grey.end())
+    throw std::runtime_error(fmt::format("its value at voxel {} is {}, which is no finite number",
+                                         say_voxel(image, bad - grey.begin()), say_value(*bad)));
 }
 
 void check_even(const SlicePlaces& slices) {

@@ -1,14 +1,31 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tools/organ/distance_grid.hpp"
 
 namespace palpate {
 
-/// A value as a label; `at`: its index in the image. Throws std::runtime_error where it is no whole number, or one of
-/// more than 32 bits: cut off, it would be another's label.
-std::int32_t label_of(double value, const GridShape& image, std::size_t at);
+/// Makes labels of an image's values as they come.
+class LabelTaker {
+ public:
+  explicit LabelTaker(const GridShape& image) : image_(image) {}
+
+  /// The value as 32 bits of a label; `at`: its index in the image. Throws std::runtime_error where it is no whole
+  /// number from kLeastLabel to kMostLabel: cut off, it would be another's label.
+  std::int32_t take(double value, std::size_t at);
+  /// Volume::is_high of what was taken. Throws std::runtime_error where labels lie below 0 and above 2^31 - 1.
+  bool is_high() const;
+
+ private:
+  GridShape image_;
+  std::optional<std::size_t> negative_, high_;  ///< the first of them
+};
+
+/// Throws std::runtime_error where a grey value is no finite number.
+void check_finite(const GridShape& image, const std::vector<float>& grey);
 
 /// Where a series has its slices.
 struct SlicePlaces {

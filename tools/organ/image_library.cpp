@@ -19,6 +19,8 @@
 #include "common/mesh/child.hpp"
 #include "tools/organ/image_checks.hpp"
 #include "tools/organ/label_volume.hpp"
+#include "tools/organ/meta_image_file.hpp"
+#include "tools/organ/nifti_file.hpp"
 
 namespace palpate {
 namespace {
@@ -28,30 +30,23 @@ using Image = itk::Image<T, 3>;
 
 constexpr std::int64_t kMaxDeflated = 1032;  // times a file's size: no more bytes come of it
 
-/// Whether a file is too short for so many bytes of voxels; false where these are in another. ITK makes room for all
-/// that is announced, and fills what a MetaImage file with its data within lacks.
+/// Whether an NRRD file is too short for so many bytes of voxels; false where these are in another. ITK makes room for
+/// all that is announced.
 bool is_cut_short(const std::string& file, std::int64_t bytes) {
   constexpr std::size_t kHeader = 4096;
   std::string head(kHeader, '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
-  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file));
   const auto has = [&](const char* words) { return head.find(words) != std::string::npos; };
-  const bool is_meta = has_ending(file, ".mha") || has_ending(file, ".mhd");
-  const bool is_nrrd = has_ending(file, ".nrrd") || has_ending(file, ".nhdr");
-  if (is_meta ? !has("LOCAL\n") : is_nrrd && (has("data file:") || has("datafile:"))) return false;
-  if (is_meta && !has("CompressedData = True"))
-    return size - static_cast<std::int64_t>(head.find("LOCAL\n")) - 6 < bytes;
-  return kMaxDeflated * size < bytes;
+  if (has("data file:") || has("datafile:")) return false;
+  return kMaxDeflated * static_cast<std::int64_t>(std::filesystem::file_size(file)) < bytes;
 }
 
-/// MetaImage lists by the number of axes, whatever that is: it would read for minutes.
-void check_axes(const std::string& file) {
-  std::ifstream lines(file, std::ios::binary);
-  static const std::regex axes(R"(NDims\s*=\s*(\S*)\s*)");
-  std::smatch number;
-  for (std::string line; std::getline(lines, line) && !line.starts_with("ElementDataFile");)
-    if (std::regex_match(line, number, axes) && number[1] != "2" && number[1] != "3")
-      throw std::runtime_error(fmt::format("it has {} axes, where 2 or 3 are read", number[1].str()));
+/// Of a file whose header ITK has read.
+bool is_whole(const std::string& file, const itk::ImageIOBase& format, std::int64_t voxels) {
+  const auto bytes = voxels * static_cast<std::int64_t>(format.GetComponentSize() * format.GetNumberOfComponents());
+  if (has_ending(file, ".mha") || has_ending(file, ".mhd")) return holds_all_voxels(file, bytes);
+  const bool is_nrrd = has_ending(file, ".nrrd") || has_ending(file, ".nhdr");
+  return !is_nrrd || !is_cut_short(file, bytes);
 }
 
 /// Whether ITK makes labels of such values without cutting anything off.
@@ -60,7 +55,14 @@ bool hold_labels(itk::IOComponentEnum type) {
   return type == Type::UCHAR || type == Type::CHAR || type == Type::USHORT || type == Type::SHORT || type == Type::INT;
 }
 
-Image<std::int32_t>::Pointer labels_of(const Image<double>& stored) {
+/// Values of an image, and Volume::is_high of them.
+template <class T>
+struct ReadImage {
+  typename Image<T>::Pointer image;
+  bool is_high = false;
+};
+
+ReadImage<std::int32_t> labels_of(const Image<double>& stored) {
   const auto region = stored.GetLargestPossibleRegion();
   const auto labels = Image<std::int32_t>::New();
   labels->CopyInformation(&stored);
@@ -68,21 +70,22 @@ Image<std::int32_t>::Pointer labels_of(const Image<double>& stored) {
   labels->Allocate();
   GridShape shape;
   for (int a = 0; a < 3; ++a) shape.count[a] = static_cast<int>(region.GetSize()[a]);
+  LabelTaker taker(shape);
   for (std::size_t i = 0; i < region.GetNumberOfPixels(); ++i)
-    labels->GetBufferPointer()[i] = label_of(stored.GetBufferPointer()[i], shape, i);
-  return labels;
+    labels->GetBufferPointer()[i] = taker.take(stored.GetBufferPointer()[i], i);
+  return {labels, taker.is_high()};
 }
 
 /// Calls read<what the values are asked for as>(), so that labels which are stored as fractions are looked at first.
 template <class T, class Read>
-typename Image<T>::Pointer read_exactly(itk::IOComponentEnum stored, const Read& read) {
+ReadImage<T> read_exactly(itk::IOComponentEnum stored, const Read& read) {
   if constexpr (std::is_integral_v<T>)
     if (!hold_labels(stored)) return labels_of(*read.template operator()<double>());
-  return read.template operator()<T>();
+  return {read.template operator()<T>()};
 }
 
 template <class T, class FileFormat>
-typename Image<T>::Pointer read_image(const std::string& file) {
+ReadImage<T> read_image(const std::string& file) {
   const auto format = FileFormat::New();
   format->SetFileName(file);
   format->ReadImageInformation();
@@ -92,8 +95,7 @@ typename Image<T>::Pointer read_image(const std::string& file) {
     if (count < 1 || count > 65536 || (voxels *= count) > kMaxVoxels)
       throw std::runtime_error("it announces more voxels than the billion that is read");
   }
-  if (is_cut_short(file, voxels * static_cast<std::int64_t>(format->GetComponentSize())))
-    throw std::runtime_error("it ends before its last voxel");
+  if (!is_whole(file, *format, voxels)) throw std::runtime_error("it ends before its last voxel");
   return read_exactly<T>(format->GetComponentType(), [&]<class Value>() -> typename Image<Value>::Pointer {
     const auto reader = itk::ImageFileReader<Image<Value>>::New();
     reader->SetImageIO(format);
@@ -151,7 +153,7 @@ itk::IOComponentEnum type_of_slice(const std::string& file) {
 }
 
 template <class T>
-typename Image<T>::Pointer read_series(const std::string& folder, const std::string& wanted) {
+ReadImage<T> read_series(const std::string& folder, const std::string& wanted) {
   const std::vector<std::string> files = files_of_series(folder, wanted);
   return read_exactly<T>(type_of_slice(files.front()), [&]<class Value>() -> typename Image<Value>::Pointer {
     const auto reader = itk::ImageSeriesReader<Image<Value>>::New();
@@ -164,12 +166,15 @@ typename Image<T>::Pointer read_series(const std::string& folder, const std::str
 }
 
 template <class T>
-typename Image<T>::Pointer read_any(const std::filesystem::path& file, const std::string& series) {
+ReadImage<T> read_any(const std::filesystem::path& file, const std::string& series) {
   const std::string name = file.string();
   if (std::filesystem::is_directory(file)) return read_series<T>(name, series);
-  if (has_ending(file, ".nii") || has_ending(file, ".nii.gz")) return read_image<T, itk::NiftiImageIO>(name);
+  if (has_ending(file, ".nii") || has_ending(file, ".nii.gz")) {
+    check_nifti_file(name);
+    return read_image<T, itk::NiftiImageIO>(name);
+  }
   if (has_ending(file, ".mhd") || has_ending(file, ".mha")) {
-    check_axes(name);
+    check_meta_image_axes(name);
     return read_image<T, itk::MetaImageIO>(name);
   }
   return read_image<T, itk::NrrdImageIO>(name);
@@ -183,7 +188,7 @@ std::string in_plain_words(const itk::ExceptionObject& error) {
 
 template <class T>
 std::string packed(const std::filesystem::path& file, const std::string& series) {
-  const typename Image<T>::Pointer image = [&] {
+  const auto [image, is_high] = [&] {
     try {
       return read_any<T>(file, series);
     } catch (const itk::ExceptionObject& error) {
@@ -197,6 +202,7 @@ std::string packed(const std::filesystem::path& file, const std::string& series)
   for (int a = 0; a < 3; ++a) put(bytes, image->GetOrigin()[a]);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) put(bytes, image->GetDirection()(r, c));
+  put(bytes, is_high);
   bytes.append(reinterpret_cast<const char*>(image->GetBufferPointer()),
                image->GetLargestPossibleRegion().GetNumberOfPixels() * sizeof(T));
   return bytes;
@@ -225,11 +231,13 @@ Volume<T> read_with_image_library(const std::filesystem::path& file, const std::
   for (int a = 0; a < 3; ++a) volume.shift[a] = 1e-3 * take<double>(bytes, at);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) volume.turn(r, c) = take<double>(bytes, at);
+  volume.is_high = take<bool>(bytes, at);
   if (!(volume.shape.spacing.minCoeff() > 0) || !volume.shift.allFinite() || !volume.turn.isUnitary(1e-4))
     throw std::runtime_error("its voxel sizes, origin or axes are none");
   volume.value.resize(volume.shape.size());
   if (bytes.size() - at != volume.value.size() * sizeof(T)) throw std::runtime_error("it ends before its last voxel");
   std::memcpy(volume.value.data(), bytes.data() + at, bytes.size() - at);
+  if constexpr (std::is_same_v<T, float>) check_finite(volume.shape, volume.value);
   if (volume.turn.determinant() < 0) mirror(volume);
   return volume;
 }

@@ -67,8 +67,9 @@ void tell_distance(const Solid& solid, const GridShape& shape, const std::vector
                   {"voxel_diagonal_m", diagonal}});
 }
 
-std::string say(const Topology& t) {
-  return fmt::format("{} closed surface{}, genus {}", t.surfaces, t.surfaces == 1 ? "" : "s", t.handles);
+std::string say(int pieces, const Topology& t) {
+  return fmt::format("{} piece{}, {} closed surface{}, genus {}", pieces, pieces == 1 ? "" : "s", t.surfaces,
+                     t.surfaces == 1 ? "" : "s", t.handles);
 }
 
 Output::Json json_of(const Topology& t) {
@@ -80,28 +81,29 @@ void tell_part(const Solid& solid, const LabelVoxels& voxels, int label, const T
   const std::string& name = voxels.labels[label].name;
   const std::vector<char>& inside = voxels.inside[label];
   const double volume = measures_of(part).volume;
-  const auto pieces = pieces_of(part).size();
+  const int pieces = static_cast<int>(pieces_of(part).size());
   const Topology of_mesh = topology_of(part);
   const VoxelTopology of_voxels = topology_of(voxels.shape, inside);
-  out.say(fmt::format("  '{}': {:.4g} ml, of its voxels {:.4g} ml ({:+.2f} %); {} piece{}, {}; its voxels: {}", name,
-                      1e6 * volume, 1e6 * wanted, 100 * (volume / wanted - 1), pieces, pieces == 1 ? "" : "s",
-                      say(of_mesh), say(of_voxels.apart)));
+  const std::string made = say(pieces, of_mesh), meant = say(of_voxels.pieces_apart, of_voxels.apart);
+  out.say(fmt::format("  '{}': {:.4g} ml, of its voxels {:.4g} ml ({:+.2f} %); {}; its voxels: {}", name, 1e6 * volume,
+                      1e6 * wanted, 100 * (volume / wanted - 1), made, meant));
   Output::Json& figures =
       out.mesh()["labels"].emplace_back(Output::Json{{"name", name},
                                                      {"volume_m3", volume},
                                                      {"volume_of_voxels_m3", wanted},
                                                      {"pieces", pieces},
+                                                     {"pieces_of_voxels", of_voxels.pieces_apart},
                                                      {"topology", json_of(of_mesh)},
                                                      {"topology_of_voxels", json_of(of_voxels.apart)}});
   tell_distance(solid, voxels.shape, inside, part, out, figures);
   if (const double off = volume / wanted - 1; std::abs(off) > kVolumeOff)
     out.warn(fmt::format("the volume of '{}' is {:.3g} % {} than that of its voxels: ask for more nodes", name,
                          100 * std::abs(off), off > 0 ? "more" : "less"));
-  if (!of_voxels.allows(of_mesh))
+  if (!of_voxels.allows(of_mesh) || !of_voxels.allows_pieces(pieces))
     out.warn(
         fmt::format("'{}' has {}, and its voxels have {}: a wall or a gap is lost, or a hole made; ask for less "
                     "--smoothing or for more nodes",
-                    name, say(of_mesh), say(of_voxels.apart)));
+                    name, made, meant));
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kOnSide = 0.1;  // of a gap: what is so near to a side of it lies on it
+
 /// A distance whose level 0 encloses a volume of voxels.
 struct Field {
   DistanceGrid grid;
@@ -60,6 +62,7 @@ double area_of(const Field& field, const std::vector<Eigen::Vector3d>& border) {
 struct Fields {
   std::vector<Field> of_label;
   Field all;
+  DistanceGrid to_gap;  ///< [m] about how far a gap's side lies ahead; < 0 beyond. Without values where there is no gap
 
   int part(const Eigen::Vector3d& x) const {
     if (all.at(x) >= 0) return 0;
@@ -82,15 +85,20 @@ struct Fields {
   }
 };
 
-/// Takes from a label what is nearer to the others' border than half the gap, evenly on both sides; returns what is
-/// left of its volume [m^3].
-double keep_apart(const LabelVoxels& voxels, int label, double gap, const Eigen::Vector3d& width, Field& field) {
+/// Takes from a label what is nearer to the others' border than half the gap, evenly on both sides, and notes how far
+/// that is; returns what is left of its volume [m^3].
+double keep_apart(const LabelVoxels& voxels, int label, double gap, const Eigen::Vector3d& width, Fields& fields) {
+  Field& field = fields.all;
+  constexpr float kNoGap = 1e6;  // [m]
+  fields.to_gap = {voxels.shape, std::vector<float>(voxels.shape.size(), kNoGap)};
   for (std::size_t o = 0; o < voxels.labels.size(); ++o) {
     if (static_cast<int>(o) == label) continue;
     const Field other = field_of(voxels.shape, voxels.inside[o], width);
     for (std::size_t i = 0; i < field.grid.value.size(); ++i) {
       const double here = field.grid.value[i] - field.level, there = other.grid.value[i] - other.level;
-      field.grid.value[i] = static_cast<float>(field.level + std::max(here, 0.5 * (here - there + gap)));
+      const double beyond = 0.5 * (here - there + gap);
+      field.grid.value[i] = static_cast<float>(field.level + std::max(here, beyond));
+      fields.to_gap.value[i] = std::min(fields.to_gap.value[i], static_cast<float>(-beyond));
     }
   }
   return volume_below(field.grid, field.level);
@@ -182,9 +190,13 @@ LabelSolid solid_of(const LabelVoxels& voxels, const std::vector<int>& labels, c
     if (labels.size() > 1) fields->of_label.back() = field_of(grid, voxels.inside[l], width);
   }
   if (wish.gap > 0) {
-    const double left = keep_apart(voxels, labels[0], wish.gap, width, fields->all);
+    const double left = keep_apart(voxels, labels[0], wish.gap, width, *fields);
     check_left(voxels.labels[labels[0]].name, left, result.volumes[0], wish.gap);
     result.volumes = {left};
+    const double on_side = kOnSide * wish.gap;
+    result.solid.room = [fields, on_side](const Eigen::Vector3d& x) {
+      return std::max(fields->to_gap.at(x) - on_side, 0.0);
+    };
   }
   result.measures = {area_of(fields->all, result.border), result.volumes};
   Solid& solid = result.solid;

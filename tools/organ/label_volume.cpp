@@ -71,7 +71,8 @@ GridShape shape_of(const Header& header) {
   return shape;
 }
 
-/// Whether not every stored value is one that is asked for: of fractions and numbers above 2^31 labels are not.
+/// Whether not every stored value is one that is asked for as it is: of fractions and numbers above 2^31 labels are
+/// not.
 template <class Stored, class T>
 constexpr bool kMayBeNone = std::is_integral_v<T> &&
                             (std::is_floating_point_v<Stored> || std::is_same_v<Stored, std::uint32_t>);
@@ -80,6 +81,7 @@ template <class Stored, class T>
 void take_values(gzFile in, bool swapped, Volume<T>& volume) {
   std::vector<Stored> row(volume.shape.count[0]);
   const auto bytes = static_cast<unsigned>(row.size() * sizeof(Stored));
+  LabelTaker labels(volume.shape);
   while (volume.value.size() < volume.shape.size()) {
     if (gzread(in, row.data(), bytes) != static_cast<int>(bytes))
       throw std::runtime_error("it ends before its last voxel");
@@ -89,11 +91,12 @@ void take_values(gzFile in, bool swapped, Volume<T>& volume) {
         std::reverse(raw, raw + sizeof value);
       }
       if constexpr (kMayBeNone<Stored, T>)
-        volume.value.push_back(label_of(value, volume.shape, volume.value.size()));
+        volume.value.push_back(labels.take(value, volume.value.size()));
       else
         volume.value.push_back(static_cast<T>(value));
     }
   }
+  volume.is_high = labels.is_high();
 }
 
 std::string value_of(const Header& header, const std::string& key) {
@@ -156,6 +159,7 @@ Volume<T> read_inr(const std::filesystem::path& file) {
   else
     throw std::runtime_error(
         fmt::format("its TYPE is '{}': unsigned fixed, signed fixed and float are read", type.substr(0, 30)));
+  if constexpr (std::is_same_v<T, float>) check_finite(volume.shape, volume.value);
   return volume;
 }
 
@@ -173,12 +177,7 @@ LabelVolume read_label_volume(const std::filesystem::path& file, const std::stri
 }
 
 GreyVolume read_grey_volume(const std::filesystem::path& file, const std::string& series) {
-  GreyVolume volume = read_volume<float>(file, series);
-  const auto bad = std::ranges::find_if_not(volume.value, [](float grey) { return std::isfinite(grey); });
-  if (bad != volume.value.end())
-    throw std::runtime_error(
-        fmt::format("{}: its value number {} is no finite number", file.string(), bad - volume.value.begin() + 1));
-  return volume;
+  return read_volume<float>(file, series);
 }
 
 }  // namespace palpate

@@ -15,6 +15,7 @@ struct Volume {
   std::vector<T> value;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from that frame to the world's, a rotation
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();     ///< [m]
+  bool is_high = false;  ///< of labels: a value below 0 stands for the one that is 2^32 more
 
   Eigen::Vector3d in_world(const Eigen::Vector3d& x) const { return turn * x + shift; }
   Eigen::Vector3d in_image(const Eigen::Vector3d& x) const { return turn.transpose() * (x - shift); }
@@ -23,6 +24,15 @@ struct Volume {
 
 using LabelVolume = Volume<std::int32_t>;  ///< every value says what is there
 using GreyVolume = Volume<float>;          ///< every value is finite
+
+/// Labels are whole numbers from the first to the last of these; of one image not below 0 and above 2^31 - 1 both.
+inline constexpr std::int64_t kLeastLabel = -(std::int64_t{1} << 31), kMostLabel = (std::int64_t{1} << 32) - 1;
+
+/// The label of the voxel with this index.
+inline std::int64_t label_at(const LabelVolume& volume, std::size_t index) {
+  const std::int64_t value = volume.value[index];
+  return volume.is_high && value < 0 ? value + (std::int64_t{1} << 32) : value;
+}
 
 /// The most voxels that are read.
 inline constexpr std::int64_t kMaxVoxels = std::int64_t{1} << 30;

@@ -22,7 +22,7 @@ GridShape crop_of(const LabelVolume& volume, const std::vector<NamedLabel>& labe
   for (int k = 0; k < volume.shape.count[2]; ++k)
     for (int j = 0; j < volume.shape.count[1]; ++j)
       for (int i = 0; i < volume.shape.count[0]; ++i, ++at) {
-        if (std::ranges::find(labels, volume.value[at], &NamedLabel::label) == labels.end()) continue;
+        if (std::ranges::find(labels, label_at(volume, at), &NamedLabel::label) == labels.end()) continue;
         const std::array<int, 3> place{i, j, k};
         for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], place[a]), high[a] = std::max(high[a], place[a]);
       }
@@ -42,7 +42,7 @@ std::vector<char> all_voxels_of(const LabelVolume& volume, const GridShape& crop
   for (int k = kRim; k < crop.count[2] - kRim; ++k)
     for (int j = kRim; j < crop.count[1] - kRim; ++j)
       for (int i = kRim; i < crop.count[0] - kRim; ++i) {
-        const bool set = volume.value[volume.shape.index(i + shift[0], j + shift[1], k + shift[2])] == label.label;
+        const bool set = label_at(volume, volume.shape.index(i + shift[0], j + shift[1], k + shift[2])) == label.label;
         inside[crop.index(i, j, k)] = set;
         any = any || set;
       }

@@ -8,7 +8,7 @@
 namespace palpate {
 
 struct NamedLabel {
-  int label = 0;
+  std::int64_t label = 0;
   std::string name;
 };
 

@@ -14,6 +14,11 @@ struct MeshPiece {
 /// The largest first.
 std::vector<MeshPiece> pieces_of(const TetMesh& mesh);
 
+/// Gives pieces of a part, all but its largest of less than a hundredth of its volume, to the part that each shares
+/// most area of faces with: the mesher leaves such tetrahedra, which hang on their part by an edge or a corner alone.
+/// Those that share a face with no other part stay.
+void give_stray_pieces_away(FilledSolid& filled);
+
 /// What bounds a body: closed surfaces, the outer one of every piece and one around each cavity, and handles in all of
 /// them together: 0 of a ball, 1 of a torus.
 struct Topology {

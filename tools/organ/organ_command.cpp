@@ -12,6 +12,7 @@
 #include "tools/organ/fineness_options.hpp"
 #include "tools/organ/idle_places.hpp"
 #include "tools/organ/label_measures.hpp"
+#include "tools/organ/mesh_distances.hpp"
 #include "tools/organ/organ_pictures.hpp"
 #include "tools/organ/organ_visual.hpp"
 
@@ -22,7 +23,10 @@ constexpr int kFewestNodes = 50;    // of a mesh that shares --nodes with others
 constexpr double kDeviation = 0.6;  // voxel diagonals
 
 struct OrganOptions : MeshOptions {
-  OrganOptions() { nodes = 2500; }
+  OrganOptions() {
+    nodes = 2500;
+    if_strange = "are the image's voxels of the right size?";
+  }
   std::string volume, preview, visual;
   int visual_triangles = 14000;
   std::vector<std::string> labels;
@@ -35,15 +39,18 @@ NamedLabel parse_label(const std::string& text) {
   const std::string number = text.substr(0, text.find('='));
   NamedLabel label{0, number.size() < text.size() ? text.substr(number.size() + 1) : "label" + number};
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label.label);
-  if (error != std::errc() || end != number.data() + number.size() || label.name.empty() ||
+  if (error == std::errc::invalid_argument || end != number.data() + number.size() || label.name.empty() ||
       label.name.find('/') != std::string::npos)
     throw std::runtime_error(fmt::format("--label {}: NUMBER or NUMBER=NAME is asked for", text));
+  if (error != std::errc() || label.label < kLeastLabel || label.label > kMostLabel)
+    throw std::runtime_error(
+        fmt::format("--label {}: labels are whole numbers from {} to {}", text, kLeastLabel, kMostLabel));
   return label;
 }
 
 std::vector<NamedLabel> labels_of(const OrganOptions& o) {
   std::vector<NamedLabel> labels;
-  std::set<int> numbers;
+  std::set<std::int64_t> numbers;
   std::set<std::string> names;
   for (const std::string& text : o.labels) {
     labels.push_back(parse_label(text));
@@ -230,9 +237,19 @@ std::vector<MadeBody> make_bodies(const LabelVolume& volume, const LabelVoxels& 
   return made;
 }
 
+/// How far apart they are.
+void tell_gaps(const LabelVoxels& voxels, const std::vector<Together>& bodies, const std::vector<MadeBody>& made,
+               const OrganOptions& o, Output& out) {
+  std::vector<NamedMesh> meshes;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    meshes.push_back({joined(named_labels(voxels, bodies[b].labels), "_"), made[b].mesh});
+  tell_distances(meshes, 1e-3 * o.gap_mm, out);
+}
+
 void make_organ(const OrganOptions& o) {
   Output out(o.json);
-  fineness_of(o);  // what cannot be read is told at once
+  fineness_of(o);  // what cannot be read, or written later, is told at once
+  check_folder_of(o.visual);
   const std::vector<NamedLabel> labels = labels_of(o);
   const LabelVolume volume = read(o, out);
   LabelVoxels voxels;
@@ -246,6 +263,7 @@ void make_organ(const OrganOptions& o) {
                    });
   say_apart(volume, voxels, bodies, out);
   const std::vector<MadeBody> made = make_bodies(volume, voxels, bodies, o, out);
+  tell_gaps(voxels, bodies, made, o, out);
   std::vector<MeshWithEdge> written;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     out.next_mesh();

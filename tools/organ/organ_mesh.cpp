@@ -136,11 +136,12 @@ void check_deviation(const Solid& solid, double deviation) {
 
 FilledSolid fill_checked(const Solid& solid, const SolidMeasures& measures, const MeshSizes& sizes) {
   FilledSolid filled = fill_solid(solid, sizes);
+  give_stray_pieces_away(filled);
   check_complete(solid, measures, filled);
   project(solid, filled.mesh);
   for (int i = 0; i < kBetterings; ++i) {
     better_angles(kKeptAngle, filled);
-    if (!measures.volumes.empty()) match_volumes(measures.volumes, filled);
+    if (!measures.volumes.empty()) match_volumes(measures.volumes, solid.room, filled);
   }
   check_tet_mesh(filled.mesh, "the mesh that was made");
   if (const double angle = measures_of(filled.mesh).min_angle; angle < kWorstAngle)

@@ -42,7 +42,7 @@ class Parts {
     const auto& count = volume_.shape.count;
     i += first_[0], j += first_[1], k += first_[2];
     if (std::min({i, j, k}) < 0 || i >= count[0] || j >= count[1] || k >= count[2]) return 0;
-    const auto found = std::ranges::find(labels_, volume_.value[volume_.shape.index(i, j, k)], &NamedLabel::label);
+    const auto found = std::ranges::find(labels_, label_at(volume_, volume_.shape.index(i, j, k)), &NamedLabel::label);
     return found == labels_.end() ? 0 : static_cast<int>(found - labels_.begin()) + 1;
   }
 

@@ -1,7 +1,9 @@
 #include "tools/organ/part_volumes.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/mesh/normals.hpp"
 #include "common/mesh/quality.hpp"
@@ -25,22 +27,35 @@ double area_of(const TetMesh& mesh, const std::array<int, 3>& t) {
   return 0.5 * (mesh.nodes[t[1]] - mesh.nodes[t[0]]).cross(mesh.nodes[t[2]] - mesh.nodes[t[0]]).norm();
 }
 
+using Room = std::function<double(const Eigen::Vector3d&)>;
+
+/// [m] That each node of a border may be moved outward; 0: it stays.
+std::vector<double> rooms_of(const Border& border, const Room& room, const TetMesh& mesh) {
+  std::vector<double> rooms(mesh.nodes.size(), std::numeric_limits<double>::infinity());
+  for (const int n : border.surface.nodes)
+    if (room) rooms[n] = room(mesh.nodes[n]);
+  return rooms;
+}
+
 /// `missing`: [m^3] of each part.
-void move(const Border& border, const std::vector<double>& missing, TetMesh& mesh) {
+void move(const Border& border, const std::vector<double>& missing, const Room& room, TetMesh& mesh) {
   const auto& triangles = border.surface.triangles;
+  const std::vector<double> rooms = rooms_of(border, room, mesh);
   std::vector<Eigen::Vector3d> normals(mesh.nodes.size());
   vertex_normals(mesh.nodes, triangles, normals);
   std::vector<double> squares(missing.size(), 0), of_node(mesh.nodes.size(), 0), share(mesh.nodes.size(), 0), area;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto moved = std::ranges::count_if(triangles[i], [&](int n) { return rooms[n] > 0; });
     area.push_back(area_of(mesh, triangles[i]));
-    squares[border.part[i]] += area[i] * area[i];
+    squares[border.part[i]] += area[i] * area[i] * static_cast<double>(moved) / 3;
   }
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (const int n : triangles[i]) {
       const int part = border.part[i];
-      of_node[n] += missing[part] / squares[part] * area[i], share[n] += 1;
+      share[n] += 1;
+      if (rooms[n] > 0) of_node[n] += missing[part] / squares[part] * area[i];
     }
-  for (const int n : border.surface.nodes) mesh.nodes[n] += of_node[n] / share[n] * normals[n];
+  for (const int n : border.surface.nodes) mesh.nodes[n] += std::min(of_node[n] / share[n], rooms[n]) * normals[n];
 }
 
 /// What is moved for which part.
@@ -83,14 +98,15 @@ bool are_right(const std::vector<double>& missing, const std::vector<double>& vo
 }
 
 /// True once all are right.
-bool step_to_volumes(const Borders& borders, const std::vector<double>& volumes, FilledSolid& filled) {
+bool step_to_volumes(const Borders& borders, const std::vector<double>& volumes, const Room& room,
+                     FilledSolid& filled) {
   std::vector<double> missing = missing_of(volumes, filled);
   if (are_right(missing, volumes)) return true;
-  for (const Border& own : borders.within) move(own, missing_of(volumes, filled), filled.mesh);
+  for (const Border& own : borders.within) move(own, missing_of(volumes, filled), room, filled.mesh);
   if (!borders.within.empty()) missing = missing_of(volumes, filled);  // those around them have lost or won
   for (std::size_t p = 0; p < missing.size(); ++p)
     if (borders.lies_within[p]) missing[p] = 0;
-  move(borders.outer, missing, filled.mesh);
+  move(borders.outer, missing, room, filled.mesh);
   return false;
 }
 
@@ -103,9 +119,9 @@ std::vector<double> volumes_of(const FilledSolid& filled, std::size_t parts) {
   return volumes;
 }
 
-void match_volumes(const std::vector<double>& volumes, FilledSolid& filled) {
+void match_volumes(const std::vector<double>& volumes, const Room& room, FilledSolid& filled) {
   const Borders borders = borders_of(filled, volumes.size());
-  for (int i = 0; i < kSteps && !step_to_volumes(borders, volumes, filled); ++i) continue;
+  for (int i = 0; i < kSteps && !step_to_volumes(borders, volumes, room, filled); ++i) continue;
 }
 
 }  // namespace palpate

@@ -71,10 +71,15 @@ SegmentationRules rules_of(const SegmentOptions& o, const GridShape& shape) {
   return rules;
 }
 
+/// Of what is written.
+bool has_contours(const SegmentedSlice& slice) {
+  return !slice.moved.empty() && slice.voxels > 0;
+}
+
 std::vector<int> doubtful_slices(const Segmentation& s) {
   std::vector<int> doubtful;
   for (std::size_t k = 0; k < s.slices.size(); ++k)
-    if (!s.slices[k].moved.empty() && s.slices[k].on_edge() < kSureEnough) doubtful.push_back(static_cast<int>(k));
+    if (has_contours(s.slices[k]) && s.slices[k].on_edge() < kSureEnough) doubtful.push_back(static_cast<int>(k));
   return doubtful;
 }
 
@@ -95,7 +100,7 @@ void tell_contours(const SegmentOptions& o, const Segmentation& s, Output& out) 
   int by_hand = 0;
   double on_edge = 0;
   for (std::size_t k = 0; k < s.slices.size(); ++k) {
-    if (s.slices[k].moved.empty()) continue;
+    if (!has_contours(s.slices[k])) continue;
     slices.push_back(static_cast<int>(k)), by_hand += s.slices[k].by_hand, on_edge += s.slices[k].on_edge();
   }
   if (slices.empty()) return;  // of a few voxels
@@ -113,12 +118,26 @@ void tell_contours(const SegmentOptions& o, const Segmentation& s, Output& out) 
                         {"doubtful_slices", doubtful}});
 }
 
+/// A contour by hand that hangs on no seed's piece.
+void warn_of_lost_contours(const Segmentation& s, Output& out) {
+  std::vector<int> lost;
+  for (std::size_t k = 0; k < s.slices.size(); ++k)
+    if (s.slices[k].by_hand && s.slices[k].voxels == 0) lost.push_back(static_cast<int>(k));
+  out.figures()["slices_by_hand_lost"] = lost;
+  if (!lost.empty())
+    out.warn(
+        fmt::format("nothing is left of what is drawn by hand in slice{} {}: it does not hang together with the "
+                    "seeds' piece; draw slices in between too, or give a seed in it",
+                    lost.size() == 1 ? "" : "s", runs_of(lost)));
+}
+
 void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Segmentation& s, Output& out) {
   out.say(fmt::format("  range: {:.4g} to {:.4g}{}", s.range.low, s.range.high,
                       o.range.empty() ? ", from what lies around the seeds" : ""));
   out.figures()["range"] = {s.range.low, s.range.high};
   tell_findings(s.findings, "", out);
   tell_contours(o, s, out);
+  warn_of_lost_contours(s, out);
   const auto voxels = std::ranges::count(s.inside, 1);
   const double volume = static_cast<double>(voxels) * shape.spacing.prod();
   out.say(fmt::format("{}: label 1, {} voxels, {:.4g} ml", o.output, voxels, 1e6 * volume));
@@ -127,6 +146,7 @@ void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Se
 
 void segment_image(const SegmentOptions& o) {
   Output out(o.json);
+  check_folder_of(o.output);
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -59,6 +60,15 @@ void agree_with_neighbours(const GridShape& shape, const HandContours& by_hand, 
   }
 }
 
+void count_voxels(std::size_t layer, Segmentation& s) {
+  auto first = s.inside.begin();
+  for (SegmentedSlice& slice : s.slices) {
+    const auto end = first + static_cast<std::ptrdiff_t>(layer);
+    slice.voxels = static_cast<std::size_t>(std::count(first, end, 1));
+    first = end;
+  }
+}
+
 }  // namespace
 
 double SegmentedSlice::on_edge() const {
@@ -80,6 +90,7 @@ Segmentation segment(const ScalarGrid& grey, const std::vector<std::size_t>& see
   agree_with_neighbours(grey.shape, rules.by_hand, s.inside);
   keep_largest_piece(grey.shape, s.inside, "organ", s.findings);
   fill_cavities(grey.shape, s.inside, s.inside, kEveryCavity, "organ", s.findings);
+  count_voxels(layer_of(grey.shape), s);
   return s;
 }
 

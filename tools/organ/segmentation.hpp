@@ -18,6 +18,7 @@ struct SegmentedSlice {
   std::vector<Contour> start;  ///< the region's, or from those drawn by hand
   std::vector<MovedContour> moved;
   bool by_hand = false;
+  std::size_t voxels = 0;  ///< of the organ that are left in it
 
   double on_edge() const;  ///< [1] share of all its contours' points
 };

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "tools/organ/crowded_edges.hpp"
+#include "tools/organ/surface_fault.hpp"
 #include "tools/organ/surface_library.hpp"
 #include "tools/organ/surface_shells.hpp"
 
@@ -194,13 +195,13 @@ void close_holes(TriangleMesh& mesh, double max_hole, std::vector<Finding>& find
       loop.push_back(mesh.nodes[n]);
       low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
     }
-    const double across = (high - low).norm();
-    Finding hole{fmt::format("a hole of {:.3g} mm across with {} edges", 1e3 * across, rim.size()),
+    const double size = across(mesh, rim);
+    Finding hole{fmt::format("a hole of {:.3g} mm across with {} edges", 1e3 * size, rim.size()),
                  "",
                  {0.5 * (low + high)},
                  "holes"};
     std::string fault;
-    if (across > max_hole)
+    if (size > max_hole)
       fault = fmt::format(
           "{}, larger than {:.3g} mm: close it in the program that the surface comes from, or allow it "
           "by --hole",
@@ -215,10 +216,17 @@ void close_holes(TriangleMesh& mesh, double max_hole, std::vector<Finding>& find
   if (!refusal.empty()) throw std::runtime_error(refusal);
 }
 
+std::vector<std::pair<int, int>> crossings_of(const TriangleMesh& mesh) try {
+  return crossing_triangles(mesh);
+} catch (const std::runtime_error&) {
+  check_is_surface(mesh);  // with the place
+  throw;
+}
+
 /// Whether there are any.
 bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<Eigen::Vector3d> places;
-  for (const auto& [a, b] : crossing_triangles(mesh)) places.push_back(place_of(mesh, mesh.triangles[a]));
+  for (const auto& [a, b] : crossings_of(mesh)) places.push_back(place_of(mesh, mesh.triangles[a]));
   note("pairs of triangles cross one another", "the body is all that the surface goes round", places, findings);
   return !places.empty();
 }

@@ -74,11 +74,7 @@ void append(TriangleMesh& mesh, const TriangleMesh& more) {
 
 double widest_hole(const TriangleMesh& mesh) {
   double widest = 0;
-  for (const std::vector<int>& rim : rims_of(mesh)) {
-    Eigen::Vector3d low = mesh.nodes[rim[0]], high = low;
-    for (const int n : rim) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
-    widest = std::max(widest, (high - low).norm());
-  }
+  for (const std::vector<int>& rim : rims_of(mesh)) widest = std::max(widest, across(mesh, rim));
   return widest;
 }
 
@@ -214,6 +210,20 @@ std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh) {
       rims.push_back(rim);
     }
   return rims;
+}
+
+double across(const TriangleMesh& mesh, const std::vector<int>& rim) {
+  constexpr int kGoes = 8;  // it seldom takes three
+  double farthest = 0;
+  Eigen::Vector3d from = mesh.nodes[rim[0]];
+  for (int go = 0; go < kGoes; ++go) {
+    const auto away = [&](int n) { return (mesh.nodes[n] - from).norm(); };
+    const int end = *std::ranges::max_element(rim, {}, away);
+    if (away(end) <= farthest) break;
+    farthest = away(end);
+    from = mesh.nodes[end];
+  }
+  return farthest;
 }
 
 double surface_area(const TriangleMesh& mesh) {

@@ -15,6 +15,9 @@ std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh);
 /// The rims of an oriented surface's holes, each a loop of nodes in the sense in which a patch is wound that closes it.
 std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh);
 
+/// [m] The largest distance between two of a rim's nodes, as far as going from one to the farthest of all finds it.
+double across(const TriangleMesh& mesh, const std::vector<int>& rim);
+
 double surface_area(const TriangleMesh& mesh);  ///< [m^2]
 
 /// [m^3] that a closed surface encloses; negative where its normals point inward.

@@ -146,7 +146,9 @@ VoxelTopology topology_of(const GridShape& shape, const std::vector<char>& insid
   const int around = 1;  // of the gaps, and Euler's number of the whole grid
   const int apart = pieces.apart + gaps.joined - around, joined = pieces.joined + gaps.apart - around;
   return {{apart, apart - euler_number(shape, inside, true)},
-          {joined, joined - (euler_number(shape, inside, false) - around)}};
+          {joined, joined - (euler_number(shape, inside, false) - around)},
+          pieces.apart,
+          pieces.joined};
 }
 
 }  // namespace palpate

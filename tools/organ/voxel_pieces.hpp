@@ -28,9 +28,11 @@ void fill_cavities(const GridShape& shape, std::vector<char>& inside, const std:
 struct VoxelTopology {
   Topology apart;   ///< voxels hang together through faces, what is between them through edges and corners too
   Topology joined;  ///< the other way round
+  int pieces_apart = 1, pieces_joined = 1;
 
   /// Whether a body may have it that is the voxels': as many as one of both, or between.
   bool allows(const Topology& body) const;
+  bool allows_pieces(int pieces) const { return pieces >= pieces_joined && pieces <= pieces_apart; }
 };
 
 /// Of voxels in a grid whose rim has none.
