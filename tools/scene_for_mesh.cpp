@@ -123,6 +123,9 @@ SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const st
   const Spot spot = farthest_spot(mesh, surface, held->second.nodes);
   const double extent = extent_of(mesh, surface);
   const double press = wishes.press > 0 ? wishes.press : std::min(extent / 40, 0.5 * wishes.radius);
+  if (press > extent)
+    throw std::runtime_error(fmt::format("--press: {:.3g} mm are more than the body's size, {:.3g} mm: it is in metres",
+                                         1e3 * press, 1e3 * extent));
   const double reach = std::clamp(0.5 * extent, kShortest, kLongest);
   const Eigen::Vector3d pivot = spot.place + reach * spot.normal;
   SceneTexts texts;  // body and device are of the tables' first kinds: solved beforehand, moved by a file

@@ -306,7 +306,9 @@ TEST_F(OrganCommand, NoTetrahedronHangsOnItsPartByAnEdgeAlone) {
   const auto made =
       organ(image, "--label 1=liver --label 2=bile --edge 0.004 --json -o " + (folder_ / "bile.msh").string());
   ASSERT_EQ(made.status, 0) << made.err;
-  for (const auto& label : nlohmann::json::parse(made.out)["meshes"][0]["labels"]) {
+  const auto figures = nlohmann::json::parse(made.out);
+  ASSERT_EQ(figures["meshes"][0]["labels"].size(), 2u);
+  for (const auto& label : figures["meshes"][0]["labels"]) {
     EXPECT_EQ(label["pieces"], 1) << label;
     EXPECT_EQ(label["pieces_of_voxels"], 1) << label;
   }

@@ -125,6 +125,18 @@ TEST_F(SurfaceRepair, ARoundHoleIsAsLargeAsItIsWide) {
   expect_has(finding(cup, prism), "a hole of 480 mm across with 24 edges at (");  // kHole is 500 mm
 }
 
+// A tetrahedron's face is as wide as its edge: 1, where a fifth of the diagonal is 0.35.
+TEST_F(SurfaceRepair, AShellFarAwayDoesNotMakeALargerHoleOneToBeClosed) {
+  TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}};
+  for (const double far : {0.0, 9.0}) {
+    for (const Eigen::Vector3d& x : {Eigen::Vector3d(0, 0, 0), {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}})
+      open.nodes.emplace_back(x + Eigen::Vector3d::Constant(far));
+    if (far > 0) open.triangles.insert(open.triangles.end(), {{8, 10, 9}, {8, 9, 11}, {8, 11, 10}, {9, 10, 11}});
+    std::vector<Finding> findings;
+    EXPECT_THROW(repair_surface(open, 0, findings), std::runtime_error) << far;
+  }
+}
+
 // A corner that is another node leaves a hole whose patch meets an edge that has two triangles.
 TEST_F(SurfaceRepair, TrianglesThatMakeNoSurfaceAreRefusedWithThePlace) {
   TriangleMesh wrong = ball_;

@@ -74,6 +74,9 @@ TEST_F(ToolsScene, TheFirstPressIsNoDeeperThanHalfTheTipsRadius) {
   EXPECT_NEAR(deepest(" --radius 0.002"), 0.001, 2e-6);
   EXPECT_NEAR(deepest(" --radius 0.02"), std::sqrt(0.02) / 40, 2e-6) << "a fortieth of the diagonal";
   EXPECT_NEAR(deepest(" --press 0.008"), 0.008, 2e-6);
+  testing::expect_refusal(fmt::format("{} scene {} --tissue kidney --press 8 -o {}", program("palpate"),
+                                      (folder_ / "block.msh").string(), scene()),
+                          {"--press: 8e+03 mm are more than the body's size, 141 mm: it is in metres"});
 }
 
 TEST_F(ToolsScene, ASurfaceToBeLookedAtComesInByItself) {

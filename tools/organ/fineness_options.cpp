@@ -118,9 +118,11 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
                   "Scene whose tools press the organ: edges of half a tip's radius along their motions (.toml)")
       .excludes({"--tool-radius"});
   command
-      .add_option("--group", o.groups,
-                  "Names nodes of the surface: NAME=below:z (the lowest tenth; above, x, y too), NAME=below:z:0.01, "
-                  "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz [m]; may be given again")
+      .add_option(
+          "--group", o.groups,
+          "Names nodes of the surface: NAME=below:z (the lowest tenth; above, x, y too), NAME=below:z:0.01, "
+          "NAME=box:x,y,z,x,y,z or NAME=plane:x,y,z,nx,ny,nz (what lies behind, against the normal) [m]; may be "
+          "given again")
       .one_value_each_time();
   command.add_option("--density", o.density, "For the mass that is printed [kg/m3]").positive().show_default();
   command.add_flag("--json", o.json, "Print one line of JSON");

@@ -24,12 +24,10 @@ struct SurfaceOptions : MeshOptions {
 };
 
 RepairedSurface repaired(const ReadSurface& read, const SurfaceOptions& o, Output& out) {
-  constexpr double kHole = 0.2;  // of the diagonal
-  const double hole = o.hole > 0 ? o.hole : kHole * diagonal(read.mesh);
   std::vector<Finding> findings = read.findings;
   RepairedSurface surface;
   tell_refused_too([&] { tell_findings(findings, o.report, out); },
-                   [&] { surface = of_file(o.surface, [&] { return repair_surface(read.mesh, hole, findings); }); });
+                   [&] { surface = of_file(o.surface, [&] { return repair_surface(read.mesh, o.hole, findings); }); });
   if (findings.empty()) out.say("  found: nothing to repair");
   return surface;
 }
@@ -66,7 +64,8 @@ void add_mesh_command(cli::Command& app) {
   for (const auto& [name, metres] : kUnits) units.push_back(name);
   command.add_option("--unit", o->unit, "Unit of the file's coordinates").one_of(units).show_default();
   command
-      .add_option("--hole", o->hole, "Close holes of up to this size [m] (default: a fifth of the surface's diagonal)")
+      .add_option("--hole", o->hole,
+                  "Close holes of up to this size [m] (default: a fifth of the diagonal of the largest shell)")
       .positive();
   add_mesh_options(command, *o);
   command.tells_progress();

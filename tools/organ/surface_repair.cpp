@@ -19,6 +19,7 @@
 namespace palpate {
 namespace {
 
+constexpr double kHole = 0.2;        // of the diagonal: so large a hole is closed
 constexpr double kSamePlace = 1e-7;  // of the diagonal: corners that near are one,
 constexpr double kSameEdge = 1e-3;   // unless it is more than that of the median edge
 constexpr double kNoArea = 1e-12;    // of the longest edge squared
@@ -242,8 +243,9 @@ RepairedSurface repair_surface(TriangleMesh mesh, double max_hole, std::vector<F
   note_crowded_edges(mesh, findings);
   part_crowded_edges(mesh);
   orient(mesh, findings);
-  leave_open_shells_out(mesh, max_hole, findings);
-  close_holes(mesh, max_hole, findings);
+  const double limit = max_hole > 0 ? max_hole : kHole * diagonal_of_largest_shell(mesh);
+  leave_open_shells_out(mesh, limit, findings);
+  close_holes(mesh, limit, findings);
   keep_largest_shell(mesh, findings);
   const bool crosses = note_crossings(mesh, findings);
   return {std::move(mesh), crosses};

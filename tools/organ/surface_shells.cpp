@@ -166,6 +166,11 @@ double diagonal(const TriangleMesh& mesh) {
   return (high - low).norm();
 }
 
+double diagonal_of_largest_shell(const TriangleMesh& mesh) {
+  const std::vector<TriangleMesh> parts = parts_of(mesh);
+  return diagonal(*std::ranges::max_element(parts, {}, surface_area));
+}
+
 std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
   std::vector<int> leader(mesh.triangles.size());
   std::iota(leader.begin(), leader.end(), 0);
@@ -213,8 +218,14 @@ std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh) {
 }
 
 double across(const TriangleMesh& mesh, const std::vector<int>& rim) {
+  constexpr std::size_t kFew = 1000;
   constexpr int kGoes = 8;  // it seldom takes three
   double farthest = 0;
+  if (rim.size() <= kFew) {
+    for (const int a : rim)
+      for (const int b : rim) farthest = std::max(farthest, (mesh.nodes[a] - mesh.nodes[b]).norm());
+    return farthest;
+  }
   Eigen::Vector3d from = mesh.nodes[rim[0]];
   for (int go = 0; go < kGoes; ++go) {
     const auto away = [&](int n) { return (mesh.nodes[n] - from).norm(); };

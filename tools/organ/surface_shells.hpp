@@ -9,13 +9,17 @@ namespace palpate {
 /// [m] Of the box around all triangles.
 double diagonal(const TriangleMesh& mesh);
 
+/// [m] Likewise of the shell with the largest area alone.
+double diagonal_of_largest_shell(const TriangleMesh& mesh);
+
 /// Triangles that hang together through edges, ascending in each shell.
 std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh);
 
 /// The rims of an oriented surface's holes, each a loop of nodes in the sense in which a patch is wound that closes it.
 std::vector<std::vector<int>> rims_of(const TriangleMesh& mesh);
 
-/// [m] The largest distance between two of a rim's nodes, as far as going from one to the farthest of all finds it.
+/// [m] The largest distance between two of a rim's nodes; of a rim of more than a thousand as far as going from one to
+/// the farthest of all finds it.
 double across(const TriangleMesh& mesh, const std::vector<int>& rim);
 
 double surface_area(const TriangleMesh& mesh);  ///< [m^2]
