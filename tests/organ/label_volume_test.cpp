@@ -115,6 +115,33 @@ TEST_F(LabelImages, ASeriesThatIsNotEvenlySpacedIsRefusedWithThePlace) {
   EXPECT_NEAR(rounded.shape.spacing.z(), 0.003, 1e-9);
 }
 
+TEST_F(LabelImages, ASliceThatIsCutShortOrUnlikeTheOthersIsRefusedByItsName) {
+  int series = 0;
+  const auto expect_refused = [&](const auto& spoilt, const std::string& words) {
+    const std::filesystem::path folder = folder_ / ("unlike-" + std::to_string(++series));
+    std::filesystem::create_directories(folder);
+    for (int n = 0; n < 5; ++n) {
+      const std::string bytes = DicomPicture("1.2.3.4", n, 3 * n, 3, voxels_.substr(0, 6)).bytes();
+      write_file(folder / ("slice" + std::to_string(n)), n == 2 ? spoilt(bytes) : bytes);
+    }
+    try {
+      read_label_volume(folder);
+      ADD_FAILURE() << "read without a word where this is due: " << words;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  const auto with = [](const std::string& here, const std::string& there) {
+    return [=](std::string bytes) { return bytes.replace(bytes.find(here), here.size(), there); };
+  };
+  const auto cut = [](const std::string& bytes) { return bytes.substr(0, bytes.size() - 1); };
+  expect_refused(cut, "its slice slice2 ends before its last pixel");
+  expect_refused(with("10\\20\\", "10\\29\\"), "its slice at (10, 29, 6) mm lies 9 mm beside the first one's normal");
+  expect_refused(with("10\\20\\", "na\\20\\"), "its slice slice2 does not say where it lies (Image Position)");
+  expect_refused(with("2\\1 \x28", "3\\1 \x28"), "its slice slice2 has pixels of 1 x 3 mm, and the first one 1 x 2 mm");
+  expect_refused(with("1\\0\\0\\0\\1\\0", "0\\1\\0\\1\\0\\0"), "its slice slice2 lies otherwise than the first one");
+}
+
 TEST(SlicePlaces, SlicesOfATiltedScannerLieAslantAndAreRefused) {
   const auto stack = [](double aside) {
     SlicePlaces slices{{}, Eigen::Vector3d::UnitZ(), 0.8};

@@ -38,6 +38,9 @@ struct Steps {
     return std::abs(mm[slice] - (missing_behind(slice) + 1) * usual) < kOffPlace * usual;
   }
   std::size_t widest() const { return std::ranges::max_element(mm) - mm.begin(); }
+  std::size_t oddest() const {
+    return std::ranges::max_element(mm, {}, [&](double step) { return std::abs(step - usual); }) - mm.begin();
+  }
 };
 
 Steps steps_of(const SlicePlaces& slices) {
@@ -76,13 +79,15 @@ bool are_same(const Steps& steps) {
 }
 
 [[noreturn]] void refuse(const Steps& steps) {
-  const std::size_t widest = steps.widest();
-  const std::string between =
-      fmt::format("between {} and {}", say_mm(steps.place[widest]), say_mm(steps.place[widest + 1]));
+  const auto behind = [&](std::size_t k) {
+    return fmt::format("between {} and {}", say_mm(steps.place[k]), say_mm(steps.place[k + 1]));
+  };
+  const std::size_t widest = steps.widest(), oddest = steps.oddest();
   if (steps.missing_behind(widest) < 1 || !steps.is_multiple(widest))
     throw std::runtime_error(
         fmt::format("its slices are not evenly spaced: {:.4g} mm {}, and {:.4g} mm elsewhere; resample it evenly",
-                    steps.mm[widest], between, steps.usual));
+                    steps.mm[oddest], behind(oddest), steps.usual));
+  const std::string between = behind(widest);
   int all = 0;
   for (std::size_t k = 0; k < steps.mm.size(); ++k) all += std::max(0, steps.missing_behind(k));
   const int here = steps.missing_behind(widest);
@@ -94,13 +99,22 @@ bool are_same(const Steps& steps) {
 }
 
 void check_upright(const SlicePlaces& slices, const Steps& steps) {
-  const Eigen::Vector3d way = steps.place.back() - steps.place.front();
-  const Eigen::Vector3d aside = way - way.dot(slices.normal) * slices.normal;
-  if (aside.norm() > 0.5 * slices.pixel_mm)
+  const auto aside = [&](const Eigen::Vector3d& x) {
+    const Eigen::Vector3d way = x - steps.place.front();
+    return (way - way.dot(slices.normal) * slices.normal).norm();
+  };
+  const double most = 0.5 * slices.pixel_mm, last = aside(steps.place.back());
+  if (last > most)
     throw std::runtime_error(
         fmt::format("its slices lie aslant on one another, as of a tilted scanner: the last one, at {}, lies {:.4g} mm "
                     "beside the first one's normal; resample it upright",
-                    say_mm(steps.place.back()), aside.norm()));
+                    say_mm(steps.place.back()), last));
+  for (const Eigen::Vector3d& x : steps.place)
+    if (aside(x) > most)
+      throw std::runtime_error(
+          fmt::format("its slice at {} lies {:.4g} mm beside the first one's normal, and the last "
+                      "one does not: resample it upright",
+                      say_mm(x), aside(x)));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 
 #include "common/files/ending.hpp"
 #include "common/mesh/child.hpp"
+#include "tools/organ/dicom_file.hpp"
 #include "tools/organ/image_checks.hpp"
 #include "tools/organ/label_volume.hpp"
 #include "tools/organ/meta_image_file.hpp"
@@ -122,26 +123,68 @@ std::vector<std::string> files_of_series(const std::string& folder, const std::s
                      : fmt::format("no series '{}' lies in this folder, but {}", wanted, known));
 }
 
-/// Of a slice's first pixel, as its file says.
-Eigen::Vector3d place_in_mm(const itk::MetaDataDictionary& slice, const std::string& file) {
+/// Numbers of an element of a slice's header; none where it is not there, or not so many.
+std::vector<double> numbers_of(const itk::GDCMImageIO& slice, const char* element, std::size_t count) {
   std::string text;
-  itk::ExposeMetaData<std::string>(slice, "0020|0032", text);
-  Eigen::Vector3d place;
-  if (std::sscanf(text.c_str(), "%lf\\%lf\\%lf", &place[0], &place[1], &place[2]) != 3)
-    throw std::runtime_error(
-        fmt::format("its slice {} does not say where it lies (Image Position), and the spacing is not known without",
-                    std::filesystem::path(file).filename().string()));
-  return place;
+  itk::ExposeMetaData<std::string>(slice.GetMetaDataDictionary(), element, text);
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* end = nullptr; numbers.size() < count; at = *end == '\\' ? end + 1 : end) {
+    numbers.push_back(std::strtod(at, &end));
+    if (end == at || !std::isfinite(numbers.back())) return {};
+  }
+  return numbers;
 }
 
-template <class Reader>
-void check_slices(const Reader& reader, const std::vector<std::string>& files) {
+[[noreturn]] void refuse_slice(const std::string& file, const std::string& why) {
+  throw std::runtime_error(fmt::format("its slice {} {}", std::filesystem::path(file).filename().string(), why));
+}
+
+/// A slice's header, which says of itself what a volume needs.
+itk::GDCMImageIO::Pointer header_of_slice(const std::string& file) {
+  if (!dicom_is_whole(file)) refuse_slice(file, "ends before its last pixel");
+  const auto slice = itk::GDCMImageIO::New();
+  slice->SetFileName(file);
+  slice->ReadImageInformation();
+  if (numbers_of(*slice, "0020|0032", 3).empty())
+    refuse_slice(file, "does not say where it lies (Image Position), and the spacing is not known without");
+  if (numbers_of(*slice, "0028|0030", 2).empty())
+    refuse_slice(file, "does not say how large its pixels are (Pixel Spacing)");
+  if (numbers_of(*slice, "0020|0037", 6).empty())
+    refuse_slice(file, "does not say how its rows and columns lie (Image Orientation)");
+  return slice;
+}
+
+/// Whether two slices have the same columns, rows, pixels and axes.
+void check_alike(const itk::GDCMImageIO& first, const itk::GDCMImageIO& other, const std::string& file) {
+  constexpr double kSame = 1e-3;  // of a pixel's size, and in axes, which are written with few digits
+  for (unsigned a = 0; a < 2; ++a) {
+    if (other.GetDimensions(a) != first.GetDimensions(a))
+      refuse_slice(file, fmt::format("has {} x {} pixels, and the first one {} x {}", other.GetDimensions(0),
+                                     other.GetDimensions(1), first.GetDimensions(0), first.GetDimensions(1)));
+    if (!(std::abs(other.GetSpacing(a) - first.GetSpacing(a)) < kSame * first.GetSpacing(a)))
+      refuse_slice(file,
+                   fmt::format("has pixels of {:.4g} x {:.4g} mm, and the first one {:.4g} x {:.4g} mm",
+                               other.GetSpacing(0), other.GetSpacing(1), first.GetSpacing(0), first.GetSpacing(1)));
+    for (unsigned r = 0; r < 3; ++r)
+      if (!(std::abs(other.GetDirection(a)[r] - first.GetDirection(a)[r]) < kSame))
+        refuse_slice(file, "lies otherwise than the first one (Image Orientation)");
+  }
+}
+
+/// What the headers of all slices say is looked at before their pixels are read.
+void check_slices(const std::vector<std::string>& files) {
+  const auto first = header_of_slice(files.front());
   if (files.size() < 2) return;
-  const auto& image = *reader.GetOutput();
-  SlicePlaces slices{{}, {}, std::min(image.GetSpacing()[0], image.GetSpacing()[1])};
-  for (int a = 0; a < 3; ++a) slices.normal[a] = image.GetDirection()(a, 2);
-  const auto& told = *reader.GetMetaDataDictionaryArray();
-  for (std::size_t k = 0; k < files.size(); ++k) slices.first_mm.push_back(place_in_mm(*told[k], files[k]));
+  SlicePlaces slices{{}, {}, std::min(first->GetSpacing(0), first->GetSpacing(1))};
+  const std::vector<double> row = first->GetDirection(0), column = first->GetDirection(1);
+  slices.normal = Eigen::Vector3d(row[0], row[1], row[2]).cross(Eigen::Vector3d(column[0], column[1], column[2]));
+  for (const std::string& file : files) {
+    const auto slice = header_of_slice(file);
+    check_alike(*first, *slice, file);
+    const std::vector<double> place = numbers_of(*slice, "0020|0032", 3);
+    slices.first_mm.emplace_back(place[0], place[1], place[2]);
+  }
   check_even(slices);
 }
 
@@ -155,12 +198,12 @@ itk::IOComponentEnum type_of_slice(const std::string& file) {
 template <class T>
 ReadImage<T> read_series(const std::string& folder, const std::string& wanted) {
   const std::vector<std::string> files = files_of_series(folder, wanted);
+  check_slices(files);
   return read_exactly<T>(type_of_slice(files.front()), [&]<class Value>() -> typename Image<Value>::Pointer {
     const auto reader = itk::ImageSeriesReader<Image<Value>>::New();
     reader->SetImageIO(itk::GDCMImageIO::New());
     reader->SetFileNames(files);
     reader->Update();
-    check_slices(*reader, files);
     return reader->GetOutput();
   });
 }
