@@ -137,14 +137,15 @@ TEST_F(SurfaceRepair, AShellFarAwayDoesNotMakeALargerHoleOneToBeClosed) {
   }
 }
 
-// A corner that is another node leaves a hole whose patch meets an edge that has two triangles.
+// As the patch of a hole can meet an edge that has two triangles.
 TEST_F(SurfaceRepair, TrianglesThatMakeNoSurfaceAreRefusedWithThePlace) {
   TriangleMesh wrong = ball_;
-  wrong.triangles.back()[2] = 5;
-  std::vector<Finding> findings;
+  const auto [first, second, third] = wrong.triangles.front();
+  wrong.nodes.emplace_back(3, 0, 0);
+  wrong.triangles.push_back({first, second, static_cast<int>(wrong.nodes.size()) - 1});
   try {
-    repair_surface(wrong, 3, findings);
-    FAIL() << "closed";
+    check_is_surface(wrong);
+    FAIL() << "of edge " << first << ", " << second << " a third triangle is taken, beside node " << third;
   } catch (const std::runtime_error& error) {
     expect_has(error.what(), "its triangles do not make a surface: more than two meet in an edge at (");
   }
