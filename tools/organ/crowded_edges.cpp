@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
+
+#include "tools/organ/joined_sets.hpp"
 
 namespace palpate {
 namespace {
@@ -77,24 +78,7 @@ std::vector<Sides> sheets_at(const TriangleMesh& mesh, Sides sides, bool outward
   return sheets;
 }
 
-/// Corners that are one node.
-class Corners {
- public:
-  explicit Corners(std::size_t count) : leader_(count) { std::iota(leader_.begin(), leader_.end(), 0); }
-  int find(int corner) {
-    while (leader_[corner] != corner) corner = leader_[corner] = leader_[leader_[corner]];
-    return corner;
-  }
-  void join(int a, int b) {
-    const auto [low, high] = std::minmax({find(a), find(b)});
-    leader_[high] = low;
-  }
-
- private:
-  std::vector<int> leader_;
-};
-
-void join_ends(const Sides& sheet, Corners& corners) {
+void join_ends(const Sides& sheet, JoinedSets& corners) {
   const auto end = [](const Side& side, bool lower) {
     return side.forward == lower ? side.corner : next_of(side.corner);
   };
@@ -103,13 +87,13 @@ void join_ends(const Sides& sheet, Corners& corners) {
 }
 
 /// The first of a node's sheets keeps it, each other one has a copy.
-void copy_nodes(TriangleMesh& mesh, const std::set<int>& shared, Corners& corners) {
+void copy_nodes(TriangleMesh& mesh, const std::set<int>& shared, JoinedSets& corners) {
   std::map<int, int> node_of;  // leading corner
   std::set<int> kept;
   for (int corner = 0; corner < static_cast<int>(3 * mesh.triangles.size()); ++corner) {
     int& node = mesh.triangles[corner / 3][corner % 3];
     if (!shared.contains(node)) continue;
-    const auto [known, is_new] = node_of.try_emplace(corners.find(corner), node);
+    const auto [known, is_new] = node_of.try_emplace(corners.leader(corner), node);
     if (is_new && !kept.insert(node).second) {
       known->second = static_cast<int>(mesh.nodes.size());
       mesh.nodes.push_back(mesh.nodes[node]);
@@ -151,7 +135,7 @@ void cut_at_middles(TriangleMesh& mesh, const std::map<int, int>& middle) {
 
 void part_crowded_edges(TriangleMesh& mesh) {
   const bool outward = is_outward(mesh);
-  Corners corners(3 * mesh.triangles.size());
+  JoinedSets corners(3 * mesh.triangles.size());
   std::vector<std::vector<Sides>> crowded;  // the sheets at each edge of several
   std::set<int> shared;
   for (const Sides& sides : sides_of(mesh)) {

@@ -33,7 +33,8 @@ bool dicom_is_whole(const std::string& file) {
   if (reader.GetFile().GetHeader().GetDataSetTransferSyntax().IsEncapsulated()) return true;
   const gdcm::DataSet& header = reader.GetFile().GetDataSet();
   const std::int64_t bits = number_of<0x0028, 0x0100>(header, 8) * number_of<0x0028, 0x0002>(header, 1);
-  const std::int64_t bytes = number_of<0x0028, 0x0010>(header, 0) * number_of<0x0028, 0x0011>(header, 0) * bits / 8;
+  const std::int64_t pixels = number_of<0x0028, 0x0010>(header, 0) * number_of<0x0028, 0x0011>(header, 0);
+  const std::int64_t bytes = pixels * bits / 8;  // of one picture at least
   const auto begin =
       static_cast<std::int64_t>(reader.GetStreamCurrentPosition());  // of the pixels, which are passed over
   return static_cast<std::int64_t>(std::filesystem::file_size(file)) - begin >= bytes;

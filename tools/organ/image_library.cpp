@@ -174,8 +174,11 @@ void check_alike(const itk::GDCMImageIO& first, const itk::GDCMImageIO& other, c
 
 /// What the headers of all slices say is looked at before their pixels are read.
 void check_slices(const std::vector<std::string>& files) {
+  if (files.size() == 1) {  // of one picture, or of many, which have their places elsewhere
+    if (!dicom_is_whole(files.front())) refuse_slice(files.front(), "ends before its last pixel");
+    return;
+  }
   const auto first = header_of_slice(files.front());
-  if (files.size() < 2) return;
   SlicePlaces slices{{}, {}, std::min(first->GetSpacing(0), first->GetSpacing(1))};
   const std::vector<double> row = first->GetDirection(0), column = first->GetDirection(1);
   slices.normal = Eigen::Vector3d(row[0], row[1], row[2]).cross(Eigen::Vector3d(column[0], column[1], column[2]));

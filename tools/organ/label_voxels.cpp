@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 
+#include "tools/organ/joined_sets.hpp"
 #include "tools/organ/voxel_pieces.hpp"
 
 namespace palpate {
@@ -92,22 +92,15 @@ LabelVoxels voxels_of(const LabelVolume& volume, const std::vector<NamedLabel>& 
 
 std::vector<std::vector<int>> touching_labels(const LabelVoxels& voxels) {
   const std::vector<unsigned char> number = numbers_of(voxels);
-  std::vector<int> leader(voxels.inside.size());
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int l) {
-    while (leader[l] != l) l = leader[l];
-    return l;
-  };
+  JoinedSets sets(voxels.inside.size());
   const std::size_t row = voxels.shape.count[0], layer = row * voxels.shape.count[1];
   for (std::size_t i = layer; i < number.size(); ++i)
     for (const std::size_t step : {std::size_t{1}, row, layer}) {
       const int a = number[i], b = number[i - step];
-      if (a == 0 || b == 0 || a == b) continue;
-      const auto [low, high] = std::minmax({find(a - 1), find(b - 1)});
-      leader[high] = low;
+      if (a != 0 && b != 0 && a != b) sets.join(a - 1, b - 1);
     }
-  std::vector<std::vector<int>> together(leader.size());
-  for (int l = 0; l < static_cast<int>(leader.size()); ++l) together[find(l)].push_back(l);
+  std::vector<std::vector<int>> together(voxels.inside.size());
+  for (int l = 0; l < static_cast<int>(together.size()); ++l) together[sets.leader(l)].push_back(l);
   std::erase_if(together, [](const auto& labels) { return labels.empty(); });
   return together;
 }

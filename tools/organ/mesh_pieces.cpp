@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
+#include "tools/organ/joined_sets.hpp"
 #include "tools/organ/surface_shells.hpp"
 
 namespace palpate {
@@ -41,24 +41,6 @@ std::vector<Neighbours> neighbours_of(const TetMesh& mesh) {
       neighbours.push_back({faces[f - 1].second, faces[f].second, faces[f].first});
   return neighbours;
 }
-
-/// Things that are joined to one another; of all that hang together one is the leader.
-class JoinedSets {
- public:
-  explicit JoinedSets(std::size_t count) : leader_(count) { std::iota(leader_.begin(), leader_.end(), 0); }
-
-  int leader(int i) {
-    while (leader_[i] != i) i = leader_[i] = leader_[leader_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    const auto [low, high] = std::minmax({leader(a), leader(b)});
-    leader_[high] = low;
-  }
-
- private:
-  std::vector<int> leader_;
-};
 
 double face_area(const TetMesh& mesh, const std::array<int, 3>& face) {
   const Eigen::Vector3d& a = mesh.nodes[face[0]];

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include "tools/organ/joined_sets.hpp"
 #include "tools/organ/surface_library.hpp"
 
 namespace palpate {
@@ -172,20 +172,12 @@ double diagonal_of_largest_shell(const TriangleMesh& mesh) {
 }
 
 std::vector<std::vector<int>> shells_of(const TriangleMesh& mesh) {
-  std::vector<int> leader(mesh.triangles.size());
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int t) {
-    while (leader[t] != t) t = leader[t] = leader[leader[t]];
-    return t;
-  };
+  JoinedSets sets(mesh.triangles.size());
   const std::vector<EdgeUse> uses = edge_uses(mesh);
-  for (std::size_t i = 1; i < uses.size(); ++i) {
-    if (uses[i].edge != uses[i - 1].edge) continue;
-    const auto [low, high] = std::minmax({find(uses[i].triangle), find(uses[i - 1].triangle)});
-    leader[high] = low;
-  }
+  for (std::size_t i = 1; i < uses.size(); ++i)
+    if (uses[i].edge == uses[i - 1].edge) sets.join(uses[i].triangle, uses[i - 1].triangle);
   std::map<int, std::vector<int>> shells;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) shells[find(t)].push_back(t);
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) shells[sets.leader(t)].push_back(t);
   std::vector<std::vector<int>> all;
   for (auto& [first, shell] : shells) all.push_back(std::move(shell));
   return all;
